@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace soslam {
+
+// The one table of options. Every options struct has
+//
+//   void Describe(OptionVisitor& visit) { visit.Real("border_px", &border_px, {0, 1e4}, "doc"); ... }
+//
+// and everything else follows from it: reading and writing JSON, the command line, --help.
+class OptionVisitor {
+ public:
+  struct Range {
+    double min;
+    double max;
+  };
+
+  virtual ~OptionVisitor() = default;
+  virtual void Real(const char* name, double* value, Range range, const char* doc) = 0;
+  virtual void Integer(const char* name, int* value, Range range, const char* doc) = 0;
+  virtual void Flag(const char* name, bool* value, const char* doc) = 0;
+  virtual void Text(const char* name, std::string* value, const char* doc) = 0;
+
+  // An enumeration whose values 0..n-1 have these names.
+  template <typename Enum>
+  void Choice(const char* name, Enum* value, std::span<const char* const> names, const char* doc) {
+    static_assert(std::is_enum_v<Enum>);
+    int index = static_cast<int>(*value);
+    ChoiceIndex(name, &index, names, doc);
+    *value = static_cast<Enum>(index);
+  }
+
+ protected:
+  virtual void ChoiceIndex(const char* name, int* index, std::span<const char* const> names,
+                           const char* doc) = 0;
+};
+
+// One option, as a person reads it.
+struct OptionRow {
+  std::string name;
+  std::string type;           // "number", "integer", "boolean", "string"
+  std::string default_value;  // as written in JSON
+  std::string domain;         // range or choices; empty when free
+  std::string doc;
+};
+
+namespace internal {
+
+// Visits with the struct's Describe as a plain callable, so that the visitors live in one .cpp.
+using DescribeFunction = void (*)(void* options, OptionVisitor& visitor);
+
+template <typename Options>
+void DescribeErased(void* options, OptionVisitor& visitor) {
+  static_cast<Options*>(options)->Describe(visitor);
+}
+
+nlohmann::json ToJson(void* options, DescribeFunction describe);
+void FromJson(void* options, DescribeFunction describe, const nlohmann::json& values,
+              const std::string& where);
+std::vector<OptionRow> Rows(void* options, DescribeFunction describe);
+
+}  // namespace internal
+
+// All options with their current values.
+template <typename Options>
+nlohmann::json OptionsToJson(Options options) {
+  return internal::ToJson(&options, &internal::DescribeErased<Options>);
+}
+
+// Overwrites the options named in `values`; the others keep their value. Throws SettingsError,
+// naming `where` and the option, for an unknown name, a wrong type or a value out of range.
+template <typename Options>
+void OptionsFromJson(const nlohmann::json& values, const std::string& where, Options* options) {
+  internal::FromJson(options, &internal::DescribeErased<Options>, values, where);
+}
+
+// The options with defaults, domains and documentation, in order of declaration.
+template <typename Options>
+std::vector<OptionRow> OptionRows() {
+  Options options;
+  return internal::Rows(&options, &internal::DescribeErased<Options>);
+}
+
+}  // namespace soslam

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+namespace soslam {
+
+// Calls work(0) .. work(count - 1), each once, on up to `threads` threads. Work items must not
+// share mutable state, so that results do not depend on the number of threads. The first exception
+// thrown by an item is rethrown here.
+void ParallelFor(int count, int threads, const std::function<void(int)>& work);
+
+}  // namespace soslam

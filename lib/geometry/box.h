@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+
+namespace soslam {
+
+// An axis-aligned rectangle in the image, pixels, (0, 0) the centre of the top-left pixel.
+struct Box {
+  double x_min = 0.0;
+  double y_min = 0.0;
+  double x_max = 0.0;
+  double y_max = 0.0;
+
+  double Width() const { return x_max - x_min; }
+  double Height() const { return y_max - y_min; }
+  Eigen::Vector2d Centre() const { return {0.5 * (x_min + x_max), 0.5 * (y_min + y_max)}; }
+  bool Contains(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= x_min && pixel.x() <= x_max && pixel.y() >= y_min && pixel.y() <= y_max;
+  }
+  // The edges as homogeneous lines l with l . (u, v, 1) = 0: left, top, right, bottom.
+  std::array<Eigen::Vector3d, 4> EdgeLines() const {
+    return {Eigen::Vector3d(1, 0, -x_min), Eigen::Vector3d(0, 1, -y_min),
+            Eigen::Vector3d(1, 0, -x_max), Eigen::Vector3d(0, 1, -y_max)};
+  }
+};
+
+// The smallest signed distance (px) from an edge of the box to the border of an image of
+// width x height pixels, which covers [-0.5, width - 0.5] x [-0.5, height - 0.5]. Negative when the
+// box reaches outside.
+inline double DistanceToBorder(const Box& box, int width, int height) {
+  return std::min({box.x_min + 0.5, box.y_min + 0.5, width - 0.5 - box.x_max,
+                   height - 0.5 - box.y_max});
+}
+
+}  // namespace soslam

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/camera.h"
+
+namespace soslam {
+
+Eigen::Matrix3d Camera::Intrinsics() const {
+  Eigen::Matrix3d intrinsics;
+  intrinsics << fx, 0, cx, 0, fy, cy, 0, 0, 1;
+  return intrinsics;
+}
+
+Eigen::Matrix<double, 3, 4> Camera::ProjectionMatrix(const Rigid3d& camera_from_world) const {
+  return Intrinsics() * camera_from_world.Matrix().topRows<3>();
+}
+
+Plane Camera::BackProject(const Eigen::Vector3d& line) const {
+  const Eigen::Vector3d normal = Intrinsics().transpose() * line;
+  return {normal.normalized(), 0.0};
+}
+
+}  // namespace soslam

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// A pinhole camera without distortion. Camera frame: x right, y down, z forward. Pixels, (0, 0) the
+// centre of the top-left pixel.
+struct Camera {
+  int width = 0;
+  int height = 0;
+  double fx = 1.0;
+  double fy = 1.0;
+  double cx = 0.0;
+  double cy = 0.0;
+
+  // The pixel of a point; none when the point is not in front of the camera (z <= 0).
+  std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& point_in_camera) const {
+    if (!(point_in_camera.z() > 0.0)) return std::nullopt;
+    return Eigen::Vector2d(fx * point_in_camera.x() / point_in_camera.z() + cx,
+                           fy * point_in_camera.y() / point_in_camera.z() + cy);
+  }
+  // The viewing ray of a pixel, with z = 1: (point at depth z) = z * ray.
+  Eigen::Vector3d Ray(const Eigen::Vector2d& pixel) const {
+    return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, 1.0};
+  }
+  // K, 3 x 3.
+  Eigen::Matrix3d Intrinsics() const;
+  // P = K [R | t], 3 x 4, of a camera at camera_from_world.
+  Eigen::Matrix<double, 3, 4> ProjectionMatrix(const Rigid3d& camera_from_world) const;
+  // The plane through the camera centre and an image line, eq. (2) with P = K [I | 0]: K^T l,
+  // normalised. In the camera frame; its offset is 0.
+  Plane BackProject(const Eigen::Vector3d& line) const;
+  bool IsInside(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= -0.5 && pixel.x() <= width - 0.5 && pixel.y() >= -0.5 &&
+           pixel.y() <= height - 0.5;
+  }
+};
+
+}  // namespace soslam

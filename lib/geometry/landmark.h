@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// An object as an ellipsoid: 9 degrees of freedom. Variables say the frame it lives in:
+// landmark_in_world, landmark_in_camera. Object frame: origin at the centre, z away from the support
+// plane, x the front, so that the mirror plane of a symmetric object is its xz plane.
+struct Landmark {
+  Rigid3d frame_from_object;
+  Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();  // (a, b, c) along x, y, z, metres, > 0
+
+  const Eigen::Vector3d& Centre() const { return frame_from_object.translation; }
+};
+
+// The same landmark in the target frame.
+Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source);
+
+// Q* = Z diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object: pi^T Q* pi = 0 iff pi is tangent.
+Eigen::Matrix4d DualQuadric(const Landmark& landmark);
+
+// Q with x^T Q x = 0 on the surface, < 0 inside, > 0 outside (the paper's Theta).
+Eigen::Matrix4d Quadric(const Landmark& landmark);
+
+// The landmark of a dual quadric (any scale and sign). Half axes come in ascending order along x, y, z of
+// a right-handed frame. `proper` is false when the quadric is not an ellipsoid; the absolute values of
+// its squared half axes are then used (Nicholson et al. 2019). None when centre or axes are not finite.
+struct DualQuadricLandmark {
+  Landmark landmark;
+  bool proper;
+};
+std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d& dual_quadric);
+
+// The tight box around the outline of the landmark, from the dual conic P Q* P^T; not cut at the image
+// border. None unless the whole landmark is in front of the camera.
+std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera);
+
+// Where a ray from `origin` first meets the surface (eq. 13): origin + depth * direction, depth > 0.
+// None when the ray misses the surface, or the surface is behind the origin or around it.
+std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
+                                          const Eigen::Vector3d& direction);
+
+// The mirror image S(v, Q) of a point in the landmark's xz plane.
+Eigen::Vector3d Mirror(const Landmark& landmark, const Eigen::Vector3d& point);
+
+// Upright orientations: z along the support normal. Yaw is the angle (rad) of the object's x axis
+// about that normal, counted from a horizontal direction fixed by the normal alone.
+Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& support_normal, double yaw);
+// The yaw of a rotation's x axis, in (-pi, pi]; the counterpart of UprightRotation.
+double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& frame_from_object);
+
+// The landmark turned about its own z axis by `angle` (rad); centre and half axes stay.
+Landmark Turned(const Landmark& landmark, double angle);
+
+// The difference of two yaws modulo pi, in [-pi/2, pi/2): an xz mirror plane has no front or back.
+double YawDifferenceModuloPi(double yaw, double other);
+
+}  // namespace soslam

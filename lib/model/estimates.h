@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/landmark.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// One landmark that explains an observation, with the cost at which it does (half the sum of squared
+// weighted residuals, no unit).
+struct Hypothesis {
+  Landmark landmark_in_camera;
+  double cost = 0.0;
+};
+
+// What one observation alone says about its object. `hypotheses` is sorted best first; the first one
+// is the estimate. Empty, with the reason in `failure`, when the observation gives no landmark.
+struct ObservationEstimate {
+  int detection_index = 0;  // into Sequence::detections
+  std::vector<Hypothesis> hypotheses;
+  std::string failure;
+};
+
+using Covariance9 = Eigen::Matrix<double, 9, 9>;
+
+// What all observations of an object together say about it. Covariance over (rotation vector in the
+// world frame, rad; centre in the world frame, m; log half axes).
+struct ObjectEstimate {
+  int object_index = 0;  // into Sequence::objects
+  int observations = 0;  // how many detections it comes from
+  std::optional<Landmark> landmark_in_world;
+  std::optional<Covariance9> covariance;
+  std::string failure;  // why there is no landmark
+  bool proper_ellipsoid = true;  // false: see LandmarkFromDualQuadric
+};
+
+// The landmarks that a stage found: per observation, per object, or both.
+struct LandmarkEstimates {
+  std::vector<ObservationEstimate> observations;
+  std::vector<ObjectEstimate> objects;
+};
+
+struct SolverSummary {
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  int iterations = 0;
+  bool converged = false;
+  std::vector<double> cost_per_iteration;
+  std::map<std::string, int> residuals;  // residual blocks by kind
+  std::map<std::string, int> gated;      // what was left out before the solve, by reason
+};
+
+// The result of the back end.
+struct MapEstimate {
+  std::vector<ObjectEstimate> objects;
+  std::vector<Rigid3d> world_from_camera;  // one per Sequence::frames
+  SolverSummary solver;
+};
+
+}  // namespace soslam

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// One image with its pose. `id` is the 0-based row in the dataset's image list and is what files say;
+// the position in Sequence::frames (frame_index) is contiguous and is what code uses.
+struct Frame {
+  int id = 0;
+  double timestamp = 0.0;  // seconds
+  std::string image;       // path relative to the dataset folder
+  Rigid3d world_from_camera;                          // the pose estimate: odometry
+  std::optional<Rigid3d> true_world_from_camera;      // ground truth, for evaluation only
+};
+
+struct SupportPlane {
+  int id = 0;
+  Plane plane_in_world;
+};
+
+// Exact values of an object, for evaluation only.
+struct GroundTruth {
+  Landmark landmark_in_world;
+  bool mirror_symmetric = true;
+  bool mirror_symmetric_yz = false;
+  bool rotationally_symmetric = false;
+};
+
+struct Object {
+  int id = 0;
+  std::string label;
+  int plane_index = 0;  // into Sequence::planes: the plane it stands on
+  std::optional<GroundTruth> ground_truth;
+};
+
+// A 2D box of one object in one frame. `plane_in_camera` is the object's support plane as that camera
+// sees it.
+struct Detection {
+  int frame_index = 0;   // into Sequence::frames
+  int object_index = 0;  // into Sequence::objects
+  double score = 1.0;
+  Box box;
+  Plane plane_in_camera;
+};
+
+// What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then by
+// object; objects and planes by id.
+struct Sequence {
+  std::string name;
+  Camera camera;
+  std::vector<Frame> frames;
+  std::vector<SupportPlane> planes;
+  std::vector<Object> objects;
+  std::vector<Detection> detections;
+  std::map<std::string, int> rejected_detections;  // reason -> how many
+};
+
+// Indices into sequence.detections of each object's detections, in frame order.
+inline std::vector<std::vector<int>> DetectionsByObject(const Sequence& sequence) {
+  std::vector<std::vector<int>> by_object(sequence.objects.size());
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    by_object[static_cast<size_t>(sequence.detections[i].object_index)].push_back(
+        static_cast<int>(i));
+  }
+  return by_object;
+}
+
+}  // namespace soslam

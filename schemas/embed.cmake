@@ -1,0 +1,12 @@
+# Writes a C++ file that holds every schema as a string, by file name without ".schema.json".
+set(text "#include <map>\n#include <string>\n#include <string_view>\n\n#include \"artefact/schema.h\"\n\n")
+string(APPEND text "namespace soslam {\n\nconst std::map<std::string, std::string_view>& EmbeddedSchemas() {\n")
+string(APPEND text "  static const std::map<std::string, std::string_view> schemas = {\n")
+foreach(schema ${SCHEMAS})
+  get_filename_component(name ${schema} NAME)
+  string(REPLACE ".schema.json" "" name ${name})
+  file(READ ${schema} content)
+  string(APPEND text "      {\"${name}\", R\"schema(${content})schema\"},\n")
+endforeach()
+string(APPEND text "  };\n  return schemas;\n}\n\n}  // namespace soslam\n")
+file(WRITE ${OUTPUT} "${text}")
