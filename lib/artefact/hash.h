@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace soslam {
+
+// SHA-256 as 64 lower-case hexadecimal digits.
+std::string Sha256OfText(std::string_view text);
+// Of a file's bytes. Throws InputError when it cannot be read.
+std::string Sha256OfFile(const std::filesystem::path& path);
+
+}  // namespace soslam

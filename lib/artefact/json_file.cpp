@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/json_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "artefact/atomic_file.h"
+#include "artefact/hash.h"
+#include "artefact/schema.h"
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// [major, minor] of every kind's schema. A reader reads all versions up to its own.
+const std::vector<int> kSchemaVersion = {1, 0};
+
+// nlohmann keeps the last of several equal keys without a word; this parser callback refuses them.
+class DuplicateKeyCheck {
+ public:
+  explicit DuplicateKeyCheck(const std::string& file) : file_(file) {}
+
+  bool operator()(int, json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::object_start) {
+      keys_of_open_objects_.emplace_back();
+    } else if (event == json::parse_event_t::object_end) {
+      keys_of_open_objects_.pop_back();
+    } else if (event == json::parse_event_t::key &&
+               !keys_of_open_objects_.back().insert(parsed.get<std::string>()).second) {
+      throw InputError(
+          fmt::format("{}: key {} twice in one object; expected once", file_, parsed.dump()));
+    }
+    return true;
+  }
+
+ private:
+  std::string file_;
+  std::vector<std::set<std::string>> keys_of_open_objects_;
+};
+
+void RefuseNonFinite(const json& value, const json::json_pointer& place, const std::string& file) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+    throw NumericalError(fmt::format("{}: {} would be {}; expected a finite number", file,
+                                     place.to_string(), value.get<double>()));
+  }
+  if (value.is_object()) {
+    for (const auto& item : value.items()) RefuseNonFinite(item.value(), place / item.key(), file);
+  }
+  if (value.is_array()) {
+    for (size_t i = 0; i < value.size(); ++i) RefuseNonFinite(value[i], place / i, file);
+  }
+}
+
+}  // namespace
+
+json ParseJsonFile(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(path)) {
+    throw InputError(file + ": cannot be read; expected a JSON file");
+  }
+  if (stream.peek() == std::ifstream::traits_type::eof()) {
+    throw InputError(file + ": is empty; expected JSON");
+  }
+  try {
+    return json::parse(stream, DuplicateKeyCheck(file));
+  } catch (const json::exception& error) {
+    const std::string message = error.what();  // "[json.exception.parse_error.101] parse error ..."
+    throw InputError(file + ": " + message.substr(message.find("] ") + 2));
+  }
+}
+
+json ArtefactHeader(const std::string& kind, const ArtefactInfo& info) {
+  json inputs = json::array();
+  for (const auto& input : info.inputs) {
+    inputs.push_back({{"file", input.filename().string()}, {"sha256", Sha256OfFile(input)}});
+  }
+  std::sort(inputs.begin(), inputs.end());
+  return {{"kind", kind},
+          {"schema_version", kSchemaVersion},
+          {"software", "soslam " SOSLAM_VERSION},
+          {"settings", info.settings.is_null() ? json::object() : info.settings},
+          {"inputs", inputs}};
+}
+
+void CheckArtefactHeader(const json& header, const std::string& kind, const std::string& file) {
+  if (!header.is_object() || !header.contains("kind") || !header.contains("schema_version")) {
+    throw InputError(fmt::format(
+        "{}: has no artefact header with kind and schema_version; expected one of kind '{}'", file,
+        kind));
+  }
+  if (header["kind"] != kind) {
+    throw InputError(
+        fmt::format("{}: artefact kind is {}; expected \"{}\"", file, header["kind"].dump(), kind));
+  }
+  const json& version = header["schema_version"];
+  const auto is_count = [](const json& number) { return number.is_number_unsigned(); };
+  if (!version.is_array() || version.size() != 2 ||
+      !std::all_of(version.begin(), version.end(), is_count)) {
+    throw InputError(
+        fmt::format("{}: schema_version is {}; expected [major, minor]", file, version.dump()));
+  }
+  if (version > json(kSchemaVersion)) {
+    throw InputError(
+        fmt::format("{}: has schema version [{}] of kind '{}'; this software reads up to [{}]",
+                    file, fmt::join(version.get<std::vector<std::uint64_t>>(), ", "), kind,
+                    fmt::join(kSchemaVersion, ", ")));
+  }
+}
+
+json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
+  json document = ParseJsonFile(path);
+  const json header = document.is_object() ? document.value("artefact", json()) : json();
+  CheckArtefactHeader(header, kind, path.string());
+  ValidateAgainstSchema(document, kind, path.string());
+  return document;
+}
+
+void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
+                   const ArtefactInfo& info, json body) {
+  body["artefact"] = ArtefactHeader(kind, info);
+  RefuseNonFinite(body, json::json_pointer(), path.string());
+  if (const auto violation = SchemaViolation(body, kind)) {
+    throw std::logic_error(fmt::format("{}: would break the schema of kind '{}': {}", path.string(),
+                                       kind, *violation));
+  }
+  WriteTextFile(path, body.dump(1) + "\n");
+}
+
+}  // namespace soslam

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// What shaped an artefact.
+struct ArtefactInfo {
+  nlohmann::json settings;                    // every option of the stage, resolved
+  std::vector<std::filesystem::path> inputs;  // the files that were read
+};
+
+// The document in a JSON file of anybody's. Throws InputError, naming the file and line, when it is
+// missing, empty or malformed, or an object has the same key twice.
+nlohmann::json ParseJsonFile(const std::filesystem::path& path);
+
+// The header of an artefact: kind, schema version, software version, settings, and each input by
+// file name with its SHA-256. JSON artefacts hold it as "artefact", HDF5 artefacts as an attribute.
+nlohmann::json ArtefactHeader(const std::string& kind, const ArtefactInfo& info);
+
+// Throws InputError, naming `file`, when the header is not one of this kind, or its schema version
+// is newer than what this software reads.
+void CheckArtefactHeader(const nlohmann::json& header, const std::string& kind,
+                         const std::string& file);
+
+// An artefact of that kind, checked against schemas/<kind>.schema.json, with its header under
+// "artefact". Throws InputError.
+nlohmann::json ReadArtefact(const std::filesystem::path& path, const std::string& kind);
+
+// Writes {"artefact": header, ...body} atomically; an existing file with the same bytes keeps its
+// modification time. Throws NumericalError, naming the place, for a number that is not finite;
+// SettingsError when the file cannot be written; std::logic_error when the schema does not allow
+// it.
+void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
+                   const ArtefactInfo& info, nlohmann::json body);
+
+}  // namespace soslam
