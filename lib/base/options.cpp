@@ -20,9 +20,7 @@ class Writer : public OptionVisitor {
   nlohmann::json values = nlohmann::json::object();
 
   void Real(const char* name, double* value, Range, const char*) override { values[name] = *value; }
-  void Integer(const char* name, int* value, Range, const char*) override {
-    values[name] = *value;
-  }
+  void Integer(const char* name, int* value, Range, const char*) override { values[name] = *value; }
   void Flag(const char* name, bool* value, const char*) override { values[name] = *value; }
   void Text(const char* name, std::string* value, const char*) override { values[name] = *value; }
 

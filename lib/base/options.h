@@ -12,7 +12,8 @@ namespace soslam {
 
 // The one table of options. Every options struct has
 //
-//   void Describe(OptionVisitor& visit) { visit.Real("border_px", &border_px, {0, 1e4}, "doc"); ... }
+//   void Describe(OptionVisitor& visit) { visit.Real("border_px", &border_px, {0, 1e4}, "doc"); ...
+//   }
 //
 // and everything else follows from it: reading and writing JSON, the command line, --help.
 class OptionVisitor {

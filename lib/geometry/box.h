@@ -31,8 +31,8 @@ struct Box {
 // width x height pixels, which covers [-0.5, width - 0.5] x [-0.5, height - 0.5]. Negative when the
 // box reaches outside.
 inline double DistanceToBorder(const Box& box, int width, int height) {
-  return std::min({box.x_min + 0.5, box.y_min + 0.5, width - 0.5 - box.x_max,
-                   height - 0.5 - box.y_max});
+  return std::min(
+      {box.x_min + 0.5, box.y_min + 0.5, width - 0.5 - box.x_max, height - 0.5 - box.y_max});
 }
 
 }  // namespace soslam

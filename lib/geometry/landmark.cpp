@@ -8,7 +8,8 @@
 namespace soslam {
 namespace {
 
-// A direction orthogonal to the normal: the projection of x, or of y where x is (nearly) the normal.
+// A direction orthogonal to the normal: the projection of x, or of y where x is (nearly) the
+// normal.
 Eigen::Vector3d HorizontalReference(const Eigen::Vector3d& normal) {
   const Eigen::Vector3d seed =
       std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
@@ -61,11 +62,11 @@ std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_
   const double depth_extent = scaled_axes.row(2).norm();
   if (!(camera_from_object.translation.z() > depth_extent)) return std::nullopt;
 
-  const Eigen::Matrix3d conic = camera.Intrinsics() *
-                                (scaled_axes * scaled_axes.transpose() -
-                                 camera_from_object.translation *
-                                     camera_from_object.translation.transpose()) *
-                                camera.Intrinsics().transpose();
+  const Eigen::Matrix3d conic =
+      camera.Intrinsics() *
+      (scaled_axes * scaled_axes.transpose() -
+       camera_from_object.translation * camera_from_object.translation.transpose()) *
+      camera.Intrinsics().transpose();
   // A vertical line x = u is tangent iff (1, 0, -u) C* (1, 0, -u)^T = 0; likewise for rows.
   const auto bounds = [&conic](int axis) {
     const double root =

@@ -13,8 +13,8 @@
 namespace soslam {
 
 // An object as an ellipsoid: 9 degrees of freedom. Variables say the frame it lives in:
-// landmark_in_world, landmark_in_camera. Object frame: origin at the centre, z away from the support
-// plane, x the front, so that the mirror plane of a symmetric object is its xz plane.
+// landmark_in_world, landmark_in_camera. Object frame: origin at the centre, z away from the
+// support plane, x the front, so that the mirror plane of a symmetric object is its xz plane.
 struct Landmark {
   Rigid3d frame_from_object;
   Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();  // (a, b, c) along x, y, z, metres, > 0
@@ -31,21 +31,22 @@ Eigen::Matrix4d DualQuadric(const Landmark& landmark);
 // Q with x^T Q x = 0 on the surface, < 0 inside, > 0 outside (the paper's Theta).
 Eigen::Matrix4d Quadric(const Landmark& landmark);
 
-// The landmark of a dual quadric (any scale and sign). Half axes come in ascending order along x, y, z of
-// a right-handed frame. `proper` is false when the quadric is not an ellipsoid; the absolute values of
-// its squared half axes are then used (Nicholson et al. 2019). None when centre or axes are not finite.
+// The landmark of a dual quadric (any scale and sign). Half axes come in ascending order along x,
+// y, z of a right-handed frame. `proper` is false when the quadric is not an ellipsoid; the
+// absolute values of its squared half axes are then used (Nicholson et al. 2019). None when centre
+// or axes are not finite.
 struct DualQuadricLandmark {
   Landmark landmark;
   bool proper;
 };
 std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d& dual_quadric);
 
-// The tight box around the outline of the landmark, from the dual conic P Q* P^T; not cut at the image
-// border. None unless the whole landmark is in front of the camera.
+// The tight box around the outline of the landmark, from the dual conic P Q* P^T; not cut at the
+// image border. None unless the whole landmark is in front of the camera.
 std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera);
 
-// Where a ray from `origin` first meets the surface (eq. 13): origin + depth * direction, depth > 0.
-// None when the ray misses the surface, or the surface is behind the origin or around it.
+// Where a ray from `origin` first meets the surface (eq. 13): origin + depth * direction, depth >
+// 0. None when the ray misses the surface, or the surface is behind the origin or around it.
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction);
 

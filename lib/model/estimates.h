@@ -12,15 +12,15 @@
 
 namespace soslam {
 
-// One landmark that explains an observation, with the cost at which it does (half the sum of squared
-// weighted residuals, no unit).
+// One landmark that explains an observation, with the cost at which it does (half the sum of
+// squared weighted residuals, no unit).
 struct Hypothesis {
   Landmark landmark_in_camera;
   double cost = 0.0;
 };
 
-// What one observation alone says about its object. `hypotheses` is sorted best first; the first one
-// is the estimate. Empty, with the reason in `failure`, when the observation gives no landmark.
+// What one observation alone says about its object. `hypotheses` is sorted best first; the first
+// one is the estimate. Empty, with the reason in `failure`, when the observation gives no landmark.
 struct ObservationEstimate {
   int detection_index = 0;  // into Sequence::detections
   std::vector<Hypothesis> hypotheses;
@@ -36,7 +36,7 @@ struct ObjectEstimate {
   int observations = 0;  // how many detections it comes from
   std::optional<Landmark> landmark_in_world;
   std::optional<Covariance9> covariance;
-  std::string failure;  // why there is no landmark
+  std::string failure;           // why there is no landmark
   bool proper_ellipsoid = true;  // false: see LandmarkFromDualQuadric
 };
 

@@ -14,14 +14,14 @@
 
 namespace soslam {
 
-// One image with its pose. `id` is the 0-based row in the dataset's image list and is what files say;
-// the position in Sequence::frames (frame_index) is contiguous and is what code uses.
+// One image with its pose. `id` is the 0-based row in the dataset's image list and is what files
+// say; the position in Sequence::frames (frame_index) is contiguous and is what code uses.
 struct Frame {
   int id = 0;
-  double timestamp = 0.0;  // seconds
-  std::string image;       // path relative to the dataset folder
-  Rigid3d world_from_camera;                          // the pose estimate: odometry
-  std::optional<Rigid3d> true_world_from_camera;      // ground truth, for evaluation only
+  double timestamp = 0.0;                         // seconds
+  std::string image;                              // path relative to the dataset folder
+  Rigid3d world_from_camera;                      // the pose estimate: odometry
+  std::optional<Rigid3d> true_world_from_camera;  // ground truth, for evaluation only
 };
 
 struct SupportPlane {
@@ -44,8 +44,8 @@ struct Object {
   std::optional<GroundTruth> ground_truth;
 };
 
-// A 2D box of one object in one frame. `plane_in_camera` is the object's support plane as that camera
-// sees it.
+// A 2D box of one object in one frame. `plane_in_camera` is the object's support plane as that
+// camera sees it.
 struct Detection {
   int frame_index = 0;   // into Sequence::frames
   int object_index = 0;  // into Sequence::objects
@@ -54,8 +54,8 @@ struct Detection {
   Plane plane_in_camera;
 };
 
-// What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then by
-// object; objects and planes by id.
+// What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then
+// by object; objects and planes by id.
 struct Sequence {
   std::string name;
   Camera camera;

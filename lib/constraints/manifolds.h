@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/manifold.h>
+#include <ceres/product_manifold.h>
+
+namespace soslam {
+
+// The manifold of a pose block (see parameters.h): 6 tangent dimensions.
+inline ceres::Manifold* NewPoseManifold() {
+  return new ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+}
+
+// The manifold of a landmark block: 9 tangent dimensions. Its rotation part is half a rotation
+// vector applied from the left (Ceres' convention).
+inline ceres::Manifold* NewLandmarkManifold() {
+  return new ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<6>>;
+}
+
+}  // namespace soslam

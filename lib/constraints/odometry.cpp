@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/odometry.h"
+
+#include <cmath>
+
+namespace soslam {
+namespace {
+
+// d log(exp(v) exp(w)) / dw at w = 0: the inverse right Jacobian of SO(3).
+Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& v) {
+  const double angle = v.norm();
+  const Eigen::Matrix3d skew = Skew(v);
+  // The limit of the second coefficient at 0 is 1/12.
+  const double coefficient =
+      angle > 1e-4 ? 1.0 / (angle * angle) - 0.5 / (angle * std::tan(0.5 * angle)) : 1.0 / 12.0;
+  return Eigen::Matrix3d::Identity() + 0.5 * skew + coefficient * skew * skew;
+}
+
+}  // namespace
+
+OdometryResidual::OdometryResidual(const Rigid3d& first_from_second, double rotation_sigma,
+                                   double translation_sigma)
+    : first_from_second_(first_from_second),
+      rotation_weight_(1.0 / rotation_sigma),
+      translation_weight_(1.0 / translation_sigma) {}
+
+bool OdometryResidual::Evaluate(double const* const* blocks, double* residuals,
+                                double** jacobians) const {
+  const Rigid3d world_from_first = UnpackPose(blocks[0]);
+  const Rigid3d world_from_second = UnpackPose(blocks[1]);
+  const Rigid3d estimate = world_from_first.Inverse() * world_from_second;
+  const Eigen::Vector3d rotation_error =
+      LogRotation(first_from_second_.rotation.conjugate() * estimate.rotation);
+
+  Eigen::Map<Eigen::Vector3d>(residuals).noalias() = rotation_weight_ * rotation_error;
+  Eigen::Map<Eigen::Vector3d>(residuals + 3).noalias() =
+      translation_weight_ * (estimate.translation - first_from_second_.translation);
+  if (jacobians == nullptr) return true;
+
+  using Block = Eigen::Matrix<double, 6, 3>;
+  const Eigen::Matrix3d first_from_world = world_from_first.rotation.toRotationMatrix().transpose();
+  const Eigen::Matrix3d error_by_second = InverseRightJacobian(rotation_error) *
+                                          world_from_second.rotation.toRotationMatrix().transpose();
+  Block by_rotation = Block::Zero();
+  Block by_translation = Block::Zero();
+  if (jacobians[0] != nullptr) {
+    by_rotation.topRows<3>() = -rotation_weight_ * error_by_second;
+    by_rotation.bottomRows<3>() =
+        translation_weight_ * first_from_world *
+        Skew(world_from_second.translation - world_from_first.translation);
+    by_translation.bottomRows<3>() = -translation_weight_ * first_from_world;
+    WritePoseJacobian<6>(blocks[0], by_rotation, by_translation, jacobians[0]);
+  }
+  if (jacobians[1] != nullptr) {
+    by_rotation.topRows<3>() = rotation_weight_ * error_by_second;
+    by_rotation.bottomRows<3>().setZero();
+    by_translation.bottomRows<3>() = translation_weight_ * first_from_world;
+    WritePoseJacobian<6>(blocks[1], by_rotation, by_translation, jacobians[1]);
+  }
+  return true;
+}
+
+}  // namespace soslam

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+
+#include "geometry/landmark.h"
+#include "geometry/mirror_mapping.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// Parameter blocks of the residuals. A pose is (qx, qy, qz, qw, tx, ty, tz); a landmark is its pose
+// followed by the logarithms of its half axes, which so stay positive without bounds.
+inline constexpr int kPoseSize = 7;
+inline constexpr int kLandmarkSize = 10;
+using PoseBlock = std::array<double, kPoseSize>;
+using LandmarkBlock = std::array<double, kLandmarkSize>;
+
+PoseBlock Pack(const Rigid3d& pose);
+LandmarkBlock Pack(const Landmark& landmark);
+Rigid3d UnpackPose(const double* block);
+Landmark UnpackLandmark(const double* block);
+
+// Jacobians are derived for a rotation vector w applied from the left, R -> exp(w) R. Ceres wants
+// them by quaternion coefficients; this 3 x 4 matrix, dw / d(qx, qy, qz, qw), chains one to the
+// other.
+Eigen::Matrix<double, 3, 4> RotationVectorByQuaternion(const double* quaternion_xyzw);
+
+// Writes d residual / d pose block (row-major, rows x 7) from the derivatives by rotation vector
+// and translation.
+template <int kRows>
+void WritePoseJacobian(const double* pose_block,
+                       const Eigen::Matrix<double, kRows, 3>& by_rotation_vector,
+                       const Eigen::Matrix<double, kRows, 3>& by_translation, double* jacobian) {
+  Eigen::Map<Eigen::Matrix<double, kRows, kPoseSize, Eigen::RowMajor>> map(jacobian);
+  map.template leftCols<4>() = by_rotation_vector * RotationVectorByQuaternion(pose_block);
+  map.template rightCols<3>() = by_translation;
+}
+
+// Writes d residual / d landmark block (row-major, rows x 10) from the derivatives by the
+// landmark's nine degrees of freedom, in the order of kLandmarkDof.
+template <int kRows>
+void WriteLandmarkJacobian(const double* landmark_block,
+                           const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,
+                           double* jacobian) {
+  Eigen::Map<Eigen::Matrix<double, kRows, kLandmarkSize, Eigen::RowMajor>> map(jacobian);
+  map.template leftCols<4>() =
+      by_landmark.template leftCols<3>() * RotationVectorByQuaternion(landmark_block);
+  map.template rightCols<6>() = by_landmark.template rightCols<6>();
+}
+
+// An observation depends on camera_from_object and the half axes only. This evaluates that relative
+// pose and chains derivatives by its nine degrees of freedom (order of kLandmarkDof) to the blocks
+// world_from_camera and landmark in the world. Invariance to a rigid motion of the world follows by
+// construction.
+class RelativeObservation {
+ public:
+  explicit RelativeObservation(double const* const* blocks);
+
+  const Landmark& landmark_in_camera() const { return landmark_in_camera_; }
+
+  template <int kRows>
+  void WriteJacobians(const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,
+                      double const* const* blocks, double** jacobians) const {
+    if (jacobians == nullptr) return;
+    using Block = Eigen::Matrix<double, kRows, 3>;
+    // A turn w of a world_from_x rotation is a turn R^T w in the camera frame, R =
+    // world_from_camera.
+    const Block by_rotation = by_landmark.template leftCols<3>() * camera_from_world_;
+    const Block by_centre = by_landmark.template middleCols<3>(3) * camera_from_world_;
+    if (jacobians[0] != nullptr) {
+      WritePoseJacobian<kRows>(blocks[0], -by_rotation + by_centre * Skew(offset_in_world_),
+                               -by_centre, jacobians[0]);
+    }
+    if (jacobians[1] != nullptr) {
+      Eigen::Matrix<double, kRows, kLandmarkDof> in_world;
+      in_world << by_rotation, by_centre, by_landmark.template rightCols<3>();
+      WriteLandmarkJacobian<kRows>(blocks[1], in_world, jacobians[1]);
+    }
+  }
+
+ private:
+  Eigen::Matrix3d camera_from_world_;  // rotation only
+  Eigen::Vector3d offset_in_world_;    // object centre minus camera centre
+  Landmark landmark_in_camera_;
+};
+
+}  // namespace soslam

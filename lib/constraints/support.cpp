@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/support.h"
+
+#include <cmath>
+
+namespace soslam {
+
+SupportResidual::SupportResidual(const Plane& plane_in_world, double angle_variance,
+                                 double tangency_variance)
+    : plane_in_world_(plane_in_world),
+      angle_weight_(1.0 / std::sqrt(angle_variance)),
+      tangency_weight_(1.0 / std::sqrt(tangency_variance)) {}
+
+bool SupportResidual::Evaluate(double const* const* blocks, double* residuals,
+                               double** jacobians) const {
+  const Landmark landmark = UnpackLandmark(blocks[0]);
+  const Eigen::Vector3d squared_axes = landmark.half_axes.cwiseAbs2();
+  const Eigen::Vector3d& normal = plane_in_world_.normal;
+  const Eigen::Matrix3d object_from_world =
+      landmark.frame_from_object.rotation.toRotationMatrix().transpose();
+  const Eigen::Vector3d normal_in_object = object_from_world * normal;
+  const Eigen::Vector3d weighted = squared_axes.cwiseProduct(normal_in_object);
+  const double distance = plane_in_world_.SignedDistance(landmark.Centre());
+
+  residuals[0] = angle_weight_ * normal_in_object.x();
+  residuals[1] = angle_weight_ * normal_in_object.y();
+  residuals[2] = tangency_weight_ * (weighted.dot(normal_in_object) - distance * distance);
+  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+
+  const Eigen::Matrix3d normal_by_rotation = object_from_world * Skew(normal);
+  Eigen::Matrix<double, 3, kLandmarkDof> by_landmark;
+  by_landmark.setZero();
+  by_landmark.topLeftCorner<2, 3>() = angle_weight_ * normal_by_rotation.topRows<2>();
+  by_landmark.row(2) << 2.0 * weighted.transpose() * normal_by_rotation,
+      -2.0 * distance * normal.transpose(),
+      2.0 * weighted.cwiseProduct(normal_in_object).transpose();
+  by_landmark.row(2) *= tangency_weight_;
+  WriteLandmarkJacobian<3>(blocks[0], by_landmark, jacobians[0]);
+  return true;
+}
+
+}  // namespace soslam

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "constraints/parameters.h"
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/mirror_mapping.h"
+#include "image/edge_maps.h"
+
+namespace soslam {
+
+// What is compared between a pixel and its mirror pixel, section V-B.
+enum class Descriptor {
+  kGrey,               // grey value, 0 to 1
+  kBrief,              // Hamming distance of BRIEF, mirrored sampling order; 0 to 1, no derivative
+  kDistanceTransform,  // eq. (17): distance to the nearest edge in the image, px
+  kNearestEdge3d,  // eq. (19): distance to the nearest edge on the surface, m; exhaustive search
+  kImprovedDt,     // eq. (20)-(22): distance on the surface to the nearest edge in the image, m
+  kLinearisedDt,   // eq. (23)-(24): the same on the tangent plane of the surface, m
+};
+inline constexpr std::array kDescriptorNames = {"grey",
+                                                "brief",
+                                                "distance_transform",
+                                                "nearest_edge_3d",
+                                                "improved_dt",
+                                                "improved_dt_linearised"};
+
+// What the descriptors look up, for one observation.
+struct SymmetryImage {
+  // Takes the maps of the whole frame; edges outside `box` do not count for kNearestEdge3d.
+  SymmetryImage(EdgeMaps edge_maps, const Box& box);
+
+  EdgeMaps maps;
+  cv::Mat smoothed_grey;                     // for BRIEF
+  std::vector<Eigen::Vector2d> edge_pixels;  // in the box
+};
+
+// One descriptor of one image on the surface of one landmark.
+class SymmetryDescriptor {
+ public:
+  struct Pair {
+    double residual = 0.0;         // beta(u) - beta(u^S) of eq. (16), in the descriptor's unit
+    Eigen::Vector2d mirror_pixel;  // u^S of eq. (14)
+    LandmarkJacobian1 jacobian;    // of the residual, only when asked for; nearest edges held
+  };
+
+  SymmetryDescriptor(Descriptor descriptor, const SymmetryImage& image, const Camera& camera,
+                     const Landmark& landmark_in_camera);
+
+  // The pair of a pixel. None when the pixel's ray misses the surface, the mirror pixel is behind
+  // the camera or outside the image, or a nearest edge is not on the surface; with
+  // `min_viewing_cosine`, also when the camera sees one of both surface points under a flatter
+  // angle (or not at all).
+  std::optional<Pair> Evaluate(const Eigen::Vector2d& pixel,
+                               std::optional<double> min_viewing_cosine, bool with_jacobian) const;
+
+ private:
+  struct Value {
+    double value;
+    LandmarkJacobian1 jacobian;
+  };
+
+  std::optional<Value> SurfaceDistance(const Eigen::Vector2d& pixel,
+                                       const VisibleSurface::Point& point,
+                                       bool with_jacobian) const;
+  std::optional<Value> LookUp(const Eigen::Vector2d& pixel, bool with_jacobian,
+                              const LandmarkJacobian2& pixel_jacobian) const;
+  std::optional<double> BriefDistance(const Eigen::Vector2d& pixel,
+                                      const Eigen::Vector2d& mirror_pixel) const;
+
+  Descriptor descriptor_;
+  const SymmetryImage& image_;
+  VisibleSurface surface_;
+  std::vector<Eigen::Vector2d> surface_edge_pixels_;      // for kNearestEdge3d: edge pixels whose
+  std::vector<Eigen::Vector3d> surface_edges_in_object_;  // rays meet the surface, and where
+};
+
+// Symmetry constraint, eq. (16): the descriptor of a pixel equals that of its mirror pixel, divided
+// by sigma (in the descriptor's unit). Nearest edges are looked up anew in every evaluation;
+// derivatives hold them fixed.
+//
+// Residuals: 1. Blocks: world_from_camera, landmark in the world. Which pairs count is decided
+// before the solve. Evaluate fails where SymmetryDescriptor has no pair, which makes the solver
+// shorten its step. Not for kBrief, which has no derivative.
+class SymmetryResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize> {
+ public:
+  SymmetryResidual(Descriptor descriptor, std::shared_ptr<const SymmetryImage> image,
+                   const Camera& camera, const Eigen::Vector2d& pixel, double sigma);
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+
+ private:
+  Descriptor descriptor_;
+  std::shared_ptr<const SymmetryImage> image_;
+  Camera camera_;
+  Eigen::Vector2d pixel_;
+  double weight_;
+};
+
+}  // namespace soslam

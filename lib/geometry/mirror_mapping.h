@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+
+namespace soslam {
+
+// The nine parameters of a landmark as a camera sees it, in tangent space: rotation vector (camera
+// frame, applied from the left, rad), centre (camera frame, m), log half axes. Derivatives below
+// are with respect to these, in this order.
+inline constexpr int kLandmarkDof = 9;
+using LandmarkJacobian3 = Eigen::Matrix<double, 3, kLandmarkDof>;
+using LandmarkJacobian2 = Eigen::Matrix<double, 2, kLandmarkDof>;
+using LandmarkJacobian1 = Eigen::Matrix<double, 1, kLandmarkDof>;
+
+// A landmark seen from a camera, prepared for many rays: P-dagger of eq. (13), its tangent-plane
+// approximation, and the mirror image of eq. (14). Points are in the object frame, where the mirror
+// plane is y = 0. Works for a camera outside the body; AllInFront() of the caller's gating holds.
+class VisibleSurface {
+ public:
+  struct Point {
+    Eigen::Vector3d in_object;
+    LandmarkJacobian3 jacobian;  // only when asked for
+  };
+  struct Pixel {
+    Eigen::Vector2d pixel;
+    LandmarkJacobian2 jacobian;  // only when asked for
+  };
+
+  VisibleSurface(const Camera& camera, const Landmark& landmark_in_camera);
+
+  // P-dagger, eq. (13): the nearer intersection of the pixel's ray with the surface. None when the
+  // ray misses.
+  std::optional<Point> FromPixel(const Eigen::Vector2d& pixel, bool with_jacobian = false) const;
+
+  // Eq. (23): where the pixel's ray meets the plane tangent to the surface at `contact`, a surface
+  // point. None when the ray is parallel to it or meets it behind the camera.
+  std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel, const Point& contact,
+                                               bool with_jacobian = false) const;
+
+  // S, the mirror image in the xz plane; again a surface point.
+  Point MirrorImage(const Point& point) const;
+
+  // P: the pixel of a point, whether visible or not. None behind the camera.
+  std::optional<Pixel> ToPixel(const Point& point, bool with_jacobian = false) const;
+
+  // The cosine between the outward normal at a surface point and the direction to the camera; > 0
+  // where the camera sees the point, 0 on the outline.
+  double ViewingCosine(const Point& point) const;
+
+ private:
+  Eigen::Vector3d RayInObject(const Eigen::Vector2d& pixel) const;
+  // The derivative of R^T (x - t), for a point x fixed in the camera frame.
+  LandmarkJacobian3 FixedPointJacobian(const Eigen::Vector3d& point_in_object) const;
+
+  Camera camera_;
+  Eigen::Matrix3d camera_from_object_rotation_;
+  Eigen::Vector3d centre_in_camera_;
+  Eigen::Vector3d camera_in_object_;
+  Eigen::Vector3d inverse_squared_axes_;
+};
+
+}  // namespace soslam

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/single_frame.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "constraints/detection.h"
+#include "constraints/manifolds.h"
+#include "constraints/scale_ratio.h"
+#include "constraints/support.h"
+
+namespace soslam {
+namespace {
+
+// Two solutions closer than this are one, found twice.
+constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
+constexpr double kSameRelativeSize = 1e-2;
+
+// A landmark of the prior's shape where the box's lower edge meets the plane, as large as the box
+// is wide there. Its yaw is left to the caller.
+std::optional<Landmark> Start(const SingleFrameObservation& observation) {
+  const Plane& plane = observation.plane_in_camera;
+  const Box& box = observation.box;
+  const Eigen::Vector3d foot_ray = observation.camera.Ray({box.Centre().x(), box.y_max});
+  const double depth = -plane.offset / plane.normal.dot(foot_ray);
+  if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
+
+  const Eigen::Vector2d& ratio = observation.ratio;
+  const double half_width = 0.5 * box.Width() * depth / observation.camera.fx;
+  const double c = half_width / std::sqrt(0.5 * ratio.squaredNorm());
+  Landmark start;
+  start.half_axes = {ratio.x() * c, ratio.y() * c, c};
+  start.frame_from_object.translation =
+      depth * foot_ray + c * plane.normal + half_width * Eigen::Vector3d::UnitZ();
+  return start;
+}
+
+Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOptions& options,
+                 const Landmark& start) {
+  LandmarkBlock landmark = Pack(start);
+  PoseBlock camera = Pack(Rigid3d());  // the world of this solve is the camera frame
+  const ConstraintVariances& variances = options.variances;
+
+  ceres::Problem problem;
+  problem.AddParameterBlock(landmark.data(), kLandmarkSize, NewLandmarkManifold());
+  problem.AddResidualBlock(
+      new DetectionResidual(observation.camera, observation.box, variances.detection), nullptr,
+      camera.data(), landmark.data());
+  problem.AddResidualBlock(new SupportResidual(observation.plane_in_camera, variances.support_angle,
+                                               variances.support_tangency),
+                           nullptr, landmark.data());
+  problem.AddResidualBlock(new ScaleRatioResidual(observation.ratio, variances.ratio), nullptr,
+                           landmark.data());
+  problem.SetParameterBlockConstant(camera.data());
+
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.max_iterations;
+  // Residuals are squared metres of centimetres: the defaults would stop far from the optimum.
+  solver.function_tolerance = 1e-12;
+  solver.gradient_tolerance = 1e-16;
+  solver.parameter_tolerance = 1e-10;
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return {UnpackLandmark(landmark.data()), summary.IsSolutionUsable()
+                                               ? summary.final_cost
+                                               : std::numeric_limits<double>::infinity()};
+}
+
+bool IsPlausible(const SingleFrameObservation& observation, const Hypothesis& hypothesis) {
+  const Landmark& landmark = hypothesis.landmark_in_camera;
+  const Plane& plane = observation.plane_in_camera;
+  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+  return std::isfinite(hypothesis.cost) && up.dot(plane.normal) > 0.5 &&
+         plane.SignedDistance(landmark.Centre()) > 0.0 &&
+         OutlineBox(observation.camera, landmark).has_value();
+}
+
+bool IsSame(const Plane& plane, const Landmark& one, const Landmark& other) {
+  const double yaw = Yaw(plane.normal, one.frame_from_object.rotation);
+  const double other_yaw = Yaw(plane.normal, other.frame_from_object.rotation);
+  return std::abs(YawDifferenceModuloPi(yaw, other_yaw)) < kSameYaw &&
+         (one.half_axes.array() / other.half_axes.array() - 1.0).abs().maxCoeff() <
+             kSameRelativeSize;
+}
+
+// How much the x axis points along the horizontal line of sight: 1 from the front or the back, 0
+// from the side.
+double Frontality(const Landmark& landmark_in_camera) {
+  const Eigen::Vector3d sight_in_object =
+      landmark_in_camera.frame_from_object.rotation.conjugate() * landmark_in_camera.Centre();
+  return std::abs(sight_in_object.x()) / sight_in_object.head<2>().norm();
+}
+
+}  // namespace
+
+double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box) {
+  const auto outline = OutlineBox(camera, landmark_in_camera);
+  if (!outline) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector4d difference(outline->x_min - box.x_min, outline->y_min - box.y_min,
+                                   outline->x_max - box.x_max, outline->y_max - box.y_max);
+  return 0.5 * difference.norm();
+}
+
+SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
+                                              const InitialiseOptions& options) {
+  auto start = Start(observation);
+  if (!start) return {{}, "support_plane_not_in_view"};
+
+  std::vector<Hypothesis> found;
+  for (int i = 0; i < options.yaw_starts; ++i) {
+    const Plane& plane = observation.plane_in_camera;
+    start->frame_from_object.rotation =
+        UprightRotation(plane.normal, i * std::numbers::pi / options.yaw_starts);
+    const Hypothesis hypothesis = Solve(observation, options, *start);
+    if (!IsPlausible(observation, hypothesis)) continue;
+    const auto same = std::find_if(found.begin(), found.end(), [&](const Hypothesis& other) {
+      return IsSame(plane, hypothesis.landmark_in_camera, other.landmark_in_camera);
+    });
+    if (same == found.end()) {
+      found.push_back(hypothesis);
+    } else if (hypothesis.cost < same->cost) {
+      *same = hypothesis;
+    }
+  }
+  if (found.empty()) return {{}, "no_solution"};
+
+  const auto explains = [&](const Hypothesis& hypothesis) {
+    return OutlineEdgeRms(observation.camera, hypothesis.landmark_in_camera, observation.box) <=
+           options.tie_edge_px;
+  };
+  const auto exact_end = std::stable_partition(found.begin(), found.end(), explains);
+  std::sort(found.begin(), exact_end, [](const Hypothesis& one, const Hypothesis& other) {
+    return Frontality(one.landmark_in_camera) > Frontality(other.landmark_in_camera);
+  });
+  std::sort(exact_end, found.end(),
+            [](const Hypothesis& one, const Hypothesis& other) { return one.cost < other.cost; });
+  return {found, ""};
+}
+
+}  // namespace soslam

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/plane.h"
+#include "initialisation/options.h"
+#include "model/estimates.h"
+
+namespace soslam {
+
+// What one frame knows of an object: nine equations for nine unknowns.
+struct SingleFrameObservation {
+  Camera camera;
+  Box box;
+  Plane plane_in_camera;  // the support plane
+  Eigen::Vector2d ratio;  // (a / c, b / c)
+};
+
+struct SingleFrameSolution {
+  std::vector<Hypothesis> hypotheses;  // best first
+  std::string failure;                 // why there is none
+};
+
+// Single-frame initialisation, eq. (12): Levenberg-Marquardt over detection, support and ratio
+// constraints from starting yaws all around. One box can be explained exactly by several yaws: all
+// distinct solutions are returned. Those that fit the box to options.tie_edge_px come first,
+// ordered by how much the front (x axis, either way) faces the camera, because an object's front is
+// what is mostly looked at; the rest follow by cost. Solutions that are not upright above the plane
+// and in front of the camera are dropped. Failures: support_plane_not_in_view, no_solution.
+SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
+                                              const InitialiseOptions& options);
+
+// The root mean square distance (px) between the edges of the landmark's outline box and the box;
+// infinite when the landmark is not wholly in front of the camera.
+double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box);
+
+}  // namespace soslam
