@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <bitset>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+
+namespace soslam {
+
+// BRIEF: Calonder, Lepetit, Strecha and Fua, "BRIEF: Binary robust independent elementary features"
+// (ECCV 2010). One bit per pair of pixels of a 31 x 31 px patch: is the first one darker?
+using BriefBits = std::bitset<256>;
+
+// The smoothing that makes single pixels comparable (Calonder et al.: sigma 2 px). CV_8UC1 to
+// CV_8UC1.
+cv::Mat SmoothForBrief(const cv::Mat& grey);
+
+// The descriptor of the patch around the pixel that `pixel` lies in. `mirrored` reads the pattern
+// with its x offsets negated (section V-B, fig. 3(a)): what it gives at a mirror pixel equals what
+// the plain pattern gives at the original. None when the patch reaches out of the image.
+std::optional<BriefBits> BriefDescriptor(const cv::Mat& smoothed_grey, const Eigen::Vector2d& pixel,
+                                         bool mirrored);
+
+// The share of bits that differ, in [0, 1].
+inline double HammingDistance(const BriefBits& a, const BriefBits& b) {
+  return static_cast<double>((a ^ b).count()) / static_cast<double>(a.size());
+}
+
+}  // namespace soslam

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <vector>
+
+#include "base/options.h"
+
+namespace soslam {
+
+struct EdgesOptions {
+  double blur_sigma_px = 1.0;
+  double canny_low = 50.0;
+  double canny_high = 150.0;
+  int max_corners = 2000;
+  double corner_quality = 0.01;
+  double corner_min_distance_px = 4.0;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Real("blur_sigma_px", &blur_sigma_px, {0, 100},
+               "Gaussian blur before the edge detector, pixels; 0 for none");
+    visit.Real("canny_low", &canny_low, {0, 1e4},
+               "Canny: gradient that continues an edge (3 x 3 Sobel, grey values 0 to 255)");
+    visit.Real("canny_high", &canny_high, {0, 1e4},
+               "Canny: gradient that starts an edge; not below canny_low");
+    visit.Integer("max_corners", &max_corners, {1, 1e6}, "Corners kept per image, strongest first");
+    visit.Real("corner_quality", &corner_quality, {1e-6, 1},
+               "Weakest corner kept, as a fraction of the strongest one's smaller eigenvalue");
+    visit.Real("corner_min_distance_px", &corner_min_distance_px, {0, 1e4},
+               "Smallest distance between two corners, pixels");
+  }
+  // Throws SettingsError when canny_low is above canny_high.
+  void Check() const;
+};
+
+// What the symmetry descriptors need from one image. All maps have the image's size. Without any
+// edge every nearest edge is (-1, -1) and every distance infinite.
+struct EdgeMaps {
+  cv::Mat grey;                          // CV_8UC1
+  cv::Mat edges;                         // CV_8UC1: 255 on an edge pixel, 0 elsewhere
+  cv::Mat distance;                      // CV_32FC1, px: to the nearest edge pixel, eq. (17)
+  cv::Mat nearest_edge;                  // CV_16SC2: (x, y) of that pixel, u^E of eq. (20)
+  std::vector<Eigen::Vector2f> corners;  // pixels, strongest first
+};
+
+// `grey` is CV_8UC1 and not empty.
+EdgeMaps ComputeEdgeMaps(const cv::Mat& grey, const EdgesOptions& options);
+
+// The edge pixel nearest to the centre of the pixel that `pixel` lies in. None outside the image,
+// and when the image has no edges.
+std::optional<Eigen::Vector2d> NearestEdge(const EdgeMaps& maps, const Eigen::Vector2d& pixel);
+
+}  // namespace soslam

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/read_image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+using namespace std::string_view_literals;
+
+std::vector<char> ReadBytes(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  if (bytes.empty()) {
+    throw InputError(fmt::format("{}: is empty; expected an image", path.string()));
+  }
+  return bytes;
+}
+
+// libjpeg fills what is missing with grey and libpng may do the same, both without an error. Some
+// writers pad with zeros after the end, so those do not count.
+void CheckComplete(std::string_view bytes, const std::filesystem::path& path) {
+  const size_t last = bytes.find_last_not_of('\0');
+  const std::string_view unpadded = bytes.substr(0, last == bytes.npos ? 0 : last + 1);
+  if (bytes.starts_with("\xff\xd8\xff"sv) && !unpadded.ends_with("\xff\xd9"sv)) {
+    throw InputError(
+        fmt::format("{}: is cut short after {} bytes; expected a JPEG image that ends "
+                    "with the marker EOI",
+                    path.string(), bytes.size()));
+  }
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv) && !unpadded.ends_with("IEND\xae\x42\x60\x82"sv)) {
+    throw InputError(
+        fmt::format("{}: is cut short after {} bytes; expected a PNG image that ends "
+                    "with the chunk IEND",
+                    path.string(), bytes.size()));
+  }
+}
+
+}  // namespace
+
+cv::Mat ReadGreyImage(const std::filesystem::path& path) {
+  const std::vector<char> bytes = ReadBytes(path);
+  CheckComplete({bytes.data(), bytes.size()}, path);
+  cv::Mat grey;
+  try {
+    grey = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception& error) {
+    throw InputError(fmt::format("{}: cannot be decoded: {}", path.string(), error.err));
+  }
+  if (grey.empty()) {
+    throw InputError(fmt::format("{}: cannot be decoded; expected an image", path.string()));
+  }
+  return grey;
+}
+
+cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height) {
+  const cv::Mat grey = ReadGreyImage(path);
+  if (grey.cols != width || grey.rows != height) {
+    throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}",
+                                 path.string(), grey.cols, grey.rows, width, height));
+  }
+  return grey;
+}
+
+}  // namespace soslam

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/sample_bilinear.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace soslam {
+namespace {
+
+template <typename Scalar>
+std::optional<Sample> SampleTyped(const cv::Mat& map, const Eigen::Vector2d& pixel) {
+  const int x = std::min(static_cast<int>(pixel.x()), map.cols - 2);
+  const int y = std::min(static_cast<int>(pixel.y()), map.rows - 2);
+  const double dx = pixel.x() - x;
+  const double dy = pixel.y() - y;
+  const double top_left = map.at<Scalar>(y, x);
+  const double top_right = map.at<Scalar>(y, x + 1);
+  const double bottom_left = map.at<Scalar>(y + 1, x);
+  const double bottom_right = map.at<Scalar>(y + 1, x + 1);
+  const double top = (1.0 - dx) * top_left + dx * top_right;
+  const double bottom = (1.0 - dx) * bottom_left + dx * bottom_right;
+  const Sample sample{
+      (1.0 - dy) * top + dy * bottom,
+      {(1.0 - dy) * (top_right - top_left) + dy * (bottom_right - bottom_left), bottom - top}};
+  if (!std::isfinite(sample.value) || !sample.gradient.allFinite()) return std::nullopt;
+  return sample;
+}
+
+}  // namespace
+
+std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel) {
+  CV_Assert(map.type() == CV_8UC1 || map.type() == CV_32FC1);
+  const bool inside = map.cols >= 2 && map.rows >= 2 &&                   //
+                      pixel.x() >= 0.0 && pixel.x() <= map.cols - 1.0 &&  //
+                      pixel.y() >= 0.0 && pixel.y() <= map.rows - 1.0;
+  if (!inside) return std::nullopt;  // also for NaN
+  return map.type() == CV_8UC1 ? SampleTyped<std::uint8_t>(map, pixel)
+                               : SampleTyped<float>(map, pixel);
+}
+
+}  // namespace soslam
