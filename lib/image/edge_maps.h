@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/options.h"
+#include "image/sample_bilinear.h"  // IWYU pragma: export
 
 namespace soslam {
 
