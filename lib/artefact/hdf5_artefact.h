@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "artefact/hdf5_file.h"
+#include "artefact/json_file.h"
+
+namespace soslam {
+
+// An HDF5 artefact carries the header of JSON artefacts (ArtefactHeader) as the text `artefact`, an
+// attribute of its root.
+void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5File* file);
+
+// Opens an artefact for reading. Throws InputError when it is not one of this kind, or newer than
+// what this software reads.
+Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind);
+
+// Pixels as an n x 2 data set of float32.
+void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
+                 Hdf5File* file);
+std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name);
+
+}  // namespace soslam

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/hdf5_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+#include <type_traits>
+
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
+
+using Shape = std::vector<std::uint64_t>;
+
+// Beyond any image that can be processed; a damaged size must not exhaust the memory.
+constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 28;
+
+constexpr const char* kDamaged = "cannot be read; the file is cut short or damaged";
+
+struct Element {
+  hid_t file_type;
+  hid_t memory_type;
+  const char* name;
+};
+
+Element ElementOf(int depth) {
+  switch (depth) {
+    case CV_8U:
+      return {H5T_STD_U8LE, H5T_NATIVE_UINT8, "uint8"};
+    case CV_16S:
+      return {H5T_STD_I16LE, H5T_NATIVE_INT16, "int16"};
+    case CV_32S:
+      return {H5T_STD_I32LE, H5T_NATIVE_INT32, "int32"};
+    case CV_32F:
+      return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, "float32"};
+    case CV_64F:
+      return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "float64"};
+    default:
+      throw std::logic_error(fmt::format("no HDF5 type for OpenCV depth {}", depth));
+  }
+}
+
+Hdf5Handle PropertyList(hid_t list_class) { return {H5Pcreate(list_class), &H5Pclose}; }
+
+// The prefixes of "/a/b/c": "/a", "/a/b", "/a/b/c".
+std::vector<std::string> Prefixes(const std::string& name) {
+  std::vector<std::string> prefixes;
+  for (size_t slash = name.find('/', 1); slash != name.npos; slash = name.find('/', slash + 1)) {
+    prefixes.push_back(name.substr(0, slash));
+  }
+  if (name.size() > 1) prefixes.push_back(name);
+  return prefixes;
+}
+
+// Format 1.8: attributes, unlike in older ones, may be larger than 64 KiB, and metadata has
+// checksums.
+Hdf5Handle FileAccess() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
+  Hdf5Handle access = PropertyList(H5P_FILE_ACCESS);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  return access;
+}
+
+// A list for creating files, groups or data sets that stores no times.
+Hdf5Handle Timeless(hid_t list_class) {
+  Hdf5Handle creation = PropertyList(list_class);
+  H5Pset_obj_track_times(creation.id(), false);
+  return creation;
+}
+
+Hdf5Handle DataSetCreation(const Shape& shape) {
+  Hdf5Handle creation = Timeless(H5P_DATASET_CREATE);
+  const bool empty = std::find(shape.begin(), shape.end(), 0U) != shape.end();
+  if (empty) return creation;  // a chunk cannot be empty
+  const std::vector<hsize_t> chunk(shape.begin(), shape.end());
+  H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
+  H5Pset_shuffle(creation.id());
+  constexpr unsigned kFastest = 1;
+  H5Pset_deflate(creation.id(), kFastest);
+  return creation;
+}
+
+// Texts are of fixed length and UTF-8; HDF5 has no length 0.
+Hdf5Handle TextType(size_t length) {
+  Hdf5Handle type{H5Tcopy(H5T_C_S1), &H5Tclose};
+  H5Tset_size(type.id(), std::max<size_t>(length, 1));
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  return type;
+}
+
+std::string Describe(const std::vector<int>& expected, const char* element) {
+  std::vector<std::string> sizes;
+  for (const int size : expected) {
+    sizes.push_back(size == Hdf5File::kAny ? "any" : std::to_string(size));
+  }
+  return fmt::format("{} of {}", fmt::join(sizes, " x "), element);
+}
+
+bool Matches(const Shape& shape, const std::vector<int>& expected) {
+  return std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
+                    [](std::uint64_t size, int wanted) {
+                      return wanted == Hdf5File::kAny || size == static_cast<std::uint64_t>(wanted);
+                    });
+}
+
+}  // namespace
+
+bool Hdf5Handle::Close() {
+  if (!valid()) return true;
+  return close_(std::exchange(id_, kInvalid)) >= 0;
+}
+
+Hdf5File::Hdf5File(std::filesystem::path path, std::int64_t id)
+    : path_(std::move(path)), file_(id, &H5Fclose) {}
+
+Hdf5File Hdf5File::Create(const std::filesystem::path& path) {
+  const Hdf5Handle access = FileAccess();
+  const Hdf5Handle creation = Timeless(H5P_FILE_CREATE);
+  Hdf5File file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
+  if (!file.file_.valid()) file.FailWriting("/");
+  return file;
+}
+
+Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw InputError(fmt::format("{}: no such file; expected an HDF5 file", path.string()));
+  }
+  const Hdf5Handle access = FileAccess();
+  Hdf5File file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()));
+  if (file.file_.valid()) return file;
+  if (H5Fis_hdf5(path.c_str()) > 0) {
+    throw InputError(fmt::format("{}: {}; expected a whole HDF5 file", path.string(), kDamaged));
+  }
+  throw InputError(fmt::format("{}: is not an HDF5 file; expected one", path.string()));
+}
+
+void Hdf5File::FailWriting(const std::string& name) const {
+  throw SettingsError(fmt::format("{}: {} cannot be written", path_.string(), name));
+}
+
+void Hdf5File::FailReading(const std::string& name, const std::string& problem) const {
+  throw InputError(fmt::format("{}: {}: {}", path_.string(), name, problem));
+}
+
+void Hdf5File::WriteGroup(const std::string& name) {
+  // Group by group: those that HDF5 creates on the way by itself store times.
+  const Hdf5Handle creation = Timeless(H5P_GROUP_CREATE);
+  for (const std::string& prefix : Prefixes(name)) {
+    if (H5Lexists(file_.id(), prefix.c_str(), H5P_DEFAULT) > 0) continue;
+    const Hdf5Handle group{
+        H5Gcreate2(file_.id(), prefix.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), &H5Gclose};
+    if (!group.valid()) FailWriting(prefix);
+  }
+}
+
+void Hdf5File::WriteMatrix(const std::string& name, const cv::Mat& matrix) {
+  Shape shape = {static_cast<std::uint64_t>(matrix.rows), static_cast<std::uint64_t>(matrix.cols)};
+  if (matrix.channels() > 1) shape.push_back(static_cast<std::uint64_t>(matrix.channels()));
+  const cv::Mat contiguous = matrix.isContinuous() ? matrix : matrix.clone();
+  WriteArray(name, matrix.depth(), shape, contiguous.data);
+}
+
+void Hdf5File::WriteArray(const std::string& name, int depth, const Shape& shape,
+                          const void* values) {
+  WriteGroup(name.substr(0, name.rfind('/')));
+  const Element element = ElementOf(depth);
+  const std::vector<hsize_t> sizes(shape.begin(), shape.end());
+  const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
+                         &H5Sclose};
+  const Hdf5Handle creation = DataSetCreation(shape);
+  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), element.file_type, space.id(),
+                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+                      &H5Dclose};
+  const bool written = data_set.valid() && H5Dwrite(data_set.id(), element.memory_type, H5S_ALL,
+                                                    H5S_ALL, H5P_DEFAULT, values) >= 0;
+  if (!data_set.Close() || !written) FailWriting(name);
+}
+
+void Hdf5File::WriteAttribute(const std::string& owner, const std::string& name,
+                              std::int64_t file_type, std::int64_t memory_type, const void* value) {
+  const Hdf5Handle space{H5Screate(H5S_SCALAR), &H5Sclose};
+  const Hdf5Handle attribute{H5Acreate_by_name(file_.id(), owner.c_str(), name.c_str(), file_type,
+                                               space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                             &H5Aclose};
+  const bool written = attribute.valid() && H5Awrite(attribute.id(), memory_type, value) >= 0;
+  if (!written) FailWriting(owner + " attribute " + name);
+}
+
+void Hdf5File::WriteText(const std::string& owner, const std::string& name,
+                         const std::string& text) {
+  const Hdf5Handle type = TextType(text.size());
+  WriteAttribute(owner, name, type.id(), type.id(), text.c_str());
+}
+
+void Hdf5File::WriteNumber(const std::string& owner, const std::string& name, double number) {
+  WriteAttribute(owner, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &number);
+}
+
+void Hdf5File::Close() {
+  const bool flushed = H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0;
+  if (!file_.Close() || !flushed) FailWriting("/");
+}
+
+bool Hdf5File::Has(const std::string& name) const {
+  const std::vector<std::string> prefixes = Prefixes(name);
+  return std::all_of(prefixes.begin(), prefixes.end(), [&](const std::string& prefix) {
+    return H5Lexists(file_.id(), prefix.c_str(), H5P_DEFAULT) > 0;
+  });
+}
+
+bool Hdf5File::HasAttribute(const std::string& owner, const std::string& name) const {
+  return H5Aexists_by_name(file_.id(), owner.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::string> Hdf5File::Children(const std::string& group) const {
+  std::vector<std::string> names;
+  const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  if (H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append,
+                         &names, H5P_DEFAULT) < 0) {
+    FailReading(group, Has(group) ? kDamaged : "missing; expected a group");
+  }
+  return names;
+}
+
+Shape Hdf5File::CheckedShape(const std::string& name, int depth,
+                             const std::vector<int>& expected) const {
+  const Element element = ElementOf(depth);
+  const std::string wanted = Describe(expected, element.name);
+  if (!Has(name)) FailReading(name, "missing; expected " + wanted);
+  const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
+  const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
+  const Hdf5Handle space{H5Dget_space(data_set.id()), &H5Sclose};
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  if (rank < 0) FailReading(name, kDamaged);
+  std::vector<hsize_t> sizes(static_cast<size_t>(rank));
+  H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr);
+  const Shape shape(sizes.begin(), sizes.end());
+  const bool same_type = H5Tequal(type.id(), element.file_type) > 0;
+  if (!same_type || !Matches(shape, expected)) {
+    FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
+                                  same_type ? element.name : "another type", wanted));
+  }
+  std::uint64_t values = 1;
+  for (const std::uint64_t size : shape) {
+    if (size > kMaxValues || (values *= size) > kMaxValues) {
+      FailReading(name, fmt::format("is {}; expected at most {} values", fmt::join(shape, " x "),
+                                    kMaxValues));
+    }
+  }
+  return shape;
+}
+
+void Hdf5File::ReadArray(const std::string& name, int depth, void* values) const {
+  const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
+  if (H5Dread(data_set.id(), ElementOf(depth).memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) <
+      0) {
+    FailReading(name, kDamaged);
+  }
+}
+
+cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int columns) const {
+  std::vector<int> expected = {rows, columns};
+  if (CV_MAT_CN(type) > 1) expected.push_back(CV_MAT_CN(type));
+  const Shape shape = CheckedShape(name, CV_MAT_DEPTH(type), expected);
+  cv::Mat matrix(static_cast<int>(shape[0]), static_cast<int>(shape[1]), type);
+  ReadArray(name, matrix.depth(), matrix.data);
+  return matrix;
+}
+
+std::string Hdf5File::ReadText(const std::string& owner, const std::string& name) const {
+  const std::string where = owner + " attribute " + name;
+  if (!HasAttribute(owner, name)) FailReading(where, "missing; expected a text");
+  const Hdf5Handle attribute{
+      H5Aopen_by_name(file_.id(), owner.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      &H5Aclose};
+  const Hdf5Handle type{H5Aget_type(attribute.id()), &H5Tclose};
+  const Hdf5Handle space{H5Aget_space(attribute.id()), &H5Sclose};
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0 ||
+      H5Sget_simple_extent_npoints(space.id()) != 1) {
+    FailReading(where, "is not a text of fixed length; expected one");
+  }
+  std::string text(H5Tget_size(type.id()), '\0');
+  if (H5Aread(attribute.id(), type.id(), text.data()) < 0) FailReading(where, kDamaged);
+  text.resize(text.find_last_not_of('\0') + 1);
+  return text;
+}
+
+double Hdf5File::ReadNumber(const std::string& owner, const std::string& name) const {
+  const std::string where = owner + " attribute " + name;
+  if (!HasAttribute(owner, name)) FailReading(where, "missing; expected a number");
+  const Hdf5Handle attribute{
+      H5Aopen_by_name(file_.id(), owner.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      &H5Aclose};
+  const Hdf5Handle type{H5Aget_type(attribute.id()), &H5Tclose};
+  const Hdf5Handle space{H5Aget_space(attribute.id()), &H5Sclose};
+  if (H5Tequal(type.id(), H5T_IEEE_F64LE) <= 0 || H5Sget_simple_extent_npoints(space.id()) != 1) {
+    FailReading(where, "is not one float64; expected one");
+  }
+  double number;
+  if (H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number) < 0) FailReading(where, kDamaged);
+  return number;
+}
+
+}  // namespace soslam

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/traits.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace soslam {
+
+// Owns one identifier of the HDF5 library.
+class Hdf5Handle {
+ public:
+  using CloseFunction = int (*)(std::int64_t);
+
+  Hdf5Handle(std::int64_t id, CloseFunction close) : id_(id), close_(close) {}
+  Hdf5Handle(Hdf5Handle&& other) noexcept
+      : id_(std::exchange(other.id_, kInvalid)), close_(other.close_) {}
+  Hdf5Handle& operator=(Hdf5Handle&&) = delete;
+  ~Hdf5Handle() { Close(); }
+
+  bool valid() const { return id_ >= 0; }
+  std::int64_t id() const { return id_; }
+  // False when the library fails to close it. Does nothing when closed already.
+  bool Close();
+
+ private:
+  static constexpr std::int64_t kInvalid = -1;
+
+  std::int64_t id_;
+  CloseFunction close_;
+};
+
+// An HDF5 file that is either written or read. Names are absolute: "/frames/000012/grey". Numbers
+// are stored little-endian, chunked as a whole, shuffled and deflated; no times are stored, so that
+// the same calls give the same bytes. Throws SettingsError when writing fails; InputError, naming
+// the file, the name in it, what was found and what was expected, when reading does.
+//
+// The HDF5 library is not thread-safe: use it from one thread at a time, all files together.
+class Hdf5File {
+ public:
+  // A new, empty file; replaces an existing one.
+  static Hdf5File Create(const std::filesystem::path& path);
+  static Hdf5File Open(const std::filesystem::path& path);
+
+  // Groups on the way to a name are created as needed.
+  void WriteGroup(const std::string& name);
+  // Rows x columns, or rows x columns x 2 when the matrix has two channels. Depth 8U, 16S, 32S,
+  // 32F, 64F.
+  void WriteMatrix(const std::string& name, const cv::Mat& matrix);
+  // One dimension; T is double, float or int.
+  template <typename T>
+  void WriteVector(const std::string& name, const std::vector<T>& values) {
+    WriteArray(name, cv::DataType<T>::depth, {values.size()}, values.data());
+  }
+  // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
+  void WriteText(const std::string& owner, const std::string& name, const std::string& text);
+  void WriteNumber(const std::string& owner, const std::string& name, double number);
+  // Ends writing: the file is complete only after this.
+  void Close();
+
+  bool Has(const std::string& name) const;
+  bool HasAttribute(const std::string& owner, const std::string& name) const;
+  // The names in a group, sorted.
+  std::vector<std::string> Children(const std::string& group) const;
+  // A matrix of this OpenCV type and size; kAny for a size that is not known.
+  cv::Mat ReadMatrix(const std::string& name, int type, int rows = kAny, int columns = kAny) const;
+  template <typename T>
+  std::vector<T> ReadVector(const std::string& name, int size = kAny) const {
+    std::vector<T> values(CheckedShape(name, cv::DataType<T>::depth, {size})[0]);
+    ReadArray(name, cv::DataType<T>::depth, values.data());
+    return values;
+  }
+  std::string ReadText(const std::string& owner, const std::string& name) const;
+  double ReadNumber(const std::string& owner, const std::string& name) const;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  static constexpr int kAny = -1;
+
+ private:
+  Hdf5File(std::filesystem::path path, std::int64_t id);
+
+  void WriteArray(const std::string& name, int depth, const std::vector<std::uint64_t>& shape,
+                  const void* values);
+  void WriteAttribute(const std::string& owner, const std::string& name, std::int64_t file_type,
+                      std::int64_t memory_type, const void* value);
+  // The shape of a data set, once it and the element type are what is expected.
+  std::vector<std::uint64_t> CheckedShape(const std::string& name, int depth,
+                                          const std::vector<int>& expected) const;
+  void ReadArray(const std::string& name, int depth, void* values) const;
+
+  [[noreturn]] void FailWriting(const std::string& name) const;
+  [[noreturn]] void FailReading(const std::string& name, const std::string& problem) const;
+
+  std::filesystem::path path_;
+  Hdf5Handle file_;
+};
+
+}  // namespace soslam

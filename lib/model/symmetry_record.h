@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// What the symmetry of one observation's texture says about its object's yaw (figures 7 and 8).
+// Yaws are those of the object's x axis about the support normal, in the camera frame, rad (see
+// Yaw()).
+struct SymmetryRecord {
+  int frame_id = 0;
+  int object_id = 0;
+  std::vector<double> yaw;  // the grid
+  // Descriptor name -> cost at each yaw of the grid; NaN where too few pairs count.
+  std::map<std::string, std::vector<double>> cost;
+  // The pixels, and their mirror pixels, that count at the refined yaw.
+  std::vector<Eigen::Vector2f> samples;
+  std::vector<Eigen::Vector2f> mirrored;
+  // NaN when the observation has no landmark.
+  double initial_yaw = std::numeric_limits<double>::quiet_NaN();
+  double refined_yaw = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> true_yaw;  // where there is ground truth
+};
+
+}  // namespace soslam
