@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace soslam {
+
+// The first line of a synthesised folder's README.md starts with this, and says that the folder may
+// be replaced.
+inline constexpr std::string_view kSynthesisedMark = "<!-- Written by soslam-synthesise";
+
+// A synthesised folder that appears whole or not at all: fill Temporary(), then Commit().
+class DatasetFolder {
+ public:
+  // Creates the temporary beside `folder`. Throws SettingsError when `folder` is not a folder,
+  // holds anything but an earlier synthesised dataset, or cannot be written.
+  explicit DatasetFolder(const std::filesystem::path& folder);
+  // Removes the temporary if it was not committed.
+  ~DatasetFolder();
+  DatasetFolder(const DatasetFolder&) = delete;
+  DatasetFolder& operator=(const DatasetFolder&) = delete;
+
+  const std::filesystem::path& Temporary() const { return temporary_; }
+
+  // Puts the temporary in the place of `folder`. Throws SettingsError when the disk refuses.
+  void Commit();
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path temporary_;
+};
+
+}  // namespace soslam

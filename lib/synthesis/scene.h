@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+#include "synthesis/body.h"
+
+namespace soslam {
+
+// The top of a table: a rectangular slab under its plane, with four legs. Drawn, and hides what is
+// behind it, but is not an object of the scene.
+struct Table {
+  Eigen::Vector2d position_on_plane = Eigen::Vector2d::Zero();  // of the slab's middle, metres
+  Eigen::Vector2d half_size = Eigen::Vector2d::Ones();          // metres
+  double yaw = 0.0;
+  double thickness = 0.04;  // metres
+  double leg_length = 0.0;  // metres, below the slab; 0: no legs
+};
+
+// A support plane. Without a table it is a floor without end. Its own frame: origin at the point
+// nearest to the world's origin, z the normal, x the direction of yaw 0; for a level plane in a
+// world with z up these are the world's x and y axes.
+struct ScenePlane {
+  int id = 0;
+  std::string label;
+  Plane plane_in_world;
+  std::optional<Table> table;
+};
+
+// A textured solid standing on a plane.
+struct SceneObject {
+  int id = 0;
+  std::string label;
+  Shape shape = Shape::kEllipsoid;
+  Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();          // metres
+  Eigen::Vector2d position_on_plane = Eigen::Vector2d::Zero();  // metres, in the plane's frame
+  double yaw = 0.0;                                             // about the plane's normal
+  int plane_index = 0;                                          // into Scene::planes
+  int texture_seed = 0;
+};
+
+// Where the camera is, and the point in the middle of its image.
+struct Waypoint {
+  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d look_at_in_world = Eigen::Vector3d::UnitX();
+};
+
+// `frames` poses on a smooth curve through the waypoints, the first and the last pose at the first
+// and the last waypoint.
+struct Trajectory {
+  std::vector<Waypoint> waypoints;
+  int frames = 1;
+  double frame_interval = 0.1;  // seconds
+};
+
+// How the simulated measurements differ from the truth. All zero: not at all.
+struct SceneNoise {
+  double box_edge_sigma = 0.0;    // of each box edge, as a fraction of the box's width or height
+  double box_sigma_px = 0.0;      // of each box edge, in addition, pixels
+  double miss_probability = 0.0;  // that a detection is missing
+  double odometry_translation_sigma = 0.0;   // random walk on each axis, metres per sqrt(metre)
+  double odometry_scale_sigma = 0.0;         // one scale error for the whole trajectory
+  double odometry_rotation_sigma_deg = 0.0;  // random walk, degrees per sqrt(metre + turn / 30 deg)
+  double image_sigma = 0.0;                  // grey levels, per pixel and channel
+};
+
+// All that a synthetic sequence is made from. planes[0] says what is up for the camera. Objects and
+// planes are sorted by id.
+struct Scene {
+  std::string name;
+  Camera camera;
+  std::vector<ScenePlane> planes;
+  std::vector<Plane> walls_in_world;  // drawn only; the normal points into the room
+  std::vector<SceneObject> objects;
+  Trajectory trajectory;
+  SceneNoise noise;
+  int seed = 0;  // of all noise
+};
+
+// From a plane's own frame to the world, see ScenePlane.
+Rigid3d WorldFromPlane(const Plane& plane_in_world);
+
+// The object's solid in the world: tangent to its plane, its z axis along the plane's normal.
+Body ObjectBody(const Scene& scene, const SceneObject& object);
+
+// What stands around without being an object, in the world: slabs and legs of the tables.
+std::vector<Body> Furniture(const Scene& scene);
+
+// The true pose of each frame. Throws InputError when the camera looks straight up or down, or at
+// its own position, which leaves its roll open.
+std::vector<Rigid3d> TruePoses(const Scene& scene);
+
+}  // namespace soslam

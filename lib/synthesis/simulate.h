@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/sequence.h"
+#include "synthesis/scene.h"
+
+namespace soslam {
+
+// The box of one object in one frame, indices into the scene's frames and objects.
+struct SimulatedBox {
+  int frame_index = 0;
+  int object_index = 0;
+  Box box;
+};
+
+// What sensors say about a scene, and the truth. Boxes are sorted by frame, then by object.
+struct Simulation {
+  std::vector<Rigid3d> true_world_from_camera;
+  std::vector<Rigid3d> odometry_world_from_camera;  // starts at the first true pose
+  std::vector<SimulatedBox> exact_boxes;            // of every object in sight
+  std::vector<SimulatedBox> detections;             // exact boxes with noise, less those missed
+};
+
+// An object is in sight when it is wholly inside the image and nothing comes between the camera and
+// its centre; boxes are of the whole object all the same. Without noise detections are exact_boxes
+// and odometry is the truth.
+Simulation Simulate(const Scene& scene, bool noise);
+
+// Whether nothing in the scene comes between a camera and the object's centre.
+bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
+                     const Eigen::Vector3d& camera_in_world);
+
+// The box of a body in the world as a camera sees it; none unless it is wholly inside the image.
+std::optional<Box> BoxInImage(const Camera& camera, const Rigid3d& world_from_camera,
+                              const Body& body_in_world);
+
+// The exact landmark and symmetries of an object. Symmetric about its xz plane, shape and texture;
+// the texture leaves no other mirror plane. Rotational symmetry is of the shape alone.
+GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object);
+
+// The path of a frame's image in its dataset folder.
+std::string ImageName(int frame_index);
+
+// The simulation as a sequence in memory, with ground truth and without images on disk. Support
+// planes are given to each detection as the true camera sees them.
+Sequence SyntheticSequence(const Scene& scene, bool noise);
+
+}  // namespace soslam
