@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
+
 namespace soslam {
 
 // What shaped an artefact.
@@ -30,6 +32,18 @@ void CheckArtefactHeader(const nlohmann::json& header, const std::string& kind,
 // An artefact of that kind, checked against schemas/<kind>.schema.json, with its header under
 // "artefact". Throws InputError.
 nlohmann::json ReadArtefact(const std::filesystem::path& path, const std::string& kind);
+
+// The artefact as `from_json` builds it; InputErrors that `from_json` throws get the file's name.
+template <typename FromJson>
+auto ReadArtefactAs(const std::filesystem::path& path, const std::string& kind,
+                    const FromJson& from_json) {
+  const nlohmann::json document = ReadArtefact(path, kind);
+  try {
+    return from_json(document);
+  } catch (const InputError& error) {
+    throw InputError(path.string() + ": " + error.what());
+  }
+}
 
 // Writes {"artefact": header, ...body} atomically; an existing file with the same bytes keeps its
 // modification time. Throws NumericalError, naming the place, for a number that is not finite;

@@ -7,8 +7,7 @@
 
 #include "base/error.h"
 
-// GCC 12 takes a std::string::replace that it inlines into valijson for an overflow (GCC bug
-// 105329).
+// GCC 12 takes a std::string::replace that it inlines into valijson for an overflow.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstringop-overflow"

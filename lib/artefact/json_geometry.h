@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// Geometry in JSON, for nlohmann's `json = value` and `json.get<Value>()`. Doubles come back bit
+// for bit. Readers expect what the artefact's schema has checked; they throw InputError, without
+// the file's name, for what a schema cannot say.
+
+// {"rotation_xyzw": [x, y, z, w], "translation": [x, y, z] in metres}. Reading throws InputError
+// unless the quaternion has unit norm.
+void to_json(nlohmann::json& json, const Rigid3d& rigid);
+void from_json(const nlohmann::json& json, Rigid3d& rigid);
+
+// {"normal": [x, y, z], "offset": metres}. Reading throws InputError unless the normal has unit
+// length.
+void to_json(nlohmann::json& json, const Plane& plane);
+void from_json(const nlohmann::json& json, Plane& plane);
+
+// [x_min, y_min, x_max, y_max] in pixels.
+void to_json(nlohmann::json& json, const Box& box);
+void from_json(const nlohmann::json& json, Box& box);
+
+// {"width", "height", "fx", "fy", "cx", "cy"} in pixels.
+void to_json(nlohmann::json& json, const Camera& camera);
+void from_json(const nlohmann::json& json, Camera& camera);
+
+// {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres}; `frame` is "world" or "camera".
+nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);
+Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
+
+}  // namespace soslam

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "artefact/json_file.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The artefact of kind "landmarks": initial.json, refined.json. `sequence` is the one that the
+// estimates belong to; files name its frames and objects by id.
+// Throws InputError for a file that is not valid or names a detection that the sequence lacks.
+LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequence& sequence);
+// Errors as WriteArtefact.
+void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,
+                    const Sequence& sequence, const ArtefactInfo& info);
+
+}  // namespace soslam

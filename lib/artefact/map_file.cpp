@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/map_file.h"
+
+#include <fmt/format.h>
+
+#include "artefact/json_geometry.h"
+#include "artefact/object_estimate_json.h"
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+json TrajectoryToJson(const std::vector<Rigid3d>& world_from_camera, const Sequence& sequence) {
+  json trajectory = json::array();
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    trajectory.push_back({{"frame", sequence.frames[i].id},
+                          {"timestamp", sequence.frames[i].timestamp},
+                          {"world_from_camera", world_from_camera.at(i)}});
+  }
+  return trajectory;
+}
+
+std::vector<Rigid3d> TrajectoryFromJson(const json& json, const Sequence& sequence) {
+  if (json.size() != sequence.frames.size()) {
+    throw InputError(
+        fmt::format("/trajectory has {} poses; expected {}, as the sequence has frames",
+                    json.size(), sequence.frames.size()));
+  }
+  std::vector<Rigid3d> world_from_camera;
+  for (size_t i = 0; i < json.size(); ++i) {
+    const int frame_id = json[i].at("frame").get<int>();
+    if (frame_id != sequence.frames[i].id) {
+      throw InputError(fmt::format("/trajectory/{}/frame is {}; expected {}, as in the sequence", i,
+                                   frame_id, sequence.frames[i].id));
+    }
+    world_from_camera.push_back(json[i].at("world_from_camera").get<Rigid3d>());
+  }
+  return world_from_camera;
+}
+
+json SolverToJson(const SolverSummary& solver) {
+  return {{"initial_cost", solver.initial_cost},
+          {"final_cost", solver.final_cost},
+          {"iterations", solver.iterations},
+          {"converged", solver.converged},
+          {"cost_per_iteration", solver.cost_per_iteration},
+          {"residuals", solver.residuals},
+          {"gated", solver.gated}};
+}
+
+SolverSummary SolverFromJson(const json& json) {
+  SolverSummary solver;
+  json.at("initial_cost").get_to(solver.initial_cost);
+  json.at("final_cost").get_to(solver.final_cost);
+  json.at("iterations").get_to(solver.iterations);
+  json.at("converged").get_to(solver.converged);
+  json.at("cost_per_iteration").get_to(solver.cost_per_iteration);
+  json.at("residuals").get_to(solver.residuals);
+  json.at("gated").get_to(solver.gated);
+  return solver;
+}
+
+}  // namespace
+
+MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence) {
+  return ReadArtefactAs(path, "map", [&](const json& json) {
+    return MapEstimate{ObjectEstimatesFromJson(json.at("objects"), sequence),
+                       TrajectoryFromJson(json.at("trajectory"), sequence),
+                       SolverFromJson(json.at("solver"))};
+  });
+}
+
+void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,
+              const ArtefactInfo& info) {
+  WriteArtefact(path, "map", info,
+                {{"objects", ObjectEstimatesToJson(map.objects, sequence)},
+                 {"trajectory", TrajectoryToJson(map.world_from_camera, sequence)},
+                 {"solver", SolverToJson(map.solver)}});
+}
+
+}  // namespace soslam

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "artefact/json_file.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The artefact of kind "map". `sequence` is the one that the map was made from; files name its
+// frames and objects by id. Throws InputError for a file that is not valid, names an object that
+// the sequence lacks, or whose trajectory does not have exactly the sequence's frames.
+MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence);
+// Errors as WriteArtefact.
+void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,
+              const ArtefactInfo& info);
+
+}  // namespace soslam

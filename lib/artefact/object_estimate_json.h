@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The "objects" of the landmarks and map artefacts: what all observations of each object say.
+nlohmann::json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates,
+                                     const Sequence& sequence);
+// Throws InputError for an object that the sequence does not have.
+std::vector<ObjectEstimate> ObjectEstimatesFromJson(const nlohmann::json& json,
+                                                    const Sequence& sequence);
+
+}  // namespace soslam

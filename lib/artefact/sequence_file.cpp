@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/sequence_file.h"
+
+#include <fmt/format.h>
+
+#include <tuple>
+
+#include "artefact/ids.h"
+#include "artefact/json_geometry.h"
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+json FrameToJson(const Frame& frame) {
+  const auto& truth = frame.true_world_from_camera;
+  return {{"frame", frame.id},
+          {"timestamp", frame.timestamp},
+          {"image", frame.image},
+          {"world_from_camera", frame.world_from_camera},
+          {"true_world_from_camera", truth ? json(*truth) : json()}};
+}
+
+Frame FrameFromJson(const json& json) {
+  Frame frame;
+  json.at("frame").get_to(frame.id);
+  json.at("timestamp").get_to(frame.timestamp);
+  json.at("image").get_to(frame.image);
+  json.at("world_from_camera").get_to(frame.world_from_camera);
+  const auto& truth = json.at("true_world_from_camera");
+  if (!truth.is_null()) frame.true_world_from_camera = truth.get<Rigid3d>();
+  return frame;
+}
+
+json GroundTruthToJson(const GroundTruth& truth) {
+  return {{"landmark", LandmarkToJson(truth.landmark_in_world, "world")},
+          {"mirror_symmetric", truth.mirror_symmetric},
+          {"mirror_symmetric_yz", truth.mirror_symmetric_yz},
+          {"rotationally_symmetric", truth.rotationally_symmetric}};
+}
+
+GroundTruth GroundTruthFromJson(const json& json) {
+  return {LandmarkFromJson(json.at("landmark"), "world"), json.at("mirror_symmetric").get<bool>(),
+          json.at("mirror_symmetric_yz").get<bool>(),
+          json.at("rotationally_symmetric").get<bool>()};
+}
+
+json ObjectToJson(const Object& object, const Sequence& sequence) {
+  return {{"object", object.id},
+          {"label", object.label},
+          {"plane", sequence.planes.at(static_cast<size_t>(object.plane_index)).id},
+          {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()}};
+}
+
+Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
+  Object object;
+  json.at("object").get_to(object.id);
+  json.at("label").get_to(object.label);
+  object.plane_index = planes.IndexOf(json.at("plane").get<int>());
+  const auto& truth = json.at("ground_truth");
+  if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
+  return object;
+}
+
+json DetectionToJson(const Detection& detection, const Sequence& sequence) {
+  return {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
+          {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
+          {"score", detection.score},
+          {"box", detection.box},
+          {"plane_in_camera", detection.plane_in_camera}};
+}
+
+Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
+                            const IdTable<Object>& objects) {
+  return {frames.IndexOf(json.at("frame").get<int>()),
+          objects.IndexOf(json.at("object").get<int>()), json.at("score").get<double>(),
+          json.at("box").get<Box>(), json.at("plane_in_camera").get<Plane>()};
+}
+
+void CheckOrder(const std::vector<Detection>& detections) {
+  const auto key = [](const Detection& detection) {
+    return std::tuple(detection.frame_index, detection.object_index);
+  };
+  for (size_t i = 1; i < detections.size(); ++i) {
+    if (key(detections[i]) <= key(detections[i - 1])) {
+      throw InputError(
+          fmt::format("/detections/{} is out of order; expected ascending frame, then object", i));
+    }
+  }
+}
+
+Sequence SequenceFromJson(const json& json) {
+  Sequence sequence;
+  json.at("name").get_to(sequence.name);
+  json.at("camera").get_to(sequence.camera);
+  for (const auto& frame : json.at("frames")) sequence.frames.push_back(FrameFromJson(frame));
+  for (const auto& plane : json.at("planes")) {
+    sequence.planes.push_back(
+        {plane.at("plane").get<int>(), plane.at("plane_in_world").get<Plane>()});
+  }
+  const IdTable<SupportPlane> planes("plane", sequence.planes);
+  for (const auto& object : json.at("objects")) {
+    sequence.objects.push_back(ObjectFromJson(object, planes));
+  }
+  const IdTable<Frame> frames("frame", sequence.frames);
+  const IdTable<Object> objects("object", sequence.objects);
+  for (const auto& detection : json.at("detections")) {
+    sequence.detections.push_back(DetectionFromJson(detection, frames, objects));
+  }
+  CheckOrder(sequence.detections);
+  json.at("rejected_detections").get_to(sequence.rejected_detections);
+  return sequence;
+}
+
+}  // namespace
+
+Sequence ReadSequence(const std::filesystem::path& path) {
+  return ReadArtefactAs(path, "sequence", &SequenceFromJson);
+}
+
+void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
+                   const ArtefactInfo& info) {
+  json body = {{"name", sequence.name},
+               {"camera", sequence.camera},
+               {"frames", json::array()},
+               {"planes", json::array()},
+               {"objects", json::array()},
+               {"detections", json::array()},
+               {"rejected_detections", sequence.rejected_detections}};
+  for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
+  for (const SupportPlane& plane : sequence.planes) {
+    body["planes"].push_back({{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}});
+  }
+  for (const Object& object : sequence.objects) {
+    body["objects"].push_back(ObjectToJson(object, sequence));
+  }
+  for (const Detection& detection : sequence.detections) {
+    body["detections"].push_back(DetectionToJson(detection, sequence));
+  }
+  WriteArtefact(path, "sequence", info, std::move(body));
+}
+
+}  // namespace soslam
