@@ -35,8 +35,8 @@ void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pi
   file->WriteMatrix(name, matrix);
 }
 
-std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name) {
-  const cv::Mat matrix = file.ReadMatrix(name, CV_32FC1, Hdf5File::kAny, 2);
+std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name, int count) {
+  const cv::Mat matrix = file.ReadMatrix(name, CV_32FC1, count, 2);
   std::vector<Eigen::Vector2f> pixels;
   for (int i = 0; i < matrix.rows; ++i) {
     pixels.emplace_back(matrix.at<float>(i, 0), matrix.at<float>(i, 1));

@@ -19,9 +19,10 @@ void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5
 // what this software reads.
 Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind);
 
-// Pixels as an n x 2 data set of float32.
+// Pixels as an n x 2 data set of float32; `count` is how many are expected.
 void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
                  Hdf5File* file);
-std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name);
+std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name,
+                                        int count = Hdf5File::kAny);
 
 }  // namespace soslam

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -35,15 +36,15 @@ void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
 
 SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
   SymmetryRecord record;
-  record.frame_id = static_cast<int>(file.ReadNumber(group, "frame_id"));
-  record.object_id = static_cast<int>(file.ReadNumber(group, "object_id"));
+  record.frame_id = static_cast<int>(std::lround(file.ReadNumber(group, "frame_id")));
+  record.object_id = static_cast<int>(std::lround(file.ReadNumber(group, "object_id")));
   record.yaw = file.ReadVector<double>(group + "/yaw");
   const int yaws = static_cast<int>(record.yaw.size());
   for (const std::string& descriptor : file.Children(group + "/cost")) {
     record.cost[descriptor] = file.ReadVector<double>(group + "/cost/" + descriptor, yaws);
   }
   record.samples = ReadPixels(file, group + "/samples");
-  record.mirrored = ReadPixels(file, group + "/mirrored");
+  record.mirrored = ReadPixels(file, group + "/mirrored", static_cast<int>(record.samples.size()));
   record.initial_yaw = file.ReadNumber(group, "initial_yaw");
   record.refined_yaw = file.ReadNumber(group, "refined_yaw");
   if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");

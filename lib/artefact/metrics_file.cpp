@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/metrics_file.h"
+
+namespace soslam {
+namespace {
+
+nlohmann::json OrNull(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+nlohmann::json ToJson(const MetricsSummary& summary) {
+  return {{"objects", summary.objects},
+          {"observations", summary.observations},
+          {"iou_mean", OrNull(summary.iou_mean)},
+          {"iou_median", OrNull(summary.iou_median)},
+          {"rotation_deg_mean", OrNull(summary.rotation_deg_mean)},
+          {"rotation_deg_median", OrNull(summary.rotation_deg_median)},
+          {"yaw_error_deg_mean", OrNull(summary.yaw_error_deg_mean)},
+          {"yaw_error_deg_median", OrNull(summary.yaw_error_deg_median)}};
+}
+
+nlohmann::json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
+  const Object& object = sequence.objects[static_cast<size_t>(metrics.object_index)];
+  return {{"object", object.id},
+          {"label", object.label},
+          {"observations", metrics.observations},
+          {"estimates", metrics.estimates},
+          {"iou", metrics.observations > 0 ? nlohmann::json(metrics.iou) : nlohmann::json()},
+          {"centre_m", OrNull(metrics.centre_m)},
+          {"rotation_deg", OrNull(metrics.rotation_deg)},
+          {"yaw_error_deg", OrNull(metrics.yaw_deg)}};
+}
+
+}  // namespace
+
+void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
+                  const Sequence& sequence, const ArtefactInfo& info) {
+  nlohmann::json body = {{"dataset", sequence.name},
+                         {"summary", ToJson(metrics.summary)},
+                         {"first_observation", nlohmann::json()},
+                         {"objects", nlohmann::json::array()},
+                         {"trajectory", nlohmann::json()}};
+  if (metrics.first_observation) body["first_observation"] = ToJson(*metrics.first_observation);
+  for (const ObjectMetrics& object : metrics.objects) {
+    body["objects"].push_back(ToJson(object, sequence));
+  }
+  if (metrics.trajectory) {
+    body["trajectory"] = {{"ate_rmse_m", metrics.trajectory->ate_rmse_m},
+                          {"odometry_ate_rmse_m", metrics.trajectory->odometry_ate_rmse_m}};
+  }
+  WriteArtefact(path, "metrics", info, std::move(body));
+}
+
+}  // namespace soslam

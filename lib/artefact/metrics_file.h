@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "artefact/json_file.h"
+#include "evaluation/metrics.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Writes metrics.json (kind "metrics", schemas/metrics.schema.json).
+void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
+                  const Sequence& sequence, const ArtefactInfo& info);
+
+}  // namespace soslam

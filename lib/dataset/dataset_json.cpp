@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/dataset_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "dataset/unit_quaternion.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// An object of somebody's JSON file, whose fields have yet to be checked.
+class Entry {
+ public:
+  // `place` says in error messages where the object stands: "<file>[index]".
+  Entry(const json& fields, std::string place) : fields_(fields), place_(std::move(place)) {
+    if (!fields.is_object()) throw InputError(place_ + ": is not an object");
+  }
+
+  const std::string& place() const { return place_; }
+  bool Has(const char* name) const { return fields_.contains(name); }
+
+  int Integer(const char* name) const {
+    constexpr std::int64_t kMax = std::numeric_limits<int>::max();
+    const json& field = Field(name);
+    if (!field.is_number_integer() || field.get<double>() < -kMax || field.get<double>() > kMax) {
+      Refuse(name, "an integer");
+    }
+    return field.get<int>();
+  }
+  double Real(const char* name) const {
+    const json& field = Field(name);
+    if (!field.is_number()) Refuse(name, "a number");
+    return field.get<double>();
+  }
+  double Positive(const char* name) const {
+    if (!(Real(name) > 0.0)) Refuse(name, "a number above 0");
+    return Real(name);
+  }
+  bool Flag(const char* name, bool default_value) const {
+    if (!Has(name)) return default_value;
+    if (!Field(name).is_boolean()) Refuse(name, "true or false");
+    return Field(name).get<bool>();
+  }
+  std::string Text(const char* name) const {
+    const json& field = Field(name);
+    if (!field.is_string() || field == "") Refuse(name, "a text");
+    return field.get<std::string>();
+  }
+  template <int kSize>
+  Eigen::Matrix<double, kSize, 1> Vector(const char* name) const {
+    const json& field = Field(name);
+    const auto is_number = [](const json& element) { return element.is_number(); };
+    if (!field.is_array() || field.size() != kSize ||
+        !std::all_of(field.begin(), field.end(), is_number)) {
+      Refuse(name, fmt::format("{} numbers", kSize));
+    }
+    return Eigen::Matrix<double, kSize, 1>(field.get<std::vector<double>>().data());
+  }
+
+  [[noreturn]] void Refuse(const char* name, const std::string& expected) const {
+    throw InputError(
+        fmt::format("{}: {} is {}; expected {}", place_, name, Field(name).dump(), expected));
+  }
+
+ private:
+  const json& Field(const char* name) const {
+    const auto found = fields_.find(name);
+    if (found == fields_.end()) throw InputError(fmt::format("{}: {} is missing", place_, name));
+    return *found;
+  }
+
+  const json& fields_;
+  std::string place_;
+};
+
+// Parses each entry of a list; sorted by id, which may not come twice.
+template <typename Item>
+std::vector<Item> ReadList(const std::filesystem::path& path, Item (*parse)(const Entry&)) {
+  const json list = ParseJsonFile(path);
+  if (!list.is_array()) throw InputError(path.string() + ": is not a list");
+  std::vector<Item> items;
+  for (size_t i = 0; i < list.size(); ++i) {
+    items.push_back(parse(Entry(list[i], fmt::format("{}[{}]", path.string(), i))));
+  }
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.id < b.id; });
+  const auto twice = std::adjacent_find(items.begin(), items.end(),
+                                        [](const Item& a, const Item& b) { return a.id == b.id; });
+  if (twice != items.end()) {
+    throw InputError(fmt::format("{}: id {} twice; expected once", path.string(), twice->id));
+  }
+  return items;
+}
+
+SupportPlane ParsePlane(const Entry& entry) {
+  constexpr double kShortest = 1e-6;
+  const Eigen::Vector3d normal = entry.Vector<3>("normal");
+  const double length = normal.norm();
+  if (!(length > kShortest)) entry.Refuse("normal", "a direction, not a zero vector");
+  return {entry.Integer("id"), {normal / length, entry.Real("d") / length}};
+}
+
+GroundTruth ParseGroundTruth(const Entry& entry) {
+  Landmark landmark;
+  landmark.frame_from_object = {UnitQuaternion(entry.Vector<4>("quaternion_xyzw"), entry.place()),
+                                entry.Vector<3>("center")};
+  landmark.half_axes = entry.Vector<3>("half_axes");
+  if (!(landmark.half_axes.minCoeff() > 0.0)) entry.Refuse("half_axes", "3 numbers above 0");
+  return {landmark, entry.Flag("mirror_symmetric", true), entry.Flag("mirror_symmetric_yz", false),
+          entry.Flag("rotationally_symmetric", false)};
+}
+
+ListedObject ParseObject(const Entry& entry) {
+  ListedObject object;
+  object.id = entry.Integer("id");
+  object.label = entry.Text("label");
+  if (entry.Has("support_plane")) object.plane_id = entry.Integer("support_plane");
+  if (entry.Has("center") || entry.Has("quaternion_xyzw") || entry.Has("half_axes")) {
+    object.ground_truth = ParseGroundTruth(entry);
+  }
+  return object;
+}
+
+}  // namespace
+
+Camera ReadCamera(const std::filesystem::path& path) {
+  const json fields = ParseJsonFile(path);
+  const Entry entry(fields, path.string());
+  if (entry.Has("model") && entry.Text("model") != "pinhole") {
+    entry.Refuse("model", "\"pinhole\": undistort the images first");
+  }
+  Camera camera{entry.Integer("width"), entry.Integer("height"), entry.Positive("fx"),
+                entry.Positive("fy"),   entry.Real("cx"),        entry.Real("cy")};
+  if (camera.width <= 0) entry.Refuse("width", "pixels above 0");
+  if (camera.height <= 0) entry.Refuse("height", "pixels above 0");
+  return camera;
+}
+
+std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path) {
+  std::vector<SupportPlane> planes = ReadList(path, &ParsePlane);
+  if (planes.empty()) throw InputError(path.string() + ": has no plane; expected at least one");
+  return planes;
+}
+
+std::vector<ListedObject> ReadObjects(const std::filesystem::path& path) {
+  return ReadList(path, &ParseObject);
+}
+
+}  // namespace soslam

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The JSON files of a dataset folder. Fields that are not named here are ignored. All throw
+// InputError naming the file, entry and field.
+
+// {"model": "pinhole" (optional), "width", "height", "fx", "fy", "cx", "cy"}, pixels.
+Camera ReadCamera(const std::filesystem::path& path);
+
+// [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal pointing
+// away from the support, of any length. Sorted by id; at least one.
+std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path);
+
+// [{"id", "label", "support_plane" (may be absent), and, all or none: "center", "quaternion_xyzw"
+// (world from object), "half_axes"}], with optional "mirror_symmetric" (default true),
+// "mirror_symmetric_yz" and "rotationally_symmetric" (default false).
+struct ListedObject {
+  int id = 0;
+  std::string label;
+  std::optional<int> plane_id;
+  std::optional<GroundTruth> ground_truth;
+};
+// Sorted by id.
+std::vector<ListedObject> ReadObjects(const std::filesystem::path& path);
+
+}  // namespace soslam

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "geometry/box.h"
+
+namespace soslam {
+
+const char* RejectReasonName(RejectReason reason) {
+  constexpr std::array kNames = {"frame_not_used", "frame_without_pose",  "low_score",
+                                 "empty_box",      "outside_image",       "near_border",
+                                 "duplicate",      "too_few_observations"};
+  return kNames.at(static_cast<size_t>(reason));
+}
+
+std::string DescribeRejections(const RejectionCounts& rejected) {
+  int total = 0;
+  std::vector<std::string> parts;
+  for (const auto& [reason, count] : rejected) {
+    total += count;
+    parts.push_back(fmt::format("{} {}", reason, count));
+  }
+  return fmt::format("{} detections rejected{}{}", total, parts.empty() ? "" : ": ",
+                     fmt::join(parts, ", "));
+}
+
+std::optional<RejectReason> GateBox(const DetectionRow& row, const Camera& camera,
+                                    const ImportOptions& options) {
+  // A box exactly border_px from the border is kept, whatever the rounding of its edges.
+  constexpr double kTolerancePx = 1e-9;
+  const Box& box = row.box;
+  if (row.score < options.min_score) return RejectReason::kLowScore;
+  if (box.Width() <= 0.0 || box.Height() <= 0.0) return RejectReason::kEmptyBox;
+  if (box.x_max <= -0.5 || box.y_max <= -0.5 || box.x_min >= camera.width - 0.5 ||
+      box.y_min >= camera.height - 0.5) {
+    return RejectReason::kOutsideImage;
+  }
+  if (DistanceToBorder(box, camera.width, camera.height) < options.border_px - kTolerancePx) {
+    return RejectReason::kNearBorder;
+  }
+  return std::nullopt;
+}
+
+std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
+                                            RejectionCounts* rejected) {
+  const auto best_first = [](const DetectionRow& a, const DetectionRow& b) {
+    return std::tuple(a.frame_id, a.object_id, -a.score) <
+           std::tuple(b.frame_id, b.object_id, -b.score);
+  };
+  const auto same = [](const DetectionRow& a, const DetectionRow& b) {
+    return a.frame_id == b.frame_id && a.object_id == b.object_id;
+  };
+  std::stable_sort(rows.begin(), rows.end(), best_first);
+  const auto end = std::unique(rows.begin(), rows.end(), same);
+  if (end != rows.end()) {
+    (*rejected)[RejectReasonName(RejectReason::kDuplicate)] += static_cast<int>(rows.end() - end);
+  }
+  rows.erase(end, rows.end());
+  return rows;
+}
+
+std::vector<DetectionRow> WithEnoughObservations(const std::vector<DetectionRow>& rows,
+                                                 int min_observations, RejectionCounts* rejected) {
+  std::map<int, int> observations;
+  for (const DetectionRow& row : rows) ++observations[row.object_id];
+  std::vector<DetectionRow> kept;
+  for (const DetectionRow& row : rows) {
+    if (observations[row.object_id] >= min_observations) {
+      kept.push_back(row);
+    } else {
+      ++(*rejected)[RejectReasonName(RejectReason::kTooFewObservations)];
+    }
+  }
+  return kept;
+}
+
+}  // namespace soslam

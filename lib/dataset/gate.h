@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/detections_csv.h"
+#include "dataset/import_options.h"
+#include "geometry/camera.h"
+
+namespace soslam {
+
+// Why a detection is not used. Sequence::rejected_detections counts them by name.
+enum class RejectReason {
+  kFrameNotUsed,        // its image is skipped by the frame stride
+  kFrameWithoutPose,    // no pose close in time for its image, or for its plane
+  kLowScore,            // score below min_score
+  kEmptyBox,            // no width or no height
+  kOutsideImage,        // no part of the box is in the image
+  kNearBorder,          // an edge is closer to the image border than border_px, or beyond it
+  kDuplicate,           // another box of the object in the frame has a higher score
+  kTooFewObservations,  // the object has fewer than min_observations usable detections
+};
+const char* RejectReasonName(RejectReason reason);
+
+using RejectionCounts = std::map<std::string, int>;
+// "12 detections rejected: duplicate 2, near_border 10".
+std::string DescribeRejections(const RejectionCounts& rejected);
+
+// What is wrong with the row by itself, apart from its frame; none when it is usable.
+std::optional<RejectReason> GateBox(const DetectionRow& row, const Camera& camera,
+                                    const ImportOptions& options);
+
+// Keeps one row of each object in each frame, the one with the highest score (the first of equals),
+// sorted by frame, then object.
+std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
+                                            RejectionCounts* rejected);
+
+// Drops all rows of objects that have fewer than `min_observations`.
+std::vector<DetectionRow> WithEnoughObservations(const std::vector<DetectionRow>& rows,
+                                                 int min_observations, RejectionCounts* rejected);
+
+}  // namespace soslam

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/object_table.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "base/error.h"
+#include "dataset/dataset_json.h"
+
+namespace soslam {
+namespace {
+
+int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& planes,
+               const std::string& file) {
+  if (!object.plane_id) {
+    if (planes.size() == 1) return 0;
+    throw InputError(
+        fmt::format("{}: object {} ('{}') has no support_plane; expected one, as there "
+                    "are {} planes",
+                    file, object.id, object.label, planes.size()));
+  }
+  for (size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].id == *object.plane_id) return static_cast<int>(i);
+  }
+  throw InputError(
+      fmt::format("{}: support_plane of object {} is {}; expected an id of planes.json", file,
+                  object.id, *object.plane_id));
+}
+
+}  // namespace
+
+std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<DetectionRow>& rows,
+                                const std::vector<SupportPlane>& planes) {
+  std::map<int, ListedObject> listed;
+  if (files.objects) {
+    for (const ListedObject& object : ReadObjects(*files.objects)) listed[object.id] = object;
+  }
+  for (const DetectionRow& row : rows) {
+    const ListedObject only_detected{row.object_id, row.label, std::nullopt, std::nullopt};
+    const ListedObject& object = listed.try_emplace(row.object_id, only_detected).first->second;
+    if (object.label != row.label) {
+      throw InputError(fmt::format("{}: label of object {} is '{}'; expected '{}', as elsewhere",
+                                   row.place, row.object_id, row.label, object.label));
+    }
+  }
+  const std::string file = files.objects.value_or(files.detections).string();
+  std::vector<Object> objects;
+  for (const auto& [id, object] : listed) {
+    objects.push_back({id, object.label, PlaneIndex(object, planes, file), object.ground_truth});
+  }
+  return objects;
+}
+
+}  // namespace soslam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace soslam {
+
+// One line of a text file, without its line ending.
+struct TextLine {
+  std::string place;  // "<file>:<line number from 1>", for error messages
+  std::string text;
+};
+
+// The lines of a UTF-8 text file that are neither blank nor comments (first character #). A byte
+// order mark and carriage returns at line ends are dropped. Throws InputError when the file cannot
+// be read or is not UTF-8.
+std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
+
+// Without blanks at both ends.
+std::string_view Trimmed(std::string_view text);
+// The words between blanks.
+std::vector<std::string_view> SplitWords(std::string_view text);
+// The trimmed fields between commas; a comma cannot be part of a field.
+std::vector<std::string_view> SplitFields(std::string_view text);
+
+// The whole of `text` as a number, whatever the locale. Throws InputError, naming place and field,
+// for anything else; a real number must be finite.
+double ParseReal(std::string_view text, const std::string& place, const std::string& field);
+int ParseInteger(std::string_view text, const std::string& place, const std::string& field);
+
+}  // namespace soslam

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "dataset/import_options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+// soslam-import: reads the folder "dataset", writes the sequence artefact "output" and prints one
+// line that says how much of it is used. Errors as ImportDataset and WriteSequence.
+void RunImport(const ImportOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam
