@@ -43,20 +43,9 @@ std::optional<Landmark> Start(const SingleFrameObservation& observation) {
 Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOptions& options,
                  const Landmark& start) {
   LandmarkBlock landmark = Pack(start);
-  PoseBlock camera = Pack(Rigid3d());  // the world of this solve is the camera frame
-  const ConstraintVariances& variances = options.variances;
-
+  PoseBlock camera = Pack(Rigid3d());
   ceres::Problem problem;
-  problem.AddParameterBlock(landmark.data(), kLandmarkSize, NewLandmarkManifold());
-  problem.AddResidualBlock(
-      new DetectionResidual(observation.camera, observation.box, variances.detection), nullptr,
-      camera.data(), landmark.data());
-  problem.AddResidualBlock(new SupportResidual(observation.plane_in_camera, variances.support_angle,
-                                               variances.support_tangency),
-                           nullptr, landmark.data());
-  problem.AddResidualBlock(new ScaleRatioResidual(observation.ratio, variances.ratio), nullptr,
-                           landmark.data());
-  problem.SetParameterBlockConstant(camera.data());
+  AddSingleFrameConstraints(observation, options.variances, &camera, &landmark, &problem);
 
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
@@ -100,6 +89,33 @@ double Frontality(const Landmark& landmark_in_camera) {
 }
 
 }  // namespace
+
+void AddSingleFrameConstraints(const SingleFrameObservation& observation,
+                               const ConstraintVariances& variances, PoseBlock* camera,
+                               LandmarkBlock* landmark, ceres::Problem* problem) {
+  problem->AddParameterBlock(landmark->data(), kLandmarkSize, NewLandmarkManifold());
+  problem->AddResidualBlock(
+      new DetectionResidual(observation.camera, observation.box, variances.detection), nullptr,
+      camera->data(), landmark->data());
+  problem->AddResidualBlock(
+      new SupportResidual(observation.plane_in_camera, variances.support_angle,
+                          variances.support_tangency),
+      nullptr, landmark->data());
+  problem->AddResidualBlock(new ScaleRatioResidual(observation.ratio, variances.ratio), nullptr,
+                            landmark->data());
+  problem->SetParameterBlockConstant(camera->data());
+}
+
+double SingleFrameCost(const SingleFrameObservation& observation,
+                       const ConstraintVariances& variances, const Landmark& landmark_in_camera) {
+  LandmarkBlock landmark = Pack(landmark_in_camera);
+  PoseBlock camera = Pack(Rigid3d());
+  ceres::Problem problem;
+  AddSingleFrameConstraints(observation, variances, &camera, &landmark, &problem);
+  double cost = 0.0;
+  problem.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr, nullptr);
+  return cost;
+}
 
 double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box) {
   const auto outline = OutlineBox(camera, landmark_in_camera);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ceres/problem.h>
+
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "constraints/parameters.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
@@ -34,6 +37,16 @@ struct SingleFrameSolution {
 // and in front of the camera are dropped. Failures: support_plane_not_in_view, no_solution.
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options);
+
+// The constraints of eq. (12) on a landmark in the camera frame. The blocks stay the caller's; the
+// camera block is the identity and held constant.
+void AddSingleFrameConstraints(const SingleFrameObservation& observation,
+                               const ConstraintVariances& variances, PoseBlock* camera,
+                               LandmarkBlock* landmark, ceres::Problem* problem);
+
+// The cost of eq. (12): half the sum of squared weighted residuals.
+double SingleFrameCost(const SingleFrameObservation& observation,
+                       const ConstraintVariances& variances, const Landmark& landmark_in_camera);
 
 // The root mean square distance (px) between the edges of the landmark's outline box and the box;
 // infinite when the landmark is not wholly in front of the camera.

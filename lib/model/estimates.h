@@ -20,7 +20,8 @@ struct Hypothesis {
 };
 
 // What one observation alone says about its object. `hypotheses` is sorted best first; the first
-// one is the estimate. Empty, with the reason in `failure`, when the observation gives no landmark.
+// one is the estimate. `failure` says why there is none (hypotheses empty), or why a later stage
+// left the estimate as it was.
 struct ObservationEstimate {
   int detection_index = 0;  // into Sequence::detections
   std::vector<Hypothesis> hypotheses;

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "evaluation/iou.h"
+#include "evaluation/rotation_error.h"
+#include "evaluation/trajectory_error.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+std::optional<double> Mean(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+std::optional<double> Median(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+// The landmark turned about its z axis until its x axis points as the estimate's does.
+Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
+  const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
+                                (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());
+  return Turned(landmark, std::atan2(front.y(), front.x()));
+}
+
+// A mean over an object's estimates; an object that was seen but has no estimate has IoU 0.
+ObjectMetrics Average(int object_index, int observations,
+                      const std::vector<LandmarkErrors>& errors) {
+  ObjectMetrics metrics;
+  metrics.object_index = object_index;
+  metrics.observations = observations;
+  metrics.estimates = static_cast<int>(errors.size());
+  std::vector<double> ious, centres, rotations, yaws;
+  for (const LandmarkErrors& error : errors) {
+    ious.push_back(error.iou);
+    centres.push_back(error.centre_m);
+    if (error.rotation_deg) rotations.push_back(*error.rotation_deg);
+    if (error.yaw_deg) yaws.push_back(*error.yaw_deg);
+  }
+  metrics.iou = Mean(ious).value_or(0.0);
+  metrics.centre_m = Mean(centres);
+  metrics.rotation_deg = Mean(rotations);
+  metrics.yaw_deg = Mean(yaws);
+  return metrics;
+}
+
+MetricsSummary Summarise(const std::vector<ObjectMetrics>& objects) {
+  MetricsSummary summary;
+  std::vector<double> ious, rotations, yaws;
+  for (const ObjectMetrics& object : objects) {
+    if (object.observations == 0) continue;
+    ++summary.objects;
+    summary.observations += object.observations;
+    ious.push_back(object.iou);
+    if (object.rotation_deg) rotations.push_back(*object.rotation_deg);
+    if (object.yaw_deg) yaws.push_back(*object.yaw_deg);
+  }
+  summary.iou_mean = Mean(ious);
+  summary.iou_median = Median(ious);
+  summary.rotation_deg_mean = Mean(rotations);
+  summary.rotation_deg_median = Median(rotations);
+  summary.yaw_error_deg_mean = Mean(yaws);
+  summary.yaw_error_deg_median = Median(yaws);
+  return summary;
+}
+
+// The errors of every observation of an object that gave a landmark, in frame order, and whether it
+// did.
+std::vector<std::optional<LandmarkErrors>> ObservationErrors(const Sequence& sequence,
+                                                             const LandmarkEstimates& estimates,
+                                                             int object_index) {
+  std::vector<std::optional<LandmarkErrors>> errors;
+  const Object& object = sequence.objects[static_cast<size_t>(object_index)];
+  for (const ObservationEstimate& observation : estimates.observations) {
+    const Detection& detection =
+        sequence.detections[static_cast<size_t>(observation.detection_index)];
+    if (detection.object_index != object_index) continue;
+    if (observation.hypotheses.empty()) {
+      errors.emplace_back();
+      continue;
+    }
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    const Rigid3d world_from_camera =
+        frame.true_world_from_camera.value_or(frame.world_from_camera);
+    const Landmark truth_in_camera =
+        Transform(world_from_camera.Inverse(), object.ground_truth->landmark_in_world);
+    errors.push_back(CompareLandmarks(observation.hypotheses.front().landmark_in_camera,
+                                      *object.ground_truth, truth_in_camera));
+  }
+  return errors;
+}
+
+ObjectMetrics ObjectMetricsOf(const std::vector<std::optional<LandmarkErrors>>& errors,
+                              int object_index) {
+  std::vector<LandmarkErrors> found;
+  for (const auto& error : errors) {
+    if (error) found.push_back(*error);
+  }
+  return Average(object_index, static_cast<int>(errors.size()), found);
+}
+
+std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
+                                           const std::vector<ObjectEstimate>& estimates) {
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<ObjectMetrics> objects;
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    const auto& truth = sequence.objects[i].ground_truth;
+    if (!truth) continue;
+    std::vector<LandmarkErrors> errors;
+    for (const ObjectEstimate& estimate : estimates) {
+      if (estimate.object_index == static_cast<int>(i) && estimate.landmark_in_world) {
+        errors.push_back(
+            CompareLandmarks(*estimate.landmark_in_world, *truth, truth->landmark_in_world));
+      }
+    }
+    objects.push_back(Average(static_cast<int>(i), static_cast<int>(detections[i].size()), errors));
+  }
+  return objects;
+}
+
+}  // namespace
+
+LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
+                                const Landmark& truth_in_frame) {
+  LandmarkErrors errors;
+  errors.centre_m = (estimate.Centre() - truth_in_frame.Centre()).norm();
+  if (truth.rotationally_symmetric) {
+    errors.iou = BoxIou(estimate, WithYawOf(estimate, truth_in_frame));
+    return errors;
+  }
+  const Eigen::Quaterniond& estimated = estimate.frame_from_object.rotation;
+  const Eigen::Quaterniond& exact = truth_in_frame.frame_from_object.rotation;
+  errors.iou = BoxIou(estimate, truth_in_frame);
+  errors.rotation_deg = kDegPerRad * RotationError(estimated, exact);
+  errors.yaw_deg = kDegPerRad * YawError(estimated, exact);
+  return errors;
+}
+
+Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates) {
+  Metrics metrics;
+  if (estimates.observations.empty()) {
+    metrics.objects = EvaluateObjects(sequence, estimates.objects);
+  } else {
+    for (size_t i = 0; i < sequence.objects.size(); ++i) {
+      if (!sequence.objects[i].ground_truth) continue;
+      const int object_index = static_cast<int>(i);
+      auto errors = ObservationErrors(sequence, estimates, object_index);
+      metrics.objects.push_back(ObjectMetricsOf(errors, object_index));
+      if (!errors.empty()) errors.resize(1);
+      metrics.first_observation_objects.push_back(ObjectMetricsOf(errors, object_index));
+    }
+    metrics.first_observation = Summarise(metrics.first_observation_objects);
+  }
+  metrics.summary = Summarise(metrics.objects);
+  return metrics;
+}
+
+Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map) {
+  Metrics metrics;
+  metrics.objects = EvaluateObjects(sequence, map.objects);
+  metrics.summary = Summarise(metrics.objects);
+
+  std::vector<Rigid3d> odometry;
+  std::vector<std::optional<Rigid3d>> truth;
+  for (const Frame& frame : sequence.frames) {
+    odometry.push_back(frame.world_from_camera);
+    truth.push_back(frame.true_world_from_camera);
+  }
+  const auto optimised_error = AbsoluteTrajectoryError(map.world_from_camera, truth);
+  const auto odometry_error = AbsoluteTrajectoryError(odometry, truth);
+  if (optimised_error && odometry_error) metrics.trajectory = {*optimised_error, *odometry_error};
+  return metrics;
+}
+
+}  // namespace soslam

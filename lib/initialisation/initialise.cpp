@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/initialise.h"
+
+#include "base/parallel.h"
+#include "initialisation/single_frame.h"
+#include "initialisation/svd.h"
+
+namespace soslam {
+namespace {
+
+constexpr size_t kMinViews = 3;
+
+std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
+                                        const std::vector<int>& detections) {
+  std::vector<Plane> planes;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
+      planes.push_back(Transform(frame.world_from_camera, sequence.camera.BackProject(line)));
+    }
+  }
+  return planes;
+}
+
+}  // namespace
+
+LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
+                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
+                                        const InitialiseOptions& options, int threads) {
+  LandmarkEstimates estimates;
+  estimates.observations.resize(sequence.detections.size());
+  ParallelFor(static_cast<int>(sequence.detections.size()), threads, [&](int i) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(i)];
+    ObservationEstimate& estimate = estimates.observations[static_cast<size_t>(i)];
+    estimate.detection_index = i;
+    const auto& ratio = ratios[static_cast<size_t>(detection.object_index)];
+    if (!ratio) {
+      estimate.failure = "no_ratio_for_label";
+      return;
+    }
+    SingleFrameSolution solution = InitialiseFromSingleFrame(
+        {sequence.camera, detection.box, detection.plane_in_camera, *ratio}, options);
+    estimate.hypotheses = std::move(solution.hypotheses);
+    estimate.failure = std::move(solution.failure);
+  });
+  return estimates;
+}
+
+LandmarkEstimates InitialiseSvd(const Sequence& sequence) {
+  LandmarkEstimates estimates;
+  const auto detections = DetectionsByObject(sequence);
+  for (size_t i = 0; i < detections.size(); ++i) {
+    if (detections[i].empty()) continue;
+    ObjectEstimate object;
+    object.object_index = static_cast<int>(i);
+    object.observations = static_cast<int>(detections[i].size());
+    if (detections[i].size() < kMinViews) {
+      object.failure = "fewer_than_three_views";
+    } else if (const auto found =
+                   LandmarkFromTangentPlanes(TangentPlanesInWorld(sequence, detections[i]))) {
+      object.landmark_in_world = found->landmark;
+      object.proper_ellipsoid = found->proper;
+    } else {
+      object.failure = "no_finite_quadric";
+    }
+    estimates.objects.push_back(object);
+  }
+  return estimates;
+}
+
+}  // namespace soslam

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "initialisation/options.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Single-frame landmarks of all detections (one ObservationEstimate each). An observation of an
+// object without ratio fails with no_ratio_for_label.
+LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
+                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
+                                        const InitialiseOptions& options, int threads);
+
+// One landmark per object by SVD over all of its boxes, seen from the frames' estimated poses.
+// Failures: fewer_than_three_views, no_finite_quadric.
+LandmarkEstimates InitialiseSvd(const Sequence& sequence);
+
+}  // namespace soslam

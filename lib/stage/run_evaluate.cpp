@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_evaluate.h"
+
+#include <fmt/format.h>
+
+#include "artefact/json_file.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/map_file.h"
+#include "artefact/metrics_file.h"
+#include "artefact/sequence_file.h"
+#include "evaluation/metrics.h"
+
+namespace soslam {
+namespace {
+
+bool IsMap(const std::filesystem::path& path) {
+  const nlohmann::json json = ParseJsonFile(path);
+  return json.is_object() && json.contains("artefact") && json["artefact"].is_object() &&
+         json["artefact"].value("kind", "") == "map";
+}
+
+}  // namespace
+
+void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*threads*/) {
+  const Sequence sequence = ReadSequence(files.at("sequence"));
+  const std::filesystem::path& landmarks = files.at("landmarks");
+  const Metrics metrics = IsMap(landmarks)
+                              ? EvaluateMap(sequence, ReadMap(landmarks, sequence))
+                              : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence));
+  WriteMetrics(files.at("output"), metrics, sequence,
+               {OptionsToJson(options), {files.at("sequence"), landmarks}});
+  if (metrics.summary.objects == 0) {
+    fmt::print("no observed object has ground truth: nothing to compare with\n");
+  } else {
+    fmt::print("{} objects, mean IoU {:.3f}\n", metrics.summary.objects,
+               metrics.summary.iou_mean.value_or(0.0));
+  }
+}
+
+}  // namespace soslam

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "evaluation/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+// Any landmarks artefact (initial.json, refined.json, map.json) to metrics.json: files "sequence",
+// "landmarks", "output". Without ground truth the summary has 0 objects and no numbers.
+void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam

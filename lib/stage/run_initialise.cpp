@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_initialise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "artefact/landmarks_file.h"
+#include "artefact/semantic_table_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "initialisation/initialise.h"
+
+namespace soslam {
+namespace {
+
+std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
+  std::map<std::string, int> failures;
+  for (const auto& observation : estimates.observations) {
+    if (observation.hypotheses.empty()) ++failures[observation.failure];
+  }
+  for (const auto& object : estimates.objects) {
+    if (!object.landmark_in_world) ++failures[object.failure];
+  }
+  return failures;
+}
+
+}  // namespace
+
+void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads) {
+  const Sequence sequence = ReadSequence(files.at("sequence"));
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
+  LandmarkEstimates estimates;
+  if (options.method == InitialisationMethod::kSvd) {
+    estimates = InitialiseSvd(sequence);
+  } else {
+    if (options.ratio_prior == RatioPrior::kTable) {
+      for (const std::string& label : LabelsWithoutEntry(sequence, table)) {
+        fmt::print(stderr, "soslam-initialise: label '{}' is not in {}: {}\n", label,
+                   files.at("table").string(),
+                   table.default_ratio ? "its default is used" : "its objects are left out");
+      }
+    }
+    const auto ratios = ObjectRatios(sequence, table, options.ratio_prior);
+    estimates = InitialiseSingleFrame(sequence, ratios, options, threads);
+  }
+
+  const auto failures = CountFailures(estimates);
+  int failed = 0;
+  std::string reasons;
+  for (const auto& [reason, count] : failures) {
+    failed += count;
+    reasons += fmt::format(" {} {}", reason, count);
+  }
+  const auto tried = static_cast<int>(estimates.observations.size() + estimates.objects.size());
+  if (failed == tried) {
+    throw NothingUsableError(fmt::format("{}: no landmark from {} tries:{}",
+                                         files.at("sequence").string(), tried, reasons));
+  }
+  WriteLandmarks(files.at("output"), estimates, sequence,
+                 {OptionsToJson(options), {files.at("sequence"), files.at("table")}});
+  fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one:" : "", reasons);
+}
+
+}  // namespace soslam

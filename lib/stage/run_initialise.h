@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "initialisation/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+// sequence.json and the semantic table to initial.json: files "sequence", "table", "output". Throws
+// NothingUsableError when no observation gave a landmark.
+void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam

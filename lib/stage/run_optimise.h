@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mapping/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+// initial.json or refined.json to map.json: files "sequence", "landmarks", "table", "output" and,
+// for symmetry, "edges". Throws SettingsError when symmetry is on without edges or with a
+// descriptor that has no derivative, NothingUsableError when no object has a start.
+void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam

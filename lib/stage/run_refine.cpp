@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_refine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "artefact/edges_file.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/semantic_table_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "symmetry/refine.h"
+
+namespace soslam {
+namespace {
+
+constexpr size_t kFramesAtOnce = 8;  // bounds the edge maps held in memory
+
+// Observations by frame: all of one frame share its edge maps.
+std::vector<std::vector<const ObservationEstimate*>> GroupByFrame(
+    const Sequence& sequence, const LandmarkEstimates& initial) {
+  std::vector<std::vector<const ObservationEstimate*>> groups(sequence.frames.size());
+  for (const ObservationEstimate& observation : initial.observations) {
+    if (observation.hypotheses.empty()) continue;
+    const auto& detection = sequence.detections[static_cast<size_t>(observation.detection_index)];
+    groups[static_cast<size_t>(detection.frame_index)].push_back(&observation);
+  }
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
+class Refiner {
+ public:
+  Refiner(const Sequence& sequence, const std::vector<std::optional<Eigen::Vector2d>>& ratios,
+          const RefineOptions& options, int threads)
+      : sequence_(sequence), ratios_(ratios), options_(options), threads_(threads) {}
+
+  // Refines the observations of some frames in parallel; reading stays on this thread.
+  std::vector<RefinedObservation> Refine(
+      const std::vector<std::vector<const ObservationEstimate*>>& groups, size_t first, size_t last,
+      EdgesReader* edges) const {
+    std::vector<std::pair<const ObservationEstimate*, EdgeMaps>> tasks;
+    for (size_t i = first; i < last; ++i) {
+      const auto& detection =
+          sequence_.detections[static_cast<size_t>(groups[i].front()->detection_index)];
+      const int frame_id = sequence_.frames[static_cast<size_t>(detection.frame_index)].id;
+      const EdgeMaps maps = edges->Read(frame_id);
+      for (const ObservationEstimate* observation : groups[i])
+        tasks.emplace_back(observation, maps);
+    }
+    std::vector<RefinedObservation> refined(tasks.size());
+    ParallelFor(static_cast<int>(tasks.size()), threads_, [&](int i) {
+      const auto& [observation, maps] = tasks[static_cast<size_t>(i)];
+      const auto& detection =
+          sequence_.detections[static_cast<size_t>(observation->detection_index)];
+      const auto& ratio = ratios_[static_cast<size_t>(detection.object_index)];
+      refined[static_cast<size_t>(i)] = RefineObservation(
+          sequence_, *observation, maps, ratio.value_or(Eigen::Vector2d::Ones()), options_);
+    });
+    return refined;
+  }
+
+ private:
+  const Sequence& sequence_;
+  const std::vector<std::optional<Eigen::Vector2d>>& ratios_;
+  const RefineOptions& options_;
+  int threads_;
+};
+
+}  // namespace
+
+void RunRefine(const RefineOptions& options, const StageFiles& files, int threads) {
+  if (options.parameters == RefinementParameters::kAll &&
+      options.symmetry.descriptor == Descriptor::kBrief) {
+    throw SettingsError(
+        "parameters = all needs a descriptor with a derivative; found descriptor = brief");
+  }
+  const Sequence sequence = ReadSequence(files.at("sequence"));
+  const auto ratios =
+      ObjectRatios(sequence, ReadSemanticTable(files.at("table")), options.ratio_prior);
+  LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
+  const auto groups = GroupByFrame(sequence, estimates);
+  if (groups.empty()) {
+    throw NothingUsableError(files.at("initial").string() +
+                             ": no single-frame landmarks to refine");
+  }
+  const ArtefactInfo info = {
+      OptionsToJson(options),
+      {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
+
+  EdgesReader edges(files.at("edges"));
+  const Refiner refiner(sequence, ratios, options, threads);
+  std::vector<SymmetryRecord> curves;
+  int refined_count = 0;
+  std::map<int, ObservationEstimate> refined_by_detection;
+  for (size_t first = 0; first < groups.size(); first += kFramesAtOnce) {
+    const size_t last = std::min(groups.size(), first + kFramesAtOnce);
+    for (RefinedObservation& refined : refiner.Refine(groups, first, last, &edges)) {
+      if (refined.estimate.failure.empty()) ++refined_count;
+      curves.push_back(std::move(refined.record));
+      refined_by_detection[refined.estimate.detection_index] = std::move(refined.estimate);
+    }
+  }
+  for (ObservationEstimate& observation : estimates.observations) {
+    const auto found = refined_by_detection.find(observation.detection_index);
+    if (found != refined_by_detection.end()) observation = found->second;
+  }
+  WriteSymmetry(files.at("curves"), curves, info);
+  WriteLandmarks(files.at("output"), estimates, sequence, info);
+  fmt::print("{} landmarks refined, {} left as they were\n", refined_count,
+             curves.size() - static_cast<size_t>(refined_count));
+}
+
+}  // namespace soslam

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "base/options.h"
+#include "constraints/symmetry.h"
+#include "constraints/variances.h"
+#include "initialisation/semantic_table.h"
+
+namespace soslam {
+
+enum class Sampling {
+  kCorners,
+  kUniform,
+  kCornersAndUniform,  // the best in the paper, section V-D
+};
+inline constexpr std::array kSamplingNames = {"corners", "uniform", "corners_and_uniform"};
+
+// Which pixels of an observation are compared with their mirror pixels, and how.
+struct SymmetryOptions {
+  Descriptor descriptor = Descriptor::kImprovedDt;
+  Sampling sampling = Sampling::kCornersAndUniform;
+  int max_corners = 150;
+  int uniform_columns = 8;
+  double min_viewing_cosine = 0.2;
+  int min_pairs = 8;
+  double min_pair_fraction = 0.25;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Choice("descriptor", &descriptor, kDescriptorNames,
+                 "what is compared between a pixel and its mirror pixel, eq. (16)-(24)");
+    visit.Choice("sampling", &sampling, kSamplingNames, "which pixels are compared, section V-D");
+    visit.Integer("max_corners", &max_corners, {0, 100000},
+                  "at most so many corners per observation, the strongest first");
+    visit.Integer("uniform_columns", &uniform_columns, {1, 1000},
+                  "uniform samples: a grid of so many columns and rows over the box");
+    visit.Real("min_viewing_cosine", &min_viewing_cosine, {0.0, 1.0},
+               "a surface point counts as visible when the cosine between its normal and the "
+               "direction to the camera is at least this");
+    visit.Integer("min_pairs", &min_pairs, {1, 100000},
+                  "with fewer pairs of visible points the cost is undefined");
+    visit.Real("min_pair_fraction", &min_pair_fraction, {0.0, 1.0},
+               "the same as a fraction of the samples on the object");
+  }
+};
+
+enum class RefinementParameters {
+  kYaw,  // the landmark is turned about its z axis, centre and half axes stay
+  kAll,  // then all nine, together with the constraints of eq. (12)
+};
+inline constexpr std::array kRefinementParametersNames = {"yaw", "all"};
+
+struct RefineOptions {
+  SymmetryOptions symmetry;
+  RefinementParameters parameters = RefinementParameters::kYaw;
+  double yaw_step_deg = 2.0;
+  double yaw_resolution_deg = 0.1;
+  double symmetry_sigma = 0.05;
+  RatioPrior ratio_prior = RatioPrior::kTable;
+  ConstraintVariances variances;
+  int max_iterations = 50;
+
+  void Describe(OptionVisitor& visit) {
+    symmetry.Describe(visit);
+    visit.Choice("parameters", &parameters, kRefinementParametersNames,
+                 "what the refinement moves: the yaw, or then all nine parameters as well");
+    visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
+               "grid of the cost over yaw, over half a turn");
+    visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
+               "grid of the search around the best yaw of the coarse grid");
+    visit.Real(
+        "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
+        "standard deviation of a pair's descriptor difference, in the descriptor's unit; for "
+        "parameters = all");
+    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
+                 "where the size ratio of eq. (11) comes from");
+    variances.Describe(visit);
+    visit.Integer("max_iterations", &max_iterations, {1, 10000},
+                  "Levenberg-Marquardt iterations; for parameters = all");
+  }
+};
+
+}  // namespace soslam

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "symmetry/refine.h"
+
+#include <ceres/ceres.h>
+
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "initialisation/single_frame.h"
+#include "symmetry/sampling.h"
+#include "symmetry/yaw_profile.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// One observation, with what all steps of its refinement share.
+struct Refinement {
+  const Sequence& sequence;
+  const Detection& detection;
+  const RefineOptions& options;
+  SingleFrameObservation observation;
+  std::shared_ptr<const SymmetryImage> image;
+  Landmark start;  // in the camera frame
+  std::vector<Eigen::Vector2d> samples;
+};
+
+double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
+  return Yaw(refinement.detection.plane_in_camera.normal, landmark.frame_from_object.rotation);
+}
+
+// Eq. (12) plus eq. (16) over all nine parameters. Pairs are chosen at the start. None when the
+// solver fails.
+std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& start) {
+  const RefineOptions& options = refinement.options;
+  const Camera& camera = refinement.sequence.camera;
+  LandmarkBlock landmark = Pack(start);
+  PoseBlock camera_pose = Pack(Rigid3d());
+  ceres::Problem problem;
+  AddSingleFrameConstraints(refinement.observation, options.variances, &camera_pose, &landmark,
+                            &problem);
+  const SymmetryDescriptor at_start(options.symmetry.descriptor, *refinement.image, camera, start);
+  for (const Eigen::Vector2d& pixel : refinement.samples) {
+    if (!at_start.Evaluate(pixel, options.symmetry.min_viewing_cosine, false)) continue;
+    problem.AddResidualBlock(new SymmetryResidual(options.symmetry.descriptor, refinement.image,
+                                                  camera, pixel, options.symmetry_sigma),
+                             new ceres::HuberLoss(1.0), camera_pose.data(), landmark.data());
+  }
+
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.max_iterations;
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  if (!summary.IsSolutionUsable()) return std::nullopt;
+  return UnpackLandmark(landmark.data());
+}
+
+void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
+  const RefineOptions& options = refinement.options;
+  const double initial_yaw = YawInCamera(refinement, refinement.start);
+  for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
+    const YawProfile profile = ComputeYawProfile(
+        *refinement.image, refinement.sequence.camera, refinement.start, refinement.samples,
+        static_cast<Descriptor>(i), options.symmetry, options.yaw_step_deg * kRadPerDeg);
+    record->cost[kDescriptorNames[i]] = profile.costs;
+    record->yaw.clear();
+    for (const double turn : profile.turns) record->yaw.push_back(initial_yaw + turn);
+  }
+}
+
+void RecordPairs(const Refinement& refinement, const Landmark& landmark, SymmetryRecord* record) {
+  const SymmetryOptions& options = refinement.options.symmetry;
+  const SymmetryDescriptor evaluate(options.descriptor, *refinement.image,
+                                    refinement.sequence.camera, landmark);
+  for (const Eigen::Vector2d& pixel : refinement.samples) {
+    if (const auto pair = evaluate.Evaluate(pixel, options.min_viewing_cosine, false)) {
+      record->samples.push_back(pixel.cast<float>());
+      record->mirrored.push_back(pair->mirror_pixel.cast<float>());
+    }
+  }
+}
+
+std::optional<double> TrueYaw(const Refinement& refinement) {
+  const auto& object =
+      refinement.sequence.objects[static_cast<size_t>(refinement.detection.object_index)];
+  const auto& frame =
+      refinement.sequence.frames[static_cast<size_t>(refinement.detection.frame_index)];
+  if (!object.ground_truth || !frame.true_world_from_camera) return std::nullopt;
+  const Landmark in_camera =
+      Transform(frame.true_world_from_camera->Inverse(), object.ground_truth->landmark_in_world);
+  return YawInCamera(refinement, in_camera);
+}
+
+// The yaw step, and the other parameters where asked for. Returns why it could not be done, or "".
+std::string Refine(const Refinement& refinement, Landmark* refined) {
+  const RefineOptions& options = refinement.options;
+  if (refinement.image->edge_pixels.empty()) return "no_edges";
+  const YawProfile profile = ComputeYawProfile(
+      *refinement.image, refinement.sequence.camera, refinement.start, refinement.samples,
+      options.symmetry.descriptor, options.symmetry, options.yaw_step_deg * kRadPerDeg);
+  const auto turn =
+      BestTurn(profile, *refinement.image, refinement.sequence.camera, refinement.start,
+               refinement.samples, options.symmetry, options.yaw_resolution_deg * kRadPerDeg);
+  if (!turn) return "too_few_visible_pairs";
+  *refined = Turned(refinement.start, *turn);
+  if (options.parameters == RefinementParameters::kYaw) return "";
+  const auto solved = SolveAll(refinement, *refined);
+  if (!solved) return "solver_failed";
+  *refined = *solved;
+  return "";
+}
+
+}  // namespace
+
+RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,
+                                     const EdgeMaps& maps, const Eigen::Vector2d& ratio,
+                                     const RefineOptions& options) {
+  const Detection& detection = sequence.detections[static_cast<size_t>(initial.detection_index)];
+  RefinedObservation result;
+  result.estimate = initial;
+  result.record.frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
+  result.record.object_id = sequence.objects[static_cast<size_t>(detection.object_index)].id;
+  if (initial.hypotheses.empty()) return result;
+
+  const Landmark& start = initial.hypotheses.front().landmark_in_camera;
+  const Refinement refinement{
+      sequence,
+      detection,
+      options,
+      {sequence.camera, detection.box, detection.plane_in_camera, ratio},
+      std::make_shared<const SymmetryImage>(maps, detection.box),
+      start,
+      SamplePixels(maps, sequence.camera, start, detection.box, options.symmetry)};
+  Landmark refined = start;
+  result.estimate.failure = Refine(refinement, &refined);
+  if (result.estimate.failure.empty()) {
+    result.estimate.hypotheses.insert(
+        result.estimate.hypotheses.begin(),
+        {refined, SingleFrameCost(refinement.observation, options.variances, refined)});
+  }
+  RecordCurves(refinement, &result.record);
+  RecordPairs(refinement, refined, &result.record);
+  result.record.initial_yaw = YawInCamera(refinement, start);
+  result.record.refined_yaw = YawInCamera(refinement, refined);
+  result.record.true_yaw = TrueYaw(refinement);
+  return result;
+}
+
+}  // namespace soslam

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "image/edge_maps.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+#include "model/symmetry_record.h"
+#include "symmetry/options.h"
+
+namespace soslam {
+
+struct RefinedObservation {
+  ObservationEstimate estimate;  // the refined landmark first, then the hypotheses as they were
+  SymmetryRecord record;         // the cost over yaw of every descriptor: fig. 7
+};
+
+// Refines the yaw (and, as a setting, all parameters) of an observation's best hypothesis by the
+// symmetry of its texture, section V. Where that is not possible the estimate stays as it was, with
+// the reason in `failure`: no_edges, too_few_visible_pairs, solver_failed. `ratio` is the (a / c, b
+// / c) of eq. (11).
+RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,
+                                     const EdgeMaps& maps, const Eigen::Vector2d& ratio,
+                                     const RefineOptions& options);
+
+}  // namespace soslam
