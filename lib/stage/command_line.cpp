@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <thread>
+
+#include "artefact/atomic_file.h"
+#include "base/error.h"
+#include "stage/settings_file.h"
+
+namespace soslam::internal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 2 wrong usage or setting; 3 input missing or not valid; 4 nothing usable\n"
+    "came out; 5 numerical failure; 70 a bug in this program";
+
+// What CLI11 stores while it parses.
+struct ParsedArguments {
+  StageFiles files;
+  std::string settings_file;
+  int threads = 0;
+  std::map<std::string, std::string> option_texts;  // by option name
+};
+
+void AddFiles(const StageInfo& info, CLI::App* app, ParsedArguments* parsed) {
+  for (const FileArgument& file : info.files) {
+    app->add_option_function<std::string>(
+           "--" + file.name,
+           [parsed, name = file.name](const std::string& path) { parsed->files[name] = path; },
+           file.doc)
+        ->group("Files")
+        ->required(file.required)
+        ->option_text(file.required ? "PATH (required)" : "PATH");
+  }
+}
+
+void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
+  for (const OptionRow& row : options) {
+    const std::string domain = row.domain.empty() ? "" : "; " + row.domain;
+    CLI::Option* option = app->add_option_function<std::string>(
+        "--" + row.name,
+        [parsed, name = row.name](const std::string& text) { parsed->option_texts[name] = text; },
+        fmt::format("{}\n[default {}{}]", row.doc, row.default_value, domain));
+    option->group("Options")->option_text(row.type);
+    if (row.type == "boolean") option->expected(0, 1);
+  }
+}
+
+void AddCommon(CLI::App* app, ParsedArguments* parsed) {
+  app->add_option("--settings", parsed->settings_file,
+                  "JSON object of options; those on the command line win")
+      ->group("Common")
+      ->option_text("PATH");
+  app->add_option("--threads", parsed->threads,
+                  "threads; 0 = all cores. Results do not depend on it\n[default 0]")
+      ->check(CLI::Range(0, 1024))
+      ->group("Common")
+      ->option_text("integer");
+  app->set_help_flag("--help", "print this and exit")->group("Common");
+  app->set_version_flag("--version", app->get_name() + " " + SOSLAM_VERSION,
+                        "print the version and exit")
+      ->group("Common");
+}
+
+// The value of an option's text. What does not look like the type stays a string, which
+// OptionsFromJson then refuses by name.
+nlohmann::json ValueFromText(const std::string& text, const std::string& type) {
+  const char* const end = text.data() + text.size();
+  if (type == "integer") {
+    int64_t value = 0;
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end) return value;
+  }
+  if (type == "number") {
+    double value = 0.0;
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end && std::isfinite(value)) return value;
+  }
+  if (type == "boolean") {
+    if (text.empty() || text == "true") return true;
+    if (text == "false") return false;
+  }
+  return text;
+}
+
+StageCall MakeCall(const ParsedArguments& parsed, const std::vector<OptionRow>& options) {
+  StageCall call;
+  call.files = parsed.files;
+  call.threads = parsed.threads > 0
+                     ? parsed.threads
+                     : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (!parsed.settings_file.empty()) {
+    call.settings.push_back({parsed.settings_file, ReadSettingsFile(parsed.settings_file)});
+  }
+  nlohmann::json values = nlohmann::json::object();
+  for (const OptionRow& row : options) {
+    const auto text = parsed.option_texts.find(row.name);
+    if (text != parsed.option_texts.end()) values[row.name] = ValueFromText(text->second, row.type);
+  }
+  call.settings.push_back({"command line", values});
+  return call;
+}
+
+double Seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+void WriteTiming(const fs::path& output, const std::string& stage, double wall_s, int threads) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const nlohmann::ordered_json timing = {
+      {"stage", stage},
+      {"wall_s", wall_s},
+      {"cpu_s", Seconds(usage.ru_utime) + Seconds(usage.ru_stime)},
+      {"peak_memory_mb", static_cast<double>(usage.ru_maxrss) / 1024.0},  // ru_maxrss is in KiB
+      {"threads", threads}};
+  const fs::path folder = fs::is_directory(output) ? output : output.parent_path();
+  WriteTextFile(folder / "timing.json", timing.dump(2) + "\n");
+}
+
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+int Fail(const StageInfo& info, ExitCode exit_code, const std::string& message) {
+  std::cerr << info.name << ": error: " << OneLine(message) << std::endl;
+  return static_cast<int>(exit_code);
+}
+
+void ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::App* app,
+                 const std::vector<OptionRow>& options,
+                 const std::function<void(const StageCall&)>& run) {
+  ParsedArguments parsed;
+  app->get_formatter()->column_width(34);
+  app->footer(fmt::format("Example:\n  {}\n\n{}", info.example, kExitCodes));
+  AddFiles(info, app, &parsed);
+  AddOptions(options, app, &parsed);
+  AddCommon(app, &parsed);
+  app->parse(argc, argv);
+
+  const auto start = std::chrono::steady_clock::now();
+  const StageCall call = MakeCall(parsed, options);
+  run(call);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const auto output = call.files.find("output");
+  if (output != call.files.end()) {
+    WriteTiming(output->second, info.name, wall.count(), call.threads);
+  }
+}
+
+}  // namespace
+
+int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
+                 const std::vector<OptionRow>& options,
+                 const std::function<void(const StageCall&)>& run) {
+  CLI::App app(info.purpose, info.name);
+  try {
+    ParseAndRun(argc, argv, info, &app, options, run);
+    return static_cast<int>(ExitCode::kDone);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+    return Fail(info, ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
+  } catch (const Error& error) {
+    return Fail(info, error.exit_code(), error.what());
+  } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
+    return Fail(info, ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
+  } catch (...) {
+    return Fail(info, ExitCode::kInternal, "internal error: unknown exception");
+  }
+}
+
+}  // namespace soslam::internal
