@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_evaluate.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::EvaluateOptions>(
+      argc, argv,
+      {.name = "soslam-evaluate",
+       .purpose = "Compares landmarks with the ground truth of the dataset.",
+       .files = {{"sequence", "sequence.json of soslam-import"},
+                 {"landmarks", "initial.json, refined.json or map.json"},
+                 {"output", "metrics.json to write"}},
+       .example =
+           "soslam-evaluate --sequence sequence.json --landmarks map.json --output metrics.json"},
+      &soslam::RunEvaluate);
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_import.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::ImportOptions>(
+      argc, argv,
+      {.name = "soslam-import",
+       .purpose = "Reads a dataset folder, checks it and keeps the usable detections.",
+       .files = {{"dataset", "dataset folder: rgb.txt, camera.json, detections.csv and so on"},
+                 {"output", "sequence.json to write"}},
+       .example = "soslam-import --dataset data/room_a --output sequence.json"},
+      &soslam::RunImport);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_initialise.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::InitialiseOptions>(
+      argc, argv,
+      {.name = "soslam-initialise",
+       .purpose =
+           "Estimates landmarks from single observations, or from all boxes of an object by SVD.",
+       .files = {{"sequence", "sequence.json of soslam-import"},
+                 {"table", "semantic table with the size ratio of each label"},
+                 {"output", "initial.json to write"}},
+       .example = "soslam-initialise --sequence sequence.json --table "
+                  "pipelines/priors/semantic_table.json --output initial.json"},
+      &soslam::RunInitialise);
+}

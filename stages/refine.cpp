@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_refine.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::RefineOptions>(
+      argc, argv,
+      {.name = "soslam-refine",
+       .purpose = "Refines the yaw of each landmark by the symmetry of its texture.",
+       .files = {{"sequence", "sequence.json of soslam-import"},
+                 {"table", "semantic table with the size ratio of each label"},
+                 {"initial", "initial.json of soslam-initialise"},
+                 {"edges", "edges.h5 of soslam-edges"},
+                 {"output", "refined.json to write"},
+                 {"curves", "symmetry.h5 to write: the cost over yaw of every observation"}},
+       .example =
+           "soslam-refine --sequence sequence.json --table pipelines/priors/semantic_table.json "
+           "--initial initial.json --edges edges.h5 --output refined.json --curves symmetry.h5"},
+      &soslam::RunRefine);
+}

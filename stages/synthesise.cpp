@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_synthesise.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::SynthesiseOptions>(
+      argc, argv,
+      {.name = "soslam-synthesise",
+       .purpose = "Renders a scene description into a dataset folder with exact ground truth.",
+       .files = {{"scene", "scene description, JSON"}, {"output", "dataset folder to write"}},
+       .example = "soslam-synthesise --scene scene.json --output data/my_scene"},
+      &soslam::RunSynthesise);
+}
