@@ -11,8 +11,8 @@
 namespace soslam {
 namespace {
 
-constexpr int kPatches = 24;     // on the half with y >= 0
-constexpr int kCandidates = 24;  // per patch, of which the one furthest from other patches is taken
+constexpr int kPatches = 24;    // on the half with y >= 0
+constexpr int kCandidates = 8;  // per patch, of which the one furthest from other patches is taken
 
 // Blue, green, red. Pale enough against the patches for an edge detector at usual thresholds.
 const std::array<Eigen::Vector3d, 5> kBaseColours = {
@@ -47,7 +47,7 @@ double MeanPatchRadius(const Eigen::Vector3d& half_axes) {
 SurfaceTexture::SurfaceTexture(const SceneObject& object) {
   std::mt19937 random(static_cast<std::mt19937::result_type>(object.texture_seed));
   std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> relative_radius(0.45, 0.85);
+  std::uniform_real_distribution<double> relative_radius(0.4, 0.95);
   base_colour_ = kBaseColours[random() % kBaseColours.size()];
   const double mean_radius = MeanPatchRadius(object.half_axes);
 

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "synthesis/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+json ValidScene() {
+  return json::parse(R"({
+    "name": "test",
+    "camera": {"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5},
+    "planes": [{"id": 4, "label": "floor", "normal": [0, 0, 1], "d": 0},
+               {"id": 7, "label": "table", "normal": [0, 0, 1], "d": -0.5,
+                "table": {"position": [3, 0], "half_size": [0.5, 0.5]}}],
+    "walls": [{"normal": [-1, 0, 0], "d": 9}],
+    "objects": [{"id": 2, "label": "tin", "shape": "cylinder", "half_axes": [0.1, 0.1, 0.2],
+                 "plane": 7, "position": [3, 0.1], "yaw_deg": 90},
+                {"id": 1, "label": "ball", "shape": "ellipsoid", "half_axes": [0.3, 0.2, 0.1],
+                 "plane": 4, "position": [2, 1]}],
+    "trajectory": {"frames": 5, "frame_interval": 0.1, "waypoints": [
+      {"position": [0, 0, 1], "look_at": [3, 0, 0.5]},
+      {"position": [0.4, 0.1, 1], "look_at": [3, 0.1, 0.5]}]}
+  })");
+}
+
+TEST(ParseScene, ReadsEveryField) {
+  json document = ValidScene();
+  document["noise"] = {{"box_edge_sigma", 0.1}, {"image_sigma", 2.0}};
+  document["seed"] = 5;
+  const Scene scene = ParseScene(document, "scene.json");
+  EXPECT_EQ(scene.name, "test");
+  EXPECT_EQ(scene.camera.width, 64);
+  ASSERT_EQ(scene.planes.size(), 2u);
+  EXPECT_EQ(scene.planes[1].id, 7);
+  ASSERT_TRUE(scene.planes[1].table);
+  EXPECT_EQ(scene.planes[1].table->half_size, Eigen::Vector2d(0.5, 0.5));
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.objects[0].id, 1) << "objects are sorted by id";
+  EXPECT_EQ(scene.objects[0].texture_seed, 1);
+  EXPECT_EQ(scene.objects[1].shape, Shape::kCylinder);
+  EXPECT_EQ(scene.objects[1].plane_index, 1);
+  EXPECT_DOUBLE_EQ(scene.objects[1].yaw, 0.5 * std::numbers::pi);
+  EXPECT_EQ(scene.trajectory.frames, 5);
+  EXPECT_DOUBLE_EQ(scene.noise.box_edge_sigma, 0.1);
+  EXPECT_DOUBLE_EQ(scene.noise.miss_probability, 0.0);
+  EXPECT_EQ(scene.seed, 5);
+}
+
+struct BadScene {
+  const char* name;
+  std::function<void(json*)> spoil;
+  const char* expected;  // part of the message
+};
+
+void PrintTo(const BadScene& bad, std::ostream* stream) { *stream << bad.name; }
+
+class BadSceneTest : public testing::TestWithParam<BadScene> {};
+
+TEST_P(BadSceneTest, IsRefusedWithItsField) {
+  json document = ValidScene();
+  GetParam().spoil(&document);
+  ExpectError<InputError>([&] { ParseScene(document, "scene.json"); },
+                          {"scene", GetParam().expected});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadSceneTest,
+    testing::Values(
+        BadScene{"Shape", [](json* d) { (*d)["objects"][1]["shape"] = "torus"; },
+                 "objects/1/shape"},
+        BadScene{"NegativeAxes", [](json* d) { (*d)["objects"][0]["half_axes"][1] = -0.1; },
+                 "objects/0/half_axes/1"},
+        BadScene{"TwoAxes",
+                 [](json* d) {
+                   (*d)["objects"][0]["half_axes"] = {1, 1};
+                 },
+                 "objects/0/half_axes"},
+        BadScene{"UnknownPlane", [](json* d) { (*d)["objects"][1]["plane"] = 5; },
+                 "objects/1/plane: there is no plane with id 5"},
+        BadScene{"ObjectTwice", [](json* d) { (*d)["objects"][1]["id"] = 2; }, "objects/1/id: 2"},
+        BadScene{"PlaneTwice", [](json* d) { (*d)["planes"][1]["id"] = 4; }, "planes/1/id: 4"},
+        BadScene{"LongNormal",
+                 [](json* d) {
+                   (*d)["planes"][0]["normal"] = {0, 0, 2};
+                 },
+                 "planes/0/normal: has length 2"},
+        BadScene{"ZeroNormal",
+                 [](json* d) {
+                   (*d)["walls"][0]["normal"] = {0, 0, 0};
+                 },
+                 "walls/0/normal"},
+        BadScene{"NoObjects", [](json* d) { (*d)["objects"] = json::array(); }, "objects"},
+        BadScene{"NoFrames", [](json* d) { (*d)["trajectory"]["frames"] = 0; },
+                 "trajectory/frames"},
+        BadScene{"NoWaypoints", [](json* d) { (*d)["trajectory"]["waypoints"] = json::array(); },
+                 "trajectory/waypoints"},
+        BadScene{"UnknownField", [](json* d) { (*d)["noise"]["blur"] = 1; }, "blur"},
+        BadScene{"CommaInLabel", [](json* d) { (*d)["objects"][0]["label"] = "a,b"; },
+                 "objects/0/label"},
+        BadScene{"InsideObject",
+                 [](json* d) {
+                   (*d)["objects"][1]["half_axes"] = {5, 5, 5};
+                 },
+                 "frame 0 is inside the object with id 1"},
+        BadScene{"InsideTable",
+                 [](json* d) {
+                   (*d)["planes"][1]["table"] = {
+                       {"position", {0, 0}}, {"half_size", {1, 1}}, {"thickness", 0.1}};
+                   (*d)["planes"][1]["d"] = -1.05;
+                 },
+                 "frame 0 is inside a table"},
+        BadScene{"BelowFloor", [](json* d) { (*d)["planes"][0]["d"] = -2; },
+                 "frame 0 is behind the plane with id 4"},
+        BadScene{"OutsideRoom", [](json* d) { (*d)["walls"][0]["d"] = -1; }, "behind walls/0"},
+        BadScene{"LooksDown",
+                 [](json* d) {
+                   (*d)["trajectory"]["waypoints"][0]["look_at"] = {0, 0, 0};
+                 },
+                 "frame 0 looks straight up or down"},
+        BadScene{"LooksAtItself",
+                 [](json* d) {
+                   (*d)["trajectory"]["waypoints"][0]["look_at"] = {0, 0, 1};
+                 },
+                 "frame 0 looks straight up or down, or at its own position"}),
+    [](const auto& info) { return info.param.name; });
+
+TEST(ReadScene, MissingFileIsAnInputError) {
+  EXPECT_THROW(ReadScene("/nowhere/scene.json"), InputError);
+}
+
+TEST(Scene, ObjectsStandUprightOnTheirPlane) {
+  json document = ValidScene();
+  const double s = std::sqrt(0.5);
+  document["planes"][0]["normal"] = {0.0, -s, s};
+  document["planes"][0]["d"] = 0.3;
+  const Scene scene = ParseScene(document, "scene.json");
+  for (const SceneObject& object : scene.objects) {
+    const Landmark landmark = ObjectBody(scene, object).landmark;
+    const Plane& plane = scene.planes[object.plane_index].plane_in_world;
+    EXPECT_NEAR(plane.SignedDistance(landmark.Centre()), object.half_axes.z(), 1e-12);
+    const Eigen::Vector3d z_axis = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_NEAR((z_axis - plane.normal).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(Yaw(plane.normal, landmark.frame_from_object.rotation), object.yaw, 1e-12);
+  }
+}
+
+TEST(Scene, LevelPlaneHasTheWorldsCoordinates) {
+  const Scene scene = ParseScene(ValidScene(), "scene.json");
+  EXPECT_NEAR(
+      (ObjectBody(scene, scene.objects[1]).landmark.Centre() - Eigen::Vector3d(3.0, 0.1, 0.5 + 0.2))
+          .norm(),
+      0.0, 1e-12);
+}
+
+TEST(TruePoses, PassThroughWaypointsLookingAhead) {
+  json document = ValidScene();
+  document["trajectory"]["waypoints"].push_back(
+      {{"position", {0.5, 0.6, 1.2}}, {"look_at", {2.0, 1.0, 0.4}}});
+  const Scene scene = ParseScene(document, "scene.json");
+  const std::vector<Rigid3d> poses = TruePoses(scene);
+  ASSERT_EQ(poses.size(), 5u);
+  for (int i = 0; i < 3; ++i) {
+    const Waypoint& waypoint = scene.trajectory.waypoints[i];
+    const Rigid3d& world_from_camera = poses[2 * i];
+    EXPECT_NEAR((world_from_camera.translation - waypoint.position_in_world).norm(), 0.0, 1e-12);
+    const Eigen::Vector2d pixel =
+        scene.camera.Project(world_from_camera.Inverse() * waypoint.look_at_in_world).value();
+    EXPECT_NEAR((pixel - Eigen::Vector2d(scene.camera.cx, scene.camera.cy)).norm(), 0.0, 1e-9);
+  }
+  for (const Rigid3d& world_from_camera : poses) {
+    const Eigen::Matrix3d axes = world_from_camera.rotation.toRotationMatrix();
+    EXPECT_NEAR(axes(2, 0), 0.0, 1e-12) << "the camera's x axis is level";
+    EXPECT_LT(axes(2, 1), 0.0) << "the camera's y axis points down";
+  }
+}
+
+TEST(TruePoses, OneWaypointIsACameraThatStandsStill) {
+  json document = ValidScene();
+  document["trajectory"]["waypoints"].erase(1);
+  const std::vector<Rigid3d> poses = TruePoses(ParseScene(document, "scene.json"));
+  for (const Rigid3d& pose : poses) EXPECT_EQ(pose.translation, Eigen::Vector3d(0, 0, 1));
+}
+
+class ShippedScene : public testing::TestWithParam<const char*> {
+ protected:
+  Scene Read() const {
+    return ReadScene(std::string(SOSLAM_SOURCE_DIR "/pipelines/scenes/") + GetParam());
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ShippedScene, testing::Values("room.json", "ellipsoids.json"));
+
+TEST_P(ShippedScene, ShowsEveryObjectOftenEnough) {
+  const Scene scene = Read();
+  const auto by_object = DetectionsByObject(SyntheticSequence(scene, false));
+  for (size_t i = 0; i < by_object.size(); ++i) {
+    EXPECT_GE(by_object[i].size(), 15u) << scene.objects[i].label;
+  }
+}
+
+TEST(ShippedScenes, EllipsoidsShowTheirFront) {
+  const Scene scene = ReadScene(SOSLAM_SOURCE_DIR "/pipelines/scenes/ellipsoids.json");
+  const Sequence sequence = SyntheticSequence(scene, false);
+  for (const Detection& detection : sequence.detections) {
+    const Landmark landmark =
+        sequence.objects[detection.object_index].ground_truth->landmark_in_world;
+    const Eigen::Vector3d camera_in_object =
+        landmark.frame_from_object.Inverse() *
+        sequence.frames[detection.frame_index].true_world_from_camera->translation;
+    const double angle = std::atan2(std::abs(camera_in_object.y()), camera_in_object.x());
+    EXPECT_LT(angle * 180.0 / std::numbers::pi, 60.0)
+        << sequence.objects[detection.object_index].label << " in frame " << detection.frame_index;
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "synthesis/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "synthesis/random_scene.h"
+
+namespace soslam {
+namespace {
+
+// Boxes on a floor in a line ahead of a camera that drives towards them.
+Scene Row() {
+  Scene scene;
+  scene.name = "row";
+  scene.camera = {640, 480, 500.0, 500.0, 319.5, 239.5};
+  scene.planes.push_back({3, "floor", Plane{}, std::nullopt});
+  scene.objects.push_back({1, "a", Shape::kBox, {0.2, 0.3, 0.25}, {3.0, -0.6}, 0.4, 0, 1});
+  scene.objects.push_back({2, "b", Shape::kEllipsoid, {0.3, 0.2, 0.25}, {3.5, 0.1}, 0.0, 0, 2});
+  scene.objects.push_back({3, "c", Shape::kCylinder, {0.2, 0.2, 0.3}, {4.0, 1.0}, 0.0, 0, 3});
+  scene.trajectory.frames = 20;
+  scene.trajectory.waypoints = {{{0.0, 0.0, 0.6}, {3.5, 0.1, 0.3}},
+                                {{1.0, 0.2, 0.6}, {3.5, 0.1, 0.3}}};
+  scene.seed = 1;
+  return scene;
+}
+
+SceneNoise AllNoise() { return {0.02, 0.5, 0.1, 0.02, 0.01, 0.5, 1.0}; }
+
+TEST(SyntheticSequence, EllipsoidBoxEdgesAreTangentToTheDualQuadric) {
+  for (int seed = 0; seed < 3; ++seed) {
+    const Sequence sequence = SyntheticSequence(RandomScene(seed, 6, 20), false);
+    ASSERT_GE(sequence.detections.size(), 18u);
+    for (const Detection& detection : sequence.detections) {
+      const Frame& frame = sequence.frames[detection.frame_index];
+      const Landmark landmark_in_camera =
+          Transform(frame.true_world_from_camera->Inverse(),
+                    sequence.objects[detection.object_index].ground_truth->landmark_in_world);
+      const Eigen::Matrix4d dual_quadric = DualQuadric(landmark_in_camera);
+      for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
+        const Eigen::Vector4d pi = sequence.camera.BackProject(line).Homogeneous();
+        EXPECT_NEAR(pi.dot(dual_quadric * pi), 0.0, 1e-9);
+      }
+      const Eigen::Vector4d support = detection.plane_in_camera.Homogeneous();
+      EXPECT_NEAR(support.dot(dual_quadric * support), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(SyntheticSequence, HoldsTheWholeScene) {
+  const Scene scene = Row();
+  const Sequence sequence = SyntheticSequence(scene, false);
+  EXPECT_EQ(sequence.name, "row");
+  ASSERT_EQ(sequence.frames.size(), 20u);
+  EXPECT_EQ(sequence.frames[7].id, 7);
+  EXPECT_EQ(sequence.frames[7].image, "rgb/000007.png");
+  EXPECT_DOUBLE_EQ(sequence.frames[7].timestamp, 0.7);
+  EXPECT_EQ(sequence.planes.at(0).id, 3);
+  ASSERT_EQ(sequence.objects.size(), 3u);
+  EXPECT_EQ(sequence.objects[1].label, "b");
+  EXPECT_EQ(sequence.objects[1].ground_truth->landmark_in_world.half_axes,
+            Eigen::Vector3d(0.3, 0.2, 0.25));
+  EXPECT_EQ(sequence.detections.size(), 60u) << "every object in sight in every frame";
+  for (size_t i = 1; i < sequence.detections.size(); ++i) {
+    const Detection& before = sequence.detections[i - 1];
+    const Detection& after = sequence.detections[i];
+    EXPECT_LT(std::pair(before.frame_index, before.object_index),
+              std::pair(after.frame_index, after.object_index));
+  }
+  for (const Frame& frame : sequence.frames) {
+    EXPECT_EQ(frame.world_from_camera.Matrix(), frame.true_world_from_camera->Matrix());
+  }
+}
+
+TEST(ObjectGroundTruth, TellsSymmetries) {
+  const Scene scene = Row();
+  const auto truth = [&](int i) { return ObjectGroundTruth(scene, scene.objects[i]); };
+  EXPECT_TRUE(truth(0).mirror_symmetric);
+  EXPECT_FALSE(truth(0).mirror_symmetric_yz);
+  EXPECT_FALSE(truth(0).rotationally_symmetric);
+  EXPECT_FALSE(truth(1).rotationally_symmetric);
+  EXPECT_TRUE(truth(2).rotationally_symmetric);
+}
+
+TEST(Simulate, WithoutNoiseMeasurementsAreTheTruth) {
+  Scene scene = Row();
+  scene.noise = AllNoise();
+  const Simulation simulation = Simulate(scene, false);
+  ASSERT_EQ(simulation.detections.size(), simulation.exact_boxes.size());
+  for (size_t i = 0; i < simulation.detections.size(); ++i) {
+    EXPECT_EQ(simulation.detections[i].box.x_min, simulation.exact_boxes[i].box.x_min);
+    EXPECT_EQ(simulation.detections[i].box.y_max, simulation.exact_boxes[i].box.y_max);
+  }
+}
+
+TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
+  Scene scene = Row();
+  scene.trajectory.frames = 1;
+  const Eigen::Vector2d ahead(3.5, 0.1);  // of object b, seen from the first pose
+  scene.objects.push_back({4, "wall", Shape::kBox, {0.05, 0.4, 0.4}, 0.6 * ahead, 0.0, 0, 4});
+  const Simulation simulation = Simulate(scene, false);
+  std::vector<int> seen;
+  for (const SimulatedBox& row : simulation.exact_boxes) seen.push_back(row.object_index);
+  EXPECT_EQ(seen, (std::vector<int>{0, 2, 3}));
+}
+
+TEST(Simulate, ObjectBehindATableTopIsNotInSight) {
+  Scene scene = Row();
+  scene.trajectory.frames = 1;
+  scene.planes.push_back({9, "table", Plane{Eigen::Vector3d::UnitZ(), -0.45}, Table{}});
+  scene.planes[1].table->position_on_plane = {1.8, 0.0};
+  scene.planes[1].table->half_size = {0.6, 2.0};
+  EXPECT_TRUE(Simulate(scene, false).exact_boxes.empty());
+}
+
+TEST(Simulate, TruncatedAndPassedObjectsAreNotInSight) {
+  Scene scene = Row();
+  scene.trajectory.frames = 1;
+  scene.objects[0].position_on_plane = {1.2, -0.75};  // reaches over the image's border
+  scene.objects[2].position_on_plane = {-4.0, 1.0};   // behind the camera
+  const Simulation simulation = Simulate(scene, false);
+  ASSERT_EQ(simulation.exact_boxes.size(), 1u);
+  EXPECT_EQ(simulation.exact_boxes[0].object_index, 1);
+}
+
+TEST(Simulate, BoxNoiseHasItsSigma) {
+  Scene scene = Row();
+  scene.trajectory.frames = 1000;
+  scene.noise.box_edge_sigma = 0.03;
+  scene.noise.box_sigma_px = 1.0;
+  const Simulation simulation = Simulate(scene, true);
+  ASSERT_EQ(simulation.detections.size(), 3000u);
+  Eigen::Vector4d squares = Eigen::Vector4d::Zero();
+  for (size_t i = 0; i < simulation.detections.size(); ++i) {
+    const Box& noisy = simulation.detections[i].box;
+    const Box& exact = simulation.exact_boxes[i].box;
+    const double sigma_x = std::hypot(0.03 * exact.Width(), 1.0);
+    const double sigma_y = std::hypot(0.03 * exact.Height(), 1.0);
+    squares += Eigen::Vector4d(
+                   (noisy.x_min - exact.x_min) / sigma_x, (noisy.y_min - exact.y_min) / sigma_y,
+                   (noisy.x_max - exact.x_max) / sigma_x, (noisy.y_max - exact.y_max) / sigma_y)
+                   .cwiseAbs2();
+  }
+  // The mean of 3000 squares of standard normals has sigma sqrt(2 / 3000) = 0.026.
+  for (int edge = 0; edge < 4; ++edge) EXPECT_NEAR(squares[edge] / 3000.0, 1.0, 0.12);
+}
+
+TEST(Simulate, MissesAsOftenAsToldAndStaysInTheImage) {
+  Scene scene = Row();
+  scene.trajectory.frames = 1000;
+  scene.noise.miss_probability = 0.3;
+  scene.noise.box_sigma_px = 200.0;
+  const Simulation simulation = Simulate(scene, true);
+  scene.noise.box_sigma_px = 0.0;
+  // 3000 draws have sigma 0.008.
+  EXPECT_NEAR(static_cast<double>(Simulate(scene, true).detections.size()) / 3000.0, 0.7, 0.04);
+  for (const SimulatedBox& row : simulation.detections) {
+    EXPECT_GE(DistanceToBorder(row.box, 640, 480), 0.0);
+    EXPECT_GT(row.box.Width(), 0.0);
+    EXPECT_GT(row.box.Height(), 0.0);
+  }
+}
+
+TEST(Simulate, OdometryStartsAtTheTruthAndDriftsAsTold) {
+  Scene scene = Row();
+  scene.trajectory.frames = 50;
+  scene.noise.odometry_translation_sigma = 0.01;
+  double squares = 0.0;
+  constexpr int kRuns = 400;
+  for (int seed = 0; seed < kRuns; ++seed) {
+    scene.seed = seed;
+    const Simulation simulation = Simulate(scene, true);
+    const auto& odometry = simulation.odometry_world_from_camera;
+    const auto& truth = simulation.true_world_from_camera;
+    ASSERT_EQ(odometry.front().Matrix(), truth.front().Matrix());
+    EXPECT_NEAR(odometry.back().rotation.angularDistance(truth.back().rotation), 0.0, 1e-7);
+    squares += (odometry.back().translation - truth.back().translation).squaredNorm();
+  }
+  // A random walk over the 1.02 m of the drive on three axes; the mean of 1200 squares has a
+  // relative sigma of 0.04.
+  EXPECT_NEAR(squares / kRuns / (3.0 * 0.01 * 0.01 * std::hypot(1.0, 0.2)), 1.0, 0.2);
+}
+
+TEST(Simulate, OdometryRotatesAndScales) {
+  Scene scene = Row();
+  scene.noise.odometry_rotation_sigma_deg = 1.0;
+  const Simulation turned = Simulate(scene, true);
+  const double angle = turned.odometry_world_from_camera.back().rotation.angularDistance(
+      turned.true_world_from_camera.back().rotation);
+  EXPECT_GT(angle, 1e-3);
+  EXPECT_LT(angle, 0.15);
+
+  scene.noise = {};
+  scene.noise.odometry_scale_sigma = 0.1;
+  const Simulation scaled = Simulate(scene, true);
+  const auto travelled = [](const std::vector<Rigid3d>& poses, size_t i) {
+    return (poses[i].translation - poses[i - 1].translation).norm();
+  };
+  const double scale =
+      travelled(scaled.odometry_world_from_camera, 1) / travelled(scaled.true_world_from_camera, 1);
+  EXPECT_GT(std::abs(scale - 1.0), 1e-4);
+  EXPECT_NEAR(travelled(scaled.odometry_world_from_camera, 19),
+              scale * travelled(scaled.true_world_from_camera, 19), 1e-12)
+      << "one scale for the whole trajectory";
+}
+
+TEST(Simulate, SameSeedSameMeasurementsOtherSeedOther) {
+  Scene scene = Row();
+  scene.noise = AllNoise();
+  const Simulation first = Simulate(scene, true), again = Simulate(scene, true);
+  scene.seed = 2;
+  const Simulation other = Simulate(scene, true);
+  ASSERT_EQ(first.detections.size(), again.detections.size());
+  for (size_t i = 0; i < first.detections.size(); ++i) {
+    EXPECT_EQ(first.detections[i].box.x_min, again.detections[i].box.x_min);
+  }
+  EXPECT_NE(first.detections[0].box.x_min, other.detections[0].box.x_min);
+  EXPECT_EQ(first.odometry_world_from_camera.back().translation,
+            again.odometry_world_from_camera.back().translation);
+  EXPECT_NE(first.odometry_world_from_camera.back().translation,
+            other.odometry_world_from_camera.back().translation);
+}
+
+TEST(Simulate, KindsOfNoiseAreIndependent) {
+  Scene scene = Row();
+  scene.noise = AllNoise();
+  const Simulation all = Simulate(scene, true);
+  scene.noise.box_edge_sigma = 0.0;
+  scene.noise.miss_probability = 0.0;
+  EXPECT_EQ(Simulate(scene, true).odometry_world_from_camera.back().translation,
+            all.odometry_world_from_camera.back().translation);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "synthesis/write_dataset.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "base/error.h"
+#include "support/temporary_folder.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scene SmallScene() {
+  Scene scene = RandomScene(3, 3, 4);
+  // A quarter of the size, the same view.
+  scene.camera = {160, 120, 130.0, 130.0, 79.5, 59.5};
+  scene.noise = {0.02, 0.3, 0.1, 0.02, 0.01, 0.5, 2.0};
+  return scene;
+}
+
+std::map<std::string, std::string> Contents(const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      contents[fs::relative(entry.path(), folder).string()] = FileBytes(entry.path());
+    }
+  }
+  return contents;
+}
+
+// The numbers of a line, comma or blank between them, from the given column on.
+std::vector<double> Numbers(std::string line, int skip) {
+  std::replace(line.begin(), line.end(), ',', ' ');
+  std::istringstream stream(line);
+  std::string word;
+  std::vector<double> numbers;
+  for (int column = 0; stream >> word; ++column) {
+    if (column >= skip) numbers.push_back(std::stod(word));
+  }
+  return numbers;
+}
+
+std::vector<std::string> Lines(const fs::path& path) {
+  std::istringstream stream(FileBytes(path));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+class WriteDatasetTest : public testing::Test {
+ protected:
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path() / "dataset";
+};
+
+TEST_F(WriteDatasetTest, WritesEveryFileAndNothingElse) {
+  WriteDataset(SmallScene(), true, folder_, 1);
+  std::vector<std::string> names;
+  for (const auto& [name, bytes] : Contents(folder_)) names.push_back(name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         "README.md", "rgb.txt", "groundtruth.txt", "odometry.txt", "camera.json",
+                         "planes.json", "objects.json", "detections.csv", "boxes_exact.csv",
+                         "rgb/000000.png", "rgb/000001.png", "rgb/000002.png", "rgb/000003.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(temporary_.path()), {}), 1)
+      << "no temporary is left beside it";
+  const cv::Mat image = cv::imread((folder_ / "rgb/000002.png").string(), cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(image.size(), cv::Size(160, 120));
+  EXPECT_EQ(image.type(), CV_8UC3);
+}
+
+TEST_F(WriteDatasetTest, NumbersReadBackExactly) {
+  const Scene scene = SmallScene();
+  WriteDataset(scene, true, folder_, 1);
+  const Simulation simulation = Simulate(scene, true);
+
+  const std::vector<std::string> poses = Lines(folder_ / "odometry.txt");
+  ASSERT_EQ(poses.size(), 5u);
+  for (int i = 0; i < 4; ++i) {
+    const Rigid3d& pose = simulation.odometry_world_from_camera[i];
+    EXPECT_THAT(Numbers(poses[i + 1], 1),
+                testing::ElementsAre(pose.translation.x(), pose.translation.y(),
+                                     pose.translation.z(), pose.rotation.x(), pose.rotation.y(),
+                                     pose.rotation.z(), pose.rotation.w()));
+  }
+  const std::vector<std::string> boxes = Lines(folder_ / "boxes_exact.csv");
+  EXPECT_EQ(boxes[0], "frame,object_id,label,x1,y1,x2,y2");
+  ASSERT_EQ(boxes.size(), simulation.exact_boxes.size() + 1);
+  for (size_t i = 0; i < simulation.exact_boxes.size(); ++i) {
+    const Box& box = simulation.exact_boxes[i].box;
+    // The labels are two words: "object 1".
+    EXPECT_THAT(Numbers(boxes[i + 1], 4),
+                testing::ElementsAre(box.x_min, box.y_min, box.x_max, box.y_max));
+  }
+  EXPECT_EQ(Lines(folder_ / "detections.csv")[0], "frame,object_id,label,score,x1,y1,x2,y2");
+  EXPECT_EQ(Lines(folder_ / "rgb.txt")[2], "0.1 rgb/000001.png");
+}
+
+TEST_F(WriteDatasetTest, JsonFilesDescribeTheScene) {
+  const Scene scene = SmallScene();
+  WriteDataset(scene, false, folder_, 1);
+  const auto camera = nlohmann::json::parse(FileBytes(folder_ / "camera.json"));
+  EXPECT_EQ(camera.at("model"), "pinhole");
+  EXPECT_EQ(camera.at("fx"), 130.0);
+  const auto planes = nlohmann::json::parse(FileBytes(folder_ / "planes.json"));
+  EXPECT_EQ(planes.at(0).at("normal"), (std::vector<double>{0, 0, 1}));
+  const auto objects = nlohmann::json::parse(FileBytes(folder_ / "objects.json"));
+  ASSERT_EQ(objects.size(), 3u);
+  const Landmark truth = ObjectBody(scene, scene.objects[1]).landmark;
+  EXPECT_EQ(objects[1].at("id"), 2);
+  EXPECT_EQ(objects[1].at("center").get<std::vector<double>>()[0], truth.Centre().x());
+  EXPECT_EQ(objects[1].at("quaternion_xyzw").get<std::vector<double>>()[3],
+            truth.frame_from_object.rotation.w());
+  EXPECT_EQ(objects[1].at("half_axes").get<std::vector<double>>()[2], truth.half_axes.z());
+  EXPECT_EQ(objects[1].at("mirror_symmetric"), true);
+  EXPECT_EQ(objects[1].at("support_plane"), 0);
+}
+
+TEST_F(WriteDatasetTest, SameBytesForAnyNumberOfThreads) {
+  WriteDataset(SmallScene(), true, folder_, 1);
+  const auto first = Contents(folder_);
+  WriteDataset(SmallScene(), true, folder_, 4);
+  EXPECT_EQ(first, Contents(folder_));
+}
+
+TEST_F(WriteDatasetTest, OtherSeedOtherNoiseSamePoses) {
+  Scene scene = SmallScene();
+  WriteDataset(scene, true, folder_, 1);
+  const auto first = Contents(folder_);
+  scene.seed += 1;
+  WriteDataset(scene, true, folder_, 1);
+  const auto second = Contents(folder_);
+  for (const char* name : {"detections.csv", "odometry.txt", "rgb/000000.png"}) {
+    EXPECT_NE(first.at(name), second.at(name)) << name;
+  }
+  for (const char* name : {"groundtruth.txt", "boxes_exact.csv", "objects.json"}) {
+    EXPECT_EQ(first.at(name), second.at(name)) << name;
+  }
+  EXPECT_NE(first.at("rgb/000000.png"), first.at("rgb/000001.png"));
+}
+
+TEST_F(WriteDatasetTest, ReplacesWhatItWroteBefore) {
+  Scene scene = SmallScene();
+  WriteDataset(scene, true, folder_, 1);
+  scene.trajectory.frames = 2;
+  WriteDataset(scene, true, folder_.string() + "/", 1);
+  EXPECT_FALSE(fs::exists(folder_ / "rgb/000002.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "rgb/000001.png"));
+}
+
+TEST_F(WriteDatasetTest, RefusesForeignFoldersAndFiles) {
+  fs::create_directory(folder_);
+  WriteBytes(folder_ / "thesis.tex", "years of work");
+  EXPECT_THROW(WriteDataset(SmallScene(), true, folder_, 1), SettingsError);
+  WriteBytes(folder_ / "README.md", "# My thesis\n");
+  EXPECT_THROW(WriteDataset(SmallScene(), true, folder_, 1), SettingsError);
+  EXPECT_EQ(FileBytes(folder_ / "thesis.tex"), "years of work");
+  EXPECT_THROW(WriteDataset(SmallScene(), true, folder_ / "thesis.tex", 1), SettingsError);
+  EXPECT_THROW(WriteDataset(SmallScene(), true, "/proc/nowhere/dataset", 1), SettingsError);
+}
+
+TEST_F(WriteDatasetTest, AnEmptyFolderIsFilled) {
+  fs::create_directory(folder_);
+  WriteDataset(SmallScene(), false, folder_, 1);
+  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
+}
+
+TEST_F(WriteDatasetTest, FailureLeavesTheEarlierDataset) {
+  Scene scene = SmallScene();
+  WriteDataset(scene, true, folder_, 1);
+  const auto before = Contents(folder_);
+  scene.trajectory.waypoints[0].look_at_in_world = scene.trajectory.waypoints[0].position_in_world;
+  EXPECT_THROW(WriteDataset(scene, true, folder_, 1), InputError);
+  EXPECT_EQ(before, Contents(folder_));
+  EXPECT_EQ(std::distance(fs::directory_iterator(temporary_.path()), {}), 1);
+}
+
+}  // namespace
+}  // namespace soslam
