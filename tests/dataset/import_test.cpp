@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/import.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/dataset_fixture.h"
+
+namespace soslam {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+class ImportTest : public testing::Test {
+ protected:
+  Sequence Import() {
+    dataset.Write(folder);
+    return ImportDataset(folder, options);
+  }
+
+  DatasetFixture dataset;
+  ImportOptions options;
+  std::filesystem::path folder = FreshTestFolder() / "small";
+};
+
+TEST_F(ImportTest, ReadsEverything) {
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.name, "small");
+  EXPECT_EQ(sequence.camera.width, 640);
+  EXPECT_EQ(sequence.camera.fy, 510.0);
+  ASSERT_EQ(sequence.frames.size(), 4u);
+  EXPECT_EQ(sequence.frames[2].id, 2);
+  EXPECT_EQ(sequence.frames[2].image, "rgb/2.jpg");
+  EXPECT_EQ(sequence.frames[2].timestamp, 3.0);
+  EXPECT_EQ(sequence.frames[2].world_from_camera.translation, Eigen::Vector3d(0.22, 0, 1.5));
+  EXPECT_EQ(sequence.frames[2].true_world_from_camera->translation, Eigen::Vector3d(0.2, 0, 1));
+  ASSERT_EQ(sequence.objects.size(), 2u);
+  EXPECT_EQ(sequence.objects[0].label, "cup");
+  EXPECT_EQ(sequence.objects[0].ground_truth->landmark_in_world.half_axes,
+            Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_FALSE(sequence.objects[1].ground_truth.has_value());
+  EXPECT_EQ(sequence.detections.size(), 7u);
+  EXPECT_EQ(sequence.detections[1].object_index, 1);
+  EXPECT_EQ(sequence.detections[1].box.x_max, 400.0);
+  EXPECT_TRUE(sequence.rejected_detections.empty());
+}
+
+TEST_F(ImportTest, NormalisesPlanesWithTheirOffset) {
+  const Plane plane = Import().planes.at(0).plane_in_world;  // 2 z - 1 = 0
+  EXPECT_EQ(plane.normal, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(plane.offset, -0.5);
+}
+
+// The camera's z axis is the world's: at height 1 it has the plane z = 0.5 half a metre behind it.
+TEST_F(ImportTest, CarriesPlanesIntoFramesWithTruePoses) {
+  EXPECT_DOUBLE_EQ(Import().detections[0].plane_in_camera.offset, 0.5);
+  options.camera_planes = PlanePoses::kTrajectory;  // at height 1.5
+  EXPECT_DOUBLE_EQ(Import().detections[0].plane_in_camera.offset, 1.0);
+  options.camera_planes = PlanePoses::kGroundTruth;
+  dataset.files.erase("groundtruth.txt");
+  std::filesystem::remove(folder / "groundtruth.txt");
+  EXPECT_DOUBLE_EQ(Import().detections[0].plane_in_camera.offset, 1.0);
+}
+
+TEST_F(ImportTest, TrajectoryIsChosenAndFallsBackWithAWarning) {
+  options.trajectory = TrajectorySource::kGroundTruth;
+  EXPECT_EQ(Import().frames[0].world_from_camera.translation.z(), 1.0);
+  options.trajectory = TrajectorySource::kOdometry;
+  std::filesystem::remove(folder / "odometry.txt");
+  dataset.files.erase("odometry.txt");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(Import().frames[0].world_from_camera.translation.z(), 1.0);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::AllOf(testing::HasSubstr("no odometry.txt"),
+                             testing::HasSubstr("using groundtruth.txt")));
+}
+
+TEST_F(ImportTest, ToleratesByteOrderMarkCarriageReturnsAndCommentsInAllTextFiles) {
+  const Sequence plain = Import();
+  for (const char* name : {"rgb.txt", "odometry.txt", "groundtruth.txt", "detections.csv"}) {
+    std::string text;
+    for (const char c : dataset.files[name])
+      text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    dataset.files[name] = "\xEF\xBB\xBF# comment\r\n\r\n" + text;
+  }
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.frames.back().image, plain.frames.back().image);
+  EXPECT_EQ(sequence.frames.size(), plain.frames.size());
+  EXPECT_EQ(sequence.detections.size(), plain.detections.size());
+}
+
+TEST_F(ImportTest, ColumnsMayComeInAnyOrderAmongOthers) {
+  dataset.files["detections.csv"] =
+      "y2,x2,y1,x1,extra,score,label,object_id,frame\n"
+      "204,203,102,101,?,0.5,cup,1,0\n204,203,102,101,?,0.5,cup,1,1\n"
+      "204,203,102,101,?,0.5,cup,1,3\n";
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.detections.size(), 3u);
+  const Box& box = sequence.detections[2].box;
+  EXPECT_THAT((std::vector{box.x_min, box.y_min, box.x_max, box.y_max}),
+              ElementsAre(101, 102, 203, 204));
+  EXPECT_EQ(sequence.detections[2].frame_index, 3);
+}
+
+TEST_F(ImportTest, UndetectedObjectsStayAndObjectsAreSortedById) {
+  dataset.files["objects.json"] =
+      R"([{"id": 9, "label": "lamp", "center": [1, 2, 3], "quaternion_xyzw": [0, 0, 0, 1],
+           "half_axes": [1, 1, 1], "rotationally_symmetric": true},
+          {"id": 1, "label": "cup"}])";
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.objects.size(), 3u);
+  EXPECT_EQ(sequence.objects[0].id, 1);
+  EXPECT_FALSE(sequence.objects[0].ground_truth.has_value());
+  EXPECT_EQ(sequence.objects[1].id, 2);
+  EXPECT_EQ(sequence.objects[2].id, 9);
+  EXPECT_TRUE(sequence.objects[2].ground_truth->rotationally_symmetric);
+}
+
+TEST_F(ImportTest, ImageTakesTheNearestPoseWithinTheLimit) {
+  dataset.Replace("odometry.txt", "1.001 0 0 1.5", "1.02 0 0 1.7");
+  dataset.files["odometry.txt"] += "0.99 0 0 1.6 0 0 0 1\n2.04 0 0 9 0 0 0 1\n";
+  EXPECT_EQ(Import().frames[0].world_from_camera.translation.z(), 1.6);
+  EXPECT_EQ(Import().frames[1].world_from_camera.translation.z(), 1.5);
+  options.max_time_difference_s = 0.005;
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.frames.size(), 3u);
+  EXPECT_EQ(sequence.frames[0].id, 1);
+  EXPECT_EQ(sequence.rejected_detections.at("frame_without_pose"), 2);
+}
+
+TEST_F(ImportTest, FrameWithoutTruePoseHasNoTruePlane) {
+  dataset.Replace("groundtruth.txt", "1.0 0 0 1 0 0 0 1\n", "");
+  options.min_observations = 1;
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.frames.size(), 4u);
+  EXPECT_FALSE(sequence.frames[0].true_world_from_camera.has_value());
+  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("frame_without_pose", 2)));
+}
+
+TEST_F(ImportTest, StrideKeepsFrameIds) {
+  options.frame_stride = 3;
+  options.min_observations = 2;
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.frames[1].id, 3);
+  EXPECT_EQ(sequence.detections.back().frame_index, 1);
+  EXPECT_THAT(sequence.rejected_detections,
+              ElementsAre(Pair("frame_not_used", 4), Pair("too_few_observations", 1)));
+}
+
+// A row that is put in place of object 1's in frame 0, and what becomes of it.
+struct GateCase {
+  const char* row;
+  const char* reason;  // nullptr when it is kept
+};
+
+class GateTest : public ImportTest, public testing::WithParamInterface<GateCase> {};
+
+TEST_P(GateTest, CountsTheReason) {
+  dataset.Replace("detections.csv", "0,1,cup,0.9,100,100,200,200", GetParam().row);
+  options.min_score = 0.3;
+  const Sequence sequence = Import();
+  if (GetParam().reason == nullptr) {
+    EXPECT_TRUE(sequence.rejected_detections.empty());
+    EXPECT_EQ(sequence.detections.size(), 7u);
+  } else {
+    EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair(GetParam().reason, 1)));
+    EXPECT_EQ(sequence.detections.size(), 6u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, GateTest,
+                         testing::Values(GateCase{"0,1,cup,0.3,29.5,29.5,609.5,449.5",
+                                                  nullptr},  // exactly 30 px
+                                         GateCase{"0,1,cup,0.9,29.49,100,200,200", "near_border"},
+                                         GateCase{"0,1,cup,0.9,100,29.49,200,200", "near_border"},
+                                         GateCase{"0,1,cup,0.9,100,100,609.51,200", "near_border"},
+                                         GateCase{"0,1,cup,0.9,100,100,200,449.51", "near_border"},
+                                         GateCase{"0,1,cup,0.9,-50,100,200,200", "near_border"},
+                                         GateCase{"0,1,cup,0.9,-50,100,-1,200", "outside_image"},
+                                         GateCase{"0,1,cup,0.9,640,100,700,200", "outside_image"},
+                                         GateCase{"0,1,cup,0.9,100,480,200,500", "outside_image"},
+                                         GateCase{"0,1,cup,0.9,200,100,100,200", "empty_box"},
+                                         GateCase{"0,1,cup,0.9,100,100,100,200", "empty_box"},
+                                         GateCase{"0,1,cup,0.9,100,200,200,200", "empty_box"},
+                                         GateCase{"0,1,cup,0.29,100,100,200,200", "low_score"}));
+
+TEST_F(ImportTest, DuplicateWithTheHigherScoreIsKeptAndTheFirstOfEquals) {
+  dataset.files["detections.csv"] +=
+      "0,1,cup,0.95,110,100,200,200\n1,1,cup,0.9,120,100,200,200\n2,1,cup,0.1,130,100,200,200\n";
+  const Sequence sequence = Import();
+  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("duplicate", 3)));
+  EXPECT_EQ(sequence.detections[0].box.x_min, 110.0);
+  EXPECT_EQ(sequence.detections[2].box.x_min, 101.0);
+  EXPECT_EQ(sequence.detections[4].box.x_min, 102.0);
+}
+
+TEST_F(ImportTest, ObjectsWithTooFewObservationsLoseThemAll) {
+  options.min_observations = 4;
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.detections.size(), 4u);
+  EXPECT_EQ(sequence.objects.size(), 2u);
+  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("too_few_observations", 3)));
+}
+
+TEST_F(ImportTest, NothingUsableSaysWhy) {
+  options.border_px = 150.0;
+  try {
+    Import();
+    FAIL() << "imported";
+  } catch (const NothingUsableError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no usable detection left; 7 detections rejected: "
+                                                 "near_border 7"));
+  }
+}
+
+TEST_F(ImportTest, DetectionsWithOnlyAHeaderAreNothingUsable) {
+  dataset.files["detections.csv"] = "frame,object_id,label,score,x1,y1,x2,y2\n";
+  EXPECT_THROW(Import(), NothingUsableError);
+}
+
+}  // namespace
+}  // namespace soslam
