@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_edges.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <opencv2/core/utility.hpp>
+#include <vector>
+
+#include "artefact/edges_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "image/read_image.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path ImagePath(const fs::path& dataset, const Frame& frame, const fs::path& sequence_file) {
+  const fs::path relative = fs::path(frame.image).lexically_normal();
+  if (frame.image.empty() || relative.is_absolute() || *relative.begin() == "..") {
+    throw InputError(
+        fmt::format("{}: frame {}: image is '{}'; expected a path inside the dataset folder",
+                    sequence_file.string(), frame.id, frame.image));
+  }
+  return dataset / relative;
+}
+
+std::vector<fs::path> ImagePaths(const Sequence& sequence, const StageFiles& files) {
+  std::vector<fs::path> images;
+  for (const Frame& frame : sequence.frames) {
+    images.push_back(ImagePath(files.at("dataset"), frame, files.at("sequence")));
+  }
+  return images;
+}
+
+// Nearest edges are stored as 16-bit coordinates.
+void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
+  constexpr int kMaxSide = std::numeric_limits<std::int16_t>::max();
+  if (std::max(camera.width, camera.height) > kMaxSide) {
+    throw InputError(fmt::format("{}: camera is {} x {} pixels; expected at most {} a side",
+                                 sequence_file.string(), camera.width, camera.height, kMaxSide));
+  }
+}
+
+}  // namespace
+
+void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads) {
+  options.Check();
+  const fs::path& sequence_file = files.at("sequence");
+  const Sequence sequence = ReadSequence(sequence_file);
+  CheckCamera(sequence.camera, sequence_file);
+  const std::vector<fs::path> images = ImagePaths(sequence, files);
+  if (images.empty()) {
+    throw NothingUsableError(sequence_file.string() + ": has no frames; expected at least one");
+  }
+  std::vector<fs::path> inputs = images;
+  inputs.push_back(sequence_file);
+  EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});
+
+  cv::setNumThreads(1);  // frames run in parallel; OpenCV's own threads would exceed `threads`
+  const int frames = static_cast<int>(images.size());
+  const int batch = 4 * threads;  // bounds the maps that wait for being written
+  for (int begin = 0; begin < frames; begin += batch) {
+    std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
+    ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
+      const cv::Mat grey = ReadGreyImage(images[static_cast<size_t>(begin + i)],
+                                         sequence.camera.width, sequence.camera.height);
+      maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
+    });
+    for (size_t i = 0; i < maps.size(); ++i) {
+      writer.Write(sequence.frames[static_cast<size_t>(begin) + i].id, maps[i]);
+    }
+  }
+  writer.Commit();
+}
+
+}  // namespace soslam

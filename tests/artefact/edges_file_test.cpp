@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/edges_file.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "artefact/hdf5_artefact.h"
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/random.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+EdgeMaps MapsOfRandomRectangles() {
+  cv::Mat grey(48, 64, CV_8UC1, cv::Scalar(30));
+  for (int i = 0; i < 4; ++i) {
+    const cv::Rect rectangle(static_cast<int>(RandomUniform(5, 40)),
+                             static_cast<int>(RandomUniform(5, 25)), 15, 12);
+    grey(rectangle) = RandomUniform(60, 250);
+  }
+  return ComputeEdgeMaps(grey, {});
+}
+
+void ExpectSame(const EdgeMaps& a, const EdgeMaps& b) {
+  const auto same = [](const cv::Mat& m, const cv::Mat& n) {
+    return m.type() == n.type() && m.size() == n.size() &&
+           std::equal(m.datastart, m.dataend, n.datastart);
+  };
+  EXPECT_TRUE(same(a.grey, b.grey));
+  EXPECT_TRUE(same(a.edges, b.edges));
+  EXPECT_TRUE(same(a.distance, b.distance));
+  EXPECT_TRUE(same(a.nearest_edge, b.nearest_edge));
+  EXPECT_EQ(a.corners, b.corners);
+}
+
+class EdgesFileTest : public testing::Test {
+ protected:
+  std::filesystem::path Write(const std::string& name, const EdgeMaps& maps) {
+    EdgesWriter writer(folder_ / name, {});
+    writer.Write(12, maps);
+    writer.Commit();
+    return folder_ / name;
+  }
+  // An artefact with nothing but a header.
+  std::filesystem::path WriteHeader(const std::string& header) {
+    Hdf5File file = Hdf5File::Create(folder_ / "header.h5");
+    file.WriteText("/", "artefact", header);
+    file.Close();
+    return folder_ / "header.h5";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(EdgesFileTest, FramesComeBackExactly) {
+  const EdgeMaps first = MapsOfRandomRectangles();
+  const EdgeMaps second = MapsOfRandomRectangles();
+  EdgesWriter writer(folder_ / "edges.h5", {});
+  writer.Write(7, first);
+  writer.Write(1234567, second);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "edges.h5")) << "before it is complete";
+  writer.Commit();
+
+  const EdgesReader reader(folder_ / "edges.h5");
+  EXPECT_TRUE(reader.Has(7));
+  EXPECT_TRUE(reader.Has(1234567));
+  EXPECT_FALSE(reader.Has(8));
+  ExpectSame(reader.Read(7), first);
+  ExpectSame(reader.Read(1234567), second);
+  ExpectError<InputError>([&] { reader.Read(8); }, {"edges.h5", "/frames/000008", "missing"});
+}
+
+TEST_F(EdgesFileTest, ImageWithoutEdgesComesBack) {
+  const EdgeMaps maps = ComputeEdgeMaps(cv::Mat(5, 6, CV_8UC1, cv::Scalar(9)), {});
+  ExpectSame(EdgesReader(Write("edges.h5", maps)).Read(12), maps);
+}
+
+TEST_F(EdgesFileTest, WrittenTwiceGivesTheSameBytes) {
+  const EdgeMaps maps = MapsOfRandomRectangles();
+  EXPECT_EQ(FileBytes(Write("a.h5", maps)), FileBytes(Write("b.h5", maps)));
+}
+
+TEST_F(EdgesFileTest, NothingStaysBehindWithoutCommit) {
+  { EdgesWriter(folder_ / "edges.h5", {}).Write(0, MapsOfRandomRectangles()); }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(EdgesFileTest, CutShortAnywhereIsRefused) {
+  const std::string whole = FileBytes(Write("edges.h5", MapsOfRandomRectangles()));
+  for (size_t size = 0; size < whole.size(); size += 37) {
+    WriteBytes(folder_ / "cut.h5", whole.substr(0, size));
+    ExpectError<InputError>([&] { EdgesReader(folder_ / "cut.h5").Read(12); }, {"cut.h5"});
+  }
+}
+
+TEST_F(EdgesFileTest, DamagedDataIsRefused) {
+  const EdgeMaps maps = MapsOfRandomRectangles();
+  std::string bytes = FileBytes(Write("edges.h5", maps));
+  // The deflated streams begin with 78 01 (zlib, fastest); spoil the checksum's neighbourhood.
+  const size_t stream = bytes.find("\x78\x01");
+  ASSERT_NE(stream, bytes.npos);
+  for (size_t i = stream + 2; i < stream + 12; ++i) bytes[i] = static_cast<char>(~bytes[i]);
+  WriteBytes(folder_ / "damaged.h5", bytes);
+  ExpectError<InputError>([&] { EdgesReader(folder_ / "damaged.h5").Read(12); },
+                          {"damaged.h5", "/frames/000012", "damaged"});
+}
+
+TEST_F(EdgesFileTest, OtherKindsAndNewerVersionsAreRefused) {
+  const auto expect_refused = [&](const std::string& header, std::vector<std::string> words) {
+    words.push_back("header.h5");
+    ExpectError<InputError>([&] { EdgesReader reader(WriteHeader(header)); }, words);
+  };
+  expect_refused(R"({"kind": "symmetry", "schema_version": [1, 0]})", {"symmetry", "edges"});
+  expect_refused(R"({"kind": "edges", "schema_version": [1, 1]})", {"edges", "[1, 1]", "[1, 0]"});
+  expect_refused(R"({"kind": "edges", "schema_version": [2, 0]})", {"edges", "[2, 0]", "[1, 0]"});
+  expect_refused(R"({"kind": "edges", "schema_version": "1.0"})", {"schema_version", "1.0"});
+  expect_refused(R"({"kind": "edges"})", {"header"});
+  expect_refused("", {"header"});
+  expect_refused("{", {"header"});
+  Hdf5File::Create(folder_ / "header.h5").Close();
+  ExpectError<InputError>([&] { EdgesReader(folder_ / "header.h5"); }, {"header.h5", "header"});
+}
+
+TEST_F(EdgesFileTest, MapsOfDifferentSizesAreRefused) {
+  EdgeMaps maps = MapsOfRandomRectangles();
+  maps.distance = maps.distance.rowRange(0, 40);
+  const EdgesReader reader(Write("edges.h5", maps));
+  ExpectError<InputError>([&] { reader.Read(12); },
+                          {"edges.h5", "/frames/000012/distance", "40 x 64", "48 x 64"});
+}
+
+}  // namespace
+}  // namespace soslam

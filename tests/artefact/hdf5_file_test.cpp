@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/hdf5_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/core.hpp>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/random.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class Hdf5FileTest : public testing::Test {
+ protected:
+  // A file with whatever `fill` writes into it.
+  template <typename Fill>
+  std::filesystem::path Write(const std::string& name, Fill fill) {
+    Hdf5File file = Hdf5File::Create(folder_ / name);
+    fill(file);
+    file.Close();
+    return folder_ / name;
+  }
+  TemporaryFolder folder_;
+};
+
+cv::Mat RandomMatrix(int rows, int columns, int type) {
+  cv::Mat matrix(rows, columns, type);
+  cv::RNG random(TestRandom()());
+  if (!matrix.empty()) random.fill(matrix, cv::RNG::UNIFORM, -100, 300, true);
+  return matrix;
+}
+
+TEST_F(Hdf5FileTest, MatricesComeBackExactly) {
+  for (const int type : {CV_8UC1, CV_16SC1, CV_16SC2, CV_32SC1, CV_32FC1, CV_32FC2, CV_64FC1}) {
+    for (const cv::Size size : {cv::Size(7, 5), cv::Size(1, 1), cv::Size(2, 0)}) {
+      const cv::Mat matrix = RandomMatrix(size.height, size.width, type);
+      const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/a/b/c", matrix); });
+      const cv::Mat read = Hdf5File::Open(path).ReadMatrix("/a/b/c", type);
+      ASSERT_EQ(read.type(), type);
+      ASSERT_EQ(read.size(), size);
+      if (size.height == 0) continue;
+      EXPECT_EQ(cv::norm(read, matrix, cv::NORM_INF), 0.0);
+    }
+  }
+}
+
+TEST_F(Hdf5FileTest, PartOfAMatrixIsWrittenAsIfItWereAWhole) {
+  const cv::Mat part = RandomMatrix(9, 9, CV_32FC1)(cv::Rect(2, 3, 4, 5));
+  const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/part", part); });
+  const cv::Mat read = Hdf5File::Open(path).ReadMatrix("/part", CV_32FC1, 5, 4);
+  EXPECT_EQ(cv::norm(read, part, cv::NORM_INF), 0.0);
+}
+
+TEST_F(Hdf5FileTest, VectorsComeBackExactly) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> doubles = {1.0 / 3.0, -infinity, 5e-324, -0.0};
+  const std::vector<float> floats = {1.0F / 3.0F};
+  const std::vector<int> ints = {std::numeric_limits<int>::min(), -1, 7};
+  const auto path = Write("a.h5", [&](Hdf5File& file) {
+    file.WriteVector("/doubles", doubles);
+    file.WriteVector("/floats", floats);
+    file.WriteVector("/ints", ints);
+    file.WriteVector("/empty", std::vector<double>());
+    file.WriteVector("/nan", std::vector<double>{std::nan("")});
+  });
+  const Hdf5File file = Hdf5File::Open(path);
+  EXPECT_EQ(file.ReadVector<double>("/doubles", 4), doubles);
+  EXPECT_EQ(file.ReadVector<float>("/floats"), floats);
+  EXPECT_EQ(file.ReadVector<int>("/ints"), ints);
+  EXPECT_TRUE(file.ReadVector<double>("/empty").empty());
+  EXPECT_TRUE(std::isnan(file.ReadVector<double>("/nan").at(0)));
+}
+
+TEST_F(Hdf5FileTest, AttributesComeBackExactly) {
+  const std::string long_text(300'000, 'x');  // older formats end at 64 KiB
+  const auto path = Write("a.h5", [&](Hdf5File& file) {
+    file.WriteGroup("/group");
+    file.WriteText("/", "long", long_text);
+    file.WriteText("/group", "name", "M\u00f6bel");
+    file.WriteText("/group", "empty", "");
+    file.WriteNumber("/group", "third", 1.0 / 3.0);
+  });
+  const Hdf5File file = Hdf5File::Open(path);
+  EXPECT_EQ(file.ReadText("/", "long"), long_text);
+  EXPECT_EQ(file.ReadText("/group", "name"), "M\u00f6bel");
+  EXPECT_EQ(file.ReadText("/group", "empty"), "");
+  EXPECT_EQ(file.ReadNumber("/group", "third"), 1.0 / 3.0);
+  EXPECT_TRUE(file.HasAttribute("/", "long"));
+  EXPECT_FALSE(file.HasAttribute("/", "name"));
+  EXPECT_FALSE(file.HasAttribute("/nowhere", "name"));
+}
+
+TEST_F(Hdf5FileTest, ChildrenAreSortedAndHasKnowsThem) {
+  const auto path = Write("a.h5", [](Hdf5File& file) {
+    for (int i = 30; i > 0; --i) file.WriteGroup("/g/" + std::to_string(100 + i));
+  });
+  const Hdf5File file = Hdf5File::Open(path);
+  const auto names = file.Children("/g");
+  ASSERT_EQ(names.size(), 30U);
+  EXPECT_EQ(names.front(), "101");
+  EXPECT_EQ(names.back(), "130");
+  EXPECT_TRUE(file.Children("/g/101").empty());
+  EXPECT_TRUE(file.Has("/g/130"));
+  EXPECT_FALSE(file.Has("/g/131"));
+  EXPECT_FALSE(file.Has("/nowhere/1"));
+  ExpectError<InputError>([&] { file.Children("/nowhere"); }, {"a.h5", "/nowhere", "missing"});
+}
+
+TEST_F(Hdf5FileTest, SameCallsGiveTheSameBytes) {
+  const cv::Mat matrix = RandomMatrix(30, 40, CV_32FC1);
+  const auto fill = [&](Hdf5File& file) {
+    file.WriteText("/", "artefact", std::string(100'000, 'h'));
+    for (int i = 0; i < 50; ++i) {
+      const std::string group = "/frames/" + std::to_string(i);
+      file.WriteMatrix(group + "/m", matrix);
+      file.WriteVector(group + "/v", std::vector<double>(static_cast<size_t>(i), 0.5));
+      file.WriteNumber(group, "number", i);
+    }
+  };
+  const std::string first = FileBytes(Write("a.h5", fill));
+  const std::vector<std::string> garbage(100,
+                                         std::string(10'000, '\x5a'));  // for unused heap bytes
+  EXPECT_EQ(FileBytes(Write("b.h5", fill)), first);
+}
+
+TEST_F(Hdf5FileTest, WrongTypesAndShapesAreNamed) {
+  const auto path = Write("a.h5", [](Hdf5File& file) {
+    file.WriteMatrix("/m", cv::Mat::zeros(3, 4, CV_8UC1));
+    file.WriteText("/", "text", "t");
+    file.WriteNumber("/", "number", 1);
+  });
+  const Hdf5File file = Hdf5File::Open(path);
+  ExpectError<InputError>([&] { file.ReadMatrix("/m", CV_8UC1, 3, 5); },
+                          {"a.h5", "/m", "is 3 x 4 of uint8", "expected 3 x 5 of uint8"});
+  ExpectError<InputError>([&] { file.ReadMatrix("/m", CV_32FC1); },
+                          {"/m", "another type", "expected any x any of float32"});
+  ExpectError<InputError>([&] { file.ReadMatrix("/m", CV_8UC2); }, {"/m", "any x any x 2"});
+  ExpectError<InputError>([&] { file.ReadVector<double>("/m"); }, {"/m", "any of float64"});
+  ExpectError<InputError>([&] { file.ReadVector<int>("/none"); }, {"/none", "missing"});
+  ExpectError<InputError>([&] { file.ReadText("/", "number"); }, {"number", "text"});
+  ExpectError<InputError>([&] { file.ReadNumber("/", "text"); }, {"text", "float64"});
+  ExpectError<InputError>([&] { file.ReadText("/", "none"); }, {"none", "missing"});
+  ExpectError<InputError>([&] { file.ReadNumber("/none", "none"); }, {"none", "missing"});
+}
+
+// A group in the place of a data set, and the other way round.
+TEST_F(Hdf5FileTest, GroupsAndDataSetsAreToldApart) {
+  const auto path =
+      Write("a.h5", [](Hdf5File& file) { file.WriteVector("/g/v", std::vector<int>{1}); });
+  const Hdf5File file = Hdf5File::Open(path);
+  ExpectError<InputError>([&] { file.ReadVector<int>("/g"); }, {"a.h5", "/g"});
+  ExpectError<InputError>([&] { file.Children("/g/v"); }, {"a.h5", "/g/v"});
+}
+
+TEST_F(Hdf5FileTest, BadFilesAreNamed) {
+  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "none.h5"); },
+                          {"none.h5", "no such file"});
+  ExpectError<InputError>([&] { Hdf5File::Open(folder_.path()); }, {folder_.path().string()});
+  WriteBytes(folder_ / "empty.h5", "");
+  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "empty.h5"); },
+                          {"empty.h5", "not an HDF5 file"});
+  WriteBytes(folder_ / "text.h5", "hello");
+  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "text.h5"); },
+                          {"text.h5", "not an HDF5 file"});
+  const std::string whole = FileBytes(Write(
+      "a.h5", [](Hdf5File& file) { file.WriteMatrix("/m", RandomMatrix(20, 20, CV_64FC1)); }));
+  WriteBytes(folder_ / "cut.h5", whole.substr(0, whole.size() - 1));
+  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "cut.h5"); }, {"cut.h5", "cut short"});
+}
+
+TEST_F(Hdf5FileTest, CannotBeWritten) {
+  ExpectError<SettingsError>([&] { Hdf5File::Create(folder_ / "no/such/folder.h5"); },
+                             {"folder.h5", "cannot be written"});
+  ExpectError<SettingsError>(
+      [&] {
+        Hdf5File file = Hdf5File::Create(folder_ / "a.h5");
+        file.WriteVector("/twice", std::vector<int>{1});
+        file.WriteVector("/twice", std::vector<int>{2});
+      },
+      {"a.h5", "/twice", "cannot be written"});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "image/read_image.h"
+#include "support/expect_error.h"
+#include "support/random.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kFrames = 11;  // more than one batch of two threads
+
+// A dataset of images with a circle each, and its sequence.json.
+class RunEdgesTest : public testing::Test {
+ protected:
+  RunEdgesTest() {
+    std::filesystem::create_directory(folder_ / "rgb");
+    sequence_.name = "circles";
+    sequence_.camera = {64, 48, 60.0, 60.0, 31.5, 23.5};
+    for (int i = 0; i < kFrames; ++i) {
+      Frame frame;
+      frame.id = 5 * i;
+      frame.timestamp = 0.1 * i;
+      frame.image = "rgb/" + std::to_string(i) + ".png";
+      sequence_.frames.push_back(frame);
+      cv::Mat image(48, 64, CV_8UC1, cv::Scalar(50));
+      cv::circle(image, {20 + 2 * i, 24}, 12, cv::Scalar(220), cv::FILLED);
+      cv::imwrite((folder_ / frame.image).string(), image);
+    }
+  }
+
+  StageFiles Files(const std::string& output = "edges.h5") {
+    WriteSequence(folder_ / "sequence.json", sequence_, {});
+    return {{"dataset", folder_.path()},
+            {"sequence", folder_ / "sequence.json"},
+            {"output", folder_ / output}};
+  }
+  // Expects that the stage refuses its input, saying these words, and writes nothing.
+  void ExpectRefused(const std::vector<std::string>& words) {
+    const StageFiles files = Files();
+    ExpectError<InputError>([&] { RunEdges({}, files, 2); }, words);
+    EXPECT_FALSE(std::filesystem::exists(files.at("output")));
+  }
+
+  TemporaryFolder folder_;
+  Sequence sequence_;
+};
+
+TEST_F(RunEdgesTest, WritesTheMapsOfEveryFrame) {
+  RunEdges({}, Files(), 2);
+  const EdgesReader reader(folder_ / "edges.h5");
+  for (const Frame& frame : sequence_.frames) {
+    const EdgeMaps expected = ComputeEdgeMaps(ReadGreyImage(folder_ / frame.image), {});
+    const EdgeMaps maps = reader.Read(frame.id);
+    EXPECT_EQ(cv::norm(maps.grey, expected.grey, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(maps.edges, expected.edges, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(maps.distance, expected.distance, cv::NORM_INF), 0.0);
+    EXPECT_EQ(maps.corners, expected.corners);
+    EXPECT_GT(cv::countNonZero(maps.edges), 50);  // the circle's outline is 75 px long
+  }
+  EXPECT_FALSE(reader.Has(1));
+}
+
+TEST_F(RunEdgesTest, SameBytesForAnyNumberOfThreads) {
+  RunEdges({}, Files("one.h5"), 1);
+  RunEdges({}, Files("two.h5"), 2);
+  RunEdges({}, Files("many.h5"), 7);
+  EXPECT_EQ(FileBytes(folder_ / "one.h5"), FileBytes(folder_ / "two.h5"));
+  EXPECT_EQ(FileBytes(folder_ / "one.h5"), FileBytes(folder_ / "many.h5"));
+}
+
+TEST_F(RunEdgesTest, HeaderNamesSettingsAndInputs) {
+  EdgesOptions options;
+  options.canny_high = 123.0;
+  RunEdges(options, Files(), 1);
+  const auto header =
+      nlohmann::json::parse(OpenArtefact(folder_ / "edges.h5", "edges").ReadText("/", "artefact"));
+  EXPECT_EQ(header["settings"], OptionsToJson(options));
+  EXPECT_EQ(header["inputs"].size(), kFrames + 1U);
+}
+
+TEST_F(RunEdgesTest, BadImagesAreNamedAndNothingIsWritten) {
+  const auto image = folder_ / "rgb/7.png";
+  const std::string whole = FileBytes(image);
+  std::filesystem::remove(image);
+  ExpectRefused({"rgb/7.png"});
+  WriteBytes(image, "");
+  ExpectRefused({"rgb/7.png", "is empty"});
+  WriteBytes(image, whole.substr(0, whole.size() - 20));
+  ExpectRefused({"rgb/7.png", "cut short"});
+  cv::imwrite(image.string(), cv::Mat(64, 48, CV_8UC1, cv::Scalar(3)));
+  ExpectRefused({"rgb/7.png", "48 x 64", "64 x 48"});
+}
+
+TEST_F(RunEdgesTest, FailureLeavesTheOldResult) {
+  WriteBytes(folder_ / "edges.h5", "old");
+  std::filesystem::remove(folder_ / "rgb/10.png");
+  EXPECT_THROW(RunEdges({}, Files(), 1), InputError);
+  EXPECT_EQ(FileBytes(folder_ / "edges.h5"), "old");
+}
+
+TEST_F(RunEdgesTest, ImagesOutsideTheDatasetAreRefused) {
+  const std::string outside = (folder_ / "rgb/0.png").string();
+  for (const std::string& path :
+       {std::string("../0.png"), std::string("rgb/../../0.png"), outside}) {
+    sequence_.frames[3].image = path;
+    ExpectRefused({"frame 15", path});
+  }
+  sequence_.frames[3].image = "rgb/../rgb/./0.png";  // inside after all
+  EXPECT_NO_THROW(RunEdges({}, Files(), 1));
+}
+
+TEST_F(RunEdgesTest, CameraBeyondSixteenBitsIsRefused) {
+  sequence_.camera.width = 40'000;
+  ExpectRefused({"sequence.json", "40000", "32767"});
+}
+
+TEST_F(RunEdgesTest, BadSettingsAreRefused) {
+  EdgesOptions options;
+  options.canny_low = 200.0;
+  ExpectError<SettingsError>([&] { RunEdges(options, Files(), 1); }, {"canny_low"});
+}
+
+}  // namespace
+}  // namespace soslam
