@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "dataset/import.h"
 #include "support/temporary_folder.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
@@ -121,6 +122,44 @@ TEST_F(WriteDatasetTest, JsonFilesDescribeTheScene) {
   EXPECT_EQ(objects[1].at("half_axes").get<std::vector<double>>()[2], truth.half_axes.z());
   EXPECT_EQ(objects[1].at("mirror_symmetric"), true);
   EXPECT_EQ(objects[1].at("support_plane"), 0);
+}
+
+TEST_F(WriteDatasetTest, ImportGivesTheSyntheticSequence) {
+  const Scene scene = SmallScene();
+  const Sequence synthetic = SyntheticSequence(scene, true);
+  WriteDataset(scene, true, folder_, 1);
+  ImportOptions options;
+  options.border_px = 0.0;
+  options.min_observations = 1;
+  const Sequence imported = ImportDataset(folder_, options);
+  ASSERT_EQ(imported.frames.size(), synthetic.frames.size());
+  for (size_t i = 0; i < imported.frames.size(); ++i) {
+    EXPECT_EQ(imported.frames[i].image, synthetic.frames[i].image);
+    EXPECT_EQ(imported.frames[i].timestamp, synthetic.frames[i].timestamp);
+    // Quaternions may be normalised once more on reading.
+    EXPECT_TRUE(imported.frames[i].world_from_camera.Matrix().isApprox(
+        synthetic.frames[i].world_from_camera.Matrix(), 1e-14));
+    EXPECT_TRUE(imported.frames[i].true_world_from_camera->Matrix().isApprox(
+        synthetic.frames[i].true_world_from_camera->Matrix(), 1e-14));
+  }
+  ASSERT_EQ(imported.objects.size(), synthetic.objects.size());
+  for (size_t i = 0; i < imported.objects.size(); ++i) {
+    EXPECT_EQ(imported.objects[i].id, synthetic.objects[i].id);
+    EXPECT_EQ(imported.objects[i].label, synthetic.objects[i].label);
+    EXPECT_TRUE(
+        DualQuadric(imported.objects[i].ground_truth->landmark_in_world)
+            .isApprox(DualQuadric(synthetic.objects[i].ground_truth->landmark_in_world), 1e-13));
+  }
+  ASSERT_EQ(imported.detections.size(), synthetic.detections.size());
+  for (size_t i = 0; i < imported.detections.size(); ++i) {
+    const Detection &read = imported.detections[i], &made = synthetic.detections[i];
+    EXPECT_EQ(read.frame_index, made.frame_index);
+    EXPECT_EQ(read.object_index, made.object_index);
+    EXPECT_EQ(read.box.x_min, made.box.x_min);
+    EXPECT_EQ(read.box.y_max, made.box.y_max);
+    EXPECT_TRUE(
+        read.plane_in_camera.Homogeneous().isApprox(made.plane_in_camera.Homogeneous(), 1e-13));
+  }
 }
 
 TEST_F(WriteDatasetTest, SameBytesForAnyNumberOfThreads) {
