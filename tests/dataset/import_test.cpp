@@ -221,5 +221,19 @@ TEST_F(ImportTest, DetectionsWithOnlyAHeaderAreNothingUsable) {
   EXPECT_THROW(Import(), NothingUsableError);
 }
 
+// The demo sequence: 350 boxes, of which 103 are closer than 30 px to the border.
+TEST(ImportDemoTest, RoomA) {
+  const Sequence sequence = ImportDataset(SOSLAM_SOURCE_DIR "/data/room_a", {});
+  EXPECT_EQ(sequence.name, "room_a");
+  EXPECT_EQ(sequence.frames.size(), 60u);
+  EXPECT_EQ(sequence.objects.size(), 8u);
+  EXPECT_EQ(sequence.detections.size(), 247u);
+  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("near_border", 103)));
+  const Detection& first = sequence.detections[0];
+  const Plane floor_in_camera = Transform(sequence.frames[0].true_world_from_camera->Inverse(),
+                                          Plane{Eigen::Vector3d::UnitZ(), 0});
+  EXPECT_LT((first.plane_in_camera.Homogeneous() - floor_in_camera.Homogeneous()).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace soslam

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The three JSON artefacts of the model: what is written is read back bit for bit.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "artefact/json_geometry.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/map_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "support/dataset_fixture.h"
+#include "support/random_estimates.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class ArtefactFilesTest : public testing::Test {
+ protected:
+  std::filesystem::path folder = FreshTestFolder();
+  std::filesystem::path file = folder / "artefact.json";
+  std::filesystem::path again = folder / "again.json";
+  Sequence sequence = RandomSequence();
+};
+
+void ExpectSame(const Rigid3d& a, const Rigid3d& b) {
+  EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
+  EXPECT_EQ(a.translation, b.translation);
+}
+
+void ExpectSame(const Landmark& a, const Landmark& b) {
+  ExpectSame(a.frame_from_object, b.frame_from_object);
+  EXPECT_EQ(a.half_axes, b.half_axes);
+}
+
+void ExpectSame(const Plane& a, const Plane& b) { EXPECT_EQ(a.Homogeneous(), b.Homogeneous()); }
+
+void ExpectSame(const std::vector<ObjectEstimate>& a, const std::vector<ObjectEstimate>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].object_index, b[i].object_index);
+    EXPECT_EQ(a[i].observations, b[i].observations);
+    EXPECT_EQ(a[i].failure, b[i].failure);
+    EXPECT_EQ(a[i].proper_ellipsoid, b[i].proper_ellipsoid);
+    EXPECT_EQ(a[i].covariance, b[i].covariance);
+    ASSERT_EQ(a[i].landmark_in_world.has_value(), b[i].landmark_in_world.has_value());
+    if (a[i].landmark_in_world) ExpectSame(*a[i].landmark_in_world, *b[i].landmark_in_world);
+  }
+}
+
+TEST_F(ArtefactFilesTest, SequenceComesBack) {
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file);
+  WriteSequence(again, read, {});
+  EXPECT_EQ(ReadText(file), ReadText(again));
+
+  EXPECT_EQ(read.name, sequence.name);
+  EXPECT_EQ(read.camera.cy, sequence.camera.cy);
+  ASSERT_EQ(read.frames.size(), sequence.frames.size());
+  ASSERT_EQ(read.planes.size(), sequence.planes.size());
+  ASSERT_EQ(read.objects.size(), sequence.objects.size());
+  ASSERT_EQ(read.detections.size(), sequence.detections.size());
+  EXPECT_EQ(read.rejected_detections, sequence.rejected_detections);
+  for (size_t i = 0; i < read.frames.size(); ++i) {
+    const Frame& a = read.frames[i];
+    const Frame& b = sequence.frames[i];
+    EXPECT_EQ(std::tie(a.id, a.timestamp, a.image), std::tie(b.id, b.timestamp, b.image));
+    ExpectSame(a.world_from_camera, b.world_from_camera);
+    ASSERT_EQ(a.true_world_from_camera.has_value(), b.true_world_from_camera.has_value());
+    if (a.true_world_from_camera) ExpectSame(*a.true_world_from_camera, *b.true_world_from_camera);
+  }
+  for (size_t i = 0; i < read.planes.size(); ++i) {
+    EXPECT_EQ(read.planes[i].id, sequence.planes[i].id);
+    ExpectSame(read.planes[i].plane_in_world, sequence.planes[i].plane_in_world);
+  }
+  for (size_t i = 0; i < read.objects.size(); ++i) {
+    const Object& a = read.objects[i];
+    const Object& b = sequence.objects[i];
+    EXPECT_EQ(std::tie(a.id, a.label, a.plane_index), std::tie(b.id, b.label, b.plane_index));
+    ASSERT_EQ(a.ground_truth.has_value(), b.ground_truth.has_value());
+    if (!a.ground_truth) continue;
+    ExpectSame(a.ground_truth->landmark_in_world, b.ground_truth->landmark_in_world);
+    EXPECT_EQ(a.ground_truth->mirror_symmetric, b.ground_truth->mirror_symmetric);
+    EXPECT_EQ(a.ground_truth->mirror_symmetric_yz, b.ground_truth->mirror_symmetric_yz);
+    EXPECT_EQ(a.ground_truth->rotationally_symmetric, b.ground_truth->rotationally_symmetric);
+  }
+  for (size_t i = 0; i < read.detections.size(); ++i) {
+    const Detection& a = read.detections[i];
+    const Detection& b = sequence.detections[i];
+    EXPECT_EQ(std::tie(a.frame_index, a.object_index, a.score),
+              std::tie(b.frame_index, b.object_index, b.score));
+    EXPECT_EQ(nlohmann::json(a.box), nlohmann::json(b.box));
+    ExpectSame(a.plane_in_camera, b.plane_in_camera);
+  }
+}
+
+TEST_F(ArtefactFilesTest, LandmarksComeBack) {
+  const LandmarkEstimates estimates = RandomLandmarkEstimates();
+  WriteLandmarks(file, estimates, sequence, {});
+  const LandmarkEstimates read = ReadLandmarks(file, sequence);
+  WriteLandmarks(again, read, sequence, {});
+  EXPECT_EQ(ReadText(file), ReadText(again));
+
+  ASSERT_EQ(read.observations.size(), estimates.observations.size());
+  for (size_t i = 0; i < read.observations.size(); ++i) {
+    const ObservationEstimate& a = read.observations[i];
+    const ObservationEstimate& b = estimates.observations[i];
+    EXPECT_EQ(a.detection_index, b.detection_index);
+    EXPECT_EQ(a.failure, b.failure);
+    ASSERT_EQ(a.hypotheses.size(), b.hypotheses.size());
+    for (size_t k = 0; k < a.hypotheses.size(); ++k) {
+      EXPECT_EQ(a.hypotheses[k].cost, b.hypotheses[k].cost);
+      ExpectSame(a.hypotheses[k].landmark_in_camera, b.hypotheses[k].landmark_in_camera);
+    }
+  }
+  ExpectSame(read.objects, estimates.objects);
+  EXPECT_EQ(ParseJsonFile(file).at("failures").dump(),
+            R"({"plane_behind_camera":1,"too_few_views":1})");
+}
+
+TEST_F(ArtefactFilesTest, MapComesBack) {
+  const MapEstimate map = RandomMap();
+  WriteMap(file, map, sequence, {});
+  const MapEstimate read = ReadMap(file, sequence);
+  WriteMap(again, read, sequence, {});
+  EXPECT_EQ(ReadText(file), ReadText(again));
+
+  ExpectSame(read.objects, map.objects);
+  ASSERT_EQ(read.world_from_camera.size(), map.world_from_camera.size());
+  for (size_t i = 0; i < map.world_from_camera.size(); ++i) {
+    ExpectSame(read.world_from_camera[i], map.world_from_camera[i]);
+  }
+  const SolverSummary& a = read.solver;
+  const SolverSummary& b = map.solver;
+  EXPECT_EQ(std::tie(a.initial_cost, a.final_cost, a.iterations, a.converged),
+            std::tie(b.initial_cost, b.final_cost, b.iterations, b.converged));
+  EXPECT_EQ(a.cost_per_iteration, b.cost_per_iteration);
+  EXPECT_EQ(a.residuals, b.residuals);
+  EXPECT_EQ(a.gated, b.gated);
+}
+
+TEST_F(ArtefactFilesTest, EmptyEstimatesComeBack) {
+  WriteLandmarks(file, {}, sequence, {});
+  EXPECT_TRUE(ReadLandmarks(file, sequence).observations.empty());
+  EXPECT_TRUE(ReadLandmarks(file, sequence).objects.empty());
+}
+
+TEST_F(ArtefactFilesTest, NonFiniteNumbersAreRefusedWithTheirPlace) {
+  MapEstimate map = RandomMap();
+  (*map.objects[0].covariance)(3, 1) = kNan;
+  try {
+    WriteMap(file, map, sequence, {});
+    FAIL() << "written";
+  } catch (const NumericalError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("artefact.json: /objects/0/covariance/3/1 would be nan"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+// One change to a valid file, and what the error has to say about it.
+struct Edit {
+  const char* name;
+  const char* place;
+  const char* value;  // JSON; nullptr: the place is removed
+  const char* message;
+};
+std::string EditName(const testing::TestParamInfo<Edit>& info) { return info.param.name; }
+
+class EditedFileTest : public ArtefactFilesTest, public testing::WithParamInterface<Edit> {
+ protected:
+  template <typename Read>
+  void ExpectRefused(const Read& read) {
+    nlohmann::json document = ParseJsonFile(file);
+    const nlohmann::json::json_pointer place(GetParam().place);
+    if (GetParam().value != nullptr) {
+      document[place] = nlohmann::json::parse(GetParam().value);
+    } else {
+      document[place.parent_pointer()].erase(place.back());
+    }
+    std::ofstream(file) << document;
+    try {
+      read();
+      FAIL() << "read";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("artefact.json: "));
+      EXPECT_THAT(error.what(), HasSubstr(GetParam().message));
+      EXPECT_THAT(error.what(), testing::Not(HasSubstr("\n")));
+    }
+  }
+};
+
+class EditedSequenceTest : public EditedFileTest {};
+TEST_P(EditedSequenceTest, IsRefused) {
+  WriteSequence(file, sequence, {});
+  ExpectRefused([&] { ReadSequence(file); });
+}
+INSTANTIATE_TEST_SUITE_P(
+    Edits, EditedSequenceTest,
+    testing::Values(
+        Edit{"Unknown", "/frames/1/colour", "3", "/frames/1"},
+        Edit{"Missing", "/camera/fx", nullptr, "/camera"},
+        Edit{"Text", "/detections/2/box/1", "\"7\"", "/detections/2/box/1 is \"7\""},
+        Edit{"Null", "/detections/2/score", "null", "/detections/2/score is null"},
+        Edit{"Short", "/frames/0/world_from_camera/translation", "[1, 2]",
+             "/frames/0/world_from_camera/translation is [1,2]"},
+        Edit{"FocalLength", "/camera/fx", "0", "/camera/fx is 0"},
+        Edit{"HalfAxis", "/objects/0/ground_truth/landmark/half_axes/2", "-1",
+             "/objects/0/ground_truth/landmark/half_axes/2 is -1"},
+        Edit{"IdTooLarge", "/objects/0/object", "4294967297", "/objects/0/object is 4294967297"},
+        Edit{"Quaternion", "/frames/0/world_from_camera/rotation_xyzw", "[0, 0, 0, 2]", "norm 2"},
+        Edit{"Normal", "/planes/0/plane_in_world/normal", "[0, 0, 0]", "norm 0"},
+        Edit{"PlaneUnknown", "/objects/0/plane", "99", "plane 99 is not in the sequence"},
+        Edit{"FrameUnknown", "/detections/0/frame", "11", "frame 11 is not in the sequence"},
+        Edit{"FrameTwice", "/frames/1/frame", "10", "frame 10 follows frame 10"},
+        Edit{"Order", "/detections/3/frame", "10", "/detections/3 is out of order"}),
+    EditName);
+
+class EditedLandmarksTest : public EditedFileTest {};
+TEST_P(EditedLandmarksTest, IsRefused) {
+  WriteLandmarks(file, RandomLandmarkEstimates(), sequence, {});
+  ExpectRefused([&] { ReadLandmarks(file, sequence); });
+}
+INSTANTIATE_TEST_SUITE_P(
+    Edits, EditedLandmarksTest,
+    testing::Values(
+        Edit{"DetectionUnknown", "/observations/1/object", "99",
+             "/observations/1: the sequence has no detection of object 99"},
+        Edit{"ObjectUnknown", "/objects/0/object", "99", "object 99 is not in the sequence"},
+        Edit{"CovarianceRow", "/objects/0/covariance/4", "[1]", "/objects/0/covariance/4 is [1]"},
+        Edit{"WrongFrameOfReference", "/observations/0/hypotheses/0/landmark/camera_from_object",
+             nullptr, "/observations/0/hypotheses/0/landmark"}),
+    EditName);
+
+class EditedMapTest : public EditedFileTest {};
+TEST_P(EditedMapTest, IsRefused) {
+  WriteMap(file, RandomMap(), sequence, {});
+  ExpectRefused([&] { ReadMap(file, sequence); });
+}
+INSTANTIATE_TEST_SUITE_P(
+    Edits, EditedMapTest,
+    testing::Values(Edit{"PoseMissing", "/trajectory", "[]", "has 0 poses; expected 5"},
+                    Edit{"OtherFrame", "/trajectory/2/frame", "21",
+                         "/trajectory/2/frame is 21; expected 20"},
+                    Edit{"Iterations", "/solver/iterations", "1.5", "/solver/iterations is 1.5"}),
+    EditName);
+
+}  // namespace
+}  // namespace soslam

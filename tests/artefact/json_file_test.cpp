@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/json_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "artefact/schema.h"
+#include "base/error.h"
+#include "support/dataset_fixture.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const json kEmptyLandmarks = {
+    {"observations", json::array()}, {"objects", json::array()}, {"failures", json::object()}};
+
+class JsonFileTest : public testing::Test {
+ protected:
+  // What the InputError says; empty when there is none.
+  template <typename Action>
+  std::string InputErrorOf(const Action& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::string ParseErrorOf(const std::string& text) {
+    std::ofstream(file) << text;
+    return InputErrorOf([&] { ParseJsonFile(file); });
+  }
+  std::string ReadErrorWithHeader(const json& header) {
+    json document = kEmptyLandmarks;
+    document["artefact"] = header;
+    std::ofstream(file) << document;
+    return InputErrorOf([&] { ReadArtefact(file, "landmarks"); });
+  }
+
+  std::filesystem::path folder = FreshTestFolder();
+  std::filesystem::path file = folder / "some.json";
+};
+
+TEST_F(JsonFileTest, UnreadableTextIsRefusedOnOneLine) {
+  EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder / "none.json"); }), HasSubstr("none.json"));
+  EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(ParseErrorOf(""), HasSubstr("is empty"));
+  EXPECT_THAT(ParseErrorOf("{\n\"a\": nan}"),
+              AllOf(HasSubstr("some.json: parse error at line 2"), Not(HasSubstr("\n"))));
+  EXPECT_THAT(ParseErrorOf("{} {}"), HasSubstr("parse error at line 1"));
+  EXPECT_THAT(ParseErrorOf("{\"a\": [{\"b\": 1, \"b\": 2}]}"), HasSubstr("key \"b\" twice"));
+  EXPECT_EQ(ParseErrorOf("{\"a\": {\"b\": 1}, \"b\": {\"b\": 2}}"), "");
+}
+
+TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
+  std::ofstream(folder / "b.txt") << "b";
+  std::ofstream(folder / "a.txt") << "abc";
+  WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {folder / "b.txt", folder / "a.txt"}},
+                kEmptyLandmarks);
+  const json header = ReadArtefact(file, "landmarks").at("artefact");
+  EXPECT_EQ(header.at("kind"), "landmarks");
+  EXPECT_EQ(header.at("schema_version"), json({1, 0}));
+  EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
+  EXPECT_EQ(header.at("settings").at("yaw"), 3);
+  EXPECT_EQ(header.at("inputs").at(0).at("file"), "a.txt");
+  EXPECT_EQ(header.at("inputs").at(0).at("sha256"),  // FIPS 180-2, appendix B.1
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(header.at("inputs").at(1).at("file"), "b.txt");
+}
+
+TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
+  json header = ArtefactHeader("landmarks", {});
+  EXPECT_EQ(ReadErrorWithHeader(header), "");
+  header["schema_version"] = {2, 0};
+  EXPECT_THAT(ReadErrorWithHeader(header),
+              HasSubstr("some.json: has schema version [2, 0] of kind 'landmarks'; this software "
+                        "reads up to [1, 0]"));
+  header["schema_version"] = {1, 1};
+  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("[1, 1]"));
+  header["schema_version"] = "1.0";
+  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("schema_version is \"1.0\""));
+  header["schema_version"] = {1, -1};
+  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("schema_version is [1,-1]"));
+  EXPECT_THAT(ReadErrorWithHeader(ArtefactHeader("map", {})),
+              HasSubstr("kind is \"map\"; expected \"landmarks\""));
+  EXPECT_THAT(ReadErrorWithHeader(nullptr), HasSubstr("no artefact header"));
+  EXPECT_THAT(ParseErrorOf("[1]"), "");
+  EXPECT_THAT(InputErrorOf([&] { ReadArtefact(file, "landmarks"); }),
+              HasSubstr("no artefact header"));
+}
+
+TEST_F(JsonFileTest, MissingInputIsRefused) {
+  EXPECT_THAT(InputErrorOf([&] {
+                ArtefactHeader("map", {{}, {folder / "none.txt"}});
+              }),
+              HasSubstr("none.txt"));
+}
+
+TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {
+  EXPECT_THROW(WriteArtefact(file, "landmarks", {}, {{"objects", 3}}), std::logic_error);
+  EXPECT_THROW(WriteArtefact(file, "no such kind", {}, json::object()), std::logic_error);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST_F(JsonFileTest, NonFiniteSettingsAreRefusedToo) {
+  try {
+    WriteArtefact(file, "landmarks", {{{"weight", std::numeric_limits<double>::infinity()}}, {}},
+                  kEmptyLandmarks);
+    FAIL() << "written";
+  } catch (const NumericalError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/artefact/settings/weight would be inf"));
+  }
+}
+
+// A misspelt keyword in a schema would silently check nothing.
+TEST(SchemaTest, EverySchemaDescribesEveryField) {
+  ASSERT_TRUE(EmbeddedSchemas().contains("sequence"));
+  for (const char* kind : {"sequence", "landmarks", "map"}) {
+    const json schema = json::parse(EmbeddedSchemas().at(kind));
+    const std::function<void(const json&)> check = [&](const json& part) {
+      if (part.contains("properties")) {
+        EXPECT_EQ(part.at("additionalProperties"), false) << part;
+        EXPECT_EQ(part.at("required").size(), part.at("properties").size()) << part;
+        for (const auto& [name, property] : part.at("properties").items()) {
+          EXPECT_TRUE(property.contains("description") || property.contains("$ref"))
+              << kind << " " << name;
+          check(property);
+        }
+      }
+      if (part.contains("items")) check(part.at("items"));
+    };
+    check(schema);
+    for (const auto& definition : schema.at("definitions")) check(definition);
+  }
+}
+
+}  // namespace
+}  // namespace soslam

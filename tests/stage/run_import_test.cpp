@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_import.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "artefact/hash.h"
+#include "artefact/json_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "support/dataset_fixture.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+
+class RunImportTest : public testing::Test {
+ protected:
+  void Run(const ImportOptions& options = {}) {
+    dataset.Write(files.at("dataset"));
+    RunImport(options, files, 1);
+  }
+
+  DatasetFixture dataset;
+  std::filesystem::path folder = FreshTestFolder();
+  StageFiles files = {{"dataset", folder / "small"}, {"output", folder / "sequence.json"}};
+};
+
+TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
+  testing::internal::CaptureStdout();
+  ImportOptions options;
+  options.min_observations = 4;
+  Run(options);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(),
+            "small: 4 frames, 2 objects, 4 detections used, 3 detections rejected: "
+            "too_few_observations 3\n");
+  const Sequence sequence = ReadSequence(files.at("output"));
+  EXPECT_EQ(sequence.detections.size(), 4u);
+  EXPECT_EQ(sequence.rejected_detections.at("too_few_observations"), 3);
+}
+
+TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {
+  ImportOptions options;
+  options.border_px = 12.5;
+  Run(options);
+  const auto header = ReadArtefact(files.at("output"), "sequence").at("artefact");
+  EXPECT_EQ(header.at("settings").at("border_px"), 12.5);
+  EXPECT_EQ(header.at("settings").at("camera_planes"), "groundtruth");
+  std::vector<std::string> names;
+  for (const auto& input : header.at("inputs")) {
+    names.push_back(input.at("file"));
+    EXPECT_EQ(input.at("sha256"), Sha256OfFile(files.at("dataset") / names.back()));
+  }
+  EXPECT_THAT(names,
+              testing::ElementsAre("camera.json", "detections.csv", "groundtruth.txt",
+                                   "objects.json", "odometry.txt", "planes.json", "rgb.txt"));
+}
+
+TEST_F(RunImportTest, ATrajectoryThatIsNotReadIsNotAnInput) {
+  ImportOptions options;
+  options.trajectory = TrajectorySource::kGroundTruth;
+  Run(options);
+  EXPECT_THAT(ReadText(files.at("output")), testing::Not(HasSubstr("odometry.txt")));
+}
+
+TEST_F(RunImportTest, FailureLeavesTheEarlierResult) {
+  Run();
+  const std::string before = ReadText(files.at("output"));
+  dataset.files["camera.json"] = "{}";
+  EXPECT_THROW(Run(), InputError);
+  EXPECT_EQ(ReadText(files.at("output")), before);
+}
+
+TEST_F(RunImportTest, SameInputsGiveTheSameBytes) {
+  Run();
+  const std::string first = ReadText(files.at("output"));
+  std::filesystem::remove(files.at("output"));
+  Run();
+  EXPECT_EQ(ReadText(files.at("output")), first);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/estimates.h"
+#include "model/sequence.h"
+#include "support/random.h"
+
+namespace soslam {
+
+inline Landmark RandomLandmark() { return {RandomRigid(), RandomVector(0.05, 1.0)}; }
+
+inline Plane RandomPlane() { return {RandomVector(-1, 1).normalized(), RandomUniform(-3, 3)}; }
+
+// A sequence whose ids are not its indices, with every other optional value absent. Its numbers are
+// valid one by one, but have no geometric sense together.
+inline Sequence RandomSequence() {
+  Sequence sequence;
+  sequence.name = "r\u00f6\u00f6m \"1\"\\";
+  sequence.camera = TestCamera();
+  sequence.planes = {{-4, RandomPlane()}, {3, RandomPlane()}};
+  for (int i = 0; i < 5; ++i) {
+    Frame frame{10 + 5 * i, RandomUniform(1e9, 2e9), "rgb/a b.jpg", RandomRigid(), {}};
+    if (i % 2 == 0) frame.true_world_from_camera = RandomRigid();
+    sequence.frames.push_back(frame);
+  }
+  for (int i = 0; i < 4; ++i) {
+    Object object{7 * i - 3, "label", i % 2, {}};
+    if (i % 2 == 0) object.ground_truth = {RandomLandmark(), i == 0, i == 2, i == 2};
+    sequence.objects.push_back(object);
+  }
+  for (int frame = 0; frame < 5; ++frame) {
+    for (int object = frame % 2; object < 4; object += 2) {
+      const Box box{RandomUniform(-9, 300), RandomUniform(-9, 200), RandomUniform(300, 700),
+                    RandomUniform(200, 500)};
+      sequence.detections.push_back({frame, object, RandomUniform(0, 1), box, RandomPlane()});
+    }
+  }
+  sequence.rejected_detections = {{"duplicate", 2}, {"near_border", 17}};
+  return sequence;
+}
+
+inline std::vector<ObjectEstimate> RandomObjectEstimates() {
+  ObjectEstimate found{0, 5, RandomLandmark(), Covariance9::Random(), "", true};
+  ObjectEstimate without_covariance{2, 4, RandomLandmark(), {}, "", false};
+  ObjectEstimate failed{3, 1, {}, {}, "too_few_views", true};
+  return {found, without_covariance, failed};
+}
+
+inline LandmarkEstimates RandomLandmarkEstimates() {
+  LandmarkEstimates estimates;
+  estimates.observations = {
+      {0, {{RandomLandmarkInCamera(), 0.1}, {RandomLandmarkInCamera(), 1.0 / 3.0}}, ""},
+      {3, {}, "plane_behind_camera"},
+      {9, {{RandomLandmarkInCamera(), 1e-300}}, ""}};
+  estimates.objects = RandomObjectEstimates();
+  return estimates;
+}
+
+inline MapEstimate RandomMap() {
+  MapEstimate map;
+  map.objects = RandomObjectEstimates();
+  for (int i = 0; i < 5; ++i) map.world_from_camera.push_back(RandomRigid());
+  map.solver = {12.5, 0.1, 3, true, {12.5, 1.0 / 7.0, 0.1}, {{"detection", 40}}, {{"no_plane", 1}}};
+  return map;
+}
+
+}  // namespace soslam
