@@ -66,6 +66,9 @@ double PlaneDepth(const Plane& plane, const Eigen::Vector3d& origin,
 }  // namespace
 
 Surroundings::Surroundings(const Scene& scene) : scene_(scene) {
+  for (const ScenePlane& plane : scene.planes) {
+    plane_from_world_.push_back(WorldFromPlane(plane.plane_in_world).Inverse());
+  }
   // From above, a little from the side, so that the faces of a box differ.
   light_in_world_ = WorldFromPlane(scene.planes.at(0).plane_in_world).rotation *
                     Eigen::Vector3d(-0.42, -0.25, 0.87).normalized();
@@ -85,8 +88,7 @@ Colour Surroundings::TableColour(const Eigen::Vector3d& point_in_world,
                         normal_in_world.dot(plane_in_world.normal) > 0.5 &&
                         std::abs(plane_in_world.SignedDistance(point_in_world)) < kTolerance;
     if (!is_top) continue;
-    const Eigen::Vector3d point_in_plane =
-        WorldFromPlane(plane_in_world).Inverse() * point_in_world;
+    const Eigen::Vector3d point_in_plane = plane_from_world_[i] * point_in_world;
     return light * ContactShadow(static_cast<int>(i), point_in_plane) *
            (kTableColour.array() + GrainPattern(point_in_plane)).matrix();
   }
@@ -116,8 +118,7 @@ Colour Surroundings::BackgroundColour(const Eigen::Vector3d& origin_in_world,
 
 Colour Surroundings::FloorColour(int plane_index, const Eigen::Vector3d& point_in_world,
                                  double distance) const {
-  const Plane& plane_in_world = scene_.planes[plane_index].plane_in_world;
-  const Eigen::Vector3d point_in_plane = WorldFromPlane(plane_in_world).Inverse() * point_in_world;
+  const Eigen::Vector3d point_in_plane = plane_from_world_[plane_index] * point_in_world;
   return ContactShadow(plane_index, point_in_plane) *
          (kFloorColour.array() + TilePattern(point_in_plane, distance)).matrix();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "synthesis/scene.h"
 
@@ -34,6 +35,7 @@ class Surroundings {
   double ContactShadow(int plane_index, const Eigen::Vector3d& point_in_plane) const;
 
   const Scene& scene_;
+  std::vector<Rigid3d> plane_from_world_;  // one per plane of the scene
   Eigen::Vector3d light_in_world_;
 };
 
