@@ -63,6 +63,7 @@ std::vector<std::string> Prefixes(const std::string& name) {
 // Format 1.8: attributes, unlike in older ones, may be larger than 64 KiB, and metadata has
 // checksums.
 Hdf5Handle FileAccess() {
+  H5dont_atexit();  // its clean-up at exit crashes on a file that a full disk left unfinished
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
   Hdf5Handle access = PropertyList(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);

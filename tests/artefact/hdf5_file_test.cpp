@@ -2,8 +2,11 @@
 #include "artefact/hdf5_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <limits>
 #include <opencv2/core.hpp>
 
@@ -183,6 +186,28 @@ TEST_F(Hdf5FileTest, CannotBeWritten) {
         file.WriteVector("/twice", std::vector<int>{2});
       },
       {"a.h5", "/twice", "cannot be written"});
+}
+
+// In a process of its own, which must also get to its end: the HDF5 library is left with a file
+// that it cannot close.
+TEST_F(Hdf5FileTest, FullDiskIsAnErrorAndNotACrash) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto write_beyond_limit = [&] {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{20'000, 20'000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      Write("a.h5", [](Hdf5File& file) {
+        for (int i = 0; i < 10; ++i) {
+          file.WriteMatrix("/m" + std::to_string(i), RandomMatrix(100, 100, CV_64FC1));
+        }
+      });
+    } catch (const SettingsError& error) {
+      std::exit(static_cast<int>(error.exit_code()));
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(write_beyond_limit(), testing::ExitedWithCode(2), "");
 }
 
 }  // namespace
