@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/pipeline_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "base/options.h"
+#include "dataset/import_options.h"
+#include "evaluation/options.h"
+#include "image/edge_maps.h"
+#include "initialisation/options.h"
+#include "mapping/options.h"
+#include "stage/settings_file.h"
+#include "symmetry/options.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// The defaults of an options struct overwritten by `values`.
+template <typename Options>
+json Resolve(const json& values, const std::string& where) {
+  Options options;
+  OptionsFromJson(values, where, &options);
+  return OptionsToJson(options);
+}
+
+struct PipelineStage {
+  const char* name;
+  json (*resolve)(const json& values, const std::string& where);
+  std::vector<std::string> needs;  // stages whose artefacts it reads
+};
+
+const std::array<PipelineStage, 6>& Stages() {
+  static const std::array<PipelineStage, 6> stages = {{
+      {"import", &Resolve<ImportOptions>, {}},
+      {"edges", &Resolve<EdgesOptions>, {"import"}},
+      {"initialise", &Resolve<InitialiseOptions>, {"import"}},
+      {"refine", &Resolve<RefineOptions>, {"import", "initialise", "edges"}},
+      {"optimise", &Resolve<OptimiseOptions>, {"import", "initialise"}},
+      {"evaluate", &Resolve<EvaluateOptions>, {"import", "initialise"}},
+  }};
+  return stages;
+}
+
+const PipelineStage* FindStage(const std::string& name) {
+  const auto found = std::find_if(Stages().begin(), Stages().end(),
+                                  [&](const PipelineStage& stage) { return stage.name == name; });
+  return found == Stages().end() ? nullptr : &*found;
+}
+
+void CheckStageList(const json& stages, const std::string& file) {
+  std::set<std::string> seen;
+  if (!stages.is_array() || stages.empty()) {
+    throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
+  }
+  for (const json& stage : stages) {
+    if (!stage.is_string() || FindStage(stage) == nullptr) {
+      throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
+                                      fmt::join(PipelineStages(), ", ")));
+    }
+    if (!seen.insert(stage).second) {
+      throw SettingsError(fmt::format("{}: 'stages' has {} twice", file, stage.dump()));
+    }
+  }
+}
+
+// Checks one file alone, so that a message can name it.
+void CheckLayer(const json& layer, const std::string& file) {
+  for (const auto& [key, value] : layer.items()) {
+    if (value.is_null()) continue;  // in a merge patch: removes what a lower layer says
+    if (const PipelineStage* stage = FindStage(key)) {
+      json without_nulls = json::object();
+      if (value.is_object()) without_nulls.merge_patch(value);
+      stage->resolve(value.is_object() ? without_nulls : value, file + ": " + key);
+    } else if (key == "stages") {
+      CheckStageList(value, file);
+    } else if (key == "description" || key == "semantic_table") {
+      if (!value.is_string()) {
+        throw SettingsError(
+            fmt::format("{}: '{}' is {}; expected a string", file, key, value.dump()));
+      }
+    } else {
+      throw SettingsError(fmt::format(
+          "{}: unknown key '{}'; known are description, stages, semantic_table and the stages {}",
+          file, key, fmt::join(PipelineStages(), ", ")));
+    }
+  }
+}
+
+json ReadLayer(const fs::path& file) {
+  json layer = ReadSettingsFile(file);
+  CheckLayer(layer, file.string());
+  return layer;
+}
+
+void CheckNeeds(const VariantSettings& settings, const std::string& file) {
+  for (const std::string& name : settings.stages) {
+    for (const std::string& needed : FindStage(name)->needs) {
+      if (settings.stages.count(needed) == 0) {
+        throw SettingsError(
+            fmt::format("{}: stage '{}' needs stage '{}' in 'stages'", file, name, needed));
+      }
+    }
+  }
+  const auto optimise = settings.options.find("optimise");
+  if (optimise != settings.options.end() && optimise->second.at("symmetry") == true &&
+      settings.stages.count("edges") == 0) {
+    throw SettingsError(file + ": setting 'symmetry' of optimise needs stage 'edges' in 'stages'");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> PipelineStages() {
+  std::vector<std::string> names;
+  for (const PipelineStage& stage : Stages()) names.emplace_back(stage.name);
+  return names;
+}
+
+std::vector<std::string> VariantNames(const fs::path& pipelines) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(pipelines / "variants", error)) {
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  }
+  if (names.empty()) {
+    throw SettingsError((pipelines / "variants").string() + ": no variants; expected <name>.json");
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+VariantSettings ReadVariant(const fs::path& pipelines, const std::string& dataset,
+                            const std::string& variant) {
+  const fs::path variant_file = pipelines / "variants" / (variant + ".json");
+  if (!fs::exists(variant_file)) {
+    throw SettingsError(fmt::format("{}: no such variant; known are {}", variant_file.string(),
+                                    fmt::join(VariantNames(pipelines), ", ")));
+  }
+  json merged = ReadLayer(pipelines / "base.json");
+  const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
+  if (fs::exists(dataset_file)) merged.merge_patch(ReadLayer(dataset_file));
+  merged.merge_patch(ReadLayer(variant_file));
+
+  const std::string file = variant_file.string();
+  VariantSettings settings;
+  CheckStageList(merged.value("stages", json()), file);
+  settings.stages = merged.at("stages").get<std::set<std::string>>();
+  settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
+  for (const std::string& stage : settings.stages) {
+    settings.options[stage] =
+        FindStage(stage)->resolve(merged.value(stage, json::object()), file + ": " + stage);
+  }
+  CheckNeeds(settings, file);
+  return settings;
+}
+
+}  // namespace soslam

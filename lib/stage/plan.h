@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// An artefact of a stage instance.
+struct ArtefactSource {
+  std::string instance;  // StageInstance::Id()
+  std::string file;      // "initial.json"
+};
+
+// One run of a stage with certain settings on certain inputs. Variants that agree in both share it.
+struct StageInstance {
+  std::string stage;
+  // First 10 hex digits of a SHA-256 over stage, settings and the keys of its inputs; it does not
+  // depend on where files lie.
+  std::string key;
+  nlohmann::json settings;                       // every option, resolved
+  std::map<std::string, ArtefactSource> inputs;  // by argument of the stage: "landmarks"
+  std::string semantic_table;         // relative to the pipelines folder; empty: not read
+  std::vector<std::string> variants;  // that use it
+
+  std::string Id() const { return stage + "-" + key; }
+};
+
+struct VariantChain {
+  std::string name;
+  std::vector<std::string> instances;  // ids, in the order in which they run
+};
+
+struct Plan {
+  std::vector<StageInstance> instances;  // each after those that it reads from
+  std::vector<VariantChain> variants;
+
+  const StageInstance& Instance(const std::string& id) const;
+};
+
+// What a stage writes: argument name and file name.
+struct StageOutput {
+  std::string argument;
+  std::string file;
+};
+const std::vector<StageOutput>& OutputsOfStage(const std::string& stage);
+
+// The stage runs that these variants of a dataset need. Throws SettingsError as ReadVariant.
+Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
+              const std::vector<std::string>& variants);
+
+}  // namespace soslam

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/plan_makefile.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Make compares modification times, and artefacts that come out as before keep theirs. So a stage
+// leaves a stamp, `done`, dated when it began; artefacts depend on it with a recipe that does
+// nothing, after which make looks at their times again (also in a dry run, because of its "+").
+// Stages that read them depend on both: when only stamps are newer there is nothing to do. A dry
+// run cannot know what will come out and lists every stage that may have to run.
+constexpr const char* kPreamble =
+    R"make(# Written by soslam-plan; changes here are lost.
+results := {results}
+dataset := {dataset_folder}
+pipelines := {pipelines}
+BIN ?= build/bin
+THREADS ?= 0
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.PHONY: all {variants} FORCE
+all: {variants}
+FORCE:
+
+dry_run := $(findstring n,$(firstword -$(MAKEFLAGS)))$(findstring q,$(firstword -$(MAKEFLAGS)))
+
+# $(call missing,FILES): forces a rule when one of the files it made is gone.
+missing = $(if $(filter-out $(wildcard $(1)),$(1)),FORCE)
+
+# $(call stage,TITLE,COMMAND): runs a stage unless nothing but stamps is newer than its own.
+define run-stage
+@echo '[{dataset}] $(1)'
+@touch $@.begun
+@$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS)
+@mv $@.begun $@
+endef
+stage = $(if $(dry_run)$(filter-out %/done,$?),$(run-stage),@touch $@)
+)make";
+
+class Writer {
+ public:
+  Writer(const Plan& plan, const std::string& dataset, const PlanFolders& folders)
+      : plan_(plan), dataset_(dataset), folders_(folders) {}
+
+  std::string Write() const {
+    std::vector<std::string> names;
+    for (const VariantChain& variant : plan_.variants) names.push_back(variant.name);
+    std::string text =
+        fmt::format(kPreamble, fmt::arg("pipelines", folders_.pipelines.string()),
+                    fmt::arg("variants", fmt::join(names, " ")), fmt::arg("dataset", dataset_),
+                    fmt::arg("results", folders_.results.string()),
+                    fmt::arg("dataset_folder", folders_.dataset.string()));
+    for (const VariantChain& variant : plan_.variants) text += VariantRules(variant);
+    for (const StageInstance& instance : plan_.instances) text += InstanceRules(instance);
+    return text;
+  }
+
+ private:
+  static std::string Shared(const std::string& id, const std::string& file) {
+    return fmt::format("$(results)/shared/{}/{}", id, file);
+  }
+
+  static std::vector<std::string> OutputPaths(const StageInstance& instance) {
+    std::vector<std::string> paths;
+    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+      paths.push_back(Shared(instance.Id(), output.file));
+    }
+    return paths;
+  }
+
+  // The folder of a variant holds links, replaced together once its last stage is done.
+  std::string VariantRules(const VariantChain& variant) const {
+    const std::string folder = "$(results)/" + variant.name;
+    std::vector<std::string> stamps, links, targets;
+    for (const std::string& id : variant.instances) {
+      stamps.push_back(Shared(id, "done"));
+      for (const StageOutput& output : OutputsOfStage(plan_.Instance(id).stage)) {
+        links.push_back(folder + "/" + output.file);
+        targets.push_back("../shared/" + id + "/" + output.file);
+      }
+    }
+    return fmt::format(
+        "\n{variant}: {folder}/.linked\n"
+        "{folder}/.linked: {folder}/stages.txt {stamps} $(call missing,{links})\n"
+        "\t@find {folder} -maxdepth 1 -type l -delete\n"
+        "\t@ln -s {targets} {folder}/\n"
+        "\t@touch $@\n",
+        fmt::arg("variant", variant.name), fmt::arg("folder", folder),
+        fmt::arg("stamps", fmt::join(stamps, " ")), fmt::arg("links", fmt::join(links, " ")),
+        fmt::arg("targets", fmt::join(targets, " ")));
+  }
+
+  static std::string InstanceRules(const StageInstance& instance) {
+    const std::string outputs = fmt::format("{}", fmt::join(OutputPaths(instance), " "));
+    const std::string done = Shared(instance.Id(), "done");
+    return fmt::format(
+        "\n{done}: {prerequisites} $(call missing,{outputs})\n"
+        "\t$(call stage,{id} ({variants}),{command})\n"
+        "{outputs}: {done} ; +\n",
+        fmt::arg("done", done), fmt::arg("outputs", outputs), fmt::arg("id", instance.Id()),
+        fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
+        fmt::arg("variants", fmt::join(instance.variants, " ")),
+        fmt::arg("command", Command(instance)));
+  }
+
+  static std::vector<std::string> Prerequisites(const StageInstance& instance) {
+    std::vector<std::string> files = {"$(BIN)/soslam-" + instance.stage,
+                                      Shared(instance.Id(), "settings.json")};
+    std::set<std::string> stamps;
+    for (const auto& [argument, source] : instance.inputs) {
+      files.push_back(Shared(source.instance, source.file));
+      stamps.insert(Shared(source.instance, "done"));
+    }
+    files.insert(files.end(), stamps.begin(), stamps.end());
+    if (instance.stage == "import") files.emplace_back("$(results)/shared/dataset.txt");
+    if (instance.stage == "edges") files.emplace_back("$(results)/shared/images.txt");
+    if (!instance.semantic_table.empty()) files.push_back(SemanticTable(instance));
+    return files;
+  }
+
+  static std::string Command(const StageInstance& instance) {
+    std::string command = "soslam-" + instance.stage;
+    if (instance.stage == "import" || instance.stage == "edges") {
+      command += " --dataset $(dataset)";
+    }
+    for (const auto& [argument, source] : instance.inputs) {
+      command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
+    }
+    if (!instance.semantic_table.empty()) command += " --table " + SemanticTable(instance);
+    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+      command += fmt::format(" --{} {}", output.argument, Shared(instance.Id(), output.file));
+    }
+    return command;
+  }
+
+  static std::string SemanticTable(const StageInstance& instance) {
+    return "$(pipelines)/" + instance.semantic_table;
+  }
+
+  const Plan& plan_;
+  const std::string& dataset_;
+  const PlanFolders& folders_;
+};
+
+}  // namespace
+
+std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders) {
+  return Writer(plan, dataset, folders).Write();
+}
+
+}  // namespace soslam

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "artefact/atomic_file.h"
+#include "base/error.h"
+#include "stage/pipeline_settings.h"
+#include "stage/plan.h"
+#include "stage/plan_makefile.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Make splits lists at spaces and gives several characters a meaning, with no way to quote them
+// all.
+void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
+  const bool fit = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) || c >= 0x80 ||
+           std::string("_-./+@,").find(static_cast<char>(c)) != std::string::npos;
+  });
+  if (!fit) {
+    throw SettingsError(
+        fmt::format("{} '{}': expected a name of letters, digits and _ - . / + @ only (no spaces)",
+                    what, text));
+  }
+}
+
+void RefuseIfNotAFolderName(const std::string& name, const std::string& what) {
+  RefuseIfUnfitForMake(name, what);
+  if (name.find('/') != std::string::npos || name.front() == '.' || name == "shared") {
+    throw SettingsError(fmt::format("{} '{}': cannot be the name of a results folder", what, name));
+  }
+}
+
+std::vector<std::string> SplitAtSpaces(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) {
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+  }
+  return words;
+}
+
+// One line per file that tells when it changes, without reading it.
+std::string Fingerprint(const fs::path& folder, const std::set<std::string>& names) {
+  std::string text = fs::canonical(folder).string() + "\n";
+  for (const std::string& name : names) {
+    std::error_code error;
+    const auto size = fs::file_size(folder / name, error);
+    if (error) {
+      text += name + " missing\n";
+      continue;
+    }
+    const auto time = fs::last_write_time(folder / name).time_since_epoch();
+    text += fmt::format("{} {} {}\n", name, size,
+                        std::chrono::duration_cast<std::chrono::nanoseconds>(time).count());
+  }
+  return text;
+}
+
+// The tables and lists that lie in a dataset folder.
+std::set<std::string> DataFiles(const fs::path& dataset) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(dataset)) {
+    const fs::path extension = entry.path().extension();
+    if (extension == ".txt" || extension == ".csv" || extension == ".json") {
+      names.insert(entry.path().filename().string());
+    }
+  }
+  return names;
+}
+
+// The images that rgb.txt lists: lines "timestamp filename". Checking it is the import's business.
+std::set<std::string> ImageFiles(const fs::path& dataset) {
+  std::set<std::string> names;
+  std::ifstream list(dataset / "rgb.txt");
+  for (std::string line; std::getline(list, line);) {
+    const std::vector<std::string> words = SplitAtSpaces(line);
+    if (words.size() >= 2 && words.front().front() != '#') names.insert(words[1]);
+  }
+  return names;
+}
+
+void WriteFile(const fs::path& path, const std::string& text) {
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) {
+    throw SettingsError(
+        fmt::format("{}: cannot be made: {}", path.parent_path().string(), error.message()));
+  }
+  WriteTextFile(path, text);
+}
+
+}  // namespace
+
+void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*/) {
+  const fs::path dataset = files.at("dataset").lexically_normal();
+  if (!fs::is_directory(dataset)) {
+    throw InputError(dataset.string() + ": no such dataset folder");
+  }
+  const std::string name =
+      options.name.empty() ? fs::canonical(dataset).filename().string() : options.name;
+  RefuseIfNotAFolderName(name, "dataset");
+  for (const auto& [argument, path] : files) RefuseIfUnfitForMake(path.string(), "--" + argument);
+  const PlanFolders folders = {dataset, files.at("pipelines"), files.at("results") / name};
+
+  std::vector<std::string> variants = SplitAtSpaces(options.variants);
+  if (variants.empty()) variants = VariantNames(folders.pipelines);
+  for (const std::string& variant : variants) RefuseIfNotAFolderName(variant, "variant");
+
+  const Plan plan = MakePlan(folders.pipelines, name, variants);
+  for (const StageInstance& instance : plan.instances) {
+    if (!instance.semantic_table.empty()) {
+      RefuseIfUnfitForMake(instance.semantic_table, "setting 'semantic_table'");
+    }
+    WriteFile(folders.results / "shared" / instance.Id() / "settings.json",
+              instance.settings.dump(2) + "\n");
+  }
+  for (const VariantChain& variant : plan.variants) {
+    WriteFile(folders.results / variant.name / "stages.txt",
+              fmt::format("{}\n", fmt::join(variant.instances, "\n")));
+  }
+  WriteFile(folders.results / "shared" / "dataset.txt", Fingerprint(dataset, DataFiles(dataset)));
+  WriteFile(folders.results / "shared" / "images.txt", Fingerprint(dataset, ImageFiles(dataset)));
+  WriteFile(folders.results / "plan.mk", PlanMakefile(plan, name, folders));
+}
+
+}  // namespace soslam

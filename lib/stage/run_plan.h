@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "base/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+struct PlanOptions {
+  std::string name;
+  std::string variants;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Text("name", &name, "name of the dataset in results and settings; empty: its folder's");
+    visit.Text("variants", &variants, "names of variants, separated by spaces; empty: all");
+  }
+};
+
+// Resolves the variants that folder "pipelines" defines for the dataset in folder "dataset". Under
+// <results>/<name> it writes, each only when its content changes: plan.mk, see PlanMakefile;
+// shared/<stage>-<key>/settings.json; shared/dataset.txt and shared/images.txt, which list the
+// dataset's files with size and time; and <variant>/stages.txt. Throws InputError when there is no
+// such dataset; SettingsError as MakePlan, and for a path with characters that make cannot handle.
+void RunPlan(const PlanOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_edges.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::EdgesOptions>(
+      argc, argv,
+      {.name = "soslam-edges",
+       .purpose = "Computes edges, distance transform, nearest edges and corners of every image.",
+       .files = {{"dataset", "dataset folder with the images"},
+                 {"sequence", "sequence.json of soslam-import"},
+                 {"output", "edges.h5 to write"}},
+       .example = "soslam-edges --dataset data/room_a --sequence sequence.json --output edges.h5"},
+      &soslam::RunEdges);
+}

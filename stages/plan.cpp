@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_plan.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::PlanOptions>(
+      argc, argv,
+      {.name = "soslam-plan",
+       .purpose =
+           "Works out which stages the variants of a dataset need and writes them as a makefile.",
+       .files = {{"dataset", "dataset folder"},
+                 {"pipelines", "folder with base.json, variants/ and datasets/"},
+                 {"results",
+                  "results folder; writes <results>/<dataset>/plan.mk and what it needs"}},
+       .example = "soslam-plan --dataset data/room_a --pipelines pipelines --results results"},
+      &soslam::RunPlan);
+}
