@@ -21,7 +21,7 @@ namespace soslam {
 // Defined everywhere; it does not tell a body in front of the camera from its reflection behind it.
 class DetectionResidual final : public ceres::SizedCostFunction<4, kPoseSize, kLandmarkSize> {
  public:
-  // `variance` is the paper's Sigma_det, m^4.
+  // `variance` is the paper's Sigma_det, in m^4.
   DetectionResidual(const Camera& camera, const Box& box, double variance);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;

@@ -13,6 +13,8 @@ bool ScaleRatioResidual::Evaluate(double const* const* blocks, double* residuals
   const double* log_half_axes = blocks[0] + kPoseSize;
   const double a_by_c = std::exp(log_half_axes[0] - log_half_axes[2]);
   const double b_by_c = std::exp(log_half_axes[1] - log_half_axes[2]);
+  if (!std::isfinite(a_by_c) || !std::isfinite(b_by_c))
+    return false;  // the solver shortens its step
   residuals[0] = weight_ * (a_by_c - ratio_.x());
   residuals[1] = weight_ * (b_by_c - ratio_.y());
   if (jacobians != nullptr && jacobians[0] != nullptr) {

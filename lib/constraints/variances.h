@@ -1,25 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <numbers>
+
 #include "base/options.h"
 
 namespace soslam {
 
 // The covariances of the paper's constraints, section VI: each squared residual is divided by its
-// own.
+// own. The paper gives the numbers 10, 10, 10 and 1 without units. Read in metres and radians they
+// would let a body miss its box by its own size before it left the ratio prior; docs/paper.md
+// compares readings.
 struct ConstraintVariances {
-  double detection = 10.0;
-  double support_angle = 10.0;
-  double support_tangency = 10.0;
+  double detection_dm4 = 10.0;
+  double support_angle_deg2 = 10.0;
+  double support_tangency_dm4 = 10.0;
   double ratio = 1.0;
 
   void Describe(OptionVisitor& visit) {
-    visit.Real("detection_variance", &detection, {1e-12, 1e12}, "Sigma_det of eq. (4), m^4");
-    visit.Real("support_angle_variance", &support_angle, {1e-12, 1e12}, "Sigma_theta of eq. (8)");
-    visit.Real("support_tangency_variance", &support_tangency, {1e-12, 1e12},
-               "Sigma_pi of eq. (8), m^4");
-    visit.Real("ratio_variance", &ratio, {1e-12, 1e12}, "Sigma_ssc of eq. (11)");
+    visit.Real("detection_variance_dm4", &detection_dm4, {1e-12, 1e12},
+               "Sigma_det of eq. (4), of squared lengths in decimetres");
+    visit.Real("support_angle_variance_deg2", &support_angle_deg2, {1e-12, 1e12},
+               "Sigma_theta of eq. (8), in degrees squared");
+    visit.Real("support_tangency_variance_dm4", &support_tangency_dm4, {1e-12, 1e12},
+               "Sigma_pi of eq. (8), of squared lengths in decimetres");
+    visit.Real("ratio_variance", &ratio, {1e-12, 1e12}, "Sigma_ssc of eq. (11), no unit");
   }
+
+  // In the units of the residuals.
+  double DetectionM4() const { return 1e-4 * detection_dm4; }
+  double SupportAngleRad2() const {
+    return support_angle_deg2 * std::numbers::pi * std::numbers::pi / (180.0 * 180.0);
+  }
+  double SupportTangencyM4() const { return 1e-4 * support_tangency_dm4; }
 };
 
 }  // namespace soslam

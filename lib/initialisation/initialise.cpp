@@ -23,6 +23,15 @@ std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
   return planes;
 }
 
+// The world's x axis, made horizontal (y where x is vertical).
+Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection) {
+  const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
+  const Plane& plane = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+  return frame.world_from_camera.rotation.conjugate() *
+         (UprightRotation(plane.normal, 0.0) * Eigen::Vector3d::UnitX());
+}
+
 }  // namespace
 
 LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
@@ -39,8 +48,10 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
       estimate.failure = "no_ratio_for_label";
       return;
     }
-    SingleFrameSolution solution = InitialiseFromSingleFrame(
-        {sequence.camera, detection.box, detection.plane_in_camera, *ratio}, options);
+    SingleFrameSolution solution =
+        InitialiseFromSingleFrame({sequence.camera, detection.box, detection.plane_in_camera,
+                                   *ratio, WorldAxisInCamera(sequence, detection)},
+                                  options);
     estimate.hypotheses = std::move(solution.hypotheses);
     estimate.failure = std::move(solution.failure);
   });

@@ -15,6 +15,16 @@ enum class InitialisationMethod {
 };
 inline constexpr std::array kInitialisationMethodNames = {"single_frame", "svd"};
 
+// Which of several yaws that explain a box equally well is the estimate. A box cannot tell; these
+// are assumptions about how objects stand.
+enum class TieBreak {
+  kWorldAxes,  // along the world's horizontal axes: furniture stands along walls, and maps mostly
+               // do too
+  kFacingCamera,  // front (or back) towards the camera: what is looked at is mostly seen from the
+                  // front
+};
+inline constexpr std::array kTieBreakNames = {"world_axes", "facing_camera"};
+
 struct InitialiseOptions {
   InitialisationMethod method = InitialisationMethod::kSingleFrame;
   RatioPrior ratio_prior = RatioPrior::kTable;
@@ -22,6 +32,7 @@ struct InitialiseOptions {
   int yaw_starts = 12;
   int max_iterations = 100;
   double tie_edge_px = 1.0;
+  TieBreak tie_break = TieBreak::kWorldAxes;
 
   void Describe(OptionVisitor& visit) {
     visit.Choice("method", &method, kInitialisationMethodNames,
@@ -34,8 +45,11 @@ struct InitialiseOptions {
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations per start");
     visit.Real("tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-               "solutions whose outline fits the box to this rms edge distance explain it equally "
-               "well; among them the one whose front faces the camera most is chosen");
+               "solutions whose outline fits the box as well as the best one's, to this rms edge "
+               "distance, explain it equally well; tie_break chooses among them");
+    visit.Choice("tie_break", &tie_break, kTieBreakNames,
+                 "which yaw is chosen where several explain the box: nearest to the world's axes "
+                 "(modulo quarter turns), or with the front facing the camera most");
   }
 };
 

@@ -17,6 +17,12 @@
 namespace soslam {
 namespace {
 
+// A prior with a = b leaves the yaw open: what yaw the solver ends at is how it stretched the body
+// by a thousandth to meet a box that no round body fits.
+bool IsRound(const Eigen::Vector2d& ratio) {
+  return std::abs(ratio.x() - ratio.y()) <= 1e-6 * ratio.maxCoeff();
+}
+
 // Two solutions closer than this are one, found twice.
 constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
 constexpr double kSameRelativeSize = 1e-2;
@@ -80,12 +86,20 @@ bool IsSame(const Plane& plane, const Landmark& one, const Landmark& other) {
              kSameRelativeSize;
 }
 
-// How much the x axis points along the horizontal line of sight: 1 from the front or the back, 0
-// from the side.
-double Frontality(const Landmark& landmark_in_camera) {
-  const Eigen::Vector3d sight_in_object =
-      landmark_in_camera.frame_from_object.rotation.conjugate() * landmark_in_camera.Centre();
-  return std::abs(sight_in_object.x()) / sight_in_object.head<2>().norm();
+// The direction that the tie break wants the x axis to point along, in the object frame.
+Eigen::Vector2d PreferredFront(const SingleFrameObservation& observation, const Landmark& landmark,
+                               TieBreak tie_break) {
+  const Eigen::Vector3d preferred =
+      tie_break == TieBreak::kWorldAxes ? observation.world_axis_in_camera : landmark.Centre();
+  return (landmark.frame_from_object.rotation.conjugate() * preferred).head<2>().normalized();
+}
+
+// How far a solution is from what the tie break wants: 0 along the preferred direction and, for the
+// world's axes, at right angles to it.
+double Oddity(const SingleFrameObservation& observation, const Landmark& landmark,
+              TieBreak tie_break) {
+  const Eigen::Vector2d front = PreferredFront(observation, landmark, tie_break);
+  return tie_break == TieBreak::kWorldAxes ? std::abs(front.x() * front.y()) : std::abs(front.y());
 }
 
 }  // namespace
@@ -95,11 +109,11 @@ void AddSingleFrameConstraints(const SingleFrameObservation& observation,
                                LandmarkBlock* landmark, ceres::Problem* problem) {
   problem->AddParameterBlock(landmark->data(), kLandmarkSize, NewLandmarkManifold());
   problem->AddResidualBlock(
-      new DetectionResidual(observation.camera, observation.box, variances.detection), nullptr,
+      new DetectionResidual(observation.camera, observation.box, variances.DetectionM4()), nullptr,
       camera->data(), landmark->data());
   problem->AddResidualBlock(
-      new SupportResidual(observation.plane_in_camera, variances.support_angle,
-                          variances.support_tangency),
+      new SupportResidual(observation.plane_in_camera, variances.SupportAngleRad2(),
+                          variances.SupportTangencyM4()),
       nullptr, landmark->data());
   problem->AddResidualBlock(new ScaleRatioResidual(observation.ratio, variances.ratio), nullptr,
                             landmark->data());
@@ -135,7 +149,13 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
     const Plane& plane = observation.plane_in_camera;
     start->frame_from_object.rotation =
         UprightRotation(plane.normal, i * std::numbers::pi / options.yaw_starts);
-    const Hypothesis hypothesis = Solve(observation, options, *start);
+    Hypothesis hypothesis = Solve(observation, options, *start);
+    if (IsRound(observation.ratio)) {
+      const Eigen::Vector2d front =
+          PreferredFront(observation, hypothesis.landmark_in_camera, options.tie_break);
+      hypothesis.landmark_in_camera =
+          Turned(hypothesis.landmark_in_camera, std::atan2(front.y(), front.x()));
+    }
     if (!IsPlausible(observation, hypothesis)) continue;
     const auto same = std::find_if(found.begin(), found.end(), [&](const Hypothesis& other) {
       return IsSame(plane, hypothesis.landmark_in_camera, other.landmark_in_camera);
@@ -148,16 +168,21 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
   }
   if (found.empty()) return {{}, "no_solution"};
 
-  const auto explains = [&](const Hypothesis& hypothesis) {
-    return OutlineEdgeRms(observation.camera, hypothesis.landmark_in_camera, observation.box) <=
-           options.tie_edge_px;
-  };
-  const auto exact_end = std::stable_partition(found.begin(), found.end(), explains);
-  std::sort(found.begin(), exact_end, [](const Hypothesis& one, const Hypothesis& other) {
-    return Frontality(one.landmark_in_camera) > Frontality(other.landmark_in_camera);
-  });
-  std::sort(exact_end, found.end(),
+  std::sort(found.begin(), found.end(),
             [](const Hypothesis& one, const Hypothesis& other) { return one.cost < other.cost; });
+  const auto edge_rms = [&](const Hypothesis& hypothesis) {
+    return OutlineEdgeRms(observation.camera, hypothesis.landmark_in_camera, observation.box);
+  };
+  const double tied_rms = edge_rms(found.front()) + options.tie_edge_px;
+  const auto tied_end = std::stable_partition(
+      found.begin(), found.end(),
+      [&](const Hypothesis& hypothesis) { return edge_rms(hypothesis) <= tied_rms; });
+  const auto oddity = [&](const Hypothesis& hypothesis) {
+    return Oddity(observation, hypothesis.landmark_in_camera, options.tie_break);
+  };
+  std::stable_sort(found.begin(), tied_end, [&](const Hypothesis& one, const Hypothesis& other) {
+    return oddity(one) < oddity(other);
+  });
   return {found, ""};
 }
 

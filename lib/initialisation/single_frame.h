@@ -22,6 +22,8 @@ struct SingleFrameObservation {
   Box box;
   Plane plane_in_camera;  // the support plane
   Eigen::Vector2d ratio;  // (a / c, b / c)
+  // A horizontal axis of the world, for TieBreak::kWorldAxes.
+  Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();
 };
 
 struct SingleFrameSolution {
@@ -30,11 +32,12 @@ struct SingleFrameSolution {
 };
 
 // Single-frame initialisation, eq. (12): Levenberg-Marquardt over detection, support and ratio
-// constraints from starting yaws all around. One box can be explained exactly by several yaws: all
-// distinct solutions are returned. Those that fit the box to options.tie_edge_px come first,
-// ordered by how much the front (x axis, either way) faces the camera, because an object's front is
-// what is mostly looked at; the rest follow by cost. Solutions that are not upright above the plane
-// and in front of the camera are dropped. Failures: support_plane_not_in_view, no_solution.
+// constraints from starting yaws all around. One box can be explained exactly by several yaws,
+// typically two, mirrored in the line of sight: all distinct solutions are returned. Those that fit
+// the box to options.tie_edge_px come first, in the order of options.tie_break; the rest follow by
+// cost. A body with a = b has the same box at every yaw: its solutions are as many as starts.
+// Solutions that are not upright above the plane and in front of the camera are dropped. Failures:
+// support_plane_not_in_view, no_solution.
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options);
 

@@ -47,7 +47,7 @@ class BackEndProblem {
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.max_num_iterations = options_.max_iterations;
     // Residuals are squared metres of centimetres: the defaults would stop far from the optimum.
-    solver.function_tolerance = 1e-9;
+    solver.function_tolerance = 1e-8;
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-10;
     solver.num_threads = 1;  // for identical bytes from run to run
@@ -105,8 +105,8 @@ class BackEndProblem {
     if (options_.support) {
       const Plane& plane =
           input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-      problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.support_angle,
-                                                    options_.variances.support_tangency),
+      problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
+                                                    options_.variances.SupportTangencyM4()),
                                 &loss_, landmark);
       ++summary_.residuals["support"];
     }
@@ -130,7 +130,7 @@ class BackEndProblem {
         continue;
       }
       problem_.AddResidualBlock(new DetectionResidual(input_.sequence.camera, detection.box,
-                                                      options_.variances.detection),
+                                                      options_.variances.DetectionM4()),
                                 &loss_, poses_[static_cast<size_t>(detection.frame_index)].data(),
                                 landmarks_[object_index].data());
       ++summary_.residuals["detection"];

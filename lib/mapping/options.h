@@ -13,14 +13,17 @@ struct OptimiseOptions {
   bool ratio = true;
   bool symmetry = false;
   RatioPrior ratio_prior = RatioPrior::kTable;
-  ConstraintVariances variances;
+  // The paper's numbers read in metres, unlike in one frame: with dozens of boxes to a landmark,
+  // what an ellipsoid cannot fit in them would outvote the one support and the one ratio
+  // constraint.
+  ConstraintVariances variances{.detection_dm4 = 1e5, .support_tangency_dm4 = 1e5};
   double odometry_rotation_sigma_deg = 0.2;
   double odometry_translation_sigma_m = 0.01;
   double symmetry_sigma = 0.05;
   double huber_delta = 1.0;
   SymmetryOptions symmetry_options;
   bool covariances = true;
-  int max_iterations = 100;
+  int max_iterations = 500;
 
   void Describe(OptionVisitor& visit) {
     visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/odometry.h"
+
+#include <gtest/gtest.h>
+
+#include "support/jacobians.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+Vector6d Residuals(const OdometryResidual& residual, const Rigid3d& first, const Rigid3d& second) {
+  const PoseBlock first_block = Pack(first);
+  const PoseBlock second_block = Pack(second);
+  const double* blocks[] = {first_block.data(), second_block.data()};
+  Vector6d values = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
+  return values;
+}
+
+TEST(OdometryResidual, IsZeroForTheMeasuredMotion) {
+  for (int i = 0; i < 100; ++i) {
+    const Rigid3d first = RandomRigid();
+    const Rigid3d first_from_second = RandomRigid();
+    const OdometryResidual residual(first_from_second, 0.01, 0.02);
+    EXPECT_LT(Residuals(residual, first, first * first_from_second).norm(), 1e-9);
+  }
+}
+
+// Measured: no motion. Estimated: 0.3 m along x and a turn of 0.2 rad about y.
+TEST(OdometryResidual, WorkedByHand) {
+  const OdometryResidual residual(Rigid3d(), 0.1, 0.5);
+  const Rigid3d second{ExpRotation({0, 0.2, 0}), {0.3, 0, 0}};
+  Vector6d expected;
+  expected << 0, 2.0, 0, 0.6, 0, 0;
+  EXPECT_LT((Residuals(residual, Rigid3d(), second) - expected).norm(), 1e-12);
+}
+
+// Up to 2.8 rad of error; the rotation vector is not smooth at pi.
+TEST(OdometryResidual, JacobiansAgreeWithNumbers) {
+  for (int i = 0; i < 50; ++i) {
+    const Rigid3d first = RandomRigid();
+    const Rigid3d first_from_second = RandomRigid();
+    const Rigid3d error{
+        ExpRotation(RandomVector(-1, 1).normalized() * RandomUniform(0.0, i < 10 ? 1e-6 : 2.8)),
+        RandomVector(-0.5, 0.5)};
+    const PoseBlock first_block = Pack(first);
+    const PoseBlock second_block = Pack(first * first_from_second * error);
+    ExpectCorrectJacobians(OdometryResidual(first_from_second, 0.5, 0.3),
+                           {first_block.data(), second_block.data()});
+  }
+}
+
+TEST(OdometryResidual, DoesNotChangeWithTheWorld) {
+  const Rigid3d first = RandomRigid();
+  const Rigid3d second = RandomRigid();
+  const Rigid3d motion = RandomRigid(10.0);
+  const OdometryResidual residual(RandomRigid(), 0.5, 0.3);
+  EXPECT_LT(
+      (Residuals(residual, first, second) - Residuals(residual, motion * first, motion * second))
+          .norm(),
+      1e-8);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/scale_ratio.h"
+
+#include <gtest/gtest.h>
+
+#include "support/jacobians.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+Eigen::Vector2d Residuals(const Eigen::Vector2d& ratio, const Eigen::Vector3d& half_axes) {
+  const LandmarkBlock block = Pack(Landmark{RandomRigid(), half_axes});
+  const double* blocks[] = {block.data()};
+  Eigen::Vector2d values = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(ScaleRatioResidual(ratio, 4.0).Evaluate(blocks, values.data(), nullptr));
+  return values;
+}
+
+TEST(ScaleRatioResidual, WorkedByHand) {
+  const Eigen::Vector2d expected((3.0 / 2.0 - 1.0) / 2.0, (5.0 / 2.0 - 3.0) / 2.0);
+  EXPECT_LT((Residuals({1.0, 3.0}, {3.0, 5.0, 2.0}) - expected).norm(), 1e-12);
+}
+
+TEST(ScaleRatioResidual, DoesNotChangeWithSize) {
+  const Eigen::Vector3d half_axes = RandomVector(0.1, 2.0);
+  EXPECT_LT((Residuals({1.2, 0.7}, half_axes) - Residuals({1.2, 0.7}, 37.0 * half_axes)).norm(),
+            1e-12);
+}
+
+TEST(ScaleRatioResidual, JacobiansAgreeWithNumbers) {
+  for (int i = 0; i < 50; ++i) {
+    const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+    ExpectCorrectJacobians(ScaleRatioResidual({1.4, 0.8}, 0.3), {block.data()});
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/symmetry.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "support/jacobians.h"
+#include "support/random_scene.h"
+
+namespace soslam {
+namespace {
+
+constexpr std::array kDifferentiable = {Descriptor::kGrey, Descriptor::kDistanceTransform,
+                                        Descriptor::kNearestEdge3d, Descriptor::kImprovedDt,
+                                        Descriptor::kLinearisedDt};
+
+const Box kWholeImage{0, 0, 639, 479};
+
+// One edge pixel, so that every pixel's nearest edge is the same, and linear maps, which bilinear
+// interpolation reproduces exactly: differences are free of the steps that real maps have.
+SymmetryImage SparseImage() {
+  EdgeMaps maps;
+  maps.grey = cv::Mat(480, 640, CV_8UC1);
+  maps.edges = cv::Mat::zeros(480, 640, CV_8UC1);
+  maps.edges.at<unsigned char>(240, 110) = 255;
+  maps.nearest_edge = cv::Mat(480, 640, CV_16SC2, cv::Scalar(110, 240));
+  maps.distance = cv::Mat(480, 640, CV_32FC1);
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      maps.grey.at<unsigned char>(y, x) = static_cast<unsigned char>(std::min(x, 255));
+      maps.distance.at<float>(y, x) = static_cast<float>(3 * x + 2 * y);
+    }
+  }
+  return SymmetryImage(maps, kWholeImage);
+}
+
+// A landmark around the optical axis whose xz plane roughly contains the camera.
+RandomView FacingView() {
+  RandomView view;
+  const Eigen::Quaterniond facing =
+      Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX())) *
+      Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+  const Landmark landmark_in_camera{{ExpRotation(RandomVector(-0.2, 0.2)) * facing,
+                                     Eigen::Vector3d(0, 0, 3) + RandomVector(-0.1, 0.1)},
+                                    RandomVector(0.6, 0.9)};
+  view.landmark_in_world = Transform(view.world_from_camera, landmark_in_camera);
+  view.Move(Rigid3d());
+  return view;
+}
+
+TEST(SymmetryResidual, JacobiansAgreeWithNumbers) {
+  const auto image = std::make_shared<const SymmetryImage>(SparseImage());
+  Camera camera = TestCamera();
+  camera.cx = 120.0;  // where the grey ramp is
+  for (const Descriptor descriptor : kDifferentiable) {
+    SCOPED_TRACE(kDescriptorNames[static_cast<size_t>(descriptor)]);
+    for (int i = 0; i < 20; ++i) {
+      const RandomView view = FacingView();
+      const Eigen::Vector2d pixel(RandomUniform(100, 140), RandomUniform(215, 270));
+      const SymmetryResidual residual(descriptor, image, camera, pixel, 0.5);
+      ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()},
+                             1e-5);
+    }
+  }
+}
+
+TEST(SymmetryDescriptor, MirrorOfTheMirrorIsThePixel) {
+  const SymmetryImage image = SparseImage();
+  for (int i = 0; i < 50; ++i) {
+    const Landmark landmark = FacingView().LandmarkInCamera();
+    const SymmetryDescriptor descriptor(Descriptor::kDistanceTransform, image, TestCamera(),
+                                        landmark);
+    const Eigen::Vector2d pixel(RandomUniform(290, 350), RandomUniform(215, 270));
+    const auto pair = descriptor.Evaluate(pixel, 0.0, false);
+    ASSERT_TRUE(pair);
+    const auto back = descriptor.Evaluate(pair->mirror_pixel, 0.0, false);
+    ASSERT_TRUE(back);
+    EXPECT_LT((back->mirror_pixel - pixel).norm(), 1e-6);
+    EXPECT_NEAR(back->residual, -pair->residual, 1e-3);  // the distance map is in single precision
+  }
+}
+
+TEST(SymmetryDescriptor, HasNoPairWhereTheRayMissesOrTheMirrorPointIsHidden) {
+  const SymmetryImage image = SparseImage();
+  Landmark landmark = FacingView().LandmarkInCamera();
+  const auto evaluate = [&](const Eigen::Vector2d& pixel, double min_cosine) {
+    return SymmetryDescriptor(Descriptor::kGrey, image, TestCamera(), landmark)
+        .Evaluate(pixel, min_cosine, false);
+  };
+  EXPECT_TRUE(evaluate({318, 242}, 0.2));
+  EXPECT_FALSE(evaluate({5, 5}, 0.2));
+  // Seen from its left side, every mirror point is on the far side.
+  landmark = Turned(landmark, std::numbers::pi / 2);
+  EXPECT_FALSE(evaluate({318, 242}, 0.2));
+}
+
+// Edges and grey values symmetric about the vertical through the principal point, seen exactly from
+// the front: every descriptor is symmetric projection invariant, eq. (15).
+TEST(SymmetryDescriptor, IsZeroOnASymmetricImage) {
+  Camera camera = TestCamera();
+  camera.cx = 319.5;  // the mirror axis of a 640 px wide image
+  cv::Mat grey(480, 640, CV_8UC1, cv::Scalar(90));
+  for (const int side : {-1, 1}) {
+    for (const auto& [x, y] : {std::pair(20, 200), {45, 260}, {60, 225}}) {
+      const double centre = 319.5 + side * (x + 0.5);
+      for (int row = y - 8; row <= y + 8; ++row) {
+        for (int column = 0; column < 640; ++column) {
+          if (std::abs(column - centre) <= 6.0) grey.at<unsigned char>(row, column) = 220;
+        }
+      }
+    }
+  }
+  const SymmetryImage image(ComputeEdgeMaps(grey, EdgesOptions()), kWholeImage);
+  Eigen::Matrix3d axes;  // x towards the camera, z up
+  axes.col(0) = -Eigen::Vector3d::UnitZ();
+  axes.col(2) = -Eigen::Vector3d::UnitY();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.6, 0.7, 0.5}};
+  // Canny breaks ties between two sides of an edge towards one side: half a grey level, a few of
+  // 256 bits, up to 2 px in the image or 12 mm on the surface.
+  constexpr std::array kTolerances = {0.002, 0.15, 2.0, 0.012, 0.012, 0.012};
+  for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
+    const SymmetryDescriptor descriptor(static_cast<Descriptor>(i), image, camera, landmark);
+    int pairs = 0;
+    for (double x = 250.5; x < 390; x += 7) {
+      for (double y = 190; y < 280; y += 7) {
+        const auto pair = descriptor.Evaluate({x, y}, 0.1, false);
+        if (!pair) continue;
+        ++pairs;
+        EXPECT_NEAR(pair->mirror_pixel.x(), 639 - x, 1e-6);
+        EXPECT_LT(std::abs(pair->residual), kTolerances[i]) << kDescriptorNames[i];
+      }
+    }
+    EXPECT_GT(pairs, 100) << kDescriptorNames[i];
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "constraints/parameters.h"
+#include "support/random.h"
+
+namespace soslam {
+
+// A camera anywhere and a landmark in front of it, in the world.
+struct RandomView {
+  Rigid3d world_from_camera = RandomRigid();
+  Landmark landmark_in_world = Transform(world_from_camera, RandomLandmarkInCamera());
+
+  PoseBlock camera_block = Pack(world_from_camera);
+  LandmarkBlock landmark_block = Pack(landmark_in_world);
+
+  Landmark LandmarkInCamera() const {
+    return Transform(world_from_camera.Inverse(), landmark_in_world);
+  }
+  void Move(const Rigid3d& motion) {
+    world_from_camera = motion * world_from_camera;
+    landmark_in_world = Transform(motion, landmark_in_world);
+    camera_block = Pack(world_from_camera);
+    landmark_block = Pack(landmark_in_world);
+  }
+};
+
+}  // namespace soslam
