@@ -4,13 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
+#include <functional>
 #include <new>
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -58,14 +60,7 @@ void RunTest(const TestOptions& options, const StageFiles& files, int threads) {
 
 class CommandLineTest : public testing::Test {
  protected:
-  void SetUp() override {
-    recorded = Recorded();
-    folder_ =
-        fs::temp_directory_path() / ("soslam_command_line_" + std::to_string(::getpid()) + "_" +
-                                     testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { recorded = Recorded(); }
 
   // Runs the stage with its required files and these arguments; the exit code.
   int Run(std::vector<std::string> arguments) {
@@ -91,7 +86,7 @@ class CommandLineTest : public testing::Test {
   }
   std::string WriteSettings(const std::string& text) {
     const fs::path path = folder_ / "settings.json";
-    std::ofstream(path) << text;
+    WriteBytes(path, text);
     return path.string();
   }
   void ExpectOneLineOfError(const std::string& part) {
@@ -100,7 +95,7 @@ class CommandLineTest : public testing::Test {
     EXPECT_EQ(std::count(stderr_.begin(), stderr_.end(), '\n'), 1) << stderr_;
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
   std::string stdout_;
   std::string stderr_;
 };
@@ -223,7 +218,7 @@ TEST_F(CommandLineTest, WritesTimingBesideTheOutput) {
 TEST_F(CommandLineTest, TimingOfAnOutputFolderLiesInIt) {
   fs::create_directories(folder_ / "dataset");
   EXPECT_EQ(RunBare({"--input", "in.json", "--output", (folder_ / "dataset").string()}), 0);
-  EXPECT_TRUE(fs::exists(folder_ / "dataset" / "timing.json"));
+  EXPECT_TRUE(fs::exists(folder_.path() / "dataset" / "timing.json"));
 }
 
 }  // namespace

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The front door. `make help` lists what it can do. What runs for a dataset is worked out by
+# soslam-plan from the settings in pipelines/.
+
+DATASET ?=
+VARIANT ?= all
+DATA_ROOT ?= data
+RESULTS ?= results
+THREADS ?= 0
+BUILD ?= build
+
+MAKEFLAGS += --no-print-directory
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+BIN := $(BUILD)/bin
+STAGES := $(patsubst stages/%.cpp,soslam-%,$(wildcard stages/*.cpp))
+SOURCES = $(shell find lib stages tests -name '*.h' -o -name '*.cpp')
+PLAN = $(RESULTS)/$(DATASET)/plan.mk
+PLAN_COMMAND = $(BIN)/soslam-plan --dataset $(DATA_ROOT)/$(DATASET) --name $(DATASET) \
+  --pipelines pipelines --results $(RESULTS) --variants '$(filter-out all,$(VARIANT))'
+
+one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
+$(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
+ifneq ($(filter run,$(MAKECMDGOALS)),)
+$(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
+endif
+
+.PHONY: help
+help: ## List the targets
+	@echo 'make <target> [NAME=value ...]'
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16 | sed 's/^/  /'
+	@echo 'DATASET=<name of a folder in DATA_ROOT>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
+	@echo 'RESULTS=results, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
+	@echo 'Variants: $(sort $(basename $(notdir $(wildcard pipelines/variants/*.json))))'
+
+.PHONY: demo
+demo: ## Run all variants on the sequence that comes with the project, and print the table
+	@$(MAKE) run DATASET=room_a DATA_ROOT=data VARIANT=all
+	@$(MAKE) tables
+	@echo
+	@echo 'This table: $(RESULTS)/tables.md. Every intermediate result: $(RESULTS)/room_a/<variant>/'
+
+.PHONY: run
+run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date
+	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
+	+@if test -e $(PLAN); then $(MAKE) --output-sync -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
+	else echo '# then the stages that $(PLAN) lists'; fi
+
+.PHONY: tables
+tables: build ## Compare all variants of all datasets in RESULTS
+	@$(BIN)/soslam-report --results $(RESULTS) --output $(RESULTS)/tables.md
+
+.PHONY: status
+status: ## Say for each dataset, variant and stage whether its result is done, stale or missing
+	@BIN=$(BIN) DATA_ROOT=$(DATA_ROOT) RESULTS=$(RESULTS) pipelines/status.sh $(DATASET)
+
+.PHONY: setup
+setup: ## Install the packages that are missing (apt, as root or through sudo)
+	@pipelines/install-packages.sh
+
+.PHONY: build
+build: $(BUILD)/build.ninja ## Build the executables of the stages
+	@cmake --build $(BUILD) --target $(STAGES)
+
+$(BUILD)/build.ninja: | setup
+	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release
+
+.PHONY: test
+test: $(BUILD)/build.ninja ## Build everything and run all tests
+	@cmake --build $(BUILD)
+	@ctest --test-dir $(BUILD) --output-on-failure -j2
+
+.PHONY: format
+format: ## Format the sources
+	@clang-format-14 -i $(SOURCES)
+
+.PHONY: format-check
+format-check: | setup ## Fail when a source is not formatted
+	@clang-format-14 --dry-run -Werror $(SOURCES)
+
+.PHONY: clean
+clean: ## Delete what runs wrote to RESULTS
+	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(RESULTS)/tables.md $(RESULTS)/timing.json
+
+.PHONY: distclean
+distclean: clean ## Delete the build as well
+	@rm -rf $(BUILD)

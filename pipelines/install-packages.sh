@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Installs what is missing of pipelines/packages.txt through apt, as root or through sudo. Says
+# nothing when nothing is missing.
+set -euo pipefail
+
+list="$(dirname "$0")/packages.txt"
+mapfile -t wanted < <(grep -v '^#' "$list")
+
+if ! command -v dpkg-query > /dev/null || ! command -v apt-get > /dev/null; then
+  echo "setup: no apt on this system; the packages in $list must be there under its own names" >&2
+  exit 0
+fi
+
+installed=$(dpkg-query --show --showformat '${Status} ${Package}\n' "${wanted[@]}" 2> /dev/null |
+  sed -n 's/^install ok installed //p')
+mapfile -t missing < <(comm -23 <(printf '%s\n' "${wanted[@]}" | sort) <(sort <<< "$installed"))
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+if [[ $(id -u) -eq 0 ]]; then
+  as_root=()
+elif command -v sudo > /dev/null; then
+  as_root=(sudo)
+else
+  echo "setup: packages are missing, and there is neither root nor sudo. As root, run:" >&2
+  echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+  exit 1
+fi
+
+echo "setup: installing with ${as_root[*]:+sudo }apt-get: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes -qq --no-install-recommends "${missing[@]}"

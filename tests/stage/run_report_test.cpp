@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class RunReportTest : public testing::Test {
+ protected:
+  void Write(const std::string& dataset, const std::string& variant, const std::string& text) {
+    fs::create_directories(results_.path() / dataset / variant);
+    WriteBytes(results_.path() / dataset / variant / "metrics.json", text);
+  }
+  // The report; what is printed is the same as what is written.
+  std::string Report() {
+    testing::internal::CaptureStdout();
+    RunReport({}, {{"results", results_.path()}, {"output", results_ / "tables.md"}}, 1);
+    std::fflush(stdout);
+    const std::string printed = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(printed, FileBytes(results_ / "tables.md"));
+    return printed;
+  }
+  static std::vector<std::string> Cells(const std::string& report, const std::string& variant) {
+    std::istringstream lines(report);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind("| " + variant + " ", 0) != 0) continue;
+      std::vector<std::string> cells;
+      std::istringstream words(line);
+      for (std::string word; words >> word;) {
+        if (word != "|") cells.push_back(word);
+      }
+      return cells;
+    }
+    return {};
+  }
+
+  TemporaryFolder results_;
+};
+
+constexpr const char* kSingleFrame = R"({
+  "summary": {"objects": 8, "observations": 247, "iou_mean": 0.34678, "iou_median": 0.3,
+              "rotation_deg_mean": 7.1016, "yaw_error_deg_mean": 22.874},
+  "first_observation": {"objects": 8, "iou_mean": 0.4053, "rotation_deg_mean": null},
+  "trajectory": null})";
+constexpr const char* kMap = R"({
+  "summary": {"objects": 8, "observations": 247, "iou_mean": 0.5, "rotation_deg_mean": 1,
+              "yaw_error_deg_mean": 2},
+  "first_observation": null,
+  "trajectory": {"ate_rmse_m": 0.01234, "odometry_ate_rmse_m": 0.05678}})";
+
+TEST_F(RunReportTest, RowsHoldTheNumbersOfTheMetrics) {
+  Write("room", "InitP", kSingleFrame);
+  Write("room", "OursP", kMap);
+  const std::string report = Report();
+  EXPECT_THAT(Cells(report, "InitP"),
+              ElementsAre("InitP", "8", "247", "0.347", "0.405", "7.10", "-", "22.87", "-"));
+  EXPECT_THAT(Cells(report, "OursP"),
+              ElementsAre("OursP", "8", "247", "0.500", "-", "1.00", "-", "2.00", "0.0123"));
+  EXPECT_THAT(report, HasSubstr("ATE of the odometry alone: 0.0568 m"));
+}
+
+TEST_F(RunReportTest, PaperVariantsComeFirstThenOthersByName) {
+  for (const char* variant : {"OursPT", "zeta", "alpha", "SVD"}) Write("room", variant, kMap);
+  fs::create_directories(results_.path() / "room" / "shared" / "import-0");
+  const std::string report = Report();
+  size_t last = 0;
+  for (const char* variant :
+       {"SVD", "Init1-1", "InitP ", "InitPT", "Quadric", "OursP ", "OursPT", "alpha", "zeta"}) {
+    const size_t place = report.find(std::string("\n| ") + variant);
+    ASSERT_NE(place, std::string::npos) << variant;
+    EXPECT_GT(place, last) << variant;
+    last = place;
+  }
+  EXPECT_THAT(Cells(report, "Quadric"),
+              ElementsAre("Quadric", "-", "-", "-", "-", "-", "-", "-", "-"));
+  EXPECT_THAT(report, Not(HasSubstr("shared")));
+}
+
+TEST_F(RunReportTest, LinesOfATableAreEquallyLong) {
+  Write("room", "a_variant_with_a_rather_long_name", kMap);
+  std::istringstream lines(Report());
+  std::set<size_t> lengths;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind('|', 0) == 0) lengths.insert(line.size());
+  }
+  EXPECT_EQ(lengths.size(), 1u);
+}
+
+TEST_F(RunReportTest, OneTablePerDatasetWithMetrics) {
+  Write("room", "SVD", kMap);
+  Write("desk", "SVD", kMap);
+  fs::create_directories(results_.path() / "nothing_yet" / "SVD");
+  const std::string report = Report();
+  EXPECT_LT(report.find("## desk"), report.find("## room"));
+  EXPECT_THAT(report, Not(HasSubstr("nothing_yet")));
+}
+
+TEST_F(RunReportTest, DanglingLinkCountsAsMissing) {
+  Write("room", "SVD", kMap);
+  fs::create_directories(results_.path() / "room" / "InitP");
+  fs::create_symlink("../shared/none/metrics.json",
+                     results_.path() / "room" / "InitP" / "metrics.json");
+  EXPECT_EQ(Cells(Report(), "InitP")[3], "-");
+}
+
+TEST_F(RunReportTest, NoMetricsIsNothingUsable) {
+  EXPECT_THROW(Report(), NothingUsableError);
+  testing::internal::GetCapturedStdout();
+  EXPECT_FALSE(fs::exists(results_ / "tables.md"));
+  fs::remove_all(results_.path());
+  EXPECT_THROW(Report(), NothingUsableError);
+  testing::internal::GetCapturedStdout();
+}
+
+TEST_F(RunReportTest, RefusesMetricsThatAreNotNumbers) {
+  Write("room", "SVD", R"({"summary": {"iou_mean": "high"}})");
+  ExpectError<InputError>([&] { Report(); },
+                          {"room/SVD/metrics.json: /summary/iou_mean is \"high\""});
+  testing::internal::GetCapturedStdout();
+}
+
+}  // namespace
+}  // namespace soslam
