@@ -17,14 +17,15 @@ constexpr std::array kDifferentiable = {Descriptor::kGrey, Descriptor::kDistance
 
 const Box kWholeImage{0, 0, 639, 479};
 
-// One edge pixel, so that every pixel's nearest edge is the same, and linear maps, which bilinear
-// interpolation reproduces exactly: differences are free of the steps that real maps have.
+// One edge pixel, off the samples (a distance of 0 is a kink), so that every pixel's nearest edge
+// is the same, and linear maps, which bilinear interpolation reproduces exactly: differences are
+// free of the steps that real maps have.
 SymmetryImage SparseImage() {
   EdgeMaps maps;
   maps.grey = cv::Mat(480, 640, CV_8UC1);
   maps.edges = cv::Mat::zeros(480, 640, CV_8UC1);
-  maps.edges.at<unsigned char>(240, 110) = 255;
-  maps.nearest_edge = cv::Mat(480, 640, CV_16SC2, cv::Scalar(110, 240));
+  maps.edges.at<unsigned char>(200, 110) = 255;
+  maps.nearest_edge = cv::Mat(480, 640, CV_16SC2, cv::Scalar(110, 200));
   maps.distance = cv::Mat(480, 640, CV_32FC1);
   for (int y = 0; y < 480; ++y) {
     for (int x = 0; x < 640; ++x) {
@@ -57,10 +58,9 @@ TEST(SymmetryResidual, JacobiansAgreeWithNumbers) {
     SCOPED_TRACE(kDescriptorNames[static_cast<size_t>(descriptor)]);
     for (int i = 0; i < 20; ++i) {
       const RandomView view = FacingView();
-      const Eigen::Vector2d pixel(RandomUniform(100, 140), RandomUniform(215, 270));
+      const Eigen::Vector2d pixel(RandomUniform(100, 140), RandomUniform(225, 270));
       const SymmetryResidual residual(descriptor, image, camera, pixel, 0.5);
-      ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()},
-                             1e-5);
+      ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
     }
   }
 }

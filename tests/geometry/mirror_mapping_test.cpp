@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/mirror_mapping.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+// The body around the optical axis, so that the sampled pixels hit it.
+Landmark CentralLandmark() {
+  return {{RandomRotation(), Eigen::Vector3d(0, 0, 3) + RandomVector(-0.05, 0.05)},
+          RandomVector(0.5, 0.9)};
+}
+
+Eigen::Vector2d RandomPixel() { return {RandomUniform(295, 345), RandomUniform(220, 265)}; }
+
+Landmark Perturbed(const Landmark& landmark, int parameter, double step) {
+  Eigen::Vector3d deltas[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  deltas[parameter / 3](parameter % 3) = step;
+  Landmark moved = landmark;
+  moved.frame_from_object.rotation = ExpRotation(deltas[0]) * landmark.frame_from_object.rotation;
+  moved.frame_from_object.translation += deltas[1];
+  moved.half_axes = landmark.half_axes.array() * deltas[2].array().exp();
+  return moved;
+}
+
+// Central differences of a point or pixel over the nine parameters; their error is about 1e-9 here.
+template <typename Function>
+void ExpectJacobian(const Eigen::MatrixXd& analytic, const Landmark& landmark,
+                    const Function& function) {
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < kLandmarkDof; ++i) {
+    const Eigen::VectorXd numeric =
+        (function(Perturbed(landmark, i, kStep)) - function(Perturbed(landmark, i, -kStep))) /
+        (2.0 * kStep);
+    EXPECT_LT((analytic.col(i) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << i;
+  }
+}
+
+TEST(VisibleSurface, PointIsOnTheSurfaceOnTheRayAndVisible) {
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = CentralLandmark();
+    const VisibleSurface surface(TestCamera(), landmark);
+    const Eigen::Vector2d pixel = RandomPixel();
+    const auto point = surface.FromPixel(pixel);
+    ASSERT_TRUE(point);
+    EXPECT_NEAR(point->in_object.cwiseQuotient(landmark.half_axes).squaredNorm(), 1.0, 1e-9);
+    EXPECT_LT((surface.ToPixel(*point)->pixel - pixel).norm(), 1e-9);
+    EXPECT_GT(surface.ViewingCosine(*point), 0.0);
+    const double depth =
+        *NearestIntersection(landmark, Eigen::Vector3d::Zero(), TestCamera().Ray(pixel));
+    EXPECT_LT(
+        (landmark.frame_from_object * point->in_object - depth * TestCamera().Ray(pixel)).norm(),
+        1e-9);
+  }
+}
+
+TEST(VisibleSurface, MirrorImageIsTheMirrorOfTheLandmark) {
+  const Landmark landmark = CentralLandmark();
+  const VisibleSurface surface(TestCamera(), landmark);
+  const auto point = surface.FromPixel(RandomPixel());
+  const Eigen::Vector3d in_camera = landmark.frame_from_object * point->in_object;
+  EXPECT_LT((landmark.frame_from_object * surface.MirrorImage(*point).in_object -
+             Mirror(landmark, in_camera))
+                .norm(),
+            1e-12);
+}
+
+TEST(VisibleSurface, TangentPlaneAgreesAtTheContactAndToFirstOrderAround) {
+  for (int i = 0; i < 100; ++i) {
+    const VisibleSurface surface(TestCamera(), CentralLandmark());
+    const Eigen::Vector2d pixel = RandomPixel();
+    const auto contact = surface.FromPixel(pixel);
+    EXPECT_LT(
+        (surface.FromPixelOnTangentPlane(pixel, *contact)->in_object - contact->in_object).norm(),
+        1e-9);
+    const auto error = [&](double distance_px) {
+      const Eigen::Vector2d near = pixel + Eigen::Vector2d(distance_px, 0);
+      return (surface.FromPixelOnTangentPlane(near, *contact)->in_object -
+              surface.FromPixel(near)->in_object)
+          .norm();
+    };
+    // Halving the distance quarters the error, eq. (23); higher orders take the rest.
+    EXPECT_NEAR(error(0.5) / error(1.0), 0.25, 0.02);
+  }
+}
+
+TEST(VisibleSurface, JacobiansAgreeWithNumbers) {
+  for (int i = 0; i < 50; ++i) {
+    const Landmark landmark = CentralLandmark();
+    const Eigen::Vector2d pixel = RandomPixel();
+    const Eigen::Vector2d edge = pixel + Eigen::Vector2d(7, -5);
+    const VisibleSurface surface(TestCamera(), landmark);
+    const auto point = *surface.FromPixel(pixel, true);
+    ExpectJacobian(point.jacobian, landmark, [&](const Landmark& moved) -> Eigen::VectorXd {
+      return VisibleSurface(TestCamera(), moved).FromPixel(pixel)->in_object;
+    });
+    ExpectJacobian(surface.FromPixelOnTangentPlane(edge, point, true)->jacobian, landmark,
+                   [&](const Landmark& moved) -> Eigen::VectorXd {
+                     const VisibleSurface at(TestCamera(), moved);
+                     return at.FromPixelOnTangentPlane(edge, *at.FromPixel(pixel))->in_object;
+                   });
+    ExpectJacobian(surface.ToPixel(surface.MirrorImage(point), true)->jacobian, landmark,
+                   [&](const Landmark& moved) -> Eigen::VectorXd {
+                     const VisibleSurface at(TestCamera(), moved);
+                     return at.ToPixel(at.MirrorImage(*at.FromPixel(pixel)))->pixel;
+                   });
+  }
+}
+
+TEST(VisibleSurface, CameraInsideOrLookingPastSeesNothing) {
+  const Landmark around{Rigid3d(), {1, 1, 1}};
+  EXPECT_FALSE(VisibleSurface(TestCamera(), around).FromPixel({320, 240}));
+  const Landmark behind{{Eigen::Quaterniond::Identity(), {0, 0, -3}}, {1, 1, 1}};
+  EXPECT_FALSE(VisibleSurface(TestCamera(), behind).FromPixel({320, 240}));
+}
+
+}  // namespace
+}  // namespace soslam

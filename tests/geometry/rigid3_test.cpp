@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/rigid3.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/box.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+TEST(Rigid3, ComposesAndInvertsLikeItsMatrix) {
+  for (int i = 0; i < 100; ++i) {
+    const Rigid3d one = RandomRigid();
+    const Rigid3d other = RandomRigid();
+    EXPECT_TRUE((one * other).Matrix().isApprox(one.Matrix() * other.Matrix(), 1e-12));
+    EXPECT_TRUE(one.Inverse().Matrix().isApprox(one.Matrix().inverse(), 1e-9));
+  }
+}
+
+TEST(Rotation, LogIsTheInverseOfExp) {
+  for (const double angle : {0.0, 1e-12, 1e-6, 1e-3, 1.0, 3.0, 3.14159}) {
+    const Eigen::Vector3d vector = angle * (RandomRotation() * Eigen::Vector3d::UnitX());
+    const Eigen::Quaterniond rotation = ExpRotation(vector);
+    EXPECT_LT((LogRotation(rotation) - vector).norm(), 1e-9) << angle;
+    const Eigen::Quaterniond negated(-rotation.coeffs());
+    EXPECT_LT((LogRotation(negated) - vector).norm(), 1e-9) << angle;
+  }
+}
+
+TEST(Plane, KeepsDistancesUnderARigidMotion) {
+  for (int i = 0; i < 100; ++i) {
+    const Plane plane{RandomRotation() * Eigen::Vector3d::UnitZ(), RandomUniform(-2, 2)};
+    const Rigid3d motion = RandomRigid();
+    const Eigen::Vector3d point = RandomVector(-3, 3);
+    EXPECT_NEAR(Transform(motion, plane).SignedDistance(motion * point),
+                plane.SignedDistance(point), 1e-12);
+  }
+}
+
+TEST(Camera, RayAndBackProjectedPlanesUndoProjection) {
+  const Camera camera = TestCamera();
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d point(RandomUniform(-2, 2), RandomUniform(-2, 2), RandomUniform(0.1, 9));
+    const auto pixel = camera.Project(point);
+    ASSERT_TRUE(pixel);
+    EXPECT_LT((point.z() * camera.Ray(*pixel) - point).norm(), 1e-12);
+    EXPECT_NEAR(camera.BackProject({1, 0, -pixel->x()}).SignedDistance(point), 0.0, 1e-12);
+    EXPECT_NEAR(camera.BackProject({0, 1, -pixel->y()}).SignedDistance(point), 0.0, 1e-12);
+  }
+  EXPECT_FALSE(camera.Project({0, 0, 0}));
+  EXPECT_FALSE(camera.Project({1, 1, -1}));
+}
+
+TEST(Box, DistanceToBorderCountsFromThePixelEdges) {
+  EXPECT_EQ(DistanceToBorder({29.5, 100, 300, 300}, 640, 480), 30.0);
+  EXPECT_EQ(DistanceToBorder({100, 100, 609.5, 300}, 640, 480), 30.0);
+  EXPECT_EQ(DistanceToBorder({100, 100, 300, 479.5}, 640, 480), 0.0);
+  EXPECT_EQ(DistanceToBorder({100, -3.5, 300, 300}, 640, 480), -3.0);
+}
+
+}  // namespace
+}  // namespace soslam
