@@ -11,8 +11,9 @@ if ! command -v dpkg-query > /dev/null || ! command -v apt-get > /dev/null; then
   exit 0
 fi
 
-installed=$(dpkg-query --show --showformat '${Status} ${Package}\n' "${wanted[@]}" 2> /dev/null |
-  sed -n 's/^install ok installed //p')
+# dpkg-query fails when it does not know one of them, after listing the others.
+known=$(dpkg-query --show --showformat '${Status} ${Package}\n' "${wanted[@]}" 2> /dev/null || true)
+installed=$(sed -n 's/^install ok installed //p' <<< "$known")
 mapfile -t missing < <(comm -23 <(printf '%s\n' "${wanted[@]}" | sort) <(sort <<< "$installed"))
 [[ ${#missing[@]} -gt 0 ]] || exit 0
 
