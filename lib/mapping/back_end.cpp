@@ -37,12 +37,18 @@ class BackEndProblem {
       if (input.starts[i]) AddLandmark(i);
     }
     AddDetections();
-    for (const auto& [detection_index, image] : input.symmetry_images) {
-      AddSymmetry(input.sequence.detections[static_cast<size_t>(detection_index)], image);
+  }
+
+  // Which surface points see each other in the mirror depends on the landmarks: texture joins in
+  // when boxes and planes have settled.
+  void AddSymmetry() {
+    for (const auto& [detection_index, image] : input_.symmetry_images) {
+      AddSymmetry(input_.sequence.detections[static_cast<size_t>(detection_index)], image);
     }
   }
 
-  SolverSummary Solve() {
+  // Minimises from where the variables are.
+  void Solve() {
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.max_num_iterations = options_.max_iterations;
@@ -62,16 +68,16 @@ class BackEndProblem {
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem_, &summary);
     if (!summary.IsSolutionUsable()) throw NumericalError("back end: " + summary.message);
-    summary_.initial_cost = summary.initial_cost;
+    if (summary_.cost_per_iteration.empty()) summary_.initial_cost = summary.initial_cost;
     summary_.final_cost = summary.final_cost;
-    summary_.iterations = static_cast<int>(summary.iterations.size()) - 1;
+    summary_.iterations += static_cast<int>(summary.iterations.size()) - 1;
     summary_.converged = summary.termination_type == ceres::CONVERGENCE;
     for (const auto& iteration : summary.iterations) {
       summary_.cost_per_iteration.push_back(iteration.cost);
     }
-    return summary_;
   }
 
+  const SolverSummary& summary() const { return summary_; }
   ceres::Problem& problem() { return problem_; }
   const double* LandmarkData(size_t object_index) const { return landmarks_[object_index].data(); }
   const std::vector<PoseBlock>& poses() const { return poses_; }
@@ -138,21 +144,24 @@ class BackEndProblem {
   }
 
   void AddSymmetry(const Detection& detection, const std::shared_ptr<const SymmetryImage>& image) {
-    const auto landmark_in_camera = LandmarkInCamera(detection);
-    if (!landmark_in_camera) return;
+    const auto object_index = static_cast<size_t>(detection.object_index);
+    if (!input_.starts[object_index]) return;
+    PoseBlock& pose = poses_[static_cast<size_t>(detection.frame_index)];
+    LandmarkBlock& landmark = landmarks_[object_index];
+    const Landmark in_camera =
+        Transform(UnpackPose(pose.data()).Inverse(), UnpackLandmark(landmark.data()));
     const Camera& camera = input_.sequence.camera;
     const SymmetryOptions& symmetry = options_.symmetry_options;
-    const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, *landmark_in_camera);
+    const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
     for (const Eigen::Vector2d& pixel :
-         SamplePixels(image->maps, camera, *landmark_in_camera, detection.box, symmetry)) {
+         SamplePixels(image->maps, camera, in_camera, detection.box, symmetry)) {
       if (!at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) {
         ++summary_.gated["symmetry_pair_not_visible"];
         continue;
       }
       problem_.AddResidualBlock(
           new SymmetryResidual(symmetry.descriptor, image, camera, pixel, options_.symmetry_sigma),
-          &loss_, poses_[static_cast<size_t>(detection.frame_index)].data(),
-          landmarks_[static_cast<size_t>(detection.object_index)].data());
+          &loss_, pose.data(), landmark.data());
       ++summary_.residuals["symmetry"];
     }
   }
@@ -213,7 +222,12 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options) {
   BackEndProblem problem(input, options);
   MapEstimate map;
-  map.solver = problem.Solve();
+  problem.Solve();
+  if (!input.symmetry_images.empty()) {
+    problem.AddSymmetry();
+    problem.Solve();
+  }
+  map.solver = problem.summary();
   for (const PoseBlock& pose : problem.poses()) {
     map.world_from_camera.push_back(UnpackPose(pose.data()));
   }
@@ -244,12 +258,13 @@ std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
         sequence.detections[static_cast<size_t>(observation.detection_index)];
     const auto object_index = static_cast<size_t>(detection.object_index);
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-    const Landmark in_world =
-        Transform(frame.world_from_camera, observation.hypotheses.front().landmark_in_camera);
-    const double distance = MedianEdgeRms(sequence, detections[object_index], in_world);
-    if (!starts[object_index] || distance < distances[object_index]) {
-      starts[object_index] = in_world;
-      distances[object_index] = distance;
+    for (const Hypothesis& hypothesis : observation.hypotheses) {
+      const Landmark in_world = Transform(frame.world_from_camera, hypothesis.landmark_in_camera);
+      const double distance = MedianEdgeRms(sequence, detections[object_index], in_world);
+      if (!starts[object_index] || distance < distances[object_index]) {
+        starts[object_index] = in_world;
+        distances[object_index] = distance;
+      }
     }
   }
   for (const ObjectEstimate& object : estimates.objects) {

@@ -32,9 +32,10 @@ struct BackEndInput {
 // Throws NumericalError when the solver has no usable solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options);
 
-// A start for each object: of all landmarks that its observations gave (first hypotheses), the one
-// that fits all of the object's boxes best (median over its observations of OutlineEdgeRms), seen
-// from the frames' estimated poses; or the landmark that was estimated from all observations (SVD).
+// A start for each object: of all hypotheses of all of its observations, the one that fits all of
+// the object's boxes best (median over its observations of OutlineEdgeRms), seen from the frames'
+// estimated poses: other views tell apart what explains one box equally well. Or the landmark that
+// was estimated from all observations (SVD).
 std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
                                                   const LandmarkEstimates& estimates);
 

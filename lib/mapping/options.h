@@ -19,7 +19,7 @@ struct OptimiseOptions {
   ConstraintVariances variances{.detection_dm4 = 1e5, .support_tangency_dm4 = 1e5};
   double odometry_rotation_sigma_deg = 0.2;
   double odometry_translation_sigma_m = 0.01;
-  double symmetry_sigma = 0.05;
+  double symmetry_sigma = 30.0;
   double huber_delta = 1.0;
   SymmetryOptions symmetry_options;
   bool covariances = true;

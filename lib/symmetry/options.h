@@ -23,7 +23,7 @@ struct SymmetryOptions {
   Sampling sampling = Sampling::kCornersAndUniform;
   int max_corners = 150;
   int uniform_columns = 8;
-  double min_viewing_cosine = 0.2;
+  double min_viewing_cosine = 0.4;
   int min_pairs = 8;
   double min_pair_fraction = 0.25;
 
@@ -56,6 +56,8 @@ struct RefineOptions {
   RefinementParameters parameters = RefinementParameters::kYaw;
   double yaw_step_deg = 2.0;
   double yaw_resolution_deg = 0.1;
+  double yaw_range_deg = 10.0;
+  double tie_edge_px = 1.0;
   double symmetry_sigma = 0.05;
   RatioPrior ratio_prior = RatioPrior::kTable;
   ConstraintVariances variances;
@@ -67,6 +69,12 @@ struct RefineOptions {
                  "what the refinement moves: the yaw, or then all nine parameters as well");
     visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
                "grid of the cost over yaw, over half a turn");
+    visit.Real("yaw_range_deg", &yaw_range_deg, {0.0, 90.0},
+               "how far from a yaw that explains the box the refinement looks; 90: all around");
+    visit.Real(
+        "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
+        "all hypotheses whose outline fits the box as well as the best one's, to this rms edge "
+        "distance, are tried; the texture decides");
     visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
                "grid of the search around the best yaw of the coarse grid");
     visit.Real(

@@ -25,6 +25,7 @@ struct Refinement {
   std::shared_ptr<const SymmetryImage> image;
   Landmark start;  // in the camera frame
   std::vector<Eigen::Vector2d> samples;
+  std::optional<BestTurn> best_turn;
 };
 
 double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
@@ -96,19 +97,47 @@ std::optional<double> TrueYaw(const Refinement& refinement) {
   return YawInCamera(refinement, in_camera);
 }
 
-// The yaw step, and the other parameters where asked for. Returns why it could not be done, or "".
+// The hypothesis, among those that explain the box as well as the first, whose texture is most
+// symmetric near its yaw.
+Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection,
+                            const std::vector<Hypothesis>& hypotheses, const EdgeMaps& maps,
+                            const Eigen::Vector2d& ratio, const RefineOptions& options) {
+  const auto image = std::make_shared<const SymmetryImage>(maps, detection.box);
+  const auto edge_rms = [&](const Hypothesis& hypothesis) {
+    return OutlineEdgeRms(sequence.camera, hypothesis.landmark_in_camera, detection.box);
+  };
+  const double tied_rms = edge_rms(hypotheses.front()) + options.tie_edge_px;
+  std::optional<Refinement> chosen;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    if (chosen && !(edge_rms(hypothesis) <= tied_rms)) continue;
+    const Landmark& start = hypothesis.landmark_in_camera;
+    Refinement refinement{
+        sequence,
+        detection,
+        options,
+        {sequence.camera, detection.box, detection.plane_in_camera, ratio},
+        image,
+        start,
+        SamplePixels(maps, sequence.camera, start, detection.box, options.symmetry),
+        std::nullopt};
+    refinement.best_turn =
+        FindBestTurn(*image, sequence.camera, start, refinement.samples, options.symmetry,
+                     options.yaw_range_deg * kRadPerDeg, options.yaw_step_deg * kRadPerDeg,
+                     options.yaw_resolution_deg * kRadPerDeg);
+    if (!chosen || (refinement.best_turn &&
+                    (!chosen->best_turn || refinement.best_turn->cost < chosen->best_turn->cost))) {
+      chosen.emplace(std::move(refinement));
+    }
+  }
+  return *chosen;
+}
+
+// The refined landmark, or why there is none.
 std::string Refine(const Refinement& refinement, Landmark* refined) {
-  const RefineOptions& options = refinement.options;
   if (refinement.image->edge_pixels.empty()) return "no_edges";
-  const YawProfile profile = ComputeYawProfile(
-      *refinement.image, refinement.sequence.camera, refinement.start, refinement.samples,
-      options.symmetry.descriptor, options.symmetry, options.yaw_step_deg * kRadPerDeg);
-  const auto turn =
-      BestTurn(profile, *refinement.image, refinement.sequence.camera, refinement.start,
-               refinement.samples, options.symmetry, options.yaw_resolution_deg * kRadPerDeg);
-  if (!turn) return "too_few_visible_pairs";
-  *refined = Turned(refinement.start, *turn);
-  if (options.parameters == RefinementParameters::kYaw) return "";
+  if (!refinement.best_turn) return "too_few_visible_pairs";
+  *refined = Turned(refinement.start, refinement.best_turn->turn);
+  if (refinement.options.parameters == RefinementParameters::kYaw) return "";
   const auto solved = SolveAll(refinement, *refined);
   if (!solved) return "solver_failed";
   *refined = *solved;
@@ -127,16 +156,9 @@ RefinedObservation RefineObservation(const Sequence& sequence, const Observation
   result.record.object_id = sequence.objects[static_cast<size_t>(detection.object_index)].id;
   if (initial.hypotheses.empty()) return result;
 
-  const Landmark& start = initial.hypotheses.front().landmark_in_camera;
-  const Refinement refinement{
-      sequence,
-      detection,
-      options,
-      {sequence.camera, detection.box, detection.plane_in_camera, ratio},
-      std::make_shared<const SymmetryImage>(maps, detection.box),
-      start,
-      SamplePixels(maps, sequence.camera, start, detection.box, options.symmetry)};
-  Landmark refined = start;
+  const Refinement refinement =
+      ChooseHypothesis(sequence, detection, initial.hypotheses, maps, ratio, options);
+  Landmark refined = refinement.start;
   result.estimate.failure = Refine(refinement, &refined);
   if (result.estimate.failure.empty()) {
     result.estimate.hypotheses.insert(
@@ -145,7 +167,7 @@ RefinedObservation RefineObservation(const Sequence& sequence, const Observation
   }
   RecordCurves(refinement, &result.record);
   RecordPairs(refinement, refined, &result.record);
-  result.record.initial_yaw = YawInCamera(refinement, start);
+  result.record.initial_yaw = YawInCamera(refinement, refinement.start);
   result.record.refined_yaw = YawInCamera(refinement, refined);
   result.record.true_yaw = TrueYaw(refinement);
   return result;

@@ -17,7 +17,7 @@ std::optional<double> SymmetryCost(const SymmetryImage& image, const Camera& cam
   int pairs = 0;
   for (const Eigen::Vector2d& pixel : samples) {
     if (const auto pair = evaluate.Evaluate(pixel, options.min_viewing_cosine, false)) {
-      sum += pair->residual * pair->residual;
+      sum += std::abs(pair->residual);
       ++pairs;
     }
   }
@@ -43,30 +43,23 @@ YawProfile ComputeYawProfile(const SymmetryImage& image, const Camera& camera,
   return profile;
 }
 
-std::optional<double> BestTurn(const YawProfile& profile, const SymmetryImage& image,
-                               const Camera& camera, const Landmark& landmark_in_camera,
-                               const std::vector<Eigen::Vector2d>& samples,
-                               const SymmetryOptions& options, double resolution) {
-  std::optional<double> best;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (size_t i = 0; i < profile.turns.size(); ++i) {
-    if (profile.costs[i] < lowest) {
-      lowest = profile.costs[i];
-      best = profile.turns[i];
+std::optional<BestTurn> FindBestTurn(const SymmetryImage& image, const Camera& camera,
+                                     const Landmark& landmark_in_camera,
+                                     const std::vector<Eigen::Vector2d>& samples,
+                                     const SymmetryOptions& options, double range, double step,
+                                     double resolution) {
+  std::optional<BestTurn> best;
+  const auto search = [&](double centre, double half_width, double spacing) {
+    const int count = static_cast<int>(std::ceil(half_width / spacing));
+    for (int i = -count; i <= count; ++i) {
+      const double turn = centre + half_width * i / std::max(1, count);
+      const auto cost = SymmetryCost(image, camera, Turned(landmark_in_camera, turn), samples,
+                                     options.descriptor, options);
+      if (cost && (!best || *cost < best->cost)) best = BestTurn{turn, *cost};
     }
-  }
-  if (!best) return std::nullopt;
-
-  const double coarse = *best;
-  const double step = std::numbers::pi / static_cast<double>(profile.turns.size());
-  for (double offset = -step; offset <= step; offset += resolution) {
-    const auto cost = SymmetryCost(image, camera, Turned(landmark_in_camera, coarse + offset),
-                                   samples, options.descriptor, options);
-    if (cost && *cost < lowest) {
-      lowest = *cost;
-      best = coarse + offset;
-    }
-  }
+  };
+  search(0.0, range, step);
+  if (best) search(best->turn, std::min(step, range), resolution);
   return best;
 }
 

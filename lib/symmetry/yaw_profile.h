@@ -12,9 +12,11 @@
 
 namespace soslam {
 
-// The symmetry cost of a landmark, eq. (16): the mean over the pairs of visible points of the
-// squared descriptor difference (unit of the descriptor, squared). A mean, because how many pairs
-// are visible depends on the yaw. None when fewer pairs count than the options ask for.
+// The symmetry cost of a landmark, eq. (16) under a robust kernel in its linear part: the mean over
+// the pairs of visible points of the absolute descriptor difference (unit of the descriptor).
+// Absolute, because pairs for which the approximation of eq. (20) fails are few and far off; a
+// mean, because how many pairs are visible depends on the yaw. None when fewer pairs count than the
+// options ask for.
 std::optional<double> SymmetryCost(const SymmetryImage& image, const Camera& camera,
                                    const Landmark& landmark_in_camera,
                                    const std::vector<Eigen::Vector2d>& samples,
@@ -30,11 +32,17 @@ YawProfile ComputeYawProfile(const SymmetryImage& image, const Camera& camera,
                              const std::vector<Eigen::Vector2d>& samples, Descriptor descriptor,
                              const SymmetryOptions& options, double step);
 
-// The turn of lowest cost: the best of the profile, refined on a grid of `resolution` (rad) between
-// its neighbours. None when the whole profile is undefined.
-std::optional<double> BestTurn(const YawProfile& profile, const SymmetryImage& image,
-                               const Camera& camera, const Landmark& landmark_in_camera,
-                               const std::vector<Eigen::Vector2d>& samples,
-                               const SymmetryOptions& options, double resolution);
+// The turn of lowest cost, at most `range` either way: the best of a grid of `step`, refined on a
+// grid of `resolution` between its neighbours (all rad). None when the cost is undefined everywhere
+// there.
+struct BestTurn {
+  double turn;
+  double cost;
+};
+std::optional<BestTurn> FindBestTurn(const SymmetryImage& image, const Camera& camera,
+                                     const Landmark& landmark_in_camera,
+                                     const std::vector<Eigen::Vector2d>& samples,
+                                     const SymmetryOptions& options, double range, double step,
+                                     double resolution);
 
 }  // namespace soslam
