@@ -2,6 +2,7 @@
 #include "stage/command_line.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
@@ -166,6 +167,9 @@ void ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
                  const std::vector<OptionRow>& options,
                  const std::function<void(const StageCall&)>& run) {
+  // Ceres warns through glog of what its results say as well, and what the stages report in their
+  // words.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   CLI::App app(info.purpose, info.name);
   try {
     ParseAndRun(argc, argv, info, &app, options, run);

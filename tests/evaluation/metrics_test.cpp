@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include "evaluation/trajectory_error.h"
+#include "support/random.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+Sequence TestSequence() { return SyntheticSequence(RandomScene(7, 4, 12), false); }
+
+Landmark TrueLandmarkInCamera(const Sequence& sequence, const Detection& detection) {
+  const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
+  const auto& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+  return Transform(frame.true_world_from_camera->Inverse(), object.ground_truth->landmark_in_world);
+}
+
+LandmarkEstimates TrueEstimates(const Sequence& sequence) {
+  LandmarkEstimates estimates;
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    estimates.observations.push_back(
+        {static_cast<int>(i), {{TrueLandmarkInCamera(sequence, sequence.detections[i]), 0.0}}, ""});
+  }
+  return estimates;
+}
+
+TEST(Metrics, ArePerfectForTheTruth) {
+  Sequence sequence = TestSequence();
+  // Single-frame estimates are judged in their camera: drift must not count.
+  for (Frame& frame : sequence.frames) frame.world_from_camera = RandomRigid();
+  const Metrics metrics = EvaluateLandmarks(sequence, TrueEstimates(sequence));
+  EXPECT_EQ(metrics.summary.objects, 4);
+  EXPECT_EQ(metrics.summary.observations, static_cast<int>(sequence.detections.size()));
+  EXPECT_NEAR(*metrics.summary.iou_mean, 1.0, 1e-6);
+  EXPECT_NEAR(*metrics.summary.rotation_deg_mean, 0.0, 1e-4);
+  EXPECT_NEAR(*metrics.summary.yaw_error_deg_mean, 0.0, 1e-4);
+  EXPECT_EQ(metrics.first_observation->observations, 4);
+}
+
+// Means over an object's observations first, then over objects: an object seen often weighs no
+// more.
+TEST(Metrics, AverageOverObservationsThenObjects) {
+  const Sequence sequence = TestSequence();
+  LandmarkEstimates estimates = TrueEstimates(sequence);
+  int failed_object = sequence.detections.front().object_index;
+  int failed = 0;
+  for (auto& observation : estimates.observations) {
+    const auto& detection = sequence.detections[static_cast<size_t>(observation.detection_index)];
+    if (detection.object_index != failed_object) continue;
+    observation.hypotheses.clear();
+    ++failed;
+  }
+  ASSERT_GT(failed, 0);
+  const Metrics metrics = EvaluateLandmarks(sequence, estimates);
+  EXPECT_EQ(metrics.summary.objects, 4);
+  EXPECT_NEAR(*metrics.summary.iou_mean, 0.75, 1e-6);  // no estimate: IoU 0
+  EXPECT_NEAR(*metrics.summary.iou_median, 1.0, 1e-6);
+  EXPECT_NEAR(*metrics.summary.rotation_deg_mean, 0.0, 1e-4);  // over those that have one
+}
+
+TEST(Metrics, ARoundObjectTakesTheEstimatesYawAndHasNoRotation) {
+  GroundTruth truth;
+  truth.landmark_in_world = {Rigid3d(), {0.5, 0.5, 1.0}};
+  truth.rotationally_symmetric = true;
+  const Landmark estimate = Turned(truth.landmark_in_world, 0.7);
+  const LandmarkErrors errors = CompareLandmarks(estimate, truth, truth.landmark_in_world);
+  EXPECT_NEAR(errors.iou, 1.0, 1e-9);
+  EXPECT_FALSE(errors.rotation_deg);
+  EXPECT_FALSE(errors.yaw_deg);
+  truth.rotationally_symmetric = false;
+  EXPECT_LT(CompareLandmarks(estimate, truth, truth.landmark_in_world).iou, 0.9);
+}
+
+TEST(Metrics, AnObjectThatWasNotObservedDoesNotCount) {
+  Sequence sequence = TestSequence();
+  std::erase_if(sequence.detections, [](const auto& d) { return d.object_index == 0; });
+  const Metrics metrics = EvaluateLandmarks(sequence, TrueEstimates(sequence));
+  EXPECT_EQ(metrics.summary.objects, 3);
+  EXPECT_EQ(metrics.objects.size(), 4u);
+  EXPECT_NEAR(*metrics.summary.iou_mean, 1.0, 1e-6);
+}
+
+TEST(AbsoluteTrajectoryError, DoesNotCountARigidMotionOfTheWhole) {
+  std::vector<Rigid3d> estimated;
+  std::vector<std::optional<Rigid3d>> truth;
+  const Rigid3d motion = RandomRigid();
+  for (int i = 0; i < 20; ++i) {
+    truth.push_back(RandomRigid());
+    estimated.push_back(motion * *truth.back());
+  }
+  EXPECT_NEAR(*AbsoluteTrajectoryError(estimated, truth), 0.0, 1e-9);
+  truth[3].reset();
+  truth.resize(20);
+  EXPECT_NEAR(*AbsoluteTrajectoryError(estimated, truth), 0.0, 1e-9);
+}
+
+// Four corners of a square, two opposite ones lifted by 0.1 m and two lowered: no rigid motion
+// helps.
+TEST(AbsoluteTrajectoryError, IsTheRootMeanSquareDistance) {
+  std::vector<Rigid3d> estimated;
+  std::vector<std::optional<Rigid3d>> truth;
+  for (const auto& [x, y] : {std::pair(1, 1), {1, -1}, {-1, -1}, {-1, 1}}) {
+    truth.push_back(Rigid3d{Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, 0)});
+    estimated.push_back({Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, 0.1 * x * y)});
+  }
+  EXPECT_NEAR(*AbsoluteTrajectoryError(estimated, truth), 0.1, 1e-9);
+  truth.resize(2);
+  estimated.resize(2);
+  EXPECT_FALSE(AbsoluteTrajectoryError(estimated, truth));
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/single_frame.h"
+
+#include <gtest/gtest.h>
+
+#include "evaluation/iou.h"
+#include "initialisation/initialise.h"
+#include "support/random.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+// A landmark on a floor 1 m below a camera that looks down a little, at a yaw about the floor's
+// normal.
+struct Standing {
+  explicit Standing(double yaw, const Eigen::Vector3d& half_axes) {
+    const Eigen::Vector3d up = Eigen::Vector3d(0.05, -1.0, -0.3).normalized();
+    observation.camera = TestCamera();
+    observation.plane_in_camera = {up, 1.0};
+    observation.ratio = half_axes.head<2>() / half_axes.z();
+    const Eigen::Vector3d foot = 3.0 * observation.camera.Ray({300, 290});
+    truth.half_axes = half_axes;
+    truth.frame_from_object.rotation = UprightRotation(up, yaw);
+    truth.frame_from_object.translation =
+        foot + (half_axes.z() - observation.plane_in_camera.SignedDistance(foot)) * up;
+    observation.box = *OutlineBox(observation.camera, truth);
+  }
+  SingleFrameObservation observation;
+  Landmark truth;
+};
+
+bool Contains(const std::vector<Hypothesis>& hypotheses, const Landmark& truth) {
+  return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& hypothesis) {
+    return BoxIou(hypothesis.landmark_in_camera, truth) > 0.999;
+  });
+}
+
+TEST(SingleFrame, FindsTheTruthAmongTheYawsThatExplainTheBoxAtAnyYaw) {
+  for (int degrees = -90; degrees < 90; degrees += 6) {
+    const Standing standing(degrees * std::numbers::pi / 180.0, {0.4, 0.2, 0.3});
+    const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+    EXPECT_TRUE(Contains(solution.hypotheses, standing.truth)) << degrees;
+    EXPECT_LE(solution.hypotheses.size(), 4u) << degrees;
+    EXPECT_LT(
+        OutlineEdgeRms(standing.observation.camera, solution.hypotheses.front().landmark_in_camera,
+                       standing.observation.box),
+        1e-3)
+        << degrees;
+  }
+}
+
+TEST(SingleFrame, DoesNotDependOnTheStartingYaws) {
+  const Standing standing(0.5, {0.4, 0.2, 0.3});
+  InitialiseOptions options;
+  const auto few = InitialiseFromSingleFrame(standing.observation, options);
+  options.yaw_starts = 36;
+  const auto many = InitialiseFromSingleFrame(standing.observation, options);
+  ASSERT_EQ(few.hypotheses.size(), many.hypotheses.size());
+  for (size_t i = 0; i < few.hypotheses.size(); ++i) {
+    EXPECT_GT(BoxIou(few.hypotheses[i].landmark_in_camera, many.hypotheses[i].landmark_in_camera),
+              0.9999);
+  }
+}
+
+TEST(SingleFrame, BreaksTiesAsItIsTold) {
+  const Standing standing(0.5, {0.4, 0.2, 0.3});
+  for (const auto& other :
+       InitialiseFromSingleFrame(standing.observation, InitialiseOptions()).hypotheses) {
+    // With the world's axis along a solution's front, that solution comes first.
+    SingleFrameObservation observation = standing.observation;
+    observation.world_axis_in_camera =
+        other.landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitX();
+    const auto solution = InitialiseFromSingleFrame(observation, InitialiseOptions());
+    EXPECT_GT(BoxIou(solution.hypotheses.front().landmark_in_camera, other.landmark_in_camera),
+              0.9999);
+  }
+}
+
+TEST(SingleFrame, ARoundPriorTakesItsYawFromTheTieBreak) {
+  Standing standing(0.5, {0.3, 0.3, 0.4});
+  const Plane& plane = standing.observation.plane_in_camera;
+  standing.observation.world_axis_in_camera =
+      UprightRotation(plane.normal, 1.1) * Eigen::Vector3d::UnitX();
+  const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+  ASSERT_FALSE(solution.hypotheses.empty());
+  const Landmark& found = solution.hypotheses.front().landmark_in_camera;
+  EXPECT_NEAR(YawDifferenceModuloPi(Yaw(plane.normal, found.frame_from_object.rotation), 1.1), 0.0,
+              1e-3);
+  EXPECT_NEAR(found.half_axes.z(), 0.4, 1e-3);
+}
+
+TEST(SingleFrame, SolutionsMoveWithTheCamera) {
+  const Standing standing(0.5, {0.4, 0.2, 0.3});
+  const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+  for (const Hypothesis& hypothesis : solution.hypotheses) {
+    EXPECT_NEAR(
+        SingleFrameCost(standing.observation, ConstraintVariances(), hypothesis.landmark_in_camera),
+        hypothesis.cost, 1e-9);
+  }
+}
+
+TEST(SingleFrame, RefusesAPlaneThatIsNotInView) {
+  Standing standing(0.5, {0.4, 0.2, 0.3});
+  standing.observation.plane_in_camera.offset = -1.0;  // the floor above the camera
+  const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+  EXPECT_TRUE(solution.hypotheses.empty());
+  EXPECT_EQ(solution.failure, "support_plane_not_in_view");
+}
+
+TEST(SingleFrame, SurvivesBoxesThatNoLandmarkExplains) {
+  for (const Box& box : {Box{300, 200, 300.5, 400}, {10, 300, 630, 301}, {300, 300, 301, 301}}) {
+    Standing standing(0.5, {0.4, 0.2, 0.3});
+    standing.observation.box = box;
+    for (const auto& hypothesis :
+         InitialiseFromSingleFrame(standing.observation, InitialiseOptions()).hypotheses) {
+      EXPECT_TRUE(hypothesis.landmark_in_camera.Centre().allFinite());
+      EXPECT_TRUE(hypothesis.landmark_in_camera.half_axes.allFinite());
+    }
+  }
+}
+
+TEST(InitialiseSvd, RecoversExactQuadricsFromExactViews) {
+  const Sequence sequence = SyntheticSequence(RandomScene(3, 5, 20), false);
+  const auto detections = DetectionsByObject(sequence);
+  const LandmarkEstimates estimates = InitialiseSvd(sequence);
+  int recovered = 0;
+  for (const ObjectEstimate& object : estimates.objects) {
+    const auto index = static_cast<size_t>(object.object_index);
+    if (detections[index].size() < 3) {
+      EXPECT_EQ(object.failure, "fewer_than_three_views");
+      continue;
+    }
+    ASSERT_TRUE(object.landmark_in_world);
+    EXPECT_TRUE(object.proper_ellipsoid);
+    EXPECT_TRUE(
+        DualQuadric(*object.landmark_in_world)
+            .isApprox(DualQuadric(sequence.objects[index].ground_truth->landmark_in_world), 1e-5));
+    ++recovered;
+  }
+  EXPECT_GE(recovered, 3);
+}
+
+TEST(InitialiseSingleFrame, NamesWhatItCannotDoAndDoesNotDependOnThreads) {
+  const Sequence sequence = SyntheticSequence(RandomScene(3, 4, 8), false);
+  std::vector<std::optional<Eigen::Vector2d>> ratios =
+      ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
+  const int without = sequence.detections.front().object_index;
+  ratios[static_cast<size_t>(without)].reset();
+  const auto one = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1);
+  const auto two = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 2);
+  for (size_t i = 0; i < one.observations.size(); ++i) {
+    if (sequence.detections[i].object_index == without) {
+      EXPECT_EQ(one.observations[i].failure, "no_ratio_for_label");
+    }
+    ASSERT_EQ(one.observations[i].hypotheses.size(), two.observations[i].hypotheses.size());
+    for (size_t k = 0; k < one.observations[i].hypotheses.size(); ++k) {
+      EXPECT_EQ(one.observations[i].hypotheses[k].cost, two.observations[i].hypotheses[k].cost);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam

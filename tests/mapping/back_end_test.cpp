@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/back_end.h"
+
+#include <gtest/gtest.h>
+
+#include "evaluation/iou.h"
+#include "evaluation/metrics.h"
+#include "initialisation/initialise.h"
+#include "support/random.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+BackEndInput TruthInput(const Sequence& sequence) {
+  BackEndInput input{sequence, {}, {}, {}};
+  for (const Object& object : sequence.objects) {
+    input.starts.push_back(object.ground_truth->landmark_in_world);
+  }
+  input.ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
+  return input;
+}
+
+// Every residual of the paper is zero at the ground truth of a noise-free sequence.
+TEST(BackEnd, CostsNothingAtTheTruth) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
+  OptimiseOptions options;
+  options.variances = {.detection_dm4 = 1e4, .support_angle_deg2 = 1, .support_tangency_dm4 = 1e4};
+  const MapEstimate map = OptimiseMap(TruthInput(sequence), options);
+  EXPECT_LT(map.solver.initial_cost, 1e-18 * 1000);  // residuals below 1e-9, a few hundred of them
+  EXPECT_EQ(map.solver.residuals.at("odometry"), 19);
+  EXPECT_EQ(map.solver.residuals.at("support"), 5);
+  EXPECT_EQ(map.solver.residuals.at("ratio"), 5);
+  EXPECT_EQ(map.solver.residuals.at("detection"), static_cast<int>(sequence.detections.size()));
+}
+
+TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
+  BackEndInput input = TruthInput(sequence);
+  input.starts =
+      ChooseStarts(sequence, InitialiseSingleFrame(sequence, input.ratios, InitialiseOptions(), 1));
+  const Metrics metrics = EvaluateMap(sequence, OptimiseMap(input, OptimiseOptions()));
+  for (const ObjectMetrics& object : metrics.objects) EXPECT_GT(object.iou, 0.99);
+  EXPECT_LT(metrics.trajectory->ate_rmse_m, 1e-6);
+}
+
+TEST(BackEnd, ComesBackFromADisturbedStart) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
+  BackEndInput input = TruthInput(sequence);
+  for (auto& start : input.starts) {
+    *start = Turned(*start, RandomUniform(-0.1, 0.1));
+    start->frame_from_object.translation += RandomVector(-0.05, 0.05);
+    start->half_axes *= RandomUniform(0.9, 1.1);
+  }
+  const Metrics metrics = EvaluateMap(sequence, OptimiseMap(input, OptimiseOptions()));
+  for (const ObjectMetrics& object : metrics.objects) EXPECT_GT(object.iou, 0.99);
+}
+
+// A rigid motion of the whole world moves the result and nothing else.
+TEST(BackEnd, MovesWithTheWorld) {
+  Sequence sequence = SyntheticSequence(RandomScene(5, 4, 10), false);
+  for (Detection& detection : sequence.detections) {
+    detection.box.x_min += RandomUniform(-5, 5);
+    detection.box.y_max += RandomUniform(-5, 5);
+  }
+  BackEndInput input = TruthInput(sequence);
+  const OptimiseOptions options;
+  const MapEstimate before = OptimiseMap(input, options);
+
+  const Rigid3d motion = RandomRigid();
+  Sequence moved = sequence;
+  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
+  for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
+  BackEndInput moved_input{moved, input.starts, input.ratios, {}};
+  for (auto& start : moved_input.starts) *start = Transform(motion, *start);
+  const MapEstimate after = OptimiseMap(moved_input, options);
+
+  EXPECT_NEAR(after.solver.initial_cost, before.solver.initial_cost,
+              1e-9 * before.solver.initial_cost);
+  EXPECT_NEAR(after.solver.final_cost, before.solver.final_cost, 1e-6 * before.solver.final_cost);
+}
+
+TEST(BackEnd, SaysWhichObjectHasNoStart) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
+  BackEndInput input = TruthInput(sequence);
+  input.starts[1].reset();
+  const MapEstimate map = OptimiseMap(input, OptimiseOptions());
+  EXPECT_EQ(map.objects[1].failure, "no_start");
+  EXPECT_FALSE(map.objects[1].landmark_in_world);
+  EXPECT_TRUE(map.objects[0].landmark_in_world);
+  EXPECT_GT(map.solver.gated.at("detection_of_object_without_start"), 0);
+}
+
+TEST(BackEnd, GatesDetectionsOfLandmarksBehindTheCamera) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
+  BackEndInput input = TruthInput(sequence);
+  const Rigid3d& camera = sequence.frames.front().world_from_camera;
+  input.starts[0]->frame_from_object.translation = camera * Eigen::Vector3d(0, 0, -3);
+  const MapEstimate map = OptimiseMap(input, OptimiseOptions());
+  EXPECT_GT(map.solver.gated.at("landmark_behind_camera"), 0);
+}
+
+TEST(BackEnd, OneFrameIsEnough) {
+  Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
+  sequence.frames.resize(1);
+  std::erase_if(sequence.detections, [](const auto& d) { return d.frame_index > 0; });
+  const MapEstimate map = OptimiseMap(TruthInput(sequence), OptimiseOptions());
+  EXPECT_EQ(map.world_from_camera.size(), 1u);
+}
+
+// With one landmark and fixed, sigma-free geometry the covariance is the inverse of J^T J; scaling
+// all variances by k scales it by k.
+TEST(BackEnd, CovariancesScaleWithTheVariances) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 15), false);
+  OptimiseOptions options;
+  const MapEstimate one = OptimiseMap(TruthInput(sequence), options);
+  options.variances.detection_dm4 *= 4;
+  options.variances.support_angle_deg2 *= 4;
+  options.variances.support_tangency_dm4 *= 4;
+  options.variances.ratio *= 4;
+  options.odometry_rotation_sigma_deg *= 2;
+  options.odometry_translation_sigma_m *= 2;
+  const MapEstimate four = OptimiseMap(TruthInput(sequence), options);
+  for (size_t i = 0; i < one.objects.size(); ++i) {
+    ASSERT_TRUE(one.objects[i].covariance);
+    EXPECT_TRUE(four.objects[i].covariance->isApprox(4.0 * *one.objects[i].covariance, 1e-3));
+    const Eigen::SelfAdjointEigenSolver<Covariance9> eigen(*one.objects[i].covariance);
+    EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.0);
+  }
+}
+
+// Other views tell apart what explains one box equally well.
+TEST(ChooseStarts, TakesTheHypothesisThatFitsTheOtherViews) {
+  const Sequence sequence = SyntheticSequence(RandomScene(11, 5, 20), false);
+  const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
+  LandmarkEstimates estimates = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1);
+  for (auto& observation : estimates.observations) {
+    std::reverse(observation.hypotheses.begin(), observation.hypotheses.end());
+  }
+  const auto starts = ChooseStarts(sequence, estimates);
+  for (size_t i = 0; i < starts.size(); ++i) {
+    ASSERT_TRUE(starts[i]);
+    EXPECT_GT(BoxIou(*starts[i], sequence.objects[i].ground_truth->landmark_in_world), 0.99);
+  }
+}
+
+}  // namespace
+}  // namespace soslam

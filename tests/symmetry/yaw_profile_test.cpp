@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "symmetry/yaw_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "support/random.h"
+#include "symmetry/refine.h"
+#include "symmetry/sampling.h"
+#include "synthesis/render.h"
+#include "synthesis/scene_file.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+
+// The shipped scene of textured ellipsoids, seen from within 60 degrees of their fronts.
+class SyntheticTexture : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scene_ = new Scene(ReadScene(SOSLAM_SOURCE_DIR "/pipelines/scenes/ellipsoids.json"));
+    sequence_ = new Sequence(SyntheticSequence(*scene_, false));
+    // Every third frame: rendering takes most of the time of this test.
+    for (size_t i = 0; i < sequence_->frames.size(); i += 3) {
+      cv::Mat grey;
+      cv::cvtColor(RenderFrame(*scene_, sequence_->frames[i].world_from_camera), grey,
+                   cv::COLOR_BGR2GRAY);
+      (*maps_)[static_cast<int>(i)] = ComputeEdgeMaps(grey, EdgesOptions());
+    }
+  }
+  static void TearDownTestSuite() {
+    delete scene_;
+    delete sequence_;
+  }
+
+  static Landmark TrueLandmark(const Detection& detection) {
+    return Transform(
+        sequence_->frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
+        sequence_->objects[static_cast<size_t>(detection.object_index)]
+            .ground_truth->landmark_in_world);
+  }
+
+  static inline Scene* scene_ = nullptr;
+  static inline Sequence* sequence_ = nullptr;
+  static inline std::map<int, EdgeMaps>* maps_ = new std::map<int, EdgeMaps>;
+};
+
+// The cost over yaw of Improved-DT has its global minimum within 3 degrees of the truth on at least
+// 90 % of the observations.
+TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
+  const SymmetryOptions options;
+  int observations = 0;
+  int near_truth = 0;
+  for (const Detection& detection : sequence_->detections) {
+    const auto maps = maps_->find(detection.frame_index);
+    if (maps == maps_->end()) continue;
+    const SymmetryImage image(maps->second, detection.box);
+    const Landmark truth = TrueLandmark(detection);
+    const auto samples =
+        SamplePixels(maps->second, sequence_->camera, truth, detection.box, options);
+    const YawProfile profile = ComputeYawProfile(image, sequence_->camera, truth, samples,
+                                                 Descriptor::kImprovedDt, options, 1.0 * kDegrees);
+    double best = 1e9;
+    double turn = 1e9;
+    for (size_t i = 0; i < profile.turns.size(); ++i) {
+      if (profile.costs[i] < best) {
+        best = profile.costs[i];
+        turn = profile.turns[i];
+      }
+    }
+    ++observations;
+    near_truth += std::abs(turn) <= 3.0 * kDegrees ? 1 : 0;
+  }
+  EXPECT_GE(observations, 30);
+  EXPECT_GE(near_truth, 0.9 * observations) << observations;
+  RecordProperty("observations", observations);
+  RecordProperty("within_3_degrees", near_truth);
+}
+
+TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurves) {
+  std::vector<double> errors;
+  for (size_t i = 0; i < sequence_->detections.size(); ++i) {
+    const Detection& detection = sequence_->detections[i];
+    const auto maps = maps_->find(detection.frame_index);
+    if (maps == maps_->end() || detection.frame_index % 2 == 1) continue;
+    const Landmark truth = TrueLandmark(detection);
+    const Landmark disturbed = Turned(truth, 6.0 * kDegrees);
+    const Eigen::Vector2d ratio = truth.half_axes.head<2>() / truth.half_axes.z();
+    const RefinedObservation refined =
+        RefineObservation(*sequence_, {static_cast<int>(i), {{disturbed, 0.0}}, ""}, maps->second,
+                          ratio, RefineOptions());
+    ASSERT_EQ(refined.estimate.failure, "");
+    ASSERT_EQ(refined.estimate.hypotheses.size(), 2u);
+    EXPECT_EQ(refined.record.cost.size(), kDescriptorNames.size());
+    for (const auto& [name, costs] : refined.record.cost) {
+      EXPECT_EQ(costs.size(), refined.record.yaw.size()) << name;
+    }
+    EXPECT_NEAR(YawDifferenceModuloPi(refined.record.initial_yaw, *refined.record.true_yaw),
+                6.0 * kDegrees, 1e-6);
+    errors.push_back(
+        std::abs(YawDifferenceModuloPi(refined.record.refined_yaw, *refined.record.true_yaw)));
+  }
+  ASSERT_GE(errors.size(), 15u);
+  std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
+                   errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 1.0 * kDegrees);
+}
+
+TEST_F(SyntheticTexture, AllParametersCanBeRefinedTogether) {
+  const Detection& detection = sequence_->detections.front();
+  const Landmark truth = TrueLandmark(detection);
+  RefineOptions options;
+  options.parameters = RefinementParameters::kAll;
+  options.symmetry_sigma = 30.0;
+  const RefinedObservation refined =
+      RefineObservation(*sequence_, {0, {{Turned(truth, 4.0 * kDegrees), 0.0}}, ""}, maps_->at(0),
+                        truth.half_axes.head<2>() / truth.half_axes.z(), options);
+  ASSERT_EQ(refined.estimate.failure, "");
+  const Landmark& landmark = refined.estimate.hypotheses.front().landmark_in_camera;
+  EXPECT_LT((landmark.Centre() - truth.Centre()).norm(), 0.02);
+  EXPECT_NEAR(YawDifferenceModuloPi(refined.record.refined_yaw, *refined.record.true_yaw), 0.0,
+              2.0 * kDegrees);
+}
+
+TEST_F(SyntheticTexture, SamplesLieInTheBoxOnTheLandmark) {
+  const Detection& detection = sequence_->detections.front();
+  const Landmark truth = TrueLandmark(detection);
+  SymmetryOptions options;
+  options.max_corners = 10;
+  options.uniform_columns = 4;
+  const auto count = [&](Sampling sampling) {
+    options.sampling = sampling;
+    const auto samples =
+        SamplePixels(maps_->at(0), sequence_->camera, truth, detection.box, options);
+    for (const auto& pixel : samples) {
+      EXPECT_TRUE(detection.box.Contains(pixel));
+      EXPECT_TRUE(VisibleSurface(sequence_->camera, truth).FromPixel(pixel));
+    }
+    return samples.size();
+  };
+  const size_t corners = count(Sampling::kCorners);
+  const size_t uniform = count(Sampling::kUniform);
+  EXPECT_EQ(corners, 10u);
+  EXPECT_GE(uniform, 8u);  // an ellipse fills pi/4 of its box
+  EXPECT_LE(uniform, 16u);
+  EXPECT_EQ(count(Sampling::kCornersAndUniform), corners + uniform);
+}
+
+TEST(YawProfile, IsUndefinedWithoutEdgesAndSaysSo) {
+  EdgeMaps maps = ComputeEdgeMaps(cv::Mat(480, 640, CV_8UC1, cv::Scalar(100)), EdgesOptions());
+  const Landmark landmark{{UprightRotation({0, -1, 0}, 0.3), {0, 0, 3}}, {0.5, 0.4, 0.6}};
+  Sequence sequence;
+  sequence.camera = TestCamera();
+  sequence.frames.resize(1);
+  sequence.objects.resize(1);
+  sequence.detections = {{0, 0, 1.0, *OutlineBox(TestCamera(), landmark), {{0, -1, 0}, 0.6}}};
+  const RefinedObservation refined =
+      RefineObservation(sequence, {0, {{landmark, 0.0}}, ""}, maps, {0.8, 0.7}, RefineOptions());
+  EXPECT_EQ(refined.estimate.failure, "no_edges");
+  ASSERT_EQ(refined.estimate.hypotheses.size(), 1u);
+  for (const double cost : refined.record.cost.at("improved_dt")) EXPECT_TRUE(std::isnan(cost));
+}
+
+}  // namespace
+}  // namespace soslam
