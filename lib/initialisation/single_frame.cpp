@@ -17,12 +17,6 @@
 namespace soslam {
 namespace {
 
-// A prior with a = b leaves the yaw open: what yaw the solver ends at is how it stretched the body
-// by a thousandth to meet a box that no round body fits.
-bool IsRound(const Eigen::Vector2d& ratio) {
-  return std::abs(ratio.x() - ratio.y()) <= 1e-6 * ratio.maxCoeff();
-}
-
 // Two solutions closer than this are one, found twice.
 constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
 constexpr double kSameRelativeSize = 1e-2;
@@ -102,6 +96,23 @@ double Oddity(const SingleFrameObservation& observation, const Landmark& landmar
   return tie_break == TieBreak::kWorldAxes ? std::abs(front.x() * front.y()) : std::abs(front.y());
 }
 
+bool IsRound(const Eigen::Vector2d& ratio) {
+  return std::abs(ratio.x() - ratio.y()) <= 1e-6 * ratio.maxCoeff();
+}
+
+// A prior with a = b leaves the yaw open. The yaw that the solver ends at is how it stretched the
+// body to meet a box that no round body fits, one way or a quarter turn from it: the body is made
+// round again and takes its yaw from the tie break.
+void MakeRound(const SingleFrameObservation& observation, const InitialiseOptions& options,
+               Hypothesis* hypothesis) {
+  Landmark& landmark = hypothesis->landmark_in_camera;
+  const Eigen::Vector2d front = PreferredFront(observation, landmark, options.tie_break);
+  landmark = Turned(landmark, std::atan2(front.y(), front.x()));
+  landmark.half_axes.head<2>().setConstant(
+      std::sqrt(landmark.half_axes.x() * landmark.half_axes.y()));
+  hypothesis->cost = SingleFrameCost(observation, options.variances, landmark);
+}
+
 }  // namespace
 
 void AddSingleFrameConstraints(const SingleFrameObservation& observation,
@@ -150,12 +161,7 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
     start->frame_from_object.rotation =
         UprightRotation(plane.normal, i * std::numbers::pi / options.yaw_starts);
     Hypothesis hypothesis = Solve(observation, options, *start);
-    if (IsRound(observation.ratio)) {
-      const Eigen::Vector2d front =
-          PreferredFront(observation, hypothesis.landmark_in_camera, options.tie_break);
-      hypothesis.landmark_in_camera =
-          Turned(hypothesis.landmark_in_camera, std::atan2(front.y(), front.x()));
-    }
+    if (IsRound(observation.ratio)) MakeRound(observation, options, &hypothesis);
     if (!IsPlausible(observation, hypothesis)) continue;
     const auto same = std::find_if(found.begin(), found.end(), [&](const Hypothesis& other) {
       return IsSame(plane, hypothesis.landmark_in_camera, other.landmark_in_camera);
