@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "artefact/hdf5_file.h"
+#include "support/small_pipeline.h"
+#include "support/stage_chain.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kFrames = StageChain::kFrames;
+
+using Spoil = std::function<void(const StageChain&)>;
+
+// Replaces the first `from` of a file, which has to be there.
+void Replace(const fs::path& path, const std::string& from, const std::string& to) {
+  std::string bytes = FileBytes(path);
+  const size_t found = bytes.find(from);
+  ASSERT_NE(found, std::string::npos) << path << " has no " << from;
+  WriteBytes(path, bytes.replace(found, from.size(), to));
+}
+
+// Replaces a line, counted from 1, of a file of the dataset.
+Spoil Line(const std::string& file, int number, const std::string& line) {
+  return [=](const StageChain& chain) {
+    std::string text = FileBytes(chain.Dataset(file));
+    size_t begin = 0;
+    for (int i = 1; i < number; ++i) begin = text.find('\n', begin) + 1;
+    const size_t end = text.find('\n', begin);
+    ASSERT_NE(end, std::string::npos) << file << " has no line " << number;
+    WriteBytes(chain.Dataset(file), text.replace(begin, end - begin, line));
+  };
+}
+
+Spoil DatasetText(const std::string& file, const std::string& from, const std::string& to) {
+  return [=](const StageChain& chain) { Replace(chain.Dataset(file), from, to); };
+}
+
+Spoil ArtefactText(const std::string& file, const std::string& from, const std::string& to) {
+  return [=](const StageChain& chain) { Replace(chain.Artefact(file), from, to); };
+}
+
+Spoil Content(const std::string& file, const std::string& content) {
+  return [=](const StageChain& chain) { WriteBytes(chain.Dataset(file), content); };
+}
+
+void Truncate(const fs::path& path) { fs::resize_file(path, fs::file_size(path) / 2); }
+
+// A semantic table that knows these labels only and has no default.
+Spoil TableOf(const std::vector<std::string>& labels) {
+  return [=](const StageChain& chain) {
+    json table = {{"labels", json::object()}};
+    for (const std::string& label : labels) {
+      table["labels"][label] = {{"a_by_c", 1.0}, {"b_by_c", 0.5}, {"source", "the test"}};
+    }
+    WriteBytes(chain.pipeline().SemanticTable(), table.dump());
+  };
+}
+
+void WriteNewerEdges(const StageChain& chain) {
+  Hdf5File file = Hdf5File::Create(chain.Artefact("edges.h5"));
+  file.WriteText("/", "artefact", R"({"kind": "edges", "schema_version": [2, 0]})");
+  file.Close();
+}
+
+// Puts object 2 on a plane above the camera: rays through the lower edges of its boxes meet that
+// plane behind the camera.
+void PutObject2OnACeiling(const StageChain& chain) {
+  json planes = json::parse(FileBytes(chain.Dataset("planes.json")));
+  planes.push_back({{"id", 1}, {"label", "ceiling"}, {"normal", {0, 0, 1}}, {"d", -5}});
+  WriteBytes(chain.Dataset("planes.json"), planes.dump());
+  json objects = json::parse(FileBytes(chain.Dataset("objects.json")));
+  objects[1]["support_plane"] = 1;
+  WriteBytes(chain.Dataset("objects.json"), objects.dump());
+}
+
+struct RefusedInput {
+  std::string name;
+  std::string stage;  // that meets it, after all stages before it ran on the sound dataset
+  Spoil spoil;
+  int exit_code;
+  std::vector<std::string> words;  // of the error
+};
+
+void PrintTo(const RefusedInput& input, std::ostream* stream) { *stream << input.name; }
+
+class RefusedInputTest : public testing::TestWithParam<RefusedInput> {};
+
+TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) {
+  const RefusedInput& bad = GetParam();
+  const StageChain chain;
+  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
+  ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
+  const CommandResult result = chain.Run(bad.stage);
+  EXPECT_EQ(result.exit_code, bad.exit_code);
+  EXPECT_THAT(result.errors, testing::StartsWith("soslam-" + bad.stage + ": error: "));
+  EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  for (const std::string& word : bad.words) EXPECT_THAT(result.errors, HasSubstr(word));
+  EXPECT_FALSE(fs::exists(chain.Artefact(StageChain::OutputOf(bad.stage))));
+}
+
+template <typename Case>
+std::string CaseName(const testing::TestParamInfo<Case>& info) {
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Dataset, RefusedInputTest,
+    testing::Values(
+        RefusedInput{"ImageMissing",
+                     "edges",
+                     [](const StageChain& chain) { fs::remove(chain.Dataset("rgb/000001.png")); },
+                     3,
+                     {"rgb/000001.png"}},
+        RefusedInput{"ImageTruncated",
+                     "edges",
+                     [](const StageChain& chain) { Truncate(chain.Dataset("rgb/000002.png")); },
+                     3,
+                     {"rgb/000002.png"}},
+        RefusedInput{"ImageOfAnotherSize",
+                     "edges",
+                     ArtefactText("sequence.json", "\"width\": 480", "\"width\": 481"),
+                     3,
+                     {".png: is 480 x 360 pixels", "481 x 360"}},
+        RefusedInput{"DetectionsMissing",
+                     "import",
+                     [](const StageChain& chain) { fs::remove(chain.Dataset("detections.csv")); },
+                     3,
+                     {"detections.csv: is missing"}},
+        RefusedInput{
+            "DetectionsEmpty", "import", Content("detections.csv", ""), 3, {"detections.csv"}},
+        RefusedInput{"DetectionsMalformed",
+                     "import",
+                     Line("detections.csv", 3, "0,2,stool,1.0,wide,100,200,200"),
+                     3,
+                     {"detections.csv:3", "x1", "'wide'"}},
+        RefusedInput{"DetectionOfNoFrame",
+                     "import",
+                     Line("detections.csv", 3, "7,2,stool,1.0,100,100,200,200"),
+                     3,
+                     {"detections.csv:3", "frame is 7"}},
+        RefusedInput{"PoseNan",
+                     "import",
+                     Line("odometry.txt", 3, "0.1 nan 0 1 0 0 0 1"),
+                     3,
+                     {"odometry.txt:3", "tx", "'nan'"}},
+        RefusedInput{"ObjectIdTwice",
+                     "import",
+                     DatasetText("objects.json", "\"id\":2", "\"id\":1"),
+                     3,
+                     {"objects.json", "id 1 twice"}},
+        RefusedInput{"PlaneNormalZero",
+                     "import",
+                     DatasetText("planes.json", "[0.0,0.0,1.0]", "[0.0,0.0,0.0]"),
+                     3,
+                     {"planes.json[0]", "normal"}},
+        RefusedInput{"CameraCutShort",
+                     "import",
+                     [](const StageChain& chain) { Truncate(chain.Dataset("camera.json")); },
+                     3,
+                     {"camera.json", "parse error"}},
+        RefusedInput{"NoDetectionLeft",
+                     "import",
+                     Content("detections.csv", "frame,object_id,label,score,x1,y1,x2,y2\n"),
+                     4,
+                     {"no usable detection"}}),
+    CaseName<RefusedInput>);
+
+INSTANTIATE_TEST_SUITE_P(
+    Artefact, RefusedInputTest,
+    testing::Values(
+        RefusedInput{"EdgesTruncated",
+                     "refine",
+                     [](const StageChain& chain) { Truncate(chain.Artefact("edges.h5")); },
+                     3,
+                     {"edges.h5"}},
+        RefusedInput{"SequenceTruncated",
+                     "initialise",
+                     [](const StageChain& chain) { Truncate(chain.Artefact("sequence.json")); },
+                     3,
+                     {"sequence.json", "parse error"}},
+        RefusedInput{"SequenceNewer",
+                     "initialise",
+                     ArtefactText("sequence.json", "\"schema_version\": [\n   1,",
+                                  "\"schema_version\": [\n   2,"),
+                     3,
+                     {"sequence.json", "schema version [2, 0]", "[1, 0]"}},
+        RefusedInput{"EdgesNewer",
+                     "refine",
+                     WriteNewerEdges,
+                     3,
+                     {"edges.h5", "schema version [2, 0]", "[1, 0]"}},
+        RefusedInput{"ArtefactOfAnotherKind",
+                     "optimise",
+                     [](const StageChain& chain) {
+                       fs::copy_file(chain.Artefact("sequence.json"),
+                                     chain.Artefact("refined.json"),
+                                     fs::copy_options::overwrite_existing);
+                     },
+                     3,
+                     {"refined.json", "kind", "landmarks"}},
+        RefusedInput{"TableCutShort",
+                     "initialise",
+                     [](const StageChain& chain) { Truncate(chain.pipeline().SemanticTable()); },
+                     3,
+                     {"semantic_table.json", "parse error"}}),
+    CaseName<RefusedInput>);
+
+struct GatedInput {
+  std::string name;
+  std::string stage;
+  Spoil spoil;          // of the dataset, before any stage
+  std::string counter;  // JSON pointer into what the stage writes
+  int count;
+};
+
+void PrintTo(const GatedInput& input, std::ostream* stream) { *stream << input.name; }
+
+class GatedInputTest : public testing::TestWithParam<GatedInput> {};
+
+TEST_P(GatedInputTest, IsCountedWithItsReason) {
+  const GatedInput& bad = GetParam();
+  const StageChain chain;
+  ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
+  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
+  const CommandResult result = chain.Run(bad.stage);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_LE(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  const json artefact = json::parse(FileBytes(chain.Artefact(StageChain::OutputOf(bad.stage))));
+  EXPECT_EQ(artefact.value(json::json_pointer(bad.counter), 0), bad.count);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Dataset, GatedInputTest,
+    testing::Values(GatedInput{"BoxOutsideTheImage", "import",
+                               Line("detections.csv", 3, "0,2,stool,1.0,900,100,950,200"),
+                               "/rejected_detections/outside_image", 1},
+                    GatedInput{"BoxTwice", "import",
+                               Line("detections.csv", 2, "0,2,stool,0.5,100,100,200,200"),
+                               "/rejected_detections/duplicate", 1},
+                    GatedInput{"TimestampWithoutPose", "import",
+                               Line("odometry.txt", 3, "7.5 0 0 1 0 0 0 1"),
+                               "/rejected_detections/frame_without_pose", 3},
+                    GatedInput{"LabelNotInTheTable", "initialise", TableOf({"chest", "armchair"}),
+                               "/failures/no_ratio_for_label", kFrames},
+                    GatedInput{"PlaneBehindTheCamera", "initialise", PutObject2OnACeiling,
+                               "/failures/support_plane_not_in_view", kFrames}),
+    CaseName<GatedInput>);
+
+TEST(UnusableInputTest, NoLabelInTheTable) {
+  const StageChain chain;
+  TableOf({"sofa"})(chain);
+  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo("initialise"));
+  const CommandResult result = chain.Run("initialise");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, HasSubstr("no_ratio_for_label 12"));
+  EXPECT_FALSE(fs::exists(chain.Artefact("initial.json")));
+}
+
+TEST(UnknownSettingTest, IsRefusedByEveryStage) {
+  const StageChain chain;
+  const fs::path settings = chain.Artefact("settings.json");
+  for (const std::string& stage : StageChain::kStages) {
+    WriteBytes(settings, R"({"colour": "red"})");
+    const CommandResult refused = chain.Run(stage);
+    EXPECT_EQ(refused.exit_code, 2) << stage;
+    EXPECT_THAT(refused.errors, HasSubstr("settings.json"));
+    EXPECT_THAT(refused.errors, HasSubstr("colour"));
+    EXPECT_EQ(std::count(refused.errors.begin(), refused.errors.end(), '\n'), 1) << refused.errors;
+    fs::remove(settings);
+    EXPECT_EQ(chain.Run(stage).exit_code, 0) << stage;
+  }
+}
+
+TEST(UnknownSettingTest, OfThePipelineIsRefusedBeforeAnythingRuns) {
+  const SmallPipeline pipeline(kFrames);
+  pipeline.WriteSettings({{"refine", {{"colour", "red"}}}});
+  const CommandResult result = pipeline.Run("");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, IsEmpty());
+  EXPECT_THAT(result.errors, HasSubstr("datasets/small.json: refine"));
+  EXPECT_THAT(result.errors, HasSubstr("colour"));
+  EXPECT_FALSE(fs::exists(pipeline.Results()));
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <set>
+
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ContainsRegex;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kFrames = 4;
+constexpr const char* kVariants = "InitP InitPT OursPT";
+
+// The stages that a run names, sorted, from lines "[small] evaluate-34ae5c2b86 (InitP)".
+std::multiset<std::string> StagesIn(const std::string& output) {
+  const std::string mark = "[small] ";
+  std::multiset<std::string> stages;
+  for (size_t at = output.find(mark); at != std::string::npos; at = output.find(mark, at)) {
+    at += mark.size();
+    stages.insert(output.substr(at, output.find('-', at) - at));
+  }
+  return stages;
+}
+
+void Touch(const fs::path& path) {
+  fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(1));
+}
+
+class RerunTest : public testing::Test {
+ protected:
+  RerunTest() {
+    EXPECT_THAT(RunStages(), ElementsAre("edges", "evaluate", "evaluate", "evaluate", "import",
+                                         "initialise", "optimise", "refine"));
+  }
+  std::multiset<std::string> RunStages() const {
+    const CommandResult run = pipeline_.Run(kVariants);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return StagesIn(run.output);
+  }
+  std::map<std::string, std::string> Artefacts() const {
+    return SmallPipeline::Artefacts(pipeline_.Results());
+  }
+
+  SmallPipeline pipeline_{kFrames};
+};
+
+TEST_F(RerunTest, NothingToDo) {
+  const CommandResult dry_run = pipeline_.Run(kVariants, {"-n"});
+  EXPECT_EQ(dry_run.exit_code, 0) << dry_run.errors;
+  EXPECT_THAT(StagesIn(dry_run.output), IsEmpty());
+  const auto before = Artefacts();
+  EXPECT_THAT(RunStages(), IsEmpty());
+  EXPECT_TRUE(Artefacts() == before);
+}
+
+TEST_F(RerunTest, TouchedInputWithTheSameContentRerunsItsReaderOnly) {
+  const auto before = Artefacts();
+  Touch(pipeline_.Dataset() / "planes.json");
+  EXPECT_THAT(RunStages(), ElementsAre("import"));
+  Touch(pipeline_.Dataset() / "rgb/000002.png");
+  EXPECT_THAT(RunStages(), ElementsAre("edges"));
+  EXPECT_THAT(RunStages(), IsEmpty());
+  EXPECT_TRUE(Artefacts() == before);
+}
+
+TEST_F(RerunTest, ChangedSettingRerunsWhatDependsOnIt) {
+  const std::string before = FileBytes(pipeline_.Results() / "InitPT/refined.json");
+  nlohmann::json settings = SmallPipeline::TrueRatios();
+  settings["refine"]["yaw_step_deg"] = 5.0;
+  pipeline_.WriteSettings(settings);
+  EXPECT_THAT(RunStages(), ElementsAre("evaluate", "evaluate", "optimise", "refine"));
+  EXPECT_THAT(RunStages(), IsEmpty());
+  EXPECT_NE(FileBytes(pipeline_.Results() / "InitPT/refined.json"), before);
+
+  // Going back finds what was made with the earlier settings.
+  pipeline_.WriteSettings(SmallPipeline::TrueRatios());
+  EXPECT_THAT(RunStages(), IsEmpty());
+  EXPECT_EQ(FileBytes(pipeline_.Results() / "InitPT/refined.json"), before);
+}
+
+TEST_F(RerunTest, ChangedSemanticTableRerunsItsReadersAndWhatDependsOnThem) {
+  nlohmann::json table = nlohmann::json::parse(FileBytes(pipeline_.SemanticTable()));
+  table["description"] = "another";
+  WriteBytes(pipeline_.SemanticTable(), table.dump());
+  EXPECT_THAT(RunStages(),
+              ElementsAre("evaluate", "evaluate", "evaluate", "initialise", "optimise", "refine"));
+}
+
+TEST_F(RerunTest, FailingStageLeavesEarlierResults) {
+  const auto before = Artefacts();
+  const fs::path image = pipeline_.Dataset() / "rgb/000002.png";
+  const std::string whole_image = FileBytes(image);
+  WriteBytes(image, whole_image.substr(0, whole_image.size() / 2));
+  const CommandResult failed = pipeline_.Run(kVariants);
+  EXPECT_NE(failed.exit_code, 0);
+  EXPECT_THAT(failed.output + failed.errors, HasSubstr("000002.png"));
+  EXPECT_TRUE(Artefacts() == before);
+
+  EXPECT_NE(pipeline_.Run(kVariants).exit_code, 0) << "a failure is not forgotten";
+  WriteBytes(image, whole_image);
+  EXPECT_THAT(RunStages(), ElementsAre("edges"));
+  EXPECT_TRUE(Artefacts() == before);
+}
+
+// The project's Makefile, up to what would build the executables.
+TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
+  const SmallPipeline pipeline(kFrames);
+  const fs::path results = pipeline.Folder() / "results";
+  const std::vector<std::string> common = {
+      "-C",
+      SOSLAM_SOURCE_DIR,
+      "DATASET=small",
+      "RESULTS=" + results.string(),
+      "DATA_ROOT=" + pipeline.Dataset().parent_path().string(),
+      "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string()};
+  const auto make = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), common.begin(), common.end());
+    const CommandResult result = RunMake(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.output;
+  };
+
+  EXPECT_THAT(StagesIn(make({"-n", "run", "VARIANT=InitP"})),
+              ElementsAre("evaluate", "import", "initialise"));
+  EXPECT_THAT(make({"status"}), ContainsRegex("InitP +missing +- +missing +- +- +missing"));
+  EXPECT_FALSE(fs::exists(results / "small/InitP/metrics.json"));
+
+  make({"-f", (results / "small/plan.mk").string(), "BIN=" SOSLAM_BINARY_DIR, "InitP"});
+  EXPECT_TRUE(fs::exists(results / "small/InitP/metrics.json"));
+  EXPECT_THAT(StagesIn(make({"-n", "run", "VARIANT=InitP"})), IsEmpty());
+  EXPECT_THAT(make({"status"}), ContainsRegex("InitP +done +- +done +- +- +done"));
+}
+
+}  // namespace
+}  // namespace soslam
