@@ -8,6 +8,7 @@ DATA_ROOT ?= data
 RESULTS ?= results
 THREADS ?= 0
 BUILD ?= build
+CMAKE_ARGS ?=
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -53,7 +54,7 @@ tables: build ## Compare all variants of all datasets in RESULTS
 
 .PHONY: status
 status: ## Say for each dataset, variant and stage whether its result is done, stale or missing
-	@BIN=$(BIN) DATA_ROOT=$(DATA_ROOT) RESULTS=$(RESULTS) pipelines/status.sh $(DATASET)
+	@BIN=$(BIN) RESULTS=$(RESULTS) pipelines/status.sh $(DATASET)
 
 .PHONY: setup
 setup: ## Install the packages that are missing (apt, as root or through sudo)
@@ -64,7 +65,7 @@ build: $(BUILD)/build.ninja ## Build the executables of the stages
 	@cmake --build $(BUILD) --target $(STAGES)
 
 $(BUILD)/build.ninja: | setup
-	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release
+	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 
 .PHONY: test
 test: $(BUILD)/build.ninja ## Build everything and run all tests

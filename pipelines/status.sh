@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # status.sh [DATASET]: for each variant of a dataset (default: of every dataset that ran), whether
-# each of its stages is done, stale or missing. Reads BIN, DATA_ROOT and RESULTS.
+# each of its stages is done, stale or missing. Reads BIN and RESULTS.
 set -euo pipefail
 
 stages=(import edges initialise refine optimise evaluate)
@@ -27,8 +27,10 @@ state_of() {
 
 # Plans anew, so that changed settings count; without the executable the last plan has to do.
 refresh_plan() {
-  [[ -x $BIN/soslam-plan && -d $DATA_ROOT/$1 ]] || return 0
-  "$BIN/soslam-plan" --dataset "$DATA_ROOT/$1" --name "$1" --pipelines pipelines --results "$RESULTS"
+  local folder
+  folder=$(sed -n 's/^dataset := //p' "$RESULTS/$1/plan.mk")
+  [[ -x $BIN/soslam-plan && -d $folder ]] || return 0
+  "$BIN/soslam-plan" --dataset "$folder" --name "$1" --pipelines pipelines --results "$RESULTS"
 }
 
 print_dataset() {

@@ -6,13 +6,27 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <exception>
+#include <vector>
 
 namespace soslam {
 
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   // More threads than cores bring nothing but a warning on stderr.
   tbb::task_arena arena(std::clamp(threads, 1, tbb::info::default_concurrency()));
-  arena.execute([&] { tbb::parallel_for(0, count, work); });
+  std::vector<std::exception_ptr> errors(static_cast<size_t>(std::max(0, count)));
+  arena.execute([&] {
+    tbb::parallel_for(0, count, [&](int i) {
+      try {
+        work(i);
+      } catch (...) {
+        errors[static_cast<size_t>(i)] = std::current_exception();
+      }
+    });
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
 }
 
 }  // namespace soslam

@@ -6,8 +6,8 @@
 namespace soslam {
 
 // Calls work(0) .. work(count - 1), each once, on up to `threads` threads. Work items must not
-// share mutable state, so that results do not depend on the number of threads. The first exception
-// thrown by an item is rethrown here.
+// share mutable state, so that results do not depend on the number of threads. All items are
+// tried; of the exceptions thrown, the one of the lowest index is rethrown here.
 void ParallelFor(int count, int threads, const std::function<void(int)>& work);
 
 }  // namespace soslam

@@ -36,19 +36,21 @@ Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
   return Turned(landmark, std::atan2(front.y(), front.x()));
 }
 
-// A mean over an object's estimates; an object that was seen but has no estimate has IoU 0.
+// Means over an object's observations (or its one landmark of the map): one that gave no landmark
+// has IoU 0 and no angles.
 ObjectMetrics Average(int object_index, int observations,
-                      const std::vector<LandmarkErrors>& errors) {
+                      const std::vector<std::optional<LandmarkErrors>>& errors) {
   ObjectMetrics metrics;
   metrics.object_index = object_index;
   metrics.observations = observations;
-  metrics.estimates = static_cast<int>(errors.size());
   std::vector<double> ious, centres, rotations, yaws;
-  for (const LandmarkErrors& error : errors) {
-    ious.push_back(error.iou);
-    centres.push_back(error.centre_m);
-    if (error.rotation_deg) rotations.push_back(*error.rotation_deg);
-    if (error.yaw_deg) yaws.push_back(*error.yaw_deg);
+  for (const auto& error : errors) {
+    ious.push_back(error ? error->iou : 0.0);
+    if (!error) continue;
+    ++metrics.estimates;
+    centres.push_back(error->centre_m);
+    if (error->rotation_deg) rotations.push_back(*error->rotation_deg);
+    if (error->yaw_deg) yaws.push_back(*error->yaw_deg);
   }
   metrics.iou = Mean(ious).value_or(0.0);
   metrics.centre_m = Mean(centres);
@@ -103,15 +105,6 @@ std::vector<std::optional<LandmarkErrors>> ObservationErrors(const Sequence& seq
   return errors;
 }
 
-ObjectMetrics ObjectMetricsOf(const std::vector<std::optional<LandmarkErrors>>& errors,
-                              int object_index) {
-  std::vector<LandmarkErrors> found;
-  for (const auto& error : errors) {
-    if (error) found.push_back(*error);
-  }
-  return Average(object_index, static_cast<int>(errors.size()), found);
-}
-
 std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
                                            const std::vector<ObjectEstimate>& estimates) {
   const auto detections = DetectionsByObject(sequence);
@@ -119,7 +112,7 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     const auto& truth = sequence.objects[i].ground_truth;
     if (!truth) continue;
-    std::vector<LandmarkErrors> errors;
+    std::vector<std::optional<LandmarkErrors>> errors;
     for (const ObjectEstimate& estimate : estimates) {
       if (estimate.object_index == static_cast<int>(i) && estimate.landmark_in_world) {
         errors.push_back(
@@ -154,15 +147,16 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
   if (estimates.observations.empty()) {
     metrics.objects = EvaluateObjects(sequence, estimates.objects);
   } else {
+    std::vector<ObjectMetrics> first_only;
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       if (!sequence.objects[i].ground_truth) continue;
       const int object_index = static_cast<int>(i);
       auto errors = ObservationErrors(sequence, estimates, object_index);
-      metrics.objects.push_back(ObjectMetricsOf(errors, object_index));
+      metrics.objects.push_back(Average(object_index, static_cast<int>(errors.size()), errors));
       if (!errors.empty()) errors.resize(1);
-      metrics.first_observation_objects.push_back(ObjectMetricsOf(errors, object_index));
+      first_only.push_back(Average(object_index, static_cast<int>(errors.size()), errors));
     }
-    metrics.first_observation = Summarise(metrics.first_observation_objects);
+    metrics.first_observation = Summarise(first_only);
   }
   metrics.summary = Summarise(metrics.objects);
   return metrics;

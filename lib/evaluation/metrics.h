@@ -19,7 +19,7 @@ struct LandmarkErrors {
 };
 
 // One ground-truth object: means over its observations (single frame), or its landmark's errors. An
-// object without estimate counts with IoU 0 and has no angles.
+// observation or object without estimate counts with IoU 0 and has no angles.
 struct ObjectMetrics {
   int object_index = 0;
   int observations = 0;  // detections of the object
@@ -48,8 +48,7 @@ struct Metrics {
   MetricsSummary summary;
   std::vector<ObjectMetrics> objects;
   std::optional<MetricsSummary> first_observation;  // single-frame estimates only
-  std::vector<ObjectMetrics> first_observation_objects;
-  std::optional<TrajectoryMetrics> trajectory;  // maps only, where the true poses are known
+  std::optional<TrajectoryMetrics> trajectory;      // maps only, where the true poses are known
 };
 
 LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,

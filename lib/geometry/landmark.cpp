@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace soslam {
@@ -76,6 +77,14 @@ std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_
   const auto [x_min, x_max] = bounds(0);
   const auto [y_min, y_max] = bounds(1);
   return Box{x_min, y_min, x_max, y_max};
+}
+
+double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box) {
+  const auto outline = OutlineBox(camera, landmark_in_camera);
+  if (!outline) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector4d difference(outline->x_min - box.x_min, outline->y_min - box.y_min,
+                                   outline->x_max - box.x_max, outline->y_max - box.y_max);
+  return 0.5 * difference.norm();
 }
 
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,

@@ -45,6 +45,10 @@ std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d
 // image border. None unless the whole landmark is in front of the camera.
 std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera);
 
+// The root mean square distance (px) between the edges of the landmark's outline box and the box;
+// infinite when the landmark is not wholly in front of the camera.
+double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box);
+
 // Where a ray from `origin` first meets the surface (eq. 13): origin + depth * direction, depth >
 // 0. None when the ray misses the surface, or the surface is behind the origin or around it.
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,

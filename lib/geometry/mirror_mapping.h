@@ -19,16 +19,16 @@ using LandmarkJacobian1 = Eigen::Matrix<double, 1, kLandmarkDof>;
 
 // A landmark seen from a camera, prepared for many rays: P-dagger of eq. (13), its tangent-plane
 // approximation, and the mirror image of eq. (14). Points are in the object frame, where the mirror
-// plane is y = 0. Works for a camera outside the body; AllInFront() of the caller's gating holds.
+// plane is y = 0. A camera inside the body sees nothing of it.
 class VisibleSurface {
  public:
   struct Point {
     Eigen::Vector3d in_object;
-    LandmarkJacobian3 jacobian;  // only when asked for
+    LandmarkJacobian3 jacobian = LandmarkJacobian3::Zero();  // only when asked for
   };
   struct Pixel {
     Eigen::Vector2d pixel;
-    LandmarkJacobian2 jacobian;  // only when asked for
+    LandmarkJacobian2 jacobian = LandmarkJacobian2::Zero();  // only when asked for
   };
 
   VisibleSurface(const Camera& camera, const Landmark& landmark_in_camera);

@@ -50,7 +50,7 @@ Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOpti
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.max_iterations;
-  // Residuals are squared metres of centimetres: the defaults would stop far from the optimum.
+  // A pixel is a residual of 1e-3 or less: the default tolerances would stop far from the optimum.
   solver.function_tolerance = 1e-12;
   solver.gradient_tolerance = 1e-16;
   solver.parameter_tolerance = 1e-10;
@@ -80,37 +80,16 @@ bool IsSame(const Plane& plane, const Landmark& one, const Landmark& other) {
              kSameRelativeSize;
 }
 
-// The direction that the tie break wants the x axis to point along, in the object frame.
-Eigen::Vector2d PreferredFront(const SingleFrameObservation& observation, const Landmark& landmark,
-                               TieBreak tie_break) {
-  const Eigen::Vector3d preferred =
-      tie_break == TieBreak::kWorldAxes ? observation.world_axis_in_camera : landmark.Centre();
-  return (landmark.frame_from_object.rotation.conjugate() * preferred).head<2>().normalized();
-}
-
-// How far a solution is from what the tie break wants: 0 along the preferred direction and, for the
-// world's axes, at right angles to it.
+// How far a solution is from what the tie break wants: 0 with the x axis along the preferred
+// direction and, for the world's axes, at right angles to it.
 double Oddity(const SingleFrameObservation& observation, const Landmark& landmark,
               TieBreak tie_break) {
-  const Eigen::Vector2d front = PreferredFront(observation, landmark, tie_break);
-  return tie_break == TieBreak::kWorldAxes ? std::abs(front.x() * front.y()) : std::abs(front.y());
-}
-
-bool IsRound(const Eigen::Vector2d& ratio) {
-  return std::abs(ratio.x() - ratio.y()) <= 1e-6 * ratio.maxCoeff();
-}
-
-// A prior with a = b leaves the yaw open. The yaw that the solver ends at is how it stretched the
-// body to meet a box that no round body fits, one way or a quarter turn from it: the body is made
-// round again and takes its yaw from the tie break.
-void MakeRound(const SingleFrameObservation& observation, const InitialiseOptions& options,
-               Hypothesis* hypothesis) {
-  Landmark& landmark = hypothesis->landmark_in_camera;
-  const Eigen::Vector2d front = PreferredFront(observation, landmark, options.tie_break);
-  landmark = Turned(landmark, std::atan2(front.y(), front.x()));
-  landmark.half_axes.head<2>().setConstant(
-      std::sqrt(landmark.half_axes.x() * landmark.half_axes.y()));
-  hypothesis->cost = SingleFrameCost(observation, options.variances, landmark);
+  const bool world_axes = tie_break == TieBreak::kWorldAxes;
+  const Eigen::Vector3d& preferred =
+      world_axes ? observation.world_axis_in_camera : landmark.Centre();
+  const Eigen::Vector2d front =
+      (landmark.frame_from_object.rotation.conjugate() * preferred).head<2>().normalized();
+  return world_axes ? std::abs(front.x() * front.y()) : std::abs(front.y());
 }
 
 }  // namespace
@@ -142,14 +121,6 @@ double SingleFrameCost(const SingleFrameObservation& observation,
   return cost;
 }
 
-double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box) {
-  const auto outline = OutlineBox(camera, landmark_in_camera);
-  if (!outline) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector4d difference(outline->x_min - box.x_min, outline->y_min - box.y_min,
-                                   outline->x_max - box.x_max, outline->y_max - box.y_max);
-  return 0.5 * difference.norm();
-}
-
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options) {
   auto start = Start(observation);
@@ -160,8 +131,7 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
     const Plane& plane = observation.plane_in_camera;
     start->frame_from_object.rotation =
         UprightRotation(plane.normal, i * std::numbers::pi / options.yaw_starts);
-    Hypothesis hypothesis = Solve(observation, options, *start);
-    if (IsRound(observation.ratio)) MakeRound(observation, options, &hypothesis);
+    const Hypothesis hypothesis = Solve(observation, options, *start);
     if (!IsPlausible(observation, hypothesis)) continue;
     const auto same = std::find_if(found.begin(), found.end(), [&](const Hypothesis& other) {
       return IsSame(plane, hypothesis.landmark_in_camera, other.landmark_in_camera);

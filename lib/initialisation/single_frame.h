@@ -35,7 +35,7 @@ struct SingleFrameSolution {
 // constraints from starting yaws all around. One box can be explained exactly by several yaws,
 // typically two, mirrored in the line of sight: all distinct solutions are returned. Those that fit
 // the box to options.tie_edge_px come first, in the order of options.tie_break; the rest follow by
-// cost. A body with a = b has the same box at every yaw: its solutions are as many as starts.
+// cost.
 // Solutions that are not upright above the plane and in front of the camera are dropped. Failures:
 // support_plane_not_in_view, no_solution.
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
@@ -50,9 +50,5 @@ void AddSingleFrameConstraints(const SingleFrameObservation& observation,
 // The cost of eq. (12): half the sum of squared weighted residuals.
 double SingleFrameCost(const SingleFrameObservation& observation,
                        const ConstraintVariances& variances, const Landmark& landmark_in_camera);
-
-// The root mean square distance (px) between the edges of the landmark's outline box and the box;
-// infinite when the landmark is not wholly in front of the camera.
-double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box);
 
 }  // namespace soslam

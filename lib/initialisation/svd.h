@@ -11,8 +11,8 @@ namespace soslam {
 
 // The dual quadric tangent to the given planes in the least-squares sense (Nicholson et al. 2019,
 // the paper's baseline SVD): the ten coefficients of Q* solve one homogeneous linear equation per
-// plane. Needs at least 9 planes that determine it, that is, boxes from three views with parallax;
-// none when there are fewer or the solution is not finite.
+// plane. Needs boxes from three views with parallax: none for fewer than 9 planes or a solution
+// that is not finite; without parallax what comes back means nothing.
 std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
     const std::vector<Plane>& planes_in_world);
 

@@ -52,18 +52,19 @@ class BackEndProblem {
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.max_num_iterations = options_.max_iterations;
-    // Residuals are squared metres of centimetres: the defaults would stop far from the optimum.
+    // A pixel is a residual of 1e-3 or less: the default tolerances would stop far from the
+    // optimum.
     solver.function_tolerance = 1e-8;
     solver.gradient_tolerance = 1e-14;
     solver.parameter_tolerance = 1e-10;
     solver.num_threads = 1;  // for identical bytes from run to run
     solver.logging_type = ceres::SILENT;
-    auto* ordering = new ceres::ParameterBlockOrdering;
-    for (size_t i = 0; i < landmarks_.size(); ++i) {
-      if (input_.starts[i]) ordering->AddElementToGroup(landmarks_[i].data(), 0);
-    }
-    for (PoseBlock& pose : poses_) ordering->AddElementToGroup(pose.data(), 1);
-    solver.linear_solver_ordering.reset(ordering);
+    solver.linear_solver_ordering = LandmarkOrdering();
+    // A landmark that its boxes hardly determine would shrink the one trust region of them all:
+    // after every step each is optimised for itself.
+    solver.use_inner_iterations = true;
+    solver.inner_iteration_ordering = LandmarkOrdering();
+    for (PoseBlock& pose : poses_) solver.linear_solver_ordering->AddElementToGroup(pose.data(), 1);
 
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem_, &summary);
@@ -88,6 +89,14 @@ class BackEndProblem {
     ceres::Problem::Options options;
     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     return options;
+  }
+
+  std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering() {
+    auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (size_t i = 0; i < landmarks_.size(); ++i) {
+      if (input_.starts[i]) ordering->AddElementToGroup(landmarks_[i].data(), 0);
+    }
+    return ordering;
   }
 
   void AddOdometry() {
@@ -121,6 +130,8 @@ class BackEndProblem {
           new ScaleRatioResidual(*input_.ratios[object_index], options_.variances.ratio), &loss_,
           landmark);
       ++summary_.residuals["ratio"];
+    } else if (options_.ratio) {
+      ++summary_.gated["object_without_ratio"];
     }
   }
 
@@ -153,17 +164,21 @@ class BackEndProblem {
     const Camera& camera = input_.sequence.camera;
     const SymmetryOptions& symmetry = options_.symmetry_options;
     const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
+    std::vector<Eigen::Vector2d> visible;
     for (const Eigen::Vector2d& pixel :
          SamplePixels(image->maps, camera, in_camera, detection.box, symmetry)) {
-      if (!at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) {
-        ++summary_.gated["symmetry_pair_not_visible"];
-        continue;
-      }
+      if (at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
+    }
+    if (visible.size() < static_cast<size_t>(symmetry.min_pairs)) {
+      ++summary_.gated["symmetry_with_too_few_visible_pairs"];
+      return;
+    }
+    for (const Eigen::Vector2d& pixel : visible) {
       problem_.AddResidualBlock(
           new SymmetryResidual(symmetry.descriptor, image, camera, pixel, options_.symmetry_sigma),
           &loss_, pose.data(), landmark.data());
-      ++summary_.residuals["symmetry"];
     }
+    summary_.residuals["symmetry"] += static_cast<int>(visible.size());
   }
 
   // The start of a detection's landmark as its camera sees it; none unless its centre is in front.

@@ -47,6 +47,8 @@ struct LandmarkEstimates {
   std::vector<ObjectEstimate> objects;
 };
 
+// With symmetry the back end solves twice: initial_cost is the first solve's, without it;
+// final_cost and converged are the second's, with it; the iterations are both.
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;

@@ -18,10 +18,11 @@ namespace soslam {
 // say; the position in Sequence::frames (frame_index) is contiguous and is what code uses.
 struct Frame {
   int id = 0;
-  double timestamp = 0.0;                         // seconds
-  std::string image;                              // path relative to the dataset folder
-  Rigid3d world_from_camera;                      // the pose estimate: odometry
-  std::optional<Rigid3d> true_world_from_camera;  // ground truth, for evaluation only
+  double timestamp = 0.0;     // seconds
+  std::string image;          // path relative to the dataset folder
+  Rigid3d world_from_camera;  // the pose estimate: odometry
+  std::optional<Rigid3d>
+      true_world_from_camera;  // ground truth; see ImportOptions for what else uses it
 };
 
 struct SupportPlane {
@@ -29,7 +30,7 @@ struct SupportPlane {
   Plane plane_in_world;
 };
 
-// Exact values of an object, for evaluation only.
+// Exact values of an object: for evaluation, and as a prior where a setting asks for it.
 struct GroundTruth {
   Landmark landmark_in_world;
   bool mirror_symmetric = true;

@@ -16,7 +16,7 @@ namespace {
 bool IsMap(const std::filesystem::path& path) {
   const nlohmann::json json = ParseJsonFile(path);
   return json.is_object() && json.contains("artefact") && json["artefact"].is_object() &&
-         json["artefact"].value("kind", "") == "map";
+         json["artefact"].contains("kind") && json["artefact"]["kind"] == "map";
 }
 
 }  // namespace

@@ -37,10 +37,11 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
     estimates = InitialiseSvd(sequence);
   } else {
     if (options.ratio_prior == RatioPrior::kTable) {
-      for (const std::string& label : LabelsWithoutEntry(sequence, table)) {
-        fmt::print(stderr, "soslam-initialise: label '{}' is not in {}: {}\n", label,
-                   files.at("table").string(),
-                   table.default_ratio ? "its default is used" : "its objects are left out");
+      const auto labels = LabelsWithoutEntry(sequence, table);
+      if (!labels.empty()) {
+        fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", files.at("table").string(),
+                   fmt::join(labels, ", "),
+                   table.default_ratio ? "its default is used" : "their objects are left out");
       }
     }
     const auto ratios = ObjectRatios(sequence, table, options.ratio_prior);

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
   const bool fit = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) || c >= 0x80 ||
-           std::string("_-./+@,").find(static_cast<char>(c)) != std::string::npos;
+           std::string("_-./+@").find(static_cast<char>(c)) != std::string::npos;
   });
   if (!fit) {
     throw SettingsError(
@@ -37,7 +37,8 @@ void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
 
 void RefuseIfNotAFolderName(const std::string& name, const std::string& what) {
   RefuseIfUnfitForMake(name, what);
-  if (name.find('/') != std::string::npos || name.front() == '.' || name == "shared") {
+  if (name.find('/') != std::string::npos || name.front() == '.' || name == "shared" ||
+      name == "all" || name == "FORCE") {
     throw SettingsError(fmt::format("{} '{}': cannot be the name of a results folder", what, name));
   }
 }

@@ -59,8 +59,8 @@ class Refiner {
       const auto& detection =
           sequence_.detections[static_cast<size_t>(observation->detection_index)];
       const auto& ratio = ratios_[static_cast<size_t>(detection.object_index)];
-      refined[static_cast<size_t>(i)] = RefineObservation(
-          sequence_, *observation, maps, ratio.value_or(Eigen::Vector2d::Ones()), options_);
+      refined[static_cast<size_t>(i)] =
+          RefineObservation(sequence_, *observation, maps, ratio, options_);
     });
     return refined;
   }

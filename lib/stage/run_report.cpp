@@ -70,7 +70,7 @@ std::vector<VariantMetrics> ReadVariants(const fs::path& dataset) {
   for (const std::string& name : names) {
     const fs::path file = dataset / name / "metrics.json";
     const bool exists = fs::exists(file);
-    variants.push_back({name, file.string(), exists ? ParseJsonFile(file) : json()});
+    variants.push_back({name, file.string(), exists ? ReadArtefact(file, "metrics") : json()});
     any = any || exists;
   }
   return any ? variants : std::vector<VariantMetrics>();

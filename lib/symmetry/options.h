@@ -58,7 +58,7 @@ struct RefineOptions {
   double yaw_resolution_deg = 0.1;
   double yaw_range_deg = 10.0;
   double tie_edge_px = 1.0;
-  double symmetry_sigma = 0.05;
+  double symmetry_sigma = 30.0;
   RatioPrior ratio_prior = RatioPrior::kTable;
   ConstraintVariances variances;
   int max_iterations = 50;
@@ -73,7 +73,7 @@ struct RefineOptions {
                "how far from a yaw that explains the box the refinement looks; 90: all around");
     visit.Real(
         "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-        "all hypotheses whose outline fits the box as well as the best one's, to this rms edge "
+        "all hypotheses whose outline fits the box as well as the first one's, to this rms edge "
         "distance, are tried; the texture decides");
     visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
                "grid of the search around the best yaw of the coarse grid");

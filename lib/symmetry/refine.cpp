@@ -147,7 +147,8 @@ std::string Refine(const Refinement& refinement, Landmark* refined) {
 }  // namespace
 
 RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,
-                                     const EdgeMaps& maps, const Eigen::Vector2d& ratio,
+                                     const EdgeMaps& maps,
+                                     const std::optional<Eigen::Vector2d>& ratio,
                                      const RefineOptions& options) {
   const Detection& detection = sequence.detections[static_cast<size_t>(initial.detection_index)];
   RefinedObservation result;
@@ -155,15 +156,18 @@ RefinedObservation RefineObservation(const Sequence& sequence, const Observation
   result.record.frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
   result.record.object_id = sequence.objects[static_cast<size_t>(detection.object_index)].id;
   if (initial.hypotheses.empty()) return result;
+  if (!ratio) {
+    result.estimate.failure = "no_ratio_for_label";
+    return result;
+  }
 
   const Refinement refinement =
-      ChooseHypothesis(sequence, detection, initial.hypotheses, maps, ratio, options);
+      ChooseHypothesis(sequence, detection, initial.hypotheses, maps, *ratio, options);
   Landmark refined = refinement.start;
   result.estimate.failure = Refine(refinement, &refined);
   if (result.estimate.failure.empty()) {
-    result.estimate.hypotheses.insert(
-        result.estimate.hypotheses.begin(),
-        {refined, SingleFrameCost(refinement.observation, options.variances, refined)});
+    result.estimate.hypotheses = {
+        {refined, SingleFrameCost(refinement.observation, options.variances, refined)}};
   }
   RecordCurves(refinement, &result.record);
   RecordPairs(refinement, refined, &result.record);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "image/edge_maps.h"
 #include "model/estimates.h"
@@ -12,7 +13,7 @@
 namespace soslam {
 
 struct RefinedObservation {
-  ObservationEstimate estimate;  // the refined landmark first, then the hypotheses as they were
+  ObservationEstimate estimate;  // the refined landmark in place of the hypotheses
   SymmetryRecord
       record;  // of the landmark that was refined: the cost over yaw of every descriptor, fig. 7
 };
@@ -20,10 +21,11 @@ struct RefinedObservation {
 // Refines the yaw (and, as a setting, all parameters) of an observation's landmark by the symmetry
 // of its texture, section V. Of the hypotheses that explain the box equally well, the one with the
 // lowest symmetry cost near its yaw is taken. Where there is no such cost the estimate stays as it
-// was, with the reason in `failure`: no_edges, too_few_visible_pairs, solver_failed. `ratio` is the
-// (a / c, b / c) of eq. (11).
+// was, with the reason in `failure`: no_edges, too_few_visible_pairs, no_ratio_for_label,
+// solver_failed. `ratio` is the (a / c, b / c) of eq. (11).
 RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,
-                                     const EdgeMaps& maps, const Eigen::Vector2d& ratio,
+                                     const EdgeMaps& maps,
+                                     const std::optional<Eigen::Vector2d>& ratio,
                                      const RefineOptions& options);
 
 }  // namespace soslam

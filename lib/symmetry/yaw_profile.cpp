@@ -52,7 +52,7 @@ std::optional<BestTurn> FindBestTurn(const SymmetryImage& image, const Camera& c
   const auto search = [&](double centre, double half_width, double spacing) {
     const int count = static_cast<int>(std::ceil(half_width / spacing));
     for (int i = -count; i <= count; ++i) {
-      const double turn = centre + half_width * i / std::max(1, count);
+      const double turn = std::clamp(centre + half_width * i / std::max(1, count), -range, range);
       const auto cost = SymmetryCost(image, camera, Turned(landmark_in_camera, turn), samples,
                                      options.descriptor, options);
       if (cost && (!best || *cost < best->cost)) best = BestTurn{turn, *cost};

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
@@ -24,7 +25,9 @@ class RunReportTest : public testing::Test {
  protected:
   void Write(const std::string& dataset, const std::string& variant, const std::string& text) {
     fs::create_directories(results_.path() / dataset / variant);
-    WriteBytes(results_.path() / dataset / variant / "metrics.json", text);
+    nlohmann::json body = {{"dataset", dataset}, {"objects", nlohmann::json::array()}};
+    body.update(nlohmann::json::parse(text));
+    WriteArtefact(results_.path() / dataset / variant / "metrics.json", "metrics", {}, body);
   }
   // The report; what is printed is the same as what is written.
   std::string Report() {
@@ -54,12 +57,16 @@ class RunReportTest : public testing::Test {
 
 constexpr const char* kSingleFrame = R"({
   "summary": {"objects": 8, "observations": 247, "iou_mean": 0.34678, "iou_median": 0.3,
-              "rotation_deg_mean": 7.1016, "yaw_error_deg_mean": 22.874},
-  "first_observation": {"objects": 8, "iou_mean": 0.4053, "rotation_deg_mean": null},
+              "rotation_deg_mean": 7.1016, "rotation_deg_median": 6, "yaw_error_deg_mean": 22.874,
+              "yaw_error_deg_median": 20},
+  "first_observation": {"objects": 8, "observations": 8, "iou_mean": 0.4053, "iou_median": 0.4,
+              "rotation_deg_mean": null, "rotation_deg_median": null, "yaw_error_deg_mean": null,
+              "yaw_error_deg_median": null},
   "trajectory": null})";
 constexpr const char* kMap = R"({
-  "summary": {"objects": 8, "observations": 247, "iou_mean": 0.5, "rotation_deg_mean": 1,
-              "yaw_error_deg_mean": 2},
+  "summary": {"objects": 8, "observations": 247, "iou_mean": 0.5, "iou_median": 0.5,
+              "rotation_deg_mean": 1, "rotation_deg_median": 1, "yaw_error_deg_mean": 2,
+              "yaw_error_deg_median": 2},
   "first_observation": null,
   "trajectory": {"ate_rmse_m": 0.01234, "odometry_ate_rmse_m": 0.05678}})";
 
@@ -128,9 +135,12 @@ TEST_F(RunReportTest, NoMetricsIsNothingUsable) {
 }
 
 TEST_F(RunReportTest, RefusesMetricsThatAreNotNumbers) {
-  Write("room", "SVD", R"({"summary": {"iou_mean": "high"}})");
-  ExpectError<InputError>([&] { Report(); },
-                          {"room/SVD/metrics.json: /summary/iou_mean is \"high\""});
+  Write("room", "SVD", kMap);
+  const fs::path file = results_.path() / "room" / "SVD" / "metrics.json";
+  nlohmann::json metrics = ParseJsonFile(file);
+  metrics["summary"]["iou_mean"] = "high";
+  WriteBytes(file, metrics.dump());
+  ExpectError<InputError>([&] { Report(); }, {"room/SVD/metrics.json", "iou_mean"});
   testing::internal::GetCapturedStdout();
 }
 
