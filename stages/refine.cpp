@@ -3,7 +3,7 @@
 #include "stage/run_refine.h"
 
 int main(int argc, char** argv) {
-  return soslam::StageMain<soslam::RefineOptions>(
+  return soslam::StageMain<soslam::OrientationOptions>(
       argc, argv,
       {.name = "soslam-refine",
        .purpose = "Refines the yaw of each landmark by the symmetry of its texture.",

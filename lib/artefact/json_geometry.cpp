@@ -72,11 +72,13 @@ void from_json(const json& json, Camera& camera) {
 
 json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
   return {{frame + "_from_object", landmark.frame_from_object},
-          {"half_axes", VectorToJson(landmark.half_axes)}};
+          {"half_axes", VectorToJson(landmark.half_axes)},
+          {"shape_exponent", landmark.shape_exponent}};
 }
 
 Landmark LandmarkFromJson(const json& json, const std::string& frame) {
-  return {json.at(frame + "_from_object").get<Rigid3d>(), VectorFromJson(json.at("half_axes"))};
+  return {json.at(frame + "_from_object").get<Rigid3d>(), VectorFromJson(json.at("half_axes")),
+          json.value("shape_exponent", kEllipsoidExponent)};
 }
 
 }  // namespace soslam

@@ -35,7 +35,8 @@ void from_json(const nlohmann::json& json, Box& box);
 void to_json(nlohmann::json& json, const Camera& camera);
 void from_json(const nlohmann::json& json, Camera& camera);
 
-// {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres}; `frame` is "world" or "camera".
+// {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2};
+// `frame` is "world" or "camera". Schema version 1.0 had no shape exponent: all were ellipsoids.
 nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);
 Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
 

@@ -7,8 +7,15 @@
 namespace soslam {
 namespace {
 
-Eigen::Vector2d Ratio(const nlohmann::json& entry) {
-  return {entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()};
+// Of entries that state a ratio only; the schema says the same.
+constexpr double kDefaultLogSigma = 0.3;
+constexpr double kDefaultShapeExponent = 1.1;
+
+ShapePrior Prior(const nlohmann::json& entry) {
+  return {{entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()},
+          {entry.value("a_by_c_log_sigma", kDefaultLogSigma),
+           entry.value("b_by_c_log_sigma", kDefaultLogSigma)},
+          entry.value("shape_exponent", kDefaultShapeExponent)};
 }
 
 }  // namespace
@@ -17,8 +24,8 @@ SemanticTable ReadSemanticTable(const std::filesystem::path& path) {
   const nlohmann::json json = ParseJsonFile(path);
   ValidateAgainstSchema(json, "semantic_table", path.string());
   SemanticTable table;
-  for (const auto& item : json.at("labels").items()) table.ratios[item.key()] = Ratio(item.value());
-  if (json.contains("default")) table.default_ratio = Ratio(json.at("default"));
+  for (const auto& item : json.at("labels").items()) table.priors[item.key()] = Prior(item.value());
+  if (json.contains("default")) table.default_prior = Prior(json.at("default"));
   return table;
 }
 

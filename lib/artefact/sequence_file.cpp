@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "artefact/ids.h"
@@ -13,6 +15,9 @@ namespace soslam {
 namespace {
 
 using nlohmann::json;
+
+// In the order of Detection::is_bound.
+constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
 
 json FrameToJson(const Frame& frame) {
   const auto& truth = frame.true_world_from_camera;
@@ -64,19 +69,42 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   return object;
 }
 
+json BoundsToJson(const std::array<bool, 4>& is_bound) {
+  json names = json::array();
+  for (size_t i = 0; i < is_bound.size(); ++i) {
+    if (is_bound[i]) names.push_back(kEdgeNames[i]);
+  }
+  return names;
+}
+
+std::array<bool, 4> BoundsFromJson(const json& names) {
+  std::array<bool, 4> is_bound;
+  std::transform(kEdgeNames.begin(), kEdgeNames.end(), is_bound.begin(), [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+  return is_bound;
+}
+
 json DetectionToJson(const Detection& detection, const Sequence& sequence) {
   return {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
           {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
           {"score", detection.score},
           {"box", detection.box},
-          {"plane_in_camera", detection.plane_in_camera}};
+          {"plane_in_camera", detection.plane_in_camera},
+          {"bounds", BoundsToJson(detection.is_bound)}};
 }
 
 Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
                             const IdTable<Object>& objects) {
-  return {frames.IndexOf(json.at("frame").get<int>()),
-          objects.IndexOf(json.at("object").get<int>()), json.at("score").get<double>(),
-          json.at("box").get<Box>(), json.at("plane_in_camera").get<Plane>()};
+  Detection detection;
+  detection.frame_index = frames.IndexOf(json.at("frame").get<int>());
+  detection.object_index = objects.IndexOf(json.at("object").get<int>());
+  json.at("score").get_to(detection.score);
+  json.at("box").get_to(detection.box);
+  json.at("plane_in_camera").get_to(detection.plane_in_camera);
+  // Schema version 1.0 had no bounds: every edge counted as the object's own.
+  if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
+  return detection;
 }
 
 void CheckOrder(const std::vector<Detection>& detections) {

@@ -31,6 +31,7 @@ void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
   file->WriteNumber(group, "object_id", record.object_id);
   file->WriteNumber(group, "initial_yaw", record.initial_yaw);
   file->WriteNumber(group, "refined_yaw", record.refined_yaw);
+  if (record.yaw_sigma) file->WriteNumber(group, "yaw_sigma", *record.yaw_sigma);
   if (record.true_yaw) file->WriteNumber(group, "true_yaw", *record.true_yaw);
 }
 
@@ -47,6 +48,9 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
   record.mirrored = ReadPixels(file, group + "/mirrored", static_cast<int>(record.samples.size()));
   record.initial_yaw = file.ReadNumber(group, "initial_yaw");
   record.refined_yaw = file.ReadNumber(group, "refined_yaw");
+  if (file.HasAttribute(group, "yaw_sigma")) {
+    record.yaw_sigma = file.ReadNumber(group, "yaw_sigma");
+  }
   if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");
   return record;
 }

@@ -28,13 +28,16 @@ Landmark UnpackLandmark(const double* block);
 // other.
 Eigen::Matrix<double, 3, 4> RotationVectorByQuaternion(const double* quaternion_xyzw);
 
+// kRows may be Eigen::Dynamic below.
+//
 // Writes d residual / d pose block (row-major, rows x 7) from the derivatives by rotation vector
 // and translation.
 template <int kRows>
 void WritePoseJacobian(const double* pose_block,
                        const Eigen::Matrix<double, kRows, 3>& by_rotation_vector,
                        const Eigen::Matrix<double, kRows, 3>& by_translation, double* jacobian) {
-  Eigen::Map<Eigen::Matrix<double, kRows, kPoseSize, Eigen::RowMajor>> map(jacobian);
+  Eigen::Map<Eigen::Matrix<double, kRows, kPoseSize, Eigen::RowMajor>> map(
+      jacobian, by_translation.rows(), kPoseSize);
   map.template leftCols<4>() = by_rotation_vector * RotationVectorByQuaternion(pose_block);
   map.template rightCols<3>() = by_translation;
 }
@@ -45,7 +48,8 @@ template <int kRows>
 void WriteLandmarkJacobian(const double* landmark_block,
                            const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,
                            double* jacobian) {
-  Eigen::Map<Eigen::Matrix<double, kRows, kLandmarkSize, Eigen::RowMajor>> map(jacobian);
+  Eigen::Map<Eigen::Matrix<double, kRows, kLandmarkSize, Eigen::RowMajor>> map(
+      jacobian, by_landmark.rows(), kLandmarkSize);
   map.template leftCols<4>() =
       by_landmark.template leftCols<3>() * RotationVectorByQuaternion(landmark_block);
   map.template rightCols<6>() = by_landmark.template rightCols<6>();
@@ -57,7 +61,8 @@ void WriteLandmarkJacobian(const double* landmark_block,
 // construction.
 class RelativeObservation {
  public:
-  explicit RelativeObservation(double const* const* blocks);
+  explicit RelativeObservation(double const* const* blocks,
+                               double shape_exponent = kEllipsoidExponent);
 
   const Landmark& landmark_in_camera() const { return landmark_in_camera_; }
 
@@ -75,7 +80,7 @@ class RelativeObservation {
                                -by_centre, jacobians[0]);
     }
     if (jacobians[1] != nullptr) {
-      Eigen::Matrix<double, kRows, kLandmarkDof> in_world;
+      Eigen::Matrix<double, kRows, kLandmarkDof> in_world(by_landmark.rows(), kLandmarkDof);
       in_world << by_rotation, by_centre, by_landmark.template rightCols<3>();
       WriteLandmarkJacobian<kRows>(blocks[1], in_world, jacobians[1]);
     }

@@ -9,6 +9,7 @@
 
 #include "artefact/ids.h"
 #include "base/error.h"
+#include "dataset/bound_edges.h"
 #include "dataset/dataset_files.h"
 #include "dataset/dataset_json.h"
 #include "dataset/detections_csv.h"
@@ -81,14 +82,32 @@ std::vector<DetectionRow> UsableRows(const std::vector<DetectionRow>& rows,
   return WithEnoughObservations(usable, options.min_observations, rejected);
 }
 
+// The rows of what the camera sees: also of objects that are not used because they are close to the
+// border or seen too rarely.
+std::vector<DetectionRow> RowsInView(const std::vector<DetectionRow>& rows,
+                                     const std::vector<FrameSlot>& slots, bool planes_from_truth,
+                                     const ImportOptions& options, const Sequence& sequence) {
+  std::vector<DetectionRow> in_view;
+  for (const DetectionRow& row : rows) {
+    const auto reason = Gate(row, slots, sequence, planes_from_truth, options);
+    if (!reason || *reason == RejectReason::kNearBorder) in_view.push_back(row);
+  }
+  RejectionCounts not_reported;
+  return WithoutDuplicates(std::move(in_view), &not_reported);
+}
+
 Detection MakeDetection(const DetectionRow& row, int frame_index, int object_index,
                         bool planes_from_truth, const Sequence& sequence) {
   const Object& object = sequence.objects[static_cast<size_t>(object_index)];
   const SupportPlane& plane = sequence.planes[static_cast<size_t>(object.plane_index)];
   const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
   const Rigid3d world_from_camera = *PlanePose(frame, planes_from_truth);
-  return {frame_index, object_index, row.score, row.box,
-          Transform(world_from_camera.Inverse(), plane.plane_in_world)};
+  return {frame_index,
+          object_index,
+          row.score,
+          row.box,
+          Transform(world_from_camera.Inverse(), plane.plane_in_world),
+          {}};
 }
 
 void RequireDetections(const std::filesystem::path& folder, const Sequence& sequence) {
@@ -117,12 +136,21 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
 
   const bool planes_from_truth =
       options.camera_planes == PlanePoses::kGroundTruth && files.groundtruth.has_value();
-  for (const DetectionRow& row : UsableRows(rows, slots, planes_from_truth, options, &sequence)) {
-    const int frame_index = std::get<int>(slots[static_cast<size_t>(row.frame_id)]);
-    sequence.detections.push_back(MakeDetection(row, frame_index, object_ids.IndexOf(row.object_id),
-                                                planes_from_truth, sequence));
-  }
+  const auto detections_of = [&](const std::vector<DetectionRow>& some_rows) {
+    std::vector<Detection> detections;
+    for (const DetectionRow& row : some_rows) {
+      const int frame_index = std::get<int>(slots[static_cast<size_t>(row.frame_id)]);
+      detections.push_back(MakeDetection(row, frame_index, object_ids.IndexOf(row.object_id),
+                                         planes_from_truth, sequence));
+    }
+    return detections;
+  };
+  sequence.detections =
+      detections_of(UsableRows(rows, slots, planes_from_truth, options, &sequence));
   RequireDetections(folder, sequence);
+  Sequence in_view = sequence;
+  in_view.detections = detections_of(RowsInView(rows, slots, planes_from_truth, options, sequence));
+  MarkBoundEdges(options, in_view, &sequence);
   return sequence;
 }
 

@@ -19,6 +19,7 @@ struct ImportOptions {
   int min_observations = 3;
   double max_time_difference_s = 0.02;
   double min_score = 0.0;
+  double hidden_edge_fraction = 0.7;
 
   void Describe(OptionVisitor& visit) {
     visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
@@ -34,6 +35,10 @@ struct ImportOptions {
     visit.Real("max_time_difference_s", &max_time_difference_s, {0, 1e6},
                "an image takes the pose nearest in time, at most this far away (s)");
     visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
+    visit.Real(
+        "hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
+        "the share of a box's lower edge that must lie inside boxes of nearer objects for it "
+        "to be a lower bound only");
   }
 };
 

@@ -2,9 +2,12 @@
 #include "geometry/landmark.h"
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "geometry/surface.h"
 
 namespace soslam {
 namespace {
@@ -17,10 +20,15 @@ Eigen::Vector3d HorizontalReference(const Eigen::Vector3d& normal) {
   return (seed - normal * normal.dot(seed)).normalized();
 }
 
+constexpr double kOutlineTolerancePx = 1e-9;
+constexpr int kMaxOutlineSteps = 50;
+
 }  // namespace
 
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source) {
-  return {target_from_source * landmark_in_source.frame_from_object, landmark_in_source.half_axes};
+  Landmark landmark_in_target = landmark_in_source;
+  landmark_in_target.frame_from_object = target_from_source * landmark_in_source.frame_from_object;
+  return landmark_in_target;
 }
 
 Eigen::Matrix4d DualQuadric(const Landmark& landmark) {
@@ -56,27 +64,49 @@ std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d
   return usable ? std::optional(result) : std::nullopt;
 }
 
-std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera) {
-  const Rigid3d& camera_from_object = landmark_in_camera.frame_from_object;
-  const Eigen::Matrix3d scaled_axes =
-      camera_from_object.rotation.toRotationMatrix() * landmark_in_camera.half_axes.asDiagonal();
-  const double depth_extent = scaled_axes.row(2).norm();
-  if (!(camera_from_object.translation.z() > depth_extent)) return std::nullopt;
+FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction) {
+  const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
+  const SupportValue support = SupportFunction(landmark.half_axes, landmark.shape_exponent,
+                                               rotation.conjugate() * direction);
+  return {landmark.frame_from_object * support.contact,
+          direction.dot(landmark.Centre()) + support.extent};
+}
 
-  const Eigen::Matrix3d conic =
-      camera.Intrinsics() *
-      (scaled_axes * scaled_axes.transpose() -
-       camera_from_object.translation * camera_from_object.translation.transpose()) *
-      camera.Intrinsics().transpose();
-  // A vertical line x = u is tangent iff (1, 0, -u) C* (1, 0, -u)^T = 0; likewise for rows.
-  const auto bounds = [&conic](int axis) {
-    const double root =
-        std::sqrt(std::max(0.0, conic(axis, 2) * conic(axis, 2) - conic(axis, axis) * conic(2, 2)));
-    return std::pair((conic(axis, 2) + root) / conic(2, 2), (conic(axis, 2) - root) / conic(2, 2));
-  };
-  const auto [x_min, x_max] = bounds(0);
-  const auto [y_min, y_max] = bounds(1);
-  return Box{x_min, y_min, x_max, y_max};
+std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
+                                       const Eigen::Vector2d& direction) {
+  // Points of the body project inside its outline. The one that reaches farthest beyond the plane
+  // through the camera centre and the image line direction . u = t projects beyond that line, until
+  // the plane is tangent: Newton's method for a convex function of t.
+  const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
+  Eigen::Vector3d line(direction.x(), direction.y(), 0.0);
+  OutlinePoint outline{landmark_in_camera.Centre(), -std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < kMaxOutlineSteps; ++i) {
+    const auto pixel = camera.Project(outline.point);
+    if (!pixel) return std::nullopt;
+    const double end_px = direction.dot(*pixel);
+    const bool settled = std::abs(end_px - outline.end_px) < kOutlineTolerancePx;
+    outline.end_px = end_px;
+    if (settled) break;
+    line.z() = -end_px;
+    outline.point = Farthest(landmark_in_camera, to_plane * line).point;
+  }
+  return outline;
+}
+
+std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera) {
+  if (!(Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0)) {
+    return std::nullopt;
+  }
+  std::array<double, 4> ends{};
+  for (size_t i = 0; i < ends.size(); ++i) {
+    const double sign = i < 2 ? -1.0 : 1.0;
+    const Eigen::Vector2d direction =
+        i % 2 == 0 ? Eigen::Vector2d(sign, 0.0) : Eigen::Vector2d(0.0, sign);
+    const auto end = OutlineEnd(camera, landmark_in_camera, direction);
+    if (!end) return std::nullopt;
+    ends[i] = sign * end->end_px;
+  }
+  return Box{ends[0], ends[1], ends[2], ends[3]};
 }
 
 double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box) {
@@ -89,19 +119,9 @@ double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, 
 
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction) {
-  // In the object frame scaled to the unit sphere the surface is |o + t d|^2 = 1.
   const Eigen::Quaterniond object_from_frame = landmark.frame_from_object.rotation.conjugate();
-  const Eigen::Array3d inverse_axes = landmark.half_axes.array().inverse();
-  const Eigen::Vector3d o =
-      ((object_from_frame * (origin - landmark.Centre())).array() * inverse_axes).matrix();
-  const Eigen::Vector3d d = ((object_from_frame * direction).array() * inverse_axes).matrix();
-  const double a = d.squaredNorm();
-  const double half_b = o.dot(d);
-  const double c = o.squaredNorm() - 1.0;
-  const double discriminant = half_b * half_b - a * c;
-  // c <= 0: the origin is inside, so there is no visible outside. half_b >= 0: the ray leads away.
-  if (!(discriminant >= 0.0) || !(c > 0.0) || !(half_b < 0.0)) return std::nullopt;
-  return c / (-half_b + std::sqrt(discriminant));
+  return BodySurface(landmark.half_axes, landmark.shape_exponent)
+      .Entry(object_from_frame * (origin - landmark.Centre()), object_from_frame * direction);
 }
 
 Eigen::Vector3d Mirror(const Landmark& landmark, const Eigen::Vector3d& point) {

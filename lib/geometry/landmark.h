@@ -9,15 +9,18 @@
 #include "geometry/camera.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
+#include "geometry/support_function.h"
 
 namespace soslam {
 
-// An object as an ellipsoid: 9 degrees of freedom. Variables say the frame it lives in:
-// landmark_in_world, landmark_in_camera. Object frame: origin at the centre, z away from the
-// support plane, x the front, so that the mirror plane of a symmetric object is its xz plane.
+// An object as a convex body, in the paper an ellipsoid: 9 degrees of freedom and a shape.
+// Variables say the frame it lives in: landmark_in_world, landmark_in_camera. Object frame: origin
+// at the centre, z away from the support plane, x the front, so that the mirror plane of a
+// symmetric object is its xz plane.
 struct Landmark {
   Rigid3d frame_from_object;
   Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();  // (a, b, c) along x, y, z, metres, > 0
+  double shape_exponent = kEllipsoidExponent;           // p of SupportFunction, in [1, 2]
 
   const Eigen::Vector3d& Centre() const { return frame_from_object.translation; }
 };
@@ -25,6 +28,7 @@ struct Landmark {
 // The same landmark in the target frame.
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source);
 
+// Of the ellipsoid with the landmark's half axes, whatever its shape exponent:
 // Q* = Z diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object: pi^T Q* pi = 0 iff pi is tangent.
 Eigen::Matrix4d DualQuadric(const Landmark& landmark);
 
@@ -41,8 +45,26 @@ struct DualQuadricLandmark {
 };
 std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d& dual_quadric);
 
-// The tight box around the outline of the landmark, from the dual conic P Q* P^T; not cut at the
-// image border. None unless the whole landmark is in front of the camera.
+// The point of the landmark that reaches farthest in a direction (of any length), and how far: the
+// largest direction . x over the body. All in the landmark's frame.
+struct FarthestPoint {
+  Eigen::Vector3d point;
+  double distance;
+};
+FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction);
+
+// The farthest that the landmark's outline reaches in the image: the largest direction . pixel (px;
+// unit direction), and the point of the landmark (camera frame) that does. None when the way there
+// leads behind the camera.
+struct OutlinePoint {
+  Eigen::Vector3d point;
+  double end_px;
+};
+std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
+                                       const Eigen::Vector2d& direction);
+
+// The tight box around the outline of the landmark; not cut at the image border. None unless the
+// whole landmark is in front of the camera.
 std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera);
 
 // The root mean square distance (px) between the edges of the landmark's outline box and the box;

@@ -11,7 +11,7 @@ VisibleSurface::VisibleSurface(const Camera& camera, const Landmark& landmark_in
           landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
       centre_in_camera_(landmark_in_camera.Centre()),
       camera_in_object_(-(camera_from_object_rotation_.transpose() * centre_in_camera_)),
-      inverse_squared_axes_(landmark_in_camera.half_axes.cwiseAbs2().cwiseInverse()) {}
+      surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent) {}
 
 Eigen::Vector3d VisibleSurface::RayInObject(const Eigen::Vector2d& pixel) const {
   return camera_from_object_rotation_.transpose() * camera_.Ray(pixel);
@@ -29,23 +29,18 @@ LandmarkJacobian3 VisibleSurface::FixedPointJacobian(const Eigen::Vector3d& poin
 std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vector2d& pixel,
                                                                bool with_jacobian) const {
   const Eigen::Vector3d ray = RayInObject(pixel);
-  const Eigen::Vector3d weighted_ray = inverse_squared_axes_.cwiseProduct(ray);
-  const double a = ray.dot(weighted_ray);
-  const double half_b = camera_in_object_.dot(weighted_ray);
-  const double c = camera_in_object_.cwiseAbs2().dot(inverse_squared_axes_) - 1.0;
-  const double discriminant = half_b * half_b - a * c;
-  if (!(discriminant > 0.0) || !(c > 0.0) || !(half_b < 0.0)) return std::nullopt;
-  const double depth = c / (-half_b + std::sqrt(discriminant));
+  const auto depth = surface_.Entry(camera_in_object_, ray);
+  if (!depth) return std::nullopt;
 
   Point point;
-  point.in_object = camera_in_object_ + depth * ray;
+  point.in_object = camera_in_object_ + *depth * ray;
   if (with_jacobian) {
-    // Theta(p) = sum p_i^2 / s_i^2 - 1 stays 0 while the depth along the ray gives way.
-    const Eigen::Vector3d gradient = 2.0 * inverse_squared_axes_.cwiseProduct(point.in_object);
+    // F = 1 holds while the depth along the ray gives way.
+    const Eigen::Vector3d gradient = surface_.Gradient(point.in_object);
     point.jacobian = FixedPointJacobian(point.in_object);
-    LandmarkJacobian1 theta = gradient.transpose() * point.jacobian;
-    theta.tail<3>() -= gradient.cwiseProduct(point.in_object).transpose();
-    point.jacobian -= ray * (theta / gradient.dot(ray));
+    LandmarkJacobian1 change = gradient.transpose() * point.jacobian;
+    change.tail<3>() -= gradient.cwiseProduct(point.in_object).transpose();
+    point.jacobian -= ray * (change / gradient.dot(ray));
   }
   return point;
 }
@@ -53,7 +48,7 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vect
 std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
     const Eigen::Vector2d& pixel, const Point& contact, bool with_jacobian) const {
   const Eigen::Vector3d ray = RayInObject(pixel);
-  const Eigen::Vector3d normal = inverse_squared_axes_.cwiseProduct(contact.in_object);
+  const Eigen::Vector3d normal = surface_.Gradient(contact.in_object);
   const double slope = normal.dot(ray);
   const double depth = (1.0 - normal.dot(camera_in_object_)) / slope;
   if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
@@ -61,12 +56,14 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
   Point point;
   point.in_object = camera_in_object_ + depth * ray;
   if (with_jacobian) {
-    // The plane sum p_i contact_i / s_i^2 = 1 moves with the contact point and the half axes.
-    const Eigen::Vector3d weighted_point = inverse_squared_axes_.cwiseProduct(point.in_object);
+    // The plane normal . x = 1 moves with the contact point and the half axes.
+    const Eigen::Vector3d by_contact =
+        surface_.GradientByPoint(contact.in_object).cwiseProduct(point.in_object);
     point.jacobian = FixedPointJacobian(point.in_object);
     LandmarkJacobian1 plane =
-        normal.transpose() * point.jacobian + weighted_point.transpose() * contact.jacobian;
-    plane.tail<3>() -= 2.0 * weighted_point.cwiseProduct(contact.in_object).transpose();
+        normal.transpose() * point.jacobian + by_contact.transpose() * contact.jacobian;
+    plane.tail<3>() -=
+        surface_.GradientByLogHalfAxes() * normal.cwiseProduct(point.in_object).transpose();
     point.jacobian -= ray * (plane / slope);
   }
   return point;
@@ -102,7 +99,7 @@ std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
 }
 
 double VisibleSurface::ViewingCosine(const Point& point) const {
-  const Eigen::Vector3d normal = inverse_squared_axes_.cwiseProduct(point.in_object).normalized();
+  const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
   return normal.dot((camera_in_object_ - point.in_object).normalized());
 }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
+#include "geometry/surface.h"
 
 namespace soslam {
 
@@ -61,7 +62,7 @@ class VisibleSurface {
   Eigen::Matrix3d camera_from_object_rotation_;
   Eigen::Vector3d centre_in_camera_;
   Eigen::Vector3d camera_in_object_;
-  Eigen::Vector3d inverse_squared_axes_;
+  BodySurface surface_;
 };
 
 }  // namespace soslam

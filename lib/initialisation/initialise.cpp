@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/initialise.h"
 
+#include <numbers>
+
 #include "base/parallel.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/svd.h"
+#include "initialisation/yaw_sweep.h"
 
 namespace soslam {
 namespace {
@@ -21,15 +24,6 @@ std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
     }
   }
   return planes;
-}
-
-// The world's x axis, made horizontal (y where x is vertical).
-Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection) {
-  const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-  const Plane& plane = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-  return frame.world_from_camera.rotation.conjugate() *
-         (UprightRotation(plane.normal, 0.0) * Eigen::Vector3d::UnitX());
 }
 
 }  // namespace
@@ -54,6 +48,34 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                   options);
     estimate.hypotheses = std::move(solution.hypotheses);
     estimate.failure = std::move(solution.failure);
+  });
+  return estimates;
+}
+
+LandmarkEstimates InitialiseUpright(const Sequence& sequence,
+                                    const std::vector<std::optional<ShapePrior>>& priors,
+                                    const UprightOptions& options, int threads) {
+  LandmarkEstimates estimates;
+  estimates.observations.resize(sequence.detections.size());
+  ParallelFor(static_cast<int>(sequence.detections.size()), threads, [&](int i) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(i)];
+    ObservationEstimate& estimate = estimates.observations[static_cast<size_t>(i)];
+    estimate.detection_index = i;
+    const auto& prior = priors[static_cast<size_t>(detection.object_index)];
+    if (!prior) {
+      estimate.failure = "no_ratio_for_label";
+      return;
+    }
+    const UprightObservation observation =
+        MakeUprightObservation(sequence, detection, *prior, options);
+    const YawObjective objective = BoxObjective(observation);
+    const YawSweep sweep =
+        SweepYaw(observation, objective, options.yaw_grid_deg * std::numbers::pi / 180.0);
+    for (const UprightSolution& optimum :
+         LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
+      estimate.hypotheses.push_back({optimum.landmark_in_camera, optimum.cost});
+    }
+    if (estimate.hypotheses.empty()) estimate.failure = "no_solution";
   });
   return estimates;
 }

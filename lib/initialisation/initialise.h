@@ -17,6 +17,12 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const std::vector<std::optional<Eigen::Vector2d>>& ratios,
                                         const InitialiseOptions& options, int threads);
 
+// The same for bodies of any shape that stand upright: all local optima of the sweep over yaw,
+// lowest cost first. Failures: no_ratio_for_label, no_solution.
+LandmarkEstimates InitialiseUpright(const Sequence& sequence,
+                                    const std::vector<std::optional<ShapePrior>>& priors,
+                                    const UprightOptions& options, int threads);
+
 // One landmark per object by SVD over all of its boxes, seen from the frames' estimated poses.
 // Failures: fewer_than_three_views, no_finite_quadric.
 LandmarkEstimates InitialiseSvd(const Sequence& sequence);

@@ -6,14 +6,16 @@
 #include "base/options.h"
 #include "constraints/variances.h"
 #include "initialisation/semantic_table.h"
+#include "initialisation/upright_options.h"
 
 namespace soslam {
 
 enum class InitialisationMethod {
   kSingleFrame,  // section IV: one landmark per observation
+  kYawSweep,     // one landmark per observation, of any shape, closed form at each yaw
   kSvd,          // QuadricSLAM: one landmark per object from all of its observations
 };
-inline constexpr std::array kInitialisationMethodNames = {"single_frame", "svd"};
+inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_sweep", "svd"};
 
 // Which of several yaws that explain a box equally well is the estimate. A box cannot tell; these
 // are assumptions about how objects stand.
@@ -33,10 +35,13 @@ struct InitialiseOptions {
   int max_iterations = 100;
   double tie_edge_px = 1.0;
   TieBreak tie_break = TieBreak::kWorldAxes;
+  UprightOptions upright;
 
   void Describe(OptionVisitor& visit) {
-    visit.Choice("method", &method, kInitialisationMethodNames,
-                 "one landmark per observation (section IV), or per object by SVD over all");
+    visit.Choice(
+        "method", &method, kInitialisationMethodNames,
+        "one landmark per observation: an ellipsoid as in section IV, or a body of the label's "
+        "shape by a sweep over yaw; or one per object by SVD over all");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
     variances.Describe(visit);
@@ -50,6 +55,7 @@ struct InitialiseOptions {
     visit.Choice("tie_break", &tie_break, kTieBreakNames,
                  "which yaw is chosen where several explain the box: nearest to the world's axes "
                  "(modulo quarter turns), or with the front facing the camera most");
+    upright.Describe(visit);
   }
 };
 

@@ -6,34 +6,44 @@
 namespace soslam {
 namespace {
 
-std::optional<Eigen::Vector2d> ObjectRatio(const Object& object, const SemanticTable& table,
-                                           RatioPrior prior) {
-  switch (prior) {
-    case RatioPrior::kTable:
-      return table.Find(object.label);
-    case RatioPrior::kUnit:
-      return Eigen::Vector2d::Ones();
-    case RatioPrior::kGroundTruth:
-      break;
+std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable& table,
+                                      RatioPrior prior) {
+  const std::optional<ShapePrior> entry = table.Find(object.label);
+  if (prior == RatioPrior::kTable) return entry;
+  ShapePrior shape = entry.value_or(ShapePrior());
+  if (prior == RatioPrior::kUnit) {
+    shape.ratio.setOnes();
+    return shape;
   }
   if (!object.ground_truth) return std::nullopt;
   const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
-  return Eigen::Vector2d(half_axes.head<2>() / half_axes.z());
+  shape.ratio = half_axes.head<2>() / half_axes.z();
+  shape.log_sigma.setConstant(kTrueRatioLogSigma);
+  return shape;
 }
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> SemanticTable::Find(const std::string& label) const {
-  const auto found = ratios.find(label);
-  return found == ratios.end() ? default_ratio : found->second;
+std::optional<ShapePrior> SemanticTable::Find(const std::string& label) const {
+  const auto found = priors.find(label);
+  return found == priors.end() ? default_prior : found->second;
+}
+
+std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
+                                                    const SemanticTable& table, RatioPrior prior) {
+  std::vector<std::optional<ShapePrior>> priors;
+  for (const Object& object : sequence.objects) {
+    priors.push_back(ObjectPrior(object, table, prior));
+  }
+  return priors;
 }
 
 std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequence,
                                                          const SemanticTable& table,
                                                          RatioPrior prior) {
   std::vector<std::optional<Eigen::Vector2d>> ratios;
-  for (const Object& object : sequence.objects) {
-    ratios.push_back(ObjectRatio(object, table, prior));
+  for (const std::optional<ShapePrior>& shape : ObjectPriors(sequence, table, prior)) {
+    ratios.push_back(shape ? std::optional(shape->ratio) : std::nullopt);
   }
   return ratios;
 }
@@ -41,7 +51,7 @@ std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequenc
 std::vector<std::string> LabelsWithoutEntry(const Sequence& sequence, const SemanticTable& table) {
   std::set<std::string> labels;
   for (const Object& object : sequence.objects) {
-    if (table.ratios.count(object.label) == 0) labels.insert(object.label);
+    if (table.priors.count(object.label) == 0) labels.insert(object.label);
   }
   return {labels.begin(), labels.end()};
 }

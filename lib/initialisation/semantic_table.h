@@ -8,17 +8,25 @@
 #include <string>
 #include <vector>
 
+#include "geometry/support_function.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
-// SemTable of eq. (11): the size ratio (a / c, b / c) of a label.
+// What is known of an object's size and shape before it is seen. Ratios are log-normal.
+struct ShapePrior {
+  Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
+  Eigen::Vector2d log_sigma = Eigen::Vector2d::Ones();  // standard deviations of their logarithms
+  double shape_exponent = kEllipsoidExponent;
+};
+
+// SemTable of eq. (11), and how far it is to be trusted: what is known of an object by its label.
 struct SemanticTable {
-  std::map<std::string, Eigen::Vector2d> ratios;
-  std::optional<Eigen::Vector2d> default_ratio;  // for labels that are not in the table
+  std::map<std::string, ShapePrior> priors;
+  std::optional<ShapePrior> default_prior;  // for labels that are not in the table
 
   // None when neither the label nor a default is there.
-  std::optional<Eigen::Vector2d> Find(const std::string& label) const;
+  std::optional<ShapePrior> Find(const std::string& label) const;
 };
 
 // Where an object's ratio comes from.
@@ -29,7 +37,16 @@ enum class RatioPrior {
 };
 inline constexpr std::array kRatioPriorNames = {"table", "unit", "groundtruth"};
 
-// The ratio of each object of the sequence; none where the prior has none.
+// log_sigma of a true ratio: exact up to the annotation, which is taken to be good to 2 %.
+inline constexpr double kTrueRatioLogSigma = 0.02;
+
+// The prior of each object of the sequence; none where there is no ratio. kUnit keeps all but the
+// ratio of the table's prior, kGroundTruth the shape exponent only; of a default ShapePrior where
+// the table has none.
+std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
+                                                    const SemanticTable& table, RatioPrior prior);
+
+// The ratios of ObjectPriors.
 std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequence,
                                                          const SemanticTable& table,
                                                          RatioPrior prior);

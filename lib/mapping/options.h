@@ -1,17 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include "base/options.h"
 #include "constraints/variances.h"
 #include "initialisation/semantic_table.h"
+#include "orientation/options.h"
 #include "symmetry/options.h"
 
 namespace soslam {
 
+enum class DetectionModel {
+  kQuadric,   // eq. (2)-(4), and the ratio constraint of eq. (9)-(11): ellipsoids
+  kTangency,  // bodies of any shape, in pixels; ratios with their label's spread
+};
+inline constexpr std::array kDetectionModelNames = {"quadric", "tangency"};
+
 struct OptimiseOptions {
+  DetectionModel detection_model = DetectionModel::kQuadric;
   bool support = true;
   bool ratio = true;
   bool symmetry = false;
+  bool edge_alignment = false;
   RatioPrior ratio_prior = RatioPrior::kTable;
   // The paper's numbers read in metres, unlike in one frame: with dozens of boxes to a landmark,
   // what an ellipsoid cannot fit in them would outvote the one support and the one ratio
@@ -20,16 +31,38 @@ struct OptimiseOptions {
   double odometry_rotation_sigma_deg = 0.2;
   double odometry_translation_sigma_m = 0.01;
   double symmetry_sigma = 30.0;
+  int symmetry_views = 1;
+  double detection_sigma_fraction = 0.02;
+  double detector_bias_sigma_px = 0.0;
+  EdgeOptions edges;
   double huber_delta = 1.0;
   SymmetryOptions symmetry_options;
   bool covariances = true;
   int max_iterations = 500;
 
   void Describe(OptionVisitor& visit) {
+    visit.Choice(
+        "detection_model", &detection_model, kDetectionModelNames,
+        "what a box says about a landmark: the tangent planes of its ellipsoid (eq. 4), or "
+        "those of a body of its label's shape, in pixels, with the label's spread of "
+        "ratios");
     visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
     visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
     visit.Flag("symmetry", &symmetry,
-               "use the texture symmetry of each object's first observation, eq. (16)");
+               "use the texture symmetry of each object's first observations, eq. (16)");
+    visit.Integer(
+        "symmetry_views", &symmetry_views, {1, 100000},
+        "how many observations of each object, evenly over all of them from the first on");
+    visit.Flag("edge_alignment", &edge_alignment,
+               "use the alignment of the bodies' edges with the images'");
+    edges.Describe(visit);
+    visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
+               "tangency: standard deviation of a detector's box edge, as a fraction of the box's "
+               "width or height; at least 1 px");
+    visit.Real(
+        "detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
+        "tangency: standard deviation of a bias that each of the four edges has in all boxes "
+        "of the sequence, estimated along; 0: no bias");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
     variances.Describe(visit);

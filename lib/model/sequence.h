@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -53,6 +54,9 @@ struct Detection {
   double score = 1.0;
   Box box;
   Plane plane_in_camera;
+  // Left, top, right, bottom: the object may reach farther than this edge of its box, because the
+  // image border or a nearer object cuts it off. Decided at import, for all that follows.
+  std::array<bool, 4> is_bound{};
 };
 
 // What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then

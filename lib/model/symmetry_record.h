@@ -17,7 +17,8 @@ struct SymmetryRecord {
   int frame_id = 0;
   int object_id = 0;
   std::vector<double> yaw;  // the grid
-  // Descriptor name -> cost at each yaw of the grid; NaN where too few pairs count.
+  // Name of the descriptor, or of the part of an orientation profile -> cost at each yaw of the
+  // grid; NaN where too few pairs count.
   std::map<std::string, std::vector<double>> cost;
   // The pixels, and their mirror pixels, that count at the refined yaw.
   std::vector<Eigen::Vector2f> samples;
@@ -25,7 +26,8 @@ struct SymmetryRecord {
   // NaN when the observation has no landmark.
   double initial_yaw = std::numeric_limits<double>::quiet_NaN();
   double refined_yaw = std::numeric_limits<double>::quiet_NaN();
-  std::optional<double> true_yaw;  // where there is ground truth
+  std::optional<double> yaw_sigma;  // standard deviation of the refined yaw, where it is known
+  std::optional<double> true_yaw;   // where there is ground truth
 };
 
 }  // namespace soslam

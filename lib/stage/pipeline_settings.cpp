@@ -14,8 +14,8 @@
 #include "image/edge_maps.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
+#include "orientation/options.h"
 #include "stage/settings_file.h"
-#include "symmetry/options.h"
 
 namespace soslam {
 namespace {
@@ -42,7 +42,7 @@ const std::array<PipelineStage, 6>& Stages() {
       {"import", &Resolve<ImportOptions>, {}},
       {"edges", &Resolve<EdgesOptions>, {"import"}},
       {"initialise", &Resolve<InitialiseOptions>, {"import"}},
-      {"refine", &Resolve<RefineOptions>, {"import", "initialise", "edges"}},
+      {"refine", &Resolve<OrientationOptions>, {"import", "initialise", "edges"}},
       {"optimise", &Resolve<OptimiseOptions>, {"import", "initialise"}},
       {"evaluate", &Resolve<EvaluateOptions>, {"import", "initialise"}},
   }};
@@ -110,13 +110,19 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
     }
   }
   const auto optimise = settings.options.find("optimise");
-  if (optimise != settings.options.end() && optimise->second.at("symmetry") == true &&
+  if (optimise != settings.options.end() && UsesImages(optimise->second) &&
       settings.stages.count("edges") == 0) {
-    throw SettingsError(file + ": setting 'symmetry' of optimise needs stage 'edges' in 'stages'");
+    throw SettingsError(file +
+                        ": settings 'symmetry' and 'edge_alignment' of optimise need stage 'edges' "
+                        "in 'stages'");
   }
 }
 
 }  // namespace
+
+bool UsesImages(const json& optimise_settings) {
+  return optimise_settings.at("symmetry") == true || optimise_settings.at("edge_alignment") == true;
+}
 
 std::vector<std::string> PipelineStages() {
   std::vector<std::string> names;

@@ -30,4 +30,7 @@ std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);
 VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::string& dataset,
                             const std::string& variant);
 
+// Whether the back end with these (resolved) settings looks at images.
+bool UsesImages(const nlohmann::json& optimise_settings);
+
 }  // namespace soslam

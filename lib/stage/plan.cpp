@@ -51,7 +51,7 @@ class ChainBuilder {
     }
     if (stage == "optimise") {
       inputs["landmarks"] = Latest({"refine", "initialise"});
-      if (settings_.options.at(stage).at("symmetry") == true) inputs["edges"] = Output("edges");
+      if (UsesImages(settings_.options.at(stage))) inputs["edges"] = Output("edges");
     }
     if (stage == "evaluate") inputs["landmarks"] = Latest({"optimise", "refine", "initialise"});
     return inputs;

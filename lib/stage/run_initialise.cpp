@@ -41,11 +41,15 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
       if (!labels.empty()) {
         fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", files.at("table").string(),
                    fmt::join(labels, ", "),
-                   table.default_ratio ? "its default is used" : "their objects are left out");
+                   table.default_prior ? "its default is used" : "their objects are left out");
       }
     }
-    const auto ratios = ObjectRatios(sequence, table, options.ratio_prior);
-    estimates = InitialiseSingleFrame(sequence, ratios, options, threads);
+    estimates =
+        options.method == InitialisationMethod::kYawSweep
+            ? InitialiseUpright(sequence, ObjectPriors(sequence, table, options.ratio_prior),
+                                options.upright, threads)
+            : InitialiseSingleFrame(sequence, ObjectRatios(sequence, table, options.ratio_prior),
+                                    options, threads);
   }
 
   const auto failures = CountFailures(estimates);

@@ -12,52 +12,79 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "mapping/back_end.h"
+#include "mapping/choose_starts.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
 
-void CheckSymmetry(const OptimiseOptions& options, const StageFiles& files) {
-  if (!options.symmetry) return;
-  if (files.count("edges") == 0) {
-    throw SettingsError("symmetry = true needs --edges FILE; found none");
+void CheckImageOptions(const OptimiseOptions& options, const StageFiles& files) {
+  if ((options.symmetry || options.edge_alignment) && files.count("edges") == 0) {
+    throw SettingsError("symmetry or edge_alignment = true needs --edges FILE; found none");
   }
-  if (options.symmetry_options.descriptor == Descriptor::kBrief) {
+  if (options.symmetry && options.symmetry_options.descriptor == Descriptor::kBrief) {
     throw SettingsError("symmetry needs a descriptor with a derivative; found descriptor = brief");
   }
 }
 
-// The images of each object's first observation, by detection index.
-std::map<int, std::shared_ptr<const SymmetryImage>> FirstObservationImages(
-    const Sequence& sequence, const std::filesystem::path& edges_file) {
+// `count` of an object's detections, evenly over all of them from the first on.
+std::vector<int> SpreadOver(const std::vector<int>& detections, size_t count) {
+  std::vector<int> chosen;
+  const size_t n = std::min(count, detections.size());
+  for (size_t i = 0; i < n; ++i) chosen.push_back(detections[i * detections.size() / n]);
+  return chosen;
+}
+
+// Reads the edge maps that symmetry and edge alignment look at.
+void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
+                BackEndInput* input) {
   EdgesReader edges(edges_file);
-  std::map<int, std::shared_ptr<const SymmetryImage>> images;
+  const Sequence& sequence = input->sequence;
+  std::map<int, EdgeMaps> maps_by_frame;
+  const auto maps_of = [&](const Detection& detection) -> const EdgeMaps& {
+    const int frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
+    const auto found = maps_by_frame.find(frame_id);
+    if (found != maps_by_frame.end()) return found->second;
+    return maps_by_frame.emplace(frame_id, edges.Read(frame_id)).first->second;
+  };
   for (const std::vector<int>& detections : DetectionsByObject(sequence)) {
-    if (detections.empty()) continue;
-    const Detection& first = sequence.detections[static_cast<size_t>(detections.front())];
-    const int frame_id = sequence.frames[static_cast<size_t>(first.frame_index)].id;
-    images[detections.front()] =
-        std::make_shared<const SymmetryImage>(edges.Read(frame_id), first.box);
+    if (options.symmetry) {
+      for (const int index : SpreadOver(detections, static_cast<size_t>(options.symmetry_views))) {
+        const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+        input->symmetry_images[index] =
+            std::make_shared<const SymmetryImage>(maps_of(detection), detection.box);
+      }
+    }
+    if (options.edge_alignment) {
+      for (const int index : detections) {
+        const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+        input->edge_images[index] = std::make_shared<const EdgeImage>(
+            maps_of(detection), detection.box, NearerBoxes(sequence, detection));
+      }
+    }
   }
-  return images;
 }
 
 }  // namespace
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int /*threads*/) {
-  CheckSymmetry(options, files);
+  CheckImageOptions(options, files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
-  const auto ratios =
-      ObjectRatios(sequence, ReadSemanticTable(files.at("table")), options.ratio_prior);
+  const auto priors =
+      ObjectPriors(sequence, ReadSemanticTable(files.at("table")), options.ratio_prior);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
-  BackEndInput input{sequence, ChooseStarts(sequence, estimates), ratios, {}};
+  BackEndInput input{sequence, {}, priors, {}, {}};
+  if (options.symmetry || options.edge_alignment) ReadImages(options, files.at("edges"), &input);
+  input.starts = options.detection_model == DetectionModel::kTangency
+                     ? ChooseUprightStarts(sequence, estimates, priors, input.edge_images, options)
+                     : ChooseStarts(sequence, estimates);
   if (std::none_of(input.starts.begin(), input.starts.end(),
                    [](const auto& start) { return start.has_value(); })) {
     throw NothingUsableError(files.at("landmarks").string() + ": no landmark to start from");
   }
   ArtefactInfo info = {OptionsToJson(options),
                        {files.at("sequence"), files.at("landmarks"), files.at("table")}};
-  if (options.symmetry) {
-    input.symmetry_images = FirstObservationImages(sequence, files.at("edges"));
+  if (options.symmetry || options.edge_alignment) {
     info.inputs.push_back(files.at("edges"));
   }
   const MapEstimate map = OptimiseMap(input, options);

@@ -14,7 +14,7 @@
 #include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "symmetry/refine.h"
+#include "orientation/refine_orientation.h"
 
 namespace soslam {
 namespace {
@@ -36,9 +36,9 @@ std::vector<std::vector<const ObservationEstimate*>> GroupByFrame(
 
 class Refiner {
  public:
-  Refiner(const Sequence& sequence, const std::vector<std::optional<Eigen::Vector2d>>& ratios,
-          const RefineOptions& options, int threads)
-      : sequence_(sequence), ratios_(ratios), options_(options), threads_(threads) {}
+  Refiner(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
+          const OrientationOptions& options, int threads)
+      : sequence_(sequence), priors_(priors), options_(options), threads_(threads) {}
 
   // Refines the observations of some frames in parallel; reading stays on this thread.
   std::vector<RefinedObservation> Refine(
@@ -58,31 +58,40 @@ class Refiner {
       const auto& [observation, maps] = tasks[static_cast<size_t>(i)];
       const auto& detection =
           sequence_.detections[static_cast<size_t>(observation->detection_index)];
-      const auto& ratio = ratios_[static_cast<size_t>(detection.object_index)];
-      refined[static_cast<size_t>(i)] =
-          RefineObservation(sequence_, *observation, maps, ratio, options_);
+      const auto& prior = priors_[static_cast<size_t>(detection.object_index)];
+      refined[static_cast<size_t>(i)] = Refine(*observation, maps, prior);
     });
     return refined;
   }
 
  private:
+  RefinedObservation Refine(const ObservationEstimate& initial, const EdgeMaps& maps,
+                            const std::optional<ShapePrior>& prior) const {
+    if (options_.method == RefinementMethod::kProfile) {
+      return RefineOrientation(sequence_, initial.detection_index, maps, prior, options_.profile,
+                               options_.turn.symmetry);
+    }
+    const auto ratio = prior ? std::optional(prior->ratio) : std::nullopt;
+    return RefineObservation(sequence_, initial, maps, ratio, options_.turn);
+  }
+
   const Sequence& sequence_;
-  const std::vector<std::optional<Eigen::Vector2d>>& ratios_;
-  const RefineOptions& options_;
+  const std::vector<std::optional<ShapePrior>>& priors_;
+  const OrientationOptions& options_;
   int threads_;
 };
 
 }  // namespace
 
-void RunRefine(const RefineOptions& options, const StageFiles& files, int threads) {
-  if (options.parameters == RefinementParameters::kAll &&
-      options.symmetry.descriptor == Descriptor::kBrief) {
+void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads) {
+  if (options.turn.parameters == RefinementParameters::kAll &&
+      options.turn.symmetry.descriptor == Descriptor::kBrief) {
     throw SettingsError(
         "parameters = all needs a descriptor with a derivative; found descriptor = brief");
   }
   const Sequence sequence = ReadSequence(files.at("sequence"));
-  const auto ratios =
-      ObjectRatios(sequence, ReadSemanticTable(files.at("table")), options.ratio_prior);
+  const auto priors =
+      ObjectPriors(sequence, ReadSemanticTable(files.at("table")), options.turn.ratio_prior);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
   const auto groups = GroupByFrame(sequence, estimates);
   if (groups.empty()) {
@@ -94,7 +103,7 @@ void RunRefine(const RefineOptions& options, const StageFiles& files, int thread
       {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
 
   EdgesReader edges(files.at("edges"));
-  const Refiner refiner(sequence, ratios, options, threads);
+  const Refiner refiner(sequence, priors, options, threads);
   std::vector<SymmetryRecord> curves;
   int refined_count = 0;
   std::map<int, ObservationEstimate> refined_by_detection;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "orientation/options.h"
 #include "stage/stage_files.h"
-#include "symmetry/options.h"
 
 namespace soslam {
 
 // initial.json and edges.h5 to refined.json and symmetry.h5: files "sequence", "table", "initial",
 // "edges", "output", "curves". Throws SettingsError for a descriptor without derivative where one
 // is needed, NothingUsableError when initial.json has no single-frame landmarks.
-void RunRefine(const RefineOptions& options, const StageFiles& files, int threads);
+void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

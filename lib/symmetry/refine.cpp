@@ -45,9 +45,10 @@ std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& s
   const SymmetryDescriptor at_start(options.symmetry.descriptor, *refinement.image, camera, start);
   for (const Eigen::Vector2d& pixel : refinement.samples) {
     if (!at_start.Evaluate(pixel, options.symmetry.min_viewing_cosine, false)) continue;
-    problem.AddResidualBlock(new SymmetryResidual(options.symmetry.descriptor, refinement.image,
-                                                  camera, pixel, options.symmetry_sigma),
-                             new ceres::HuberLoss(1.0), camera_pose.data(), landmark.data());
+    problem.AddResidualBlock(
+        new SymmetryResidual(options.symmetry.descriptor, refinement.image, camera, pixel,
+                             start.shape_exponent, options.symmetry_sigma),
+        new ceres::HuberLoss(1.0), camera_pose.data(), landmark.data());
   }
 
   ceres::Solver::Options solver;
@@ -84,17 +85,6 @@ void RecordPairs(const Refinement& refinement, const Landmark& landmark, Symmetr
       record->mirrored.push_back(pair->mirror_pixel.cast<float>());
     }
   }
-}
-
-std::optional<double> TrueYaw(const Refinement& refinement) {
-  const auto& object =
-      refinement.sequence.objects[static_cast<size_t>(refinement.detection.object_index)];
-  const auto& frame =
-      refinement.sequence.frames[static_cast<size_t>(refinement.detection.frame_index)];
-  if (!object.ground_truth || !frame.true_world_from_camera) return std::nullopt;
-  const Landmark in_camera =
-      Transform(frame.true_world_from_camera->Inverse(), object.ground_truth->landmark_in_world);
-  return YawInCamera(refinement, in_camera);
 }
 
 // The hypothesis, among those that explain the box as well as the first, whose texture is most
@@ -146,6 +136,15 @@ std::string Refine(const Refinement& refinement, Landmark* refined) {
 
 }  // namespace
 
+std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection) {
+  const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
+  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+  if (!object.ground_truth || !frame.true_world_from_camera) return std::nullopt;
+  const Landmark in_camera =
+      Transform(frame.true_world_from_camera->Inverse(), object.ground_truth->landmark_in_world);
+  return Yaw(detection.plane_in_camera.normal, in_camera.frame_from_object.rotation);
+}
+
 RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,
                                      const EdgeMaps& maps,
                                      const std::optional<Eigen::Vector2d>& ratio,
@@ -173,7 +172,7 @@ RefinedObservation RefineObservation(const Sequence& sequence, const Observation
   RecordPairs(refinement, refined, &result.record);
   result.record.initial_yaw = YawInCamera(refinement, refinement.start);
   result.record.refined_yaw = YawInCamera(refinement, refined);
-  result.record.true_yaw = TrueYaw(refinement);
+  result.record.true_yaw = TrueYaw(sequence, detection);
   return result;
 }
 

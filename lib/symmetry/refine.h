@@ -18,6 +18,9 @@ struct RefinedObservation {
       record;  // of the landmark that was refined: the cost over yaw of every descriptor, fig. 7
 };
 
+// The yaw of a detection's object in the camera frame, from ground truth; none without.
+std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection);
+
 // Refines the yaw (and, as a setting, all parameters) of an observation's landmark by the symmetry
 // of its texture, section V. Of the hypotheses that explain the box equally well, the one with the
 // lowest symmetry cost near its yaw is taken. Where there is no such cost the estimate stays as it

@@ -35,6 +35,7 @@ void ExpectSame(const Rigid3d& a, const Rigid3d& b) {
 void ExpectSame(const Landmark& a, const Landmark& b) {
   ExpectSame(a.frame_from_object, b.frame_from_object);
   EXPECT_EQ(a.half_axes, b.half_axes);
+  EXPECT_EQ(a.shape_exponent, b.shape_exponent);
 }
 
 void ExpectSame(const Plane& a, const Plane& b) { EXPECT_EQ(a.Homogeneous(), b.Homogeneous()); }
@@ -94,6 +95,7 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
     EXPECT_EQ(std::tie(a.frame_index, a.object_index, a.score),
               std::tie(b.frame_index, b.object_index, b.score));
     EXPECT_EQ(nlohmann::json(a.box), nlohmann::json(b.box));
+    EXPECT_EQ(a.is_bound, b.is_bound);
     ExpectSame(a.plane_in_camera, b.plane_in_camera);
   }
 }
@@ -141,6 +143,49 @@ TEST_F(ArtefactFilesTest, MapComesBack) {
   EXPECT_EQ(a.cost_per_iteration, b.cost_per_iteration);
   EXPECT_EQ(a.residuals, b.residuals);
   EXPECT_EQ(a.gated, b.gated);
+}
+
+// The range of shape exponents includes its ends.
+TEST_F(ArtefactFilesTest, CuboidsAndEllipsoidsComeBack) {
+  LandmarkEstimates estimates = RandomLandmarkEstimates();
+  std::vector<Hypothesis>& hypotheses = estimates.observations[0].hypotheses;
+  hypotheses.at(0).landmark_in_camera.shape_exponent = kCuboidExponent;
+  hypotheses.at(1).landmark_in_camera.shape_exponent = kEllipsoidExponent;
+  WriteLandmarks(file, estimates, sequence, {});
+  const LandmarkEstimates read = ReadLandmarks(file, sequence);
+  EXPECT_EQ(read.observations[0].hypotheses[0].landmark_in_camera.shape_exponent, 1.0);
+  EXPECT_EQ(read.observations[0].hypotheses[1].landmark_in_camera.shape_exponent, 2.0);
+}
+
+TEST_F(ArtefactFilesTest, BoundsAreNamed) {
+  sequence.detections[0].is_bound = {};
+  sequence.detections[1].is_bound = {true, true, true, true};
+  sequence.detections[2].is_bound = {false, false, false, true};
+  WriteSequence(file, sequence, {});
+  const nlohmann::json detections = ParseJsonFile(file).at("detections");
+  EXPECT_EQ(detections[0].at("bounds").dump(), "[]");
+  EXPECT_EQ(detections[1].at("bounds").dump(), R"(["left","top","right","bottom"])");
+  EXPECT_EQ(detections[2].at("bounds").dump(), R"(["bottom"])");
+}
+
+TEST_F(ArtefactFilesTest, BoundsMayComeInAnyOrder) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json document = ParseJsonFile(file);
+  document["detections"][3]["bounds"] = {"bottom", "left"};
+  std::ofstream(file) << document;
+  EXPECT_EQ(ReadSequence(file).detections[3].is_bound,
+            (std::array<bool, 4>{true, false, false, true}));
+}
+
+TEST_F(ArtefactFilesTest, WithoutShapeExponentsAndBoundsThereAreEllipsoidsAndNone) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json document = ParseJsonFile(file);
+  document["objects"][0]["ground_truth"]["landmark"].erase("shape_exponent");
+  document["detections"][1].erase("bounds");
+  std::ofstream(file) << document;
+  const Sequence read = ReadSequence(file);
+  EXPECT_EQ(read.objects[0].ground_truth->landmark_in_world.shape_exponent, 2.0);
+  EXPECT_EQ(read.detections[1].is_bound, (std::array<bool, 4>{}));
 }
 
 TEST_F(ArtefactFilesTest, EmptyEstimatesComeBack) {
@@ -210,6 +255,12 @@ INSTANTIATE_TEST_SUITE_P(
         Edit{"FocalLength", "/camera/fx", "0", "/camera/fx is 0"},
         Edit{"HalfAxis", "/objects/0/ground_truth/landmark/half_axes/2", "-1",
              "/objects/0/ground_truth/landmark/half_axes/2 is -1"},
+        Edit{"ShapeExponentLow", "/objects/0/ground_truth/landmark/shape_exponent", "0.99",
+             "/objects/0/ground_truth/landmark/shape_exponent is 0.99"},
+        Edit{"BoundUnknown", "/detections/1/bounds", R"(["left", "front"])",
+             "/detections/1/bounds/1 is \"front\""},
+        Edit{"BoundTwice", "/detections/1/bounds", R"(["left", "left"])",
+             "/detections/1/bounds is [\"left\",\"left\"]"},
         Edit{"IdTooLarge", "/objects/0/object", "4294967297", "/objects/0/object is 4294967297"},
         Edit{"Quaternion", "/frames/0/world_from_camera/rotation_xyzw", "[0, 0, 0, 2]", "norm 2"},
         Edit{"Normal", "/planes/0/plane_in_world/normal", "[0, 0, 0]", "norm 0"},
@@ -230,6 +281,10 @@ INSTANTIATE_TEST_SUITE_P(
         Edit{"DetectionUnknown", "/observations/1/object", "99",
              "/observations/1: the sequence has no detection of object 99"},
         Edit{"ObjectUnknown", "/objects/0/object", "99", "object 99 is not in the sequence"},
+        Edit{"ShapeExponentText", "/objects/0/landmark/shape_exponent", "\"cuboid\"",
+             "/objects/0/landmark/shape_exponent is \"cuboid\""},
+        Edit{"ShapeExponentHigh", "/observations/0/hypotheses/0/landmark/shape_exponent", "2.01",
+             "/observations/0/hypotheses/0/landmark/shape_exponent is 2.01"},
         Edit{"CovarianceRow", "/objects/0/covariance/4", "[1]", "/objects/0/covariance/4 is [1]"},
         Edit{"WrongFrameOfReference", "/observations/0/hypotheses/0/landmark/camera_from_object",
              nullptr, "/observations/0/hypotheses/0/landmark"}),
@@ -243,6 +298,8 @@ TEST_P(EditedMapTest, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(
     Edits, EditedMapTest,
     testing::Values(Edit{"PoseMissing", "/trajectory", "[]", "has 0 poses; expected 5"},
+                    Edit{"ShapeExponent", "/objects/0/landmark/shape_exponent", "3",
+                         "/objects/0/landmark/shape_exponent is 3"},
                     Edit{"OtherFrame", "/trajectory/2/frame", "21",
                          "/trajectory/2/frame is 21; expected 20"},
                     Edit{"Iterations", "/solver/iterations", "1.5", "/solver/iterations is 1.5"}),

@@ -2,6 +2,7 @@
 // Files of every schema version that was ever released stay readable.
 #include <gtest/gtest.h>
 
+#include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
@@ -18,6 +19,11 @@ TEST(GoldenTest, Sequence10) {
   EXPECT_EQ(sequence.objects.at(1).id, 4);
   EXPECT_EQ(sequence.detections.size(), 10u);
   EXPECT_EQ(sequence.rejected_detections.at("near_border"), 17);
+  // What this version did not have yet.
+  EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponent, 2.0);
+  for (const Detection& detection : sequence.detections) {
+    EXPECT_EQ(detection.is_bound, (std::array<bool, 4>{}));
+  }
 }
 
 TEST(GoldenTest, Landmarks10) {
@@ -25,6 +31,7 @@ TEST(GoldenTest, Landmarks10) {
   const LandmarkEstimates estimates = ReadLandmarks(kGolden / "landmarks-1.0.json", sequence);
   ASSERT_EQ(estimates.observations.size(), 3u);
   EXPECT_EQ(estimates.observations[0].hypotheses.at(1).cost, 1.0 / 3.0);
+  EXPECT_EQ(estimates.observations[0].hypotheses[1].landmark_in_camera.shape_exponent, 2.0);
   EXPECT_EQ(estimates.objects.at(2).failure, "too_few_views");
 }
 
@@ -33,7 +40,47 @@ TEST(GoldenTest, Map10) {
   const MapEstimate map = ReadMap(kGolden / "map-1.0.json", sequence);
   EXPECT_EQ(map.world_from_camera.size(), 5u);
   EXPECT_EQ(map.objects.at(0).observations, 5);
+  EXPECT_EQ(map.objects[0].landmark_in_world->shape_exponent, 2.0);
   EXPECT_EQ(map.solver.cost_per_iteration.at(1), 1.0 / 7.0);
+}
+
+TEST(GoldenTest, Metrics10) {
+  const auto metrics = ReadArtefact(kGolden / "metrics-1.0.json", "metrics");
+  EXPECT_EQ(metrics.at("dataset"), "room_a");
+  EXPECT_EQ(metrics.at("objects").size(), 8u);
+}
+
+TEST(GoldenTest, Sequence11) {
+  const Sequence sequence = ReadSequence(kGolden / "sequence-1.1.json");
+  EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponent,
+            1.2026355410146854);
+  ASSERT_EQ(sequence.detections.size(), 10u);
+  EXPECT_EQ(sequence.detections[0].is_bound, (std::array<bool, 4>{}));
+  EXPECT_EQ(sequence.detections[6].is_bound, (std::array<bool, 4>{false, true, true, false}));
+  EXPECT_EQ(sequence.detections[9].is_bound, (std::array<bool, 4>{true, false, false, true}));
+}
+
+TEST(GoldenTest, Landmarks11) {
+  const Sequence sequence = ReadSequence(kGolden / "sequence-1.1.json");
+  const LandmarkEstimates estimates = ReadLandmarks(kGolden / "landmarks-1.1.json", sequence);
+  ASSERT_EQ(estimates.observations.size(), 3u);
+  const std::vector<Hypothesis>& hypotheses = estimates.observations[0].hypotheses;
+  ASSERT_EQ(hypotheses.size(), 2u);
+  EXPECT_EQ(hypotheses[0].landmark_in_camera.shape_exponent, 1.0);
+  EXPECT_EQ(hypotheses[1].landmark_in_camera.shape_exponent, 1.807951443160171);
+}
+
+TEST(GoldenTest, Map11) {
+  const Sequence sequence = ReadSequence(kGolden / "sequence-1.1.json");
+  const MapEstimate map = ReadMap(kGolden / "map-1.1.json", sequence);
+  ASSERT_EQ(map.objects.size(), 3u);
+  EXPECT_EQ(map.objects[0].landmark_in_world->shape_exponent, 1.6142579525880831);
+}
+
+TEST(GoldenTest, Metrics11) {
+  const auto metrics = ReadArtefact(kGolden / "metrics-1.1.json", "metrics");
+  EXPECT_EQ(metrics.at("summary").at("iou_median"), 1.0 / 3.0);
+  EXPECT_TRUE(metrics.at("objects").at(2).at("centre_m").is_null());
 }
 
 }  // namespace

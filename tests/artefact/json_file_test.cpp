@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -67,7 +68,7 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
                 kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
-  EXPECT_EQ(header.at("schema_version"), json({1, 0}));
+  EXPECT_EQ(header.at("schema_version"), json({1, 1}));
   EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
   EXPECT_EQ(header.at("settings").at("yaw"), 3);
   EXPECT_EQ(header.at("inputs").at(0).at("file"), "a.txt");
@@ -82,9 +83,11 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   header["schema_version"] = {2, 0};
   EXPECT_THAT(ReadErrorWithHeader(header),
               HasSubstr("some.json: has schema version [2, 0] of kind 'landmarks'; this software "
-                        "reads up to [1, 0]"));
-  header["schema_version"] = {1, 1};
-  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("[1, 1]"));
+                        "reads up to [1, 1]"));
+  header["schema_version"] = {1, 2};
+  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("[1, 2]"));
+  header["schema_version"] = {1, 0};
+  EXPECT_EQ(ReadErrorWithHeader(header), "");
   header["schema_version"] = "1.0";
   EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("schema_version is \"1.0\""));
   header["schema_version"] = {1, -1};
@@ -120,7 +123,8 @@ TEST_F(JsonFileTest, NonFiniteSettingsAreRefusedToo) {
   }
 }
 
-// A misspelt keyword in a schema would silently check nothing.
+// A misspelt keyword in a schema would silently check nothing. What has a default came after
+// version 1.0 and may be absent.
 TEST(SchemaTest, EverySchemaDescribesEveryField) {
   ASSERT_TRUE(EmbeddedSchemas().contains("sequence"));
   for (const char* kind : {"sequence", "landmarks", "map"}) {
@@ -128,8 +132,14 @@ TEST(SchemaTest, EverySchemaDescribesEveryField) {
     const std::function<void(const json&)> check = [&](const json& part) {
       if (part.contains("properties")) {
         EXPECT_EQ(part.at("additionalProperties"), false) << part;
-        EXPECT_EQ(part.at("required").size(), part.at("properties").size()) << part;
+        for (const auto& name : part.at("required")) {
+          EXPECT_TRUE(part.at("properties").contains(name)) << kind << " " << name;
+        }
         for (const auto& [name, property] : part.at("properties").items()) {
+          const json& required = part.at("required");
+          const bool is_required =
+              std::find(required.begin(), required.end(), name) != required.end();
+          EXPECT_NE(is_required, property.contains("default")) << kind << " " << name;
           EXPECT_TRUE(property.contains("description") || property.contains("$ref"))
               << kind << " " << name;
           check(property);

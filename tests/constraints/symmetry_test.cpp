@@ -59,7 +59,7 @@ TEST(SymmetryResidual, JacobiansAgreeWithNumbers) {
     for (int i = 0; i < 20; ++i) {
       const RandomView view = FacingView();
       const Eigen::Vector2d pixel(RandomUniform(100, 140), RandomUniform(225, 270));
-      const SymmetryResidual residual(descriptor, image, camera, pixel, 0.5);
+      const SymmetryResidual residual(descriptor, image, camera, pixel, kEllipsoidExponent, 0.5);
       ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
     }
   }

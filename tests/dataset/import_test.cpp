@@ -205,6 +205,29 @@ TEST_F(ImportTest, ObjectsWithTooFewObservationsLoseThemAll) {
   EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("too_few_observations", 3)));
 }
 
+// The cameras look level over a floor 1 m below. The box in front of the cup is too close to the
+// border in frame 0, too uncertain in frame 1, seen too rarely in frame 2.
+TEST_F(ImportTest, BoxesThatAreNotUsedHideLowerEdgesUnlessTheyMayNotBeReal) {
+  dataset.files["planes.json"] = R"([{"id": 0, "normal": [0, -1, 0], "d": 1}])";
+  dataset.files["detections.csv"] =
+      "frame,object_id,label,score,x1,y1,x2,y2\n"
+      "0,1,cup,0.9,100,100,200,300\n0,2,box,0.8,90,200,210,470\n"
+      "1,1,cup,0.9,100,100,200,300\n1,2,box,0.1,90,200,210,440\n"
+      "2,1,cup,0.9,100,100,200,300\n2,2,box,0.8,90,200,210,440\n";
+  options.min_score = 0.3;
+  const Sequence sequence = Import();
+  EXPECT_THAT(
+      sequence.rejected_detections,
+      ElementsAre(Pair("low_score", 1), Pair("near_border", 1), Pair("too_few_observations", 1)));
+  ASSERT_EQ(sequence.detections.size(), 3u);
+  const std::array<bool, 4> lower_edge = {false, false, false, true};
+  EXPECT_EQ(sequence.detections[0].is_bound, lower_edge);
+  EXPECT_EQ(sequence.detections[1].is_bound, (std::array<bool, 4>{}));
+  EXPECT_EQ(sequence.detections[2].is_bound, lower_edge);
+  options.hidden_edge_fraction = 0.0;
+  EXPECT_EQ(Import().detections[1].is_bound, lower_edge);
+}
+
 TEST_F(ImportTest, NothingUsableSaysWhy) {
   options.border_px = 150.0;
   try {
@@ -229,6 +252,14 @@ TEST(ImportDemoTest, RoomA) {
   EXPECT_EQ(sequence.objects.size(), 8u);
   EXPECT_EQ(sequence.detections.size(), 247u);
   EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("near_border", 103)));
+  // Armchairs behind tables, and tables behind armchairs; counted with another program.
+  int hidden_lower_edges = 0;
+  for (const Detection& detection : sequence.detections) {
+    EXPECT_EQ((std::vector<bool>(detection.is_bound.begin(), detection.is_bound.begin() + 3)),
+              std::vector<bool>(3, false));
+    hidden_lower_edges += detection.is_bound[3];
+  }
+  EXPECT_EQ(hidden_lower_edges, 54);
   const Detection& first = sequence.detections[0];
   const Plane floor_in_camera = Transform(sequence.frames[0].true_world_from_camera->Inverse(),
                                           Plane{Eigen::Vector3d::UnitZ(), 0});

@@ -6,6 +6,7 @@
 #include "evaluation/iou.h"
 #include "evaluation/metrics.h"
 #include "initialisation/initialise.h"
+#include "mapping/choose_starts.h"
 #include "support/random.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
@@ -14,11 +15,11 @@ namespace soslam {
 namespace {
 
 BackEndInput TruthInput(const Sequence& sequence) {
-  BackEndInput input{sequence, {}, {}, {}};
+  BackEndInput input{sequence, {}, {}, {}, {}};
   for (const Object& object : sequence.objects) {
     input.starts.push_back(object.ground_truth->landmark_in_world);
   }
-  input.ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
+  input.priors = ObjectPriors(sequence, SemanticTable(), RatioPrior::kGroundTruth);
   return input;
 }
 
@@ -38,8 +39,9 @@ TEST(BackEnd, CostsNothingAtTheTruth) {
 TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   BackEndInput input = TruthInput(sequence);
+  const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
   input.starts =
-      ChooseStarts(sequence, InitialiseSingleFrame(sequence, input.ratios, InitialiseOptions(), 1));
+      ChooseStarts(sequence, InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1));
   const Metrics metrics = EvaluateMap(sequence, OptimiseMap(input, OptimiseOptions()));
   for (const ObjectMetrics& object : metrics.objects) EXPECT_GT(object.iou, 0.99);
   EXPECT_LT(metrics.trajectory->ate_rmse_m, 1e-6);
@@ -72,7 +74,7 @@ TEST(BackEnd, MovesWithTheWorld) {
   Sequence moved = sequence;
   for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
   for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
-  BackEndInput moved_input{moved, input.starts, input.ratios, {}};
+  BackEndInput moved_input{moved, input.starts, input.priors, {}, {}};
   for (auto& start : moved_input.starts) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);
 

@@ -175,7 +175,7 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"stages": ["initialise"]})", "needs stage 'import'"},
       {R"({"stages": ["import", "initialise", "refine"]})", "needs stage 'edges'"},
       {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"symmetry": true}})",
-       "needs stage 'edges'"},
+       "need stage 'edges'"},
       {R"({"semantic_table": 3})", "semantic_table"},
       {"[]", "object"},
       {"{", ""}};

@@ -7,12 +7,15 @@
 
 namespace soslam {
 
-inline Landmark RandomLandmark() { return {RandomRigid(), RandomVector(0.05, 1.0)}; }
+inline Landmark RandomLandmark() {
+  return {RandomRigid(), RandomVector(0.05, 1.0), RandomUniform(1.0, 2.0)};
+}
 
 inline Plane RandomPlane() { return {RandomVector(-1, 1).normalized(), RandomUniform(-3, 3)}; }
 
-// A sequence whose ids are not its indices, with every other optional value absent. Its numbers are
-// valid one by one, but have no geometric sense together.
+// A sequence whose ids are not its indices, with every other optional value absent. The bounds of
+// detection i are the binary digits of i. Its numbers are valid one by one, but have no geometric
+// sense together.
 inline Sequence RandomSequence() {
   Sequence sequence;
   sequence.name = "r\u00f6\u00f6m \"1\"\\";
@@ -32,7 +35,13 @@ inline Sequence RandomSequence() {
     for (int object = frame % 2; object < 4; object += 2) {
       const Box box{RandomUniform(-9, 300), RandomUniform(-9, 200), RandomUniform(300, 700),
                     RandomUniform(200, 500)};
-      sequence.detections.push_back({frame, object, RandomUniform(0, 1), box, RandomPlane()});
+      const size_t i = sequence.detections.size();
+      sequence.detections.push_back({frame,
+                                     object,
+                                     RandomUniform(0, 1),
+                                     box,
+                                     RandomPlane(),
+                                     {(i & 1) != 0, (i & 2) != 0, (i & 4) != 0, (i & 8) != 0}});
     }
   }
   sequence.rejected_detections = {{"duplicate", 2}, {"near_border", 17}};
@@ -48,10 +57,9 @@ inline std::vector<ObjectEstimate> RandomObjectEstimates() {
 
 inline LandmarkEstimates RandomLandmarkEstimates() {
   LandmarkEstimates estimates;
-  estimates.observations = {
-      {0, {{RandomLandmarkInCamera(), 0.1}, {RandomLandmarkInCamera(), 1.0 / 3.0}}, ""},
-      {3, {}, "plane_behind_camera"},
-      {9, {{RandomLandmarkInCamera(), 1e-300}}, ""}};
+  estimates.observations = {{0, {{RandomLandmark(), 0.1}, {RandomLandmark(), 1.0 / 3.0}}, ""},
+                            {3, {}, "plane_behind_camera"},
+                            {9, {{RandomLandmark(), 1e-300}}, ""}};
   estimates.objects = RandomObjectEstimates();
   return estimates;
 }

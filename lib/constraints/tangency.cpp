@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/tangency.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace soslam {
+namespace {
+
+// Boxes of a few pixels are not that precise.
+constexpr double kMinSigmaPx = 1.0;
+
+}  // namespace
+
+std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
+                                const std::array<bool, 4>& is_bound, double sigma_fraction) {
+  const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
+  const auto lines = box.EdgeLines();
+  std::array<BoxEdge, 4> edges;
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const double outwards = i < 2 ? -1.0 : 1.0;
+    const double side = i % 2 == 0 ? box.Width() : box.Height();
+    edges[i] = {outwards * (to_plane * lines[i]), is_bound[i],
+                std::max(kMinSigmaPx, sigma_fraction * side)};
+  }
+  return edges;
+}
+
+double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double depth_m,
+                double bias_px, LandmarkJacobian1* jacobian) {
+  const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
+  const SupportValue support =
+      SupportFunction(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent,
+                      rotation.conjugate() * edge.plane);
+  const double weight = 1.0 / (depth_m * edge.sigma_px);
+  const double outside = weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.extent) -
+                         bias_px / edge.sigma_px;
+  const bool is_free = edge.is_bound && outside > 0.0;
+  if (jacobian != nullptr) {
+    const Eigen::Vector3d contact = rotation * support.contact;
+    *jacobian << contact.cross(edge.plane).transpose(), edge.plane.transpose(),
+        support.by_log_half_axes.transpose();
+    *jacobian *= is_free ? 0.0 : weight;
+  }
+  return is_free ? 0.0 : outside;
+}
+
+double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera) {
+  return Farthest(landmark_in_camera, edge.plane).point.z();
+}
+
+TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera)
+    : edge_(edge),
+      depth_m_(TangentDepth(edge, start_in_camera)),
+      shape_exponent_(start_in_camera.shape_exponent) {}
+
+bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
+                                double** jacobians) const {
+  const RelativeObservation observation(blocks, shape_exponent_);
+  LandmarkJacobian1 by_landmark;
+  residuals[0] =
+      Tangency(edge_, observation.landmark_in_camera(), depth_m_, blocks[2][0], &by_landmark);
+  observation.WriteJacobians<1>(by_landmark, blocks, jacobians);
+  if (jacobians != nullptr && jacobians[2] != nullptr) {
+    const bool is_free = edge_.is_bound && residuals[0] == 0.0;
+    jacobians[2][0] = is_free ? 0.0 : -1.0 / edge_.sigma_px;
+  }
+  return std::isfinite(residuals[0]);
+}
+
+}  // namespace soslam

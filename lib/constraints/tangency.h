@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Core>
+#include <array>
+
+#include "constraints/parameters.h"
+#include "geometry/box.h"
+#include "geometry/camera.h"
+
+namespace soslam {
+
+// An edge of a detection's box, for a body of any shape exponent.
+struct BoxEdge {
+  // K^T l of the edge's line l, pointing out of the box: plane . x / x_z is how far (px) the
+  // projection of x (camera frame) lies outside the edge.
+  Eigen::Vector3d plane;
+  // The object may reach farther than the edge (the image border or a nearer object cuts it off).
+  bool is_bound = false;
+  double sigma_px = 1.0;
+};
+
+// Left, top, right, bottom.
+std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
+                                const std::array<bool, 4>& is_bound, double sigma_fraction);
+
+// How far (px / sigma) a body reaches outside a box edge: zero when the plane behind the edge is
+// tangent to it. h(n) + n . c + d of the plane in metres, divided by the depth of the tangent point
+// (taken as known: it changes the residual by less than its own size) and multiplied by the focal
+// length. For a bound only what is missing to the edge counts. At p = 2 this is the paper's eq.
+// (3), as pi^T Q* pi = h^2 - (n . c + d)^2. `bias_px` moves the edge outwards before it is
+// compared.
+double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double depth_m,
+                double bias_px, LandmarkJacobian1* jacobian);
+
+// The depth of the point where a body is tangent to the plane behind an edge.
+double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
+
+// Tangency of one edge of a detection, less a bias of the detector. Residuals: 1, no unit. Blocks:
+// world_from_camera, landmark in the world, bias (px, how far this edge of all boxes lies too far
+// out). The shape exponent and the depth of the tangent point are those of `start_in_camera`.
+class TangencyResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize, 1> {
+ public:
+  TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera);
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+
+ private:
+  BoxEdge edge_;
+  double depth_m_;
+  double shape_exponent_;
+};
+
+}  // namespace soslam

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/bound_edges.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "model/occlusion.h"
+
+namespace soslam {
+namespace {
+
+// A box that ends this close to the image border (px) is cut by it. Tools differ by up to a pixel
+// in where the border is (width - 1 or width), and detectors round.
+constexpr double kCutAtBorderPx = 1.5;
+
+// A share of exactly the option's value hides, whatever the rounding of the boxes' edges.
+constexpr double kShareTolerance = 1e-9;
+
+// The share of a box's lower edge that lies inside the union of other boxes.
+double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
+  std::vector<std::pair<double, double>> intervals;
+  for (const Box& other : others) {
+    if (box.y_max < other.y_min || box.y_max > other.y_max) continue;
+    intervals.emplace_back(std::max(box.x_min, other.x_min), std::min(box.x_max, other.x_max));
+  }
+  std::sort(intervals.begin(), intervals.end());
+  double covered = 0.0;
+  double covered_until = -std::numeric_limits<double>::infinity();
+  for (const auto& [begin, end] : intervals) {
+    covered += std::max(0.0, end - std::max(begin, covered_until));
+    covered_until = std::max(covered_until, end);
+  }
+  return covered / box.Width();
+}
+
+}  // namespace
+
+// Nearer objects make a bound of the lower edge only. They stand on the same support, so they hide
+// what is behind them from the feet upwards, and a box that ends within another has probably lost
+// its feet. Sides and tops tell less: the box of a tall object full of gaps (a chair) covers much
+// that is seen past its back and between its legs, and the edge of the object behind is then
+// measured as well as any.
+void MarkBoundEdges(const ImportOptions& options, const Sequence& in_view, Sequence* sequence) {
+  const double right_border = sequence->camera.width - 0.5;
+  const double lower_border = sequence->camera.height - 0.5;
+  for (Detection& detection : sequence->detections) {
+    const Box& box = detection.box;
+    const double hidden_share = CoveredShareOfLowerEdge(box, NearerBoxes(in_view, detection));
+    const bool is_hidden = hidden_share >= options.hidden_edge_fraction - kShareTolerance;
+    detection.is_bound = {box.x_min + 0.5 <= kCutAtBorderPx,           //
+                          box.y_min + 0.5 <= kCutAtBorderPx,           //
+                          right_border - box.x_max <= kCutAtBorderPx,  //
+                          lower_border - box.y_max <= kCutAtBorderPx || is_hidden};
+  }
+}
+
+}  // namespace soslam

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "constraints/tangency.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "initialisation/semantic_table.h"
+
+namespace soslam {
+
+// A body that stands upright on its support plane has six degrees of freedom: yaw (rad, see
+// UprightRotation), the foot of its centre on the plane along UprightRotation(normal, 0)'s x and y
+// axes from the plane's point nearest to the origin (m), and the logarithms of its half axes.
+using UprightVector = Eigen::Matrix<double, 6, 1>;
+using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;
+
+Landmark UprightLandmark(const Plane& plane, const UprightVector& parameters,
+                         double shape_exponent);
+// The parameters of a landmark that is upright on the plane (of any: its nearest upright one's).
+UprightVector UprightParameters(const Plane& plane, const Landmark& landmark);
+// d (nine parameters of kLandmarkDof) / d parameters.
+UprightJacobian UprightByParameters(const Plane& plane, const Landmark& landmark);
+
+// Something that an upright landmark is fitted to: residuals with unit variance.
+class LandmarkTerm {
+ public:
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof>;
+
+  virtual ~LandmarkTerm() = default;
+  virtual int NumResiduals() const = 0;
+  // `jacobian` (NumResiduals() x 9) may be null.
+  virtual void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                        Jacobian* jacobian) const = 0;
+};
+
+// The tangencies of one detection's four edges, tangent points at the depths of `start_in_camera`.
+class BoxTerm final : public LandmarkTerm {
+ public:
+  BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera);
+  int NumResiduals() const override { return 4; }
+  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  std::array<BoxEdge, 4> edges_;
+  std::array<double, 4> depths_m_;
+};
+
+// The logarithms of a / c and b / c against the prior's.
+class RatioTerm final : public LandmarkTerm {
+ public:
+  explicit RatioTerm(const ShapePrior& prior) : prior_(prior) {}
+  int NumResiduals() const override { return 2; }
+  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  ShapePrior prior_;
+};
+
+// A term of one camera, for a landmark in another frame; each residual under a Huber loss.
+class RobustViewTerm final : public LandmarkTerm {
+ public:
+  RobustViewTerm(std::unique_ptr<const LandmarkTerm> term, const Rigid3d& camera_from_reference,
+                 double huber_delta)
+      : term_(std::move(term)),
+        camera_from_reference_(camera_from_reference),
+        huber_delta_(huber_delta) {}
+  int NumResiduals() const override { return term_->NumResiduals(); }
+  void Evaluate(const Landmark& landmark_in_reference, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  std::unique_ptr<const LandmarkTerm> term_;
+  Rigid3d camera_from_reference_;
+  double huber_delta_;
+};
+
+// A weak preference for a yaw along or across a horizontal axis of the world, as furniture stands:
+// costs `weight` sin^2(2 d), d the angle between them, so at most `weight`.
+class AxisTerm final : public LandmarkTerm {
+ public:
+  AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera, double weight);
+  int NumResiduals() const override { return 1; }
+  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  Eigen::Vector3d normal_;
+  double axis_yaw_;
+  double amplitude_;
+};
+
+// Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
+// landmark and its cost, half the sum of squared residuals; none when the solver runs away.
+using LandmarkTerms = std::vector<std::unique_ptr<const LandmarkTerm>>;
+struct UprightSolution {
+  Landmark landmark_in_camera;
+  double cost;
+};
+std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const Landmark& start,
+                                          const LandmarkTerms& terms, bool yaw_is_free);
+
+}  // namespace soslam

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/yaw_sweep.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+namespace soslam {
+namespace {
+
+// Tangent depths settle within a percent after two rounds, a hundredth of one after three.
+constexpr int kDepthRounds = 3;
+// Two optima closer than this are one.
+constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
+// Of the finer grid around a grid point, either way.
+constexpr int kRefinementSteps = 10;
+
+// Foot x, foot y and half height c of the body with the prior's ratio, given the tangent depths.
+class LinearSystem {
+ public:
+  LinearSystem(const UprightObservation& observation, double yaw,
+               const std::array<double, 4>& depths_m)
+      : observation_(observation) {
+    const Plane& plane = observation.plane_in_camera;
+    const Eigen::Quaterniond upright = UprightRotation(plane.normal, yaw);
+    const Eigen::Vector3d x = UprightRotation(plane.normal, 0.0) * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d y = plane.normal.cross(x);
+    const Eigen::Vector3d origin = -plane.offset * plane.normal;
+    const ShapePrior& prior = observation.prior;
+    const Eigen::Vector3d proportions(prior.ratio.x(), prior.ratio.y(), 1.0);
+    for (size_t i = 0; i < depths_m.size(); ++i) {
+      const BoxEdge& edge = observation.edges[i];
+      const double weight = 1.0 / (depths_m[i] * edge.sigma_px);
+      const double extent =
+          SupportFunction(proportions, prior.shape_exponent, upright.conjugate() * edge.plane)
+              .extent;
+      const auto row = static_cast<Eigen::Index>(i);
+      matrix_.row(row) = weight * Eigen::RowVector3d(edge.plane.dot(x), edge.plane.dot(y),
+                                                     edge.plane.dot(plane.normal) + extent);
+      right_side_(row) = -weight * edge.plane.dot(origin);
+    }
+  }
+
+  Eigen::Vector3d Solve() const {
+    std::array<bool, 4> counts{};
+    for (size_t i = 0; i < counts.size(); ++i) counts[i] = !observation_.edges[i].is_bound;
+    // With fewer than three measured edges the bounds are all there is to hold the size.
+    if (std::count(counts.begin(), counts.end(), true) < 3) counts.fill(true);
+    Eigen::Vector3d solution = Solve(counts);
+    const Eigen::Vector4d outside = matrix_ * solution - right_side_;
+    bool missed = false;
+    for (size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] || !(outside(static_cast<Eigen::Index>(i)) < 0.0)) continue;
+      counts[i] = missed = true;
+    }
+    return missed ? Solve(counts) : solution;
+  }
+
+ private:
+  Eigen::Vector3d Solve(const std::array<bool, 4>& counts) const {
+    Eigen::Vector4d selected;
+    for (size_t i = 0; i < counts.size(); ++i) {
+      selected(static_cast<Eigen::Index>(i)) = counts[i] ? 1.0 : 0.0;
+    }
+    return (selected.asDiagonal() * matrix_)
+        .colPivHouseholderQr()
+        .solve(selected.asDiagonal() * right_side_);
+  }
+
+  const UprightObservation& observation_;
+  Eigen::Matrix<double, 4, 3> matrix_;
+  Eigen::Vector4d right_side_;
+};
+
+// The depth where the ray through the middle of the box's lower edge meets the plane.
+std::optional<double> FootDepth(const UprightObservation& observation) {
+  // The edge's planes give its lines: the x of left and right, the y of the bottom.
+  const Camera& camera = observation.camera;
+  const auto pixel_of = [&](size_t edge, int axis) {
+    const Eigen::Vector3d& plane = observation.edges[edge].plane;
+    const double focal = axis == 0 ? camera.fx : camera.fy;
+    const double centre = axis == 0 ? camera.cx : camera.cy;
+    return centre - focal * plane.z() / plane(axis);
+  };
+  const Eigen::Vector3d ray = camera.Ray({0.5 * (pixel_of(0, 0) + pixel_of(2, 0)), pixel_of(3, 1)});
+  const Plane& plane = observation.plane_in_camera;
+  const double depth = -plane.offset / plane.normal.dot(ray);
+  if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
+  return depth;
+}
+
+bool IsInFront(const Landmark& landmark_in_camera) {
+  return Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
+}
+
+// Fits the terms, and again those of the result.
+std::optional<UprightSolution> Fit(const UprightObservation& observation,
+                                   const YawObjective& objective, const Landmark& start,
+                                   bool yaw_is_free) {
+  std::optional<UprightSolution> solution = UprightSolution{start, 0.0};
+  for (int round = 0; round < objective.rounds; ++round) {
+    solution = FitUpright(observation.plane_in_camera, solution->landmark_in_camera,
+                          objective.terms(solution->landmark_in_camera), yaw_is_free);
+    if (!solution || !IsInFront(solution->landmark_in_camera)) return std::nullopt;
+  }
+  if (objective.extra_cost) solution->cost += objective.extra_cost(solution->landmark_in_camera);
+  return solution;
+}
+
+// The best landmark near a grid point. Without an extra cost the fit finds the yaw; with one a
+// finer grid does.
+std::optional<UprightSolution> RefineYaw(const UprightObservation& observation,
+                                         const YawObjective& objective, const Landmark& start,
+                                         double step) {
+  if (!objective.extra_cost) return Fit(observation, objective, start, /*yaw_is_free=*/true);
+  std::optional<UprightSolution> best;
+  for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
+    const auto solution = Fit(observation, objective, Turned(start, i * step / kRefinementSteps),
+                              /*yaw_is_free=*/false);
+    if (solution && (!best || solution->cost < best->cost)) best = solution;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {
+  const auto foot_depth = FootDepth(observation);
+  if (!foot_depth) return std::nullopt;
+  std::array<double, 4> depths_m;
+  depths_m.fill(*foot_depth);
+  Landmark landmark;
+  for (int round = 0; round < kDepthRounds; ++round) {
+    const Eigen::Vector3d solution = LinearSystem(observation, yaw, depths_m).Solve();
+    const double c = solution.z();
+    if (!solution.allFinite() || !(c > 0.0)) return std::nullopt;
+    UprightVector parameters;
+    const ShapePrior& prior = observation.prior;
+    parameters << yaw, solution.x(), solution.y(), std::log(prior.ratio.x() * c),
+        std::log(prior.ratio.y() * c), std::log(c);
+    landmark = UprightLandmark(observation.plane_in_camera, parameters, prior.shape_exponent);
+    if (!IsInFront(landmark)) return std::nullopt;
+    for (size_t i = 0; i < depths_m.size(); ++i) {
+      depths_m[i] = TangentDepth(observation.edges[i], landmark);
+    }
+  }
+  return landmark;
+}
+
+UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
+                                          const ShapePrior& prior, const UprightOptions& options) {
+  return {sequence.camera,
+          BoxEdges(sequence.camera, detection.box, detection.is_bound,
+                   options.detection_sigma_fraction),
+          detection.plane_in_camera,
+          prior,
+          WorldAxisInCamera(sequence, detection),
+          options.axes_weight};
+}
+
+Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection) {
+  const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
+  const Plane& plane = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+  return frame.world_from_camera.rotation.conjugate() *
+         (UprightRotation(plane.normal, 0.0) * Eigen::Vector3d::UnitX());
+}
+
+YawObjective BoxObjective(const UprightObservation& observation) {
+  YawObjective objective;
+  objective.terms = [&observation](const Landmark& start) {
+    LandmarkTerms terms;
+    terms.push_back(std::make_unique<BoxTerm>(observation.edges, start));
+    terms.push_back(std::make_unique<RatioTerm>(observation.prior));
+    terms.push_back(std::make_unique<AxisTerm>(
+        observation.plane_in_camera, observation.world_axis_in_camera, observation.axes_weight));
+    return terms;
+  };
+  return objective;
+}
+
+std::vector<double> YawSweep::Costs() const {
+  std::vector<double> costs;
+  for (const auto& solution : solutions) {
+    costs.push_back(solution ? solution->cost : std::numeric_limits<double>::quiet_NaN());
+  }
+  return costs;
+}
+
+double YawSweep::StandardDeviation(double centre) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& solution : solutions) {
+    if (solution) lowest = std::min(lowest, solution->cost);
+  }
+  double sum = 0.0;
+  double squares = 0.0;
+  for (size_t i = 0; i < yaw.size(); ++i) {
+    if (!solutions[i]) continue;
+    const double likelihood = std::exp(lowest - solutions[i]->cost);
+    sum += likelihood;
+    squares += likelihood * std::pow(YawDifferenceModuloPi(yaw[i], centre), 2);
+  }
+  return std::sqrt(squares / sum);
+}
+
+YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
+                  double step) {
+  YawSweep sweep;
+  const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
+  for (int i = 0; i < steps; ++i) {
+    sweep.yaw.push_back(i * std::numbers::pi / steps);
+    const auto start = SolveAtYaw(observation, sweep.yaw.back());
+    sweep.solutions.push_back(start ? Fit(observation, objective, *start, /*yaw_is_free=*/false)
+                                    : std::nullopt);
+  }
+  return sweep;
+}
+
+std::vector<size_t> CircularMinima(const std::vector<double>& values) {
+  const size_t n = values.size();
+  const auto height = [&](size_t i) {
+    return std::isnan(values[i % n]) ? std::numeric_limits<double>::infinity() : values[i % n];
+  };
+  std::vector<size_t> minima;
+  for (size_t i = 0; i < n; ++i) {
+    if (std::isfinite(height(i)) && height(i) <= height(i + 1) && height(i) < height(i + n - 1)) {
+      minima.push_back(i);
+    }
+  }
+  std::stable_sort(minima.begin(), minima.end(),
+                   [&](size_t one, size_t other) { return values[one] < values[other]; });
+  return minima;
+}
+
+std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
+                                         const YawObjective& objective, const YawSweep& sweep,
+                                         size_t max_count) {
+  const double step = std::numbers::pi / static_cast<double>(sweep.yaw.size());
+  const auto yaw_of = [&](const UprightSolution& solution) {
+    return Yaw(observation.plane_in_camera.normal,
+               solution.landmark_in_camera.frame_from_object.rotation);
+  };
+  std::vector<UprightSolution> optima;
+  for (const size_t i : CircularMinima(sweep.Costs())) {
+    if (optima.size() == max_count) break;
+    const auto solution =
+        RefineYaw(observation, objective, sweep.solutions[i]->landmark_in_camera, step);
+    if (!solution) continue;
+    const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {
+      return std::abs(YawDifferenceModuloPi(yaw_of(*solution), yaw_of(other))) < kSameYaw;
+    });
+    if (!known) optima.push_back(*solution);
+  }
+  std::stable_sort(optima.begin(), optima.end(),
+                   [](const auto& one, const auto& other) { return one.cost < other.cost; });
+  return optima;
+}
+
+}  // namespace soslam

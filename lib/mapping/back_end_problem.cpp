@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/back_end_problem.h"
+
+#include <numbers>
+
+#include "base/error.h"
+#include "constraints/bias.h"
+#include "constraints/detection.h"
+#include "constraints/log_ratio.h"
+#include "constraints/manifolds.h"
+#include "constraints/odometry.h"
+#include "constraints/scale_ratio.h"
+#include "constraints/support.h"
+#include "constraints/tangency.h"
+#include "symmetry/sampling.h"
+
+namespace soslam {
+namespace {
+
+// Residual blocks share one loss, which outlives the problem.
+ceres::Problem::Options BorrowLoss() {
+  ceres::Problem::Options options;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  return options;
+}
+
+ceres::Solver::Options SolverOptions(int max_iterations) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_SCHUR;
+  solver.max_num_iterations = max_iterations;
+  // In the paper's units a pixel is a residual of 1e-3 or less: the default tolerances would stop
+  // far from the optimum.
+  solver.function_tolerance = 1e-8;
+  solver.gradient_tolerance = 1e-14;
+  solver.parameter_tolerance = 1e-10;
+  solver.num_threads = 1;  // for identical bytes from run to run
+  solver.logging_type = ceres::SILENT;
+  return solver;
+}
+
+}  // namespace
+
+BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions& options)
+    : input_(input), options_(options), loss_(options.huber_delta), problem_(BorrowLoss()) {
+  for (const Frame& frame : input.sequence.frames) poses_.push_back(Pack(frame.world_from_camera));
+  for (const auto& start : input.starts) landmarks_.push_back(Pack(start.value_or(Landmark())));
+  for (PoseBlock& pose : poses_) {
+    problem_.AddParameterBlock(pose.data(), kPoseSize, NewPoseManifold());
+  }
+  problem_.SetParameterBlockConstant(poses_.front().data());
+  AddOdometry();
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    if (input.starts[i]) AddLandmark(i);
+  }
+  AddDetections();
+}
+
+Landmark BackEndProblem::LandmarkInWorld(size_t object_index) const {
+  Landmark landmark = UnpackLandmark(landmarks_[object_index].data());
+  landmark.shape_exponent = input_.starts[object_index]->shape_exponent;
+  return landmark;
+}
+
+Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
+  const PoseBlock& pose = poses_[static_cast<size_t>(detection.frame_index)];
+  return Transform(UnpackPose(pose.data()).Inverse(),
+                   LandmarkInWorld(static_cast<size_t>(detection.object_index)));
+}
+
+void BackEndProblem::AddOdometry() {
+  const auto& frames = input_.sequence.frames;
+  for (size_t i = 1; i < frames.size(); ++i) {
+    const Rigid3d first_from_second =
+        frames[i - 1].world_from_camera.Inverse() * frames[i].world_from_camera;
+    problem_.AddResidualBlock(
+        new OdometryResidual(first_from_second,
+                             options_.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
+                             options_.odometry_translation_sigma_m),
+        &loss_, poses_[i - 1].data(), poses_[i].data());
+    ++summary_.residuals["odometry"];
+  }
+}
+
+void BackEndProblem::AddLandmark(size_t object_index) {
+  const Object& object = input_.sequence.objects[object_index];
+  double* landmark = landmarks_[object_index].data();
+  problem_.AddParameterBlock(landmark, kLandmarkSize, NewLandmarkManifold());
+  if (options_.support) {
+    const Plane& plane =
+        input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+    problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
+                                                  options_.variances.SupportTangencyM4()),
+                              &loss_, landmark);
+    ++summary_.residuals["support"];
+  }
+  if (options_.ratio) AddRatio(object_index);
+}
+
+void BackEndProblem::AddRatio(size_t object_index) {
+  const auto& prior = input_.priors[object_index];
+  if (!prior) {
+    ++summary_.gated["object_without_ratio"];
+    return;
+  }
+  double* landmark = landmarks_[object_index].data();
+  if (options_.detection_model == DetectionModel::kTangency) {
+    // No loss: a ratio far from the prior is as unlikely as its spread says.
+    problem_.AddResidualBlock(new LogRatioResidual(prior->ratio, prior->log_sigma), nullptr,
+                              landmark);
+  } else {
+    problem_.AddResidualBlock(new ScaleRatioResidual(prior->ratio, options_.variances.ratio),
+                              &loss_, landmark);
+  }
+  ++summary_.residuals["ratio"];
+}
+
+void BackEndProblem::AddDetections() {
+  for (const Detection& detection : input_.sequence.detections) {
+    if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
+      ++summary_.gated["detection_of_object_without_start"];
+      continue;
+    }
+    const Landmark landmark_in_camera = LandmarkInCamera(detection);
+    if (!(landmark_in_camera.Centre().z() > 0.0)) {
+      ++summary_.gated["landmark_behind_camera"];
+      continue;
+    }
+    AddDetection(detection, landmark_in_camera);
+    ++summary_.residuals["detection"];
+  }
+  if (options_.detection_model == DetectionModel::kTangency) HoldBias();
+}
+
+void BackEndProblem::AddDetection(const Detection& detection, const Landmark& landmark_in_camera) {
+  const Camera& camera = input_.sequence.camera;
+  double* pose = Pose(detection).data();
+  double* landmark = LandmarkOf(detection).data();
+  if (options_.detection_model == DetectionModel::kQuadric) {
+    problem_.AddResidualBlock(
+        new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()), &loss_,
+        pose, landmark);
+    return;
+  }
+  const auto edges =
+      BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction);
+  for (size_t i = 0; i < edges.size(); ++i) {
+    // A body so near that it reaches behind the camera has no tangent point in view.
+    if (!(TangentDepth(edges[i], landmark_in_camera) > 0.0)) {
+      ++summary_.gated["edge_behind_camera"];
+      continue;
+    }
+    problem_.AddResidualBlock(new TangencyResidual(edges[i], landmark_in_camera), &loss_, pose,
+                              landmark, &detector_bias_px_[i]);
+  }
+}
+
+void BackEndProblem::HoldBias() {
+  for (double& bias : detector_bias_px_) {
+    if (!problem_.HasParameterBlock(&bias)) continue;
+    if (options_.detector_bias_sigma_px > 0.0) {
+      problem_.AddResidualBlock(new BiasResidual(options_.detector_bias_sigma_px), nullptr, &bias);
+    } else {
+      problem_.SetParameterBlockConstant(&bias);
+    }
+  }
+}
+
+void BackEndProblem::AddSymmetry() {
+  for (const auto& [detection_index, image] : input_.symmetry_images) {
+    AddSymmetry(input_.sequence.detections[static_cast<size_t>(detection_index)], image);
+  }
+}
+
+void BackEndProblem::AddSymmetry(const Detection& detection,
+                                 const std::shared_ptr<const SymmetryImage>& image) {
+  if (!input_.starts[static_cast<size_t>(detection.object_index)]) return;
+  const Landmark in_camera = LandmarkInCamera(detection);
+  const Camera& camera = input_.sequence.camera;
+  const SymmetryOptions& symmetry = options_.symmetry_options;
+  const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
+  std::vector<Eigen::Vector2d> visible;
+  for (const Eigen::Vector2d& pixel :
+       SamplePixels(image->maps, camera, in_camera, detection.box, symmetry)) {
+    if (at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
+  }
+  if (visible.size() < static_cast<size_t>(symmetry.min_pairs)) {
+    ++summary_.gated["symmetry_with_too_few_visible_pairs"];
+    return;
+  }
+  for (const Eigen::Vector2d& pixel : visible) {
+    problem_.AddResidualBlock(
+        new SymmetryResidual(symmetry.descriptor, image, camera, pixel, in_camera.shape_exponent,
+                             options_.symmetry_sigma),
+        &loss_, Pose(detection).data(), LandmarkOf(detection).data());
+  }
+  summary_.residuals["symmetry"] += static_cast<int>(visible.size());
+}
+
+void BackEndProblem::RenewEdges() {
+  for (const ceres::ResidualBlockId id : edges_) problem_.RemoveResidualBlock(id);
+  edges_.clear();
+  for (const auto& [detection_index, image] : input_.edge_images) {
+    const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
+    if (!input_.starts[static_cast<size_t>(detection.object_index)]) continue;
+    auto residual = std::make_unique<EdgeAlignmentResidual>(
+        image, input_.sequence.camera, LandmarkInCamera(detection), options_.edges);
+    if (residual->num_residuals() == 0) continue;
+    // No further loss: a point's residual is bounded.
+    edges_.push_back(problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection).data(),
+                                               LandmarkOf(detection).data()));
+  }
+  if (!input_.edge_images.empty()) summary_.residuals["edges"] = static_cast<int>(edges_.size());
+}
+
+std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (size_t i = 0; i < landmarks_.size(); ++i) {
+    if (input_.starts[i]) ordering->AddElementToGroup(landmarks_[i].data(), 0);
+  }
+  return ordering;
+}
+
+void BackEndProblem::Solve() {
+  ceres::Solver::Options solver = SolverOptions(options_.max_iterations);
+  solver.linear_solver_ordering = LandmarkOrdering();
+  for (PoseBlock& pose : poses_) solver.linear_solver_ordering->AddElementToGroup(pose.data(), 1);
+  for (double& bias : detector_bias_px_) {
+    if (problem_.HasParameterBlock(&bias)) {
+      solver.linear_solver_ordering->AddElementToGroup(&bias, 1);
+    }
+  }
+  // A landmark that its boxes hardly determine would shrink the one trust region of them all: after
+  // every step each is optimised for itself.
+  solver.use_inner_iterations = true;
+  solver.inner_iteration_ordering = LandmarkOrdering();
+
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem_, &summary);
+  if (!summary.IsSolutionUsable()) throw NumericalError("back end: " + summary.message);
+  if (summary_.cost_per_iteration.empty()) summary_.initial_cost = summary.initial_cost;
+  summary_.final_cost = summary.final_cost;
+  summary_.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  summary_.converged = summary.termination_type == ceres::CONVERGENCE;
+  for (const auto& iteration : summary.iterations) {
+    summary_.cost_per_iteration.push_back(iteration.cost);
+  }
+}
+
+}  // namespace soslam

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/ceres.h>
+
+#include <memory>
+#include <vector>
+
+#include "constraints/parameters.h"
+#include "mapping/back_end.h"
+#include "mapping/options.h"
+#include "model/estimates.h"
+
+namespace soslam {
+
+// The one problem of eq. (1), its variables, and what went into it. Keeps references to its
+// arguments.
+class BackEndProblem {
+ public:
+  // With odometry, detections, support and ratio constraints.
+  BackEndProblem(const BackEndInput& input, const OptimiseOptions& options);
+
+  // Which surface points see each other in the mirror, and which edges of a body are visible,
+  // depends on the landmarks: texture and edges join in when boxes and planes have settled. The
+  // edges of an earlier call are replaced.
+  void AddSymmetry();
+  void RenewEdges();
+
+  // Minimises from where the variables are. Throws NumericalError when there is no usable solution.
+  void Solve();
+
+  const SolverSummary& summary() const { return summary_; }
+  ceres::Problem& problem() { return problem_; }
+  const double* LandmarkData(size_t object_index) const { return landmarks_[object_index].data(); }
+  Landmark LandmarkInWorld(size_t object_index) const;
+  const std::vector<PoseBlock>& poses() const { return poses_; }
+
+ private:
+  void AddOdometry();
+  void AddLandmark(size_t object_index);
+  void AddRatio(size_t object_index);
+  void AddDetections();
+  void AddDetection(const Detection& detection, const Landmark& landmark_in_camera);
+  void AddSymmetry(const Detection& detection, const std::shared_ptr<const SymmetryImage>& image);
+  void HoldBias();
+  // A detection's landmark as its camera sees it, where the variables are.
+  Landmark LandmarkInCamera(const Detection& detection) const;
+  PoseBlock& Pose(const Detection& detection) {
+    return poses_[static_cast<size_t>(detection.frame_index)];
+  }
+  LandmarkBlock& LandmarkOf(const Detection& detection) {
+    return landmarks_[static_cast<size_t>(detection.object_index)];
+  }
+  std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();
+
+  const BackEndInput& input_;
+  const OptimiseOptions& options_;
+  ceres::HuberLoss loss_;
+  ceres::Problem problem_;
+  std::vector<PoseBlock> poses_;
+  std::vector<LandmarkBlock> landmarks_;
+  std::array<double, 4> detector_bias_px_{};  // left, top, right, bottom
+  std::vector<ceres::ResidualBlockId> edges_;
+  SolverSummary summary_;
+};
+
+}  // namespace soslam

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/choose_starts.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace soslam {
+namespace {
+
+// The median over the object's detections of the distance between box and outline; large where the
+// outline does not exist.
+double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detections,
+                     const Landmark& landmark_in_world) {
+  std::vector<double> distances;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    distances.push_back(OutlineEdgeRms(
+        sequence.camera, Transform(frame.world_from_camera.Inverse(), landmark_in_world),
+        detection.box));
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
+                                                  const LandmarkEstimates& estimates) {
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<std::optional<Landmark>> starts(sequence.objects.size());
+  std::vector<double> distances(sequence.objects.size(), std::numeric_limits<double>::infinity());
+  for (const ObservationEstimate& observation : estimates.observations) {
+    if (observation.hypotheses.empty()) continue;
+    const Detection& detection =
+        sequence.detections[static_cast<size_t>(observation.detection_index)];
+    const auto object_index = static_cast<size_t>(detection.object_index);
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    for (const Hypothesis& hypothesis : observation.hypotheses) {
+      const Landmark in_world = Transform(frame.world_from_camera, hypothesis.landmark_in_camera);
+      const double distance = MedianEdgeRms(sequence, detections[object_index], in_world);
+      if (!starts[object_index] || distance < distances[object_index]) {
+        starts[object_index] = in_world;
+        distances[object_index] = distance;
+      }
+    }
+  }
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (object.landmark_in_world) {
+      starts[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
+    }
+  }
+  return starts;
+}
+
+}  // namespace soslam

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "initialisation/upright.h"
+#include "mapping/choose_starts.h"
+
+namespace soslam {
+namespace {
+
+// Yaws closer than this lead to the same optimum.
+constexpr double kYawBin = 6.0 * std::numbers::pi / 180.0;
+// Enough to see an object from all sides that it is seen from.
+constexpr size_t kMaxViews = 16;
+constexpr size_t kMaxCandidates = 12;
+// Tangent depths and visible edges depend on the landmark: fitted twice.
+constexpr int kRounds = 2;
+
+// The cost of one object's landmark in the world over views of it, camera poses held.
+class ObjectFit {
+ public:
+  ObjectFit(const Sequence& sequence, const std::vector<int>& detections,
+            const std::optional<ShapePrior>& prior,
+            const std::map<int, std::shared_ptr<const EdgeImage>>& edge_images,
+            const OptimiseOptions& options)
+      : sequence_(sequence), prior_(prior), edge_images_(edge_images), options_(options) {
+    const size_t views = std::min(kMaxViews, detections.size());
+    for (size_t i = 0; i < views; ++i) views_.push_back(detections[i * detections.size() / views]);
+    const Object& object = sequence.objects[static_cast<size_t>(
+        sequence.detections[static_cast<size_t>(detections.front())].object_index)];
+    plane_ = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+  }
+
+  const Plane& plane_in_world() const { return plane_; }
+
+  double Cost(const Landmark& landmark_in_world) const {
+    double cost = 0.0;
+    for (const auto& term : Terms(landmark_in_world)) {
+      Eigen::VectorXd residuals(term->NumResiduals());
+      term->Evaluate(landmark_in_world, residuals, nullptr);
+      cost += 0.5 * residuals.squaredNorm();
+    }
+    return cost;
+  }
+
+  std::optional<UprightSolution> Fit(const Landmark& start_in_world) const {
+    Landmark landmark = start_in_world;
+    for (int round = 0; round < kRounds; ++round) {
+      const auto solution = FitUpright(plane_, landmark, Terms(landmark), /*yaw_is_free=*/true);
+      if (!solution) return std::nullopt;
+      landmark = solution->landmark_in_camera;
+    }
+    return UprightSolution{landmark, Cost(landmark)};
+  }
+
+ private:
+  LandmarkTerms Terms(const Landmark& landmark_in_world) const {
+    LandmarkTerms terms;
+    if (prior_) terms.push_back(std::make_unique<RatioTerm>(*prior_));
+    for (const int index : views_) {
+      const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
+      const Frame& frame = sequence_.frames[static_cast<size_t>(detection.frame_index)];
+      const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
+      const Landmark in_camera = Transform(camera_from_world, landmark_in_world);
+      if (!(Farthest(in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0)) continue;
+      const auto add = [&](std::unique_ptr<const LandmarkTerm> term) {
+        terms.push_back(std::make_unique<RobustViewTerm>(std::move(term), camera_from_world,
+                                                         options_.huber_delta));
+      };
+      add(std::make_unique<BoxTerm>(BoxEdges(sequence_.camera, detection.box, detection.is_bound,
+                                             options_.detection_sigma_fraction),
+                                    in_camera));
+      const auto image = edge_images_.find(index);
+      if (image != edge_images_.end()) {
+        add(std::make_unique<EdgeTerm>(*image->second, sequence_.camera, in_camera,
+                                       options_.edges));
+      }
+    }
+    return terms;
+  }
+
+  const Sequence& sequence_;
+  const std::optional<ShapePrior>& prior_;
+  const std::map<int, std::shared_ptr<const EdgeImage>>& edge_images_;
+  const OptimiseOptions& options_;
+  std::vector<int> views_;
+  Plane plane_;
+};
+
+struct Candidate {
+  Landmark landmark_in_world;
+  double cost;
+};
+
+// The cheapest of each bin of yaw, cheapest first.
+std::vector<Candidate> BestOfEachYaw(const ObjectFit& fit, const std::vector<Landmark>& landmarks) {
+  std::map<long, Candidate> best;
+  for (const Landmark& landmark : landmarks) {
+    const double yaw = Yaw(fit.plane_in_world().normal, landmark.frame_from_object.rotation);
+    const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
+    const double cost = fit.Cost(landmark);
+    const auto found = best.find(bin);
+    if (found == best.end()) {
+      best.emplace(bin, Candidate{landmark, cost});
+    } else if (cost < found->second.cost) {
+      found->second = {landmark, cost};
+    }
+  }
+  std::vector<Candidate> candidates;
+  for (const auto& [bin, candidate] : best) candidates.push_back(candidate);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& one, const auto& other) { return one.cost < other.cost; });
+  candidates.resize(std::min(candidates.size(), kMaxCandidates));
+  return candidates;
+}
+
+}  // namespace
+
+std::vector<std::optional<Landmark>> ChooseUprightStarts(
+    const Sequence& sequence, const LandmarkEstimates& estimates,
+    const std::vector<std::optional<ShapePrior>>& priors,
+    const std::map<int, std::shared_ptr<const EdgeImage>>& edge_images,
+    const OptimiseOptions& options) {
+  std::vector<std::vector<Landmark>> hypotheses(sequence.objects.size());
+  for (const ObservationEstimate& observation : estimates.observations) {
+    const Detection& detection =
+        sequence.detections[static_cast<size_t>(observation.detection_index)];
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    for (const Hypothesis& hypothesis : observation.hypotheses) {
+      hypotheses[static_cast<size_t>(detection.object_index)].push_back(
+          Transform(frame.world_from_camera, hypothesis.landmark_in_camera));
+    }
+  }
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<std::optional<Landmark>> starts(sequence.objects.size());
+  for (size_t i = 0; i < starts.size(); ++i) {
+    if (hypotheses[i].empty()) continue;
+    const ObjectFit fit(sequence, detections[i], priors[i], edge_images, options);
+    std::optional<UprightSolution> best;
+    for (const Candidate& candidate : BestOfEachYaw(fit, hypotheses[i])) {
+      const auto solution = fit.Fit(candidate.landmark_in_world);
+      if (solution && (!best || solution->cost < best->cost)) best = solution;
+    }
+    if (best) starts[i] = best->landmark_in_camera;
+  }
+  return starts;
+}
+
+}  // namespace soslam

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "base/options.h"
+#include "initialisation/upright_options.h"
+#include "symmetry/options.h"
+
+namespace soslam {
+
+// How the projected edges of a body are compared with those of the image.
+struct EdgeOptions {
+  double edge_sigma_px = 2.0;
+  double edge_truncation_px = 8.0;
+  double edge_direction_tolerance_deg = 20.0;
+  double edge_spacing_px = 4.0;
+  double edge_correlation_px = 60.0;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Real("edge_sigma_px", &edge_sigma_px, {0.1, 100.0},
+               "standard deviation of the distance between an edge of the body and its image");
+    visit.Real("edge_truncation_px", &edge_truncation_px, {0.1, 1000.0},
+               "distances well beyond this count no more than this");
+    visit.Real("edge_direction_tolerance_deg", &edge_direction_tolerance_deg, {0.0, 90.0},
+               "image edges that run in another direction than the body's count as far away");
+    visit.Real("edge_spacing_px", &edge_spacing_px, {0.5, 100.0},
+               "distance between the points of an edge that are compared");
+    visit.Real("edge_correlation_px", &edge_correlation_px, {1.0, 1e6},
+               "points closer than this say the same: all points of a detection count as its box's "
+               "perimeter divided by this");
+  }
+};
+
+// What the orientation profile of an observation is made of, besides box, ratio prior and world
+// axes.
+struct ProfileOptions {
+  bool edge_alignment = true;
+  bool texture_symmetry = true;
+  UprightOptions upright;
+  EdgeOptions edges;
+  double symmetry_observations = 4.0;
+  double symmetry_scale = 0.05;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Flag("edge_alignment", &edge_alignment,
+               "profile: use the alignment of the body's edges with the image's");
+    visit.Flag("texture_symmetry", &texture_symmetry, "profile: use the symmetry of the texture");
+    upright.Describe(visit);
+    edges.Describe(visit);
+    visit.Real("symmetry_observations", &symmetry_observations, {0.0, 1e6},
+               "profile: the largest cost of a texture that is not symmetric");
+    visit.Real("symmetry_scale", &symmetry_scale, {1e-6, 1e6},
+               "profile: mean descriptor difference that counts as not symmetric, as a fraction of "
+               "the object's size (the cubic root of its half axes' product)");
+  }
+};
+
+enum class RefinementMethod {
+  kTurn,     // section V: the landmark is turned to where its texture is most symmetric
+  kProfile,  // the landmark that is best for each yaw; the best yaw of all
+};
+inline constexpr std::array kRefinementMethodNames = {"turn", "profile"};
+
+struct OrientationOptions {
+  RefinementMethod method = RefinementMethod::kTurn;
+  RefineOptions turn;
+  ProfileOptions profile;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Choice("method", &method, kRefinementMethodNames,
+                 "turn the initial landmark by the symmetry of its texture (section V), or find it "
+                 "anew from its orientation profile");
+    turn.Describe(visit);
+    profile.Describe(visit);
+  }
+};
+
+}  // namespace soslam

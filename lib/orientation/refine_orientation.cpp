@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "orientation/refine_orientation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "initialisation/yaw_sweep.h"
+#include "model/occlusion.h"
+#include "orientation/edge_alignment.h"
+#include "symmetry/sampling.h"
+#include "symmetry/yaw_profile.h"
+
+namespace soslam {
+namespace {
+
+// Hypotheses beyond these are far less likely, and costly to refine.
+constexpr size_t kMaxHypotheses = 6;
+// Which points of the body's edges are visible depends on the body: fitted twice.
+constexpr int kEdgeRounds = 2;
+
+class OrientationProfile {
+ public:
+  OrientationProfile(const Sequence& sequence, const Detection& detection, const EdgeMaps& maps,
+                     const ShapePrior& prior, const ProfileOptions& options,
+                     const SymmetryOptions& symmetry_options)
+      : detection_(detection),
+        options_(options),
+        symmetry_options_(symmetry_options),
+        observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
+        edge_image_(maps, detection.box, NearerBoxes(sequence, detection)),
+        symmetry_image_(maps, detection.box) {}
+
+  const UprightObservation& observation() const { return observation_; }
+
+  YawObjective Objective() const {
+    YawObjective objective = BoxObjective(observation_);
+    if (options_.edge_alignment) {
+      objective.terms = [this, box_terms = objective.terms](const Landmark& start) {
+        LandmarkTerms terms = box_terms(start);
+        terms.push_back(
+            std::make_unique<EdgeTerm>(edge_image_, observation_.camera, start, options_.edges));
+        return terms;
+      };
+      objective.rounds = kEdgeRounds;
+    }
+    if (options_.texture_symmetry) {
+      objective.extra_cost = [this](const Landmark& landmark) { return AsymmetryCost(landmark); };
+    }
+    return objective;
+  }
+
+  // The mean descriptor difference against what counts as no symmetry at all.
+  double AsymmetryCost(const Landmark& landmark) const {
+    const auto difference =
+        SymmetryCost(symmetry_image_, observation_.camera, landmark, Samples(landmark),
+                     symmetry_options_.descriptor, symmetry_options_);
+    const double scale = options_.symmetry_scale * std::cbrt(landmark.half_axes.prod());
+    return options_.symmetry_observations * (difference ? std::min(1.0, *difference / scale) : 1.0);
+  }
+
+  double EdgeCost(const Landmark& landmark) const {
+    const EdgeTerm term(edge_image_, observation_.camera, landmark, options_.edges);
+    Eigen::VectorXd residuals(term.NumResiduals());
+    term.Evaluate(landmark, residuals, nullptr);
+    return 0.5 * residuals.squaredNorm();
+  }
+
+  void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
+    const SymmetryDescriptor evaluate(symmetry_options_.descriptor, symmetry_image_,
+                                      observation_.camera, landmark);
+    for (const Eigen::Vector2d& pixel : Samples(landmark)) {
+      if (const auto pair = evaluate.Evaluate(pixel, symmetry_options_.min_viewing_cosine, false)) {
+        record->samples.push_back(pixel.cast<float>());
+        record->mirrored.push_back(pair->mirror_pixel.cast<float>());
+      }
+    }
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> Samples(const Landmark& landmark) const {
+    return SamplePixels(symmetry_image_.maps, observation_.camera, landmark, detection_.box,
+                        symmetry_options_);
+  }
+
+  const Detection& detection_;
+  const ProfileOptions& options_;
+  const SymmetryOptions& symmetry_options_;
+  UprightObservation observation_;
+  EdgeImage edge_image_;
+  SymmetryImage symmetry_image_;
+};
+
+void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
+                  const ProfileOptions& options, SymmetryRecord* record) {
+  record->yaw = sweep.yaw;
+  record->cost["total"] = sweep.Costs();
+  for (const auto& solution : sweep.solutions) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    if (options.edge_alignment) {
+      record->cost["edge_alignment"].push_back(
+          solution ? profile.EdgeCost(solution->landmark_in_camera) : none);
+    }
+    if (options.texture_symmetry) {
+      record->cost["texture_symmetry"].push_back(
+          solution ? profile.AsymmetryCost(solution->landmark_in_camera) : none);
+    }
+  }
+}
+
+}  // namespace
+
+RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
+                                     const EdgeMaps& maps, const std::optional<ShapePrior>& prior,
+                                     const ProfileOptions& options,
+                                     const SymmetryOptions& symmetry_options) {
+  const Detection& detection = sequence.detections[static_cast<size_t>(detection_index)];
+  RefinedObservation result;
+  result.estimate.detection_index = detection_index;
+  result.record.frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
+  result.record.object_id = sequence.objects[static_cast<size_t>(detection.object_index)].id;
+  result.record.true_yaw = TrueYaw(sequence, detection);
+  if (!prior) {
+    result.estimate.failure = "no_ratio_for_label";
+    return result;
+  }
+  const OrientationProfile profile(sequence, detection, maps, *prior, options, symmetry_options);
+  const YawObjective objective = profile.Objective();
+  const YawSweep sweep = SweepYaw(profile.observation(), objective,
+                                  options.upright.yaw_grid_deg * std::numbers::pi / 180.0);
+  for (const UprightSolution& optimum :
+       LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
+    result.estimate.hypotheses.push_back({optimum.landmark_in_camera, optimum.cost});
+  }
+  if (result.estimate.hypotheses.empty()) {
+    result.estimate.failure = "no_solution";
+    return result;
+  }
+  const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
+  RecordCurves(profile, sweep, options, &result.record);
+  profile.RecordPairs(best, &result.record);
+  result.record.refined_yaw =
+      Yaw(detection.plane_in_camera.normal, best.frame_from_object.rotation);
+  result.record.yaw_sigma = sweep.StandardDeviation(result.record.refined_yaw);
+  return result;
+}
+
+}  // namespace soslam

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "image/edge_maps.h"
+#include "initialisation/semantic_table.h"
+#include "model/sequence.h"
+#include "orientation/options.h"
+#include "symmetry/refine.h"
+
+namespace soslam {
+
+// The landmark of one detection from its orientation profile: at each yaw of a sweep the landmark
+// that box, ratio prior and image edges together make best, its cost, and on top the symmetry of
+// its texture on that landmark's own surface. The best optima become the hypotheses, with their
+// costs; the curves of all parts, the yaw and its standard deviation go into the record. Failures:
+// no_ratio_for_label, no_solution.
+RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
+                                     const EdgeMaps& maps, const std::optional<ShapePrior>& prior,
+                                     const ProfileOptions& options,
+                                     const SymmetryOptions& symmetry_options);
+
+}  // namespace soslam

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/bound_edges.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/level_sequence.h"
+
+namespace soslam {
+namespace {
+
+using Bounds = std::array<bool, 4>;  // left, top, right, bottom
+constexpr Bounds kNone = {false, false, false, false};
+constexpr Bounds kBottom = {false, false, false, true};
+
+// Of the first box, with the others in the same frame.
+Bounds BoundsOfFirst(const std::vector<Box>& boxes, double hidden_edge_fraction = 0.7) {
+  Sequence sequence = LevelSequence(boxes);
+  ImportOptions options;
+  options.hidden_edge_fraction = hidden_edge_fraction;
+  MarkBoundEdges(options, sequence, &sequence);
+  return sequence.detections[0].is_bound;
+}
+
+const Box kBox = {200, 150, 300, 300};
+
+TEST(BoundEdgesTest, ABoxAloneInsideTheImageHasNone) { EXPECT_EQ(BoundsOfFirst({kBox}), kNone); }
+
+// The image covers [-0.5, 639.5] x [-0.5, 479.5].
+TEST(BoundEdgesTest, EdgesAtTheImageBorderAreBounds) {
+  EXPECT_EQ(BoundsOfFirst({{1, 150, 300, 300}}), (Bounds{true, false, false, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 1, 300, 300}}), (Bounds{false, true, false, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 150, 638, 300}}), (Bounds{false, false, true, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 150, 300, 478}}), kBottom);
+  EXPECT_EQ(BoundsOfFirst({{-20, 0, 700, 480}}), (Bounds{true, true, true, true}));
+  EXPECT_EQ(BoundsOfFirst({{1.01, 1.01, 637.99, 477.99}}), kNone);
+}
+
+TEST(BoundEdgesTest, ALowerEdgeHiddenByExactlyTheFractionIsABound) {
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 270, 400}}), kBottom);
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 269.99, 400}}), kNone);
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 269.99, 400}}, 0.699), kBottom);
+  EXPECT_EQ(BoundsOfFirst({{0.1 + 99.9, 150, 100.3, 300}, {50, 200, 100.21, 400}}), kBottom);
+}
+
+TEST(BoundEdgesTest, TheLimitsOfTheFraction) {
+  EXPECT_EQ(BoundsOfFirst({kBox, {200, 200, 300, 400}}, 1.0), kBottom);
+  EXPECT_EQ(BoundsOfFirst({kBox, {200, 200, 299.9, 400}}, 1.0), kNone);
+  EXPECT_EQ(BoundsOfFirst({kBox}, 0.0), kBottom);
+}
+
+TEST(BoundEdgesTest, SeveralBoxesHideTogetherAndOverlapsCountOnce) {
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 240, 400}, {270, 200, 350, 400}}), kBottom);  // 40 + 30
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 240, 400}, {220, 200, 269, 400}}), kNone);    // 69
+  EXPECT_EQ(BoundsOfFirst({kBox, {220, 200, 270, 400}, {180, 200, 240, 400}}), kBottom);  // 70
+  EXPECT_EQ(BoundsOfFirst({kBox, {210, 200, 275, 400}, {230, 200, 240, 410}}), kNone);    // 65
+}
+
+TEST(BoundEdgesTest, ANearerBoxHidesOnlyWhatIsInsideIt) {
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 300, 320, 400}}), kBottom);  // begins at the edge
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 301, 320, 400}}), kNone);    // below
+  EXPECT_EQ(BoundsOfFirst({kBox, {300, 200, 400, 400}}), kNone);    // beside
+}
+
+TEST(BoundEdgesTest, ObjectsThatAreNotNearerHideNothing) {
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 100, 320, 300}}), kNone);  // as far
+  // Farther, though its box ends lower: it stands lower by 3 m.
+  Sequence sequence = LevelSequence({kBox, {180, 100, 320, 400}});
+  sequence.detections[1].plane_in_camera.offset = 4.0;
+  MarkBoundEdges({}, sequence, &sequence);
+  EXPECT_EQ(sequence.detections[0].is_bound, kNone);
+}
+
+TEST(BoundEdgesTest, SidesAndTopInsideNearerBoxesStayMeasured) {
+  EXPECT_EQ(BoundsOfFirst({kBox, {280, 100, 400, 400}}), kNone);    // all of the right side
+  EXPECT_EQ(BoundsOfFirst({kBox, {150, 100, 400, 400}}), kBottom);  // the whole box
+}
+
+TEST(BoundEdgesTest, TheNearerObjectsOwnEdgesStayMeasured) {
+  Sequence sequence = LevelSequence({kBox, {180, 200, 320, 400}});
+  MarkBoundEdges({}, sequence, &sequence);
+  EXPECT_EQ(sequence.detections[1].is_bound, kNone);
+}
+
+TEST(BoundEdgesTest, WhatIsInViewHidesThoughItIsNotUsed) {
+  const Sequence in_view = LevelSequence({kBox, {180, 200, 320, 479}});
+  Sequence sequence = in_view;
+  sequence.detections.pop_back();
+  MarkBoundEdges({}, in_view, &sequence);
+  EXPECT_EQ(sequence.detections[0].is_bound, kBottom);
+}
+
+TEST(BoundEdgesTest, WhatWasMarkedBeforeIsDecidedAgain) {
+  Sequence sequence = LevelSequence({kBox});
+  sequence.detections[0].is_bound = {true, true, true, true};
+  MarkBoundEdges({}, sequence, &sequence);
+  EXPECT_EQ(sequence.detections[0].is_bound, kNone);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/semantic_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace soslam {
+namespace {
+
+// A cup of 0.2 x 0.1 x 0.4 m with ground truth, the same without, and a whisk, with ground truth.
+Sequence CupCupWhisk() {
+  GroundTruth truth;
+  truth.landmark_in_world.half_axes = {0.1, 0.05, 0.2};
+  Sequence sequence;
+  sequence.objects = {{0, "cup", 0, truth}, {1, "cup", 0, {}}, {2, "whisk", 0, truth}};
+  return sequence;
+}
+
+const Eigen::Vector2d kTrueRatio(0.5, 0.25);
+const ShapePrior kCup{{1.2, 0.9}, {0.1, 0.2}, 1.4};
+const ShapePrior kDefault{{1.0, 2.0}, {0.5, 0.6}, 1.1};
+const SemanticTable kCupsOnly{{{"cup", kCup}}, {}};
+const SemanticTable kCupsAndDefault{{{"cup", kCup}}, kDefault};
+
+MATCHER_P3(IsPrior, ratio, log_sigma, shape_exponent, "") {
+  return arg && arg->ratio == ratio && arg->log_sigma == log_sigma &&
+         arg->shape_exponent == shape_exponent;
+}
+testing::Matcher<const std::optional<ShapePrior>&> Is(const ShapePrior& prior) {
+  return IsPrior(prior.ratio, prior.log_sigma, prior.shape_exponent);
+}
+
+using testing::ElementsAre;
+using testing::Eq;
+
+TEST(ObjectPriors, TableGivesTheLabelsEntryOrTheDefault) {
+  EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kTable),
+              ElementsAre(Is(kCup), Is(kCup), Eq(std::nullopt)));
+  EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kTable),
+              ElementsAre(Is(kCup), Is(kCup), Is(kDefault)));
+}
+
+TEST(ObjectPriors, UnitKeepsSpreadAndShapeOfTheLabel) {
+  const Eigen::Vector2d unit = Eigen::Vector2d::Ones();
+  const ShapePrior cup{unit, kCup.log_sigma, kCup.shape_exponent};
+  EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kUnit),
+              ElementsAre(Is(cup), Is(cup), Is(ShapePrior())));
+  EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kUnit),
+              ElementsAre(Is(cup), Is(cup), Is({unit, kDefault.log_sigma, 1.1})));
+}
+
+TEST(ObjectPriors, GroundTruthIsSharpAndKeepsTheShapeOfTheLabel) {
+  const Eigen::Vector2d sharp = Eigen::Vector2d::Constant(kTrueRatioLogSigma);
+  const ShapePrior cup{kTrueRatio, sharp, 1.4};
+  EXPECT_THAT(
+      ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kGroundTruth),
+      ElementsAre(Is(cup), Eq(std::nullopt), Is({kTrueRatio, sharp, ShapePrior().shape_exponent})));
+  EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kGroundTruth),
+              ElementsAre(Is(cup), Eq(std::nullopt), Is({kTrueRatio, sharp, 1.1})));
+}
+
+TEST(ObjectRatios, AreThoseOfThePriors) {
+  EXPECT_THAT(ObjectRatios(CupCupWhisk(), kCupsOnly, RatioPrior::kTable),
+              ElementsAre(Eq(kCup.ratio), Eq(kCup.ratio), Eq(std::nullopt)));
+}
+
+TEST(LabelsWithoutEntry, NamesThemWhateverTheDefault) {
+  EXPECT_THAT(LabelsWithoutEntry(CupCupWhisk(), kCupsAndDefault), ElementsAre("whisk"));
+}
+
+}  // namespace
+}  // namespace soslam
