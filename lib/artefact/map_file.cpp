@@ -47,7 +47,8 @@ json SolverToJson(const SolverSummary& solver) {
           {"converged", solver.converged},
           {"cost_per_iteration", solver.cost_per_iteration},
           {"residuals", solver.residuals},
-          {"gated", solver.gated}};
+          {"gated", solver.gated},
+          {"detector_bias_px", solver.detector_bias_px}};
 }
 
 SolverSummary SolverFromJson(const json& json) {
@@ -59,6 +60,7 @@ SolverSummary SolverFromJson(const json& json) {
   json.at("cost_per_iteration").get_to(solver.cost_per_iteration);
   json.at("residuals").get_to(solver.residuals);
   json.at("gated").get_to(solver.gated);
+  solver.detector_bias_px = json.value("detector_bias_px", solver.detector_bias_px);
   return solver;
 }
 

@@ -72,6 +72,10 @@ FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& directio
           direction.dot(landmark.Centre()) + support.extent};
 }
 
+bool IsInFront(const Landmark& landmark_in_camera) {
+  return Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
+}
+
 std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
                                        const Eigen::Vector2d& direction) {
   // Points of the body project inside its outline. The one that reaches farthest beyond the plane
@@ -94,9 +98,7 @@ std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& lan
 }
 
 std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera) {
-  if (!(Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0)) {
-    return std::nullopt;
-  }
+  if (!IsInFront(landmark_in_camera)) return std::nullopt;
   std::array<double, 4> ends{};
   for (size_t i = 0; i < ends.size(); ++i) {
     const double sign = i < 2 ? -1.0 : 1.0;

@@ -53,6 +53,9 @@ struct FarthestPoint {
 };
 FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction);
 
+// Whether the whole landmark is in front of the camera.
+bool IsInFront(const Landmark& landmark_in_camera);
+
 // The farthest that the landmark's outline reaches in the image: the largest direction . pixel (px;
 // unit direction), and the point of the landmark (camera frame) that does. None when the way there
 // leads behind the camera.

@@ -16,7 +16,8 @@ constexpr double kLargestQ = 200.0;
 constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;
 
-// The part of a ray inside the cuboid |x_i| <= 1, none when it misses.
+// The part of a ray's line inside the cuboid |x_i| <= 1; none when the line misses it, or the
+// cuboid is behind the origin.
 std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& origin,
                                                         const Eigen::Vector3d& direction) {
   double entry = -std::numeric_limits<double>::infinity();
@@ -31,7 +32,7 @@ std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& o
     entry = std::max(entry, std::min(one, other));
     exit = std::min(exit, std::max(one, other));
   }
-  if (!(entry < exit) || !(entry > 0.0)) return std::nullopt;
+  if (!(entry < exit) || !(exit > 0.0)) return std::nullopt;
   return std::pair(entry, exit);
 }
 
@@ -65,14 +66,17 @@ std::optional<double> BodySurface::QuadricEntry(const Eigen::Vector3d& origin,
 std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& origin,
                                                      const Eigen::Vector3d& direction) const {
   const auto interval = CuboidInterval(origin, direction);
-  if (!interval || is_cuboid_) return interval ? std::optional(interval->first) : std::nullopt;
+  if (!interval) return std::nullopt;
+  if (is_cuboid_) return interval->first > 0.0 ? std::optional(interval->first) : std::nullopt;
   // F is convex along the ray and at least 1 where it enters the cuboid: Newton's steps from there
-  // approach the root without passing it.
-  double depth = interval->first;
+  // approach the root without passing it. They start at the origin when the cuboid, but not the
+  // body, is around it.
+  double depth = std::max(interval->first, 0.0);
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const Eigen::Array3d x = (origin + depth * direction).array();
     const Eigen::Array3d ratio = x.abs() / x.abs().maxCoeff();
     const double norm = x.abs().maxCoeff() * std::pow(ratio.pow(q_).sum(), 1.0 / q_);
+    if (depth == 0.0 && !(norm > 1.0)) return std::nullopt;  // the origin is inside
     const double slope = ((x.abs() / norm).pow(q_ - 1.0) * x.sign() * direction.array()).sum();
     if (!(slope < 0.0)) return std::nullopt;
     const double step = (norm - 1.0) / -slope;

@@ -11,8 +11,9 @@
 namespace soslam {
 namespace {
 
-// Tangent depths settle within a percent after two rounds, a hundredth of one after three.
-constexpr int kDepthRounds = 3;
+// Each round takes the error of the tangent depths to a hundredth, or less.
+constexpr int kMaxDepthRounds = 20;
+constexpr double kDepthTolerance = 1e-10;
 // Two optima closer than this are one.
 constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
 // Of the finer grid around a grid point, either way.
@@ -92,10 +93,6 @@ std::optional<double> FootDepth(const UprightObservation& observation) {
   return depth;
 }
 
-bool IsInFront(const Landmark& landmark_in_camera) {
-  return Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
-}
-
 // Fits the terms, and again those of the result.
 std::optional<UprightSolution> Fit(const UprightObservation& observation,
                                    const YawObjective& objective, const Landmark& start,
@@ -133,7 +130,8 @@ std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double
   std::array<double, 4> depths_m;
   depths_m.fill(*foot_depth);
   Landmark landmark;
-  for (int round = 0; round < kDepthRounds; ++round) {
+  bool settled = false;
+  for (int round = 0; round < kMaxDepthRounds && !settled; ++round) {
     const Eigen::Vector3d solution = LinearSystem(observation, yaw, depths_m).Solve();
     const double c = solution.z();
     if (!solution.allFinite() || !(c > 0.0)) return std::nullopt;
@@ -143,8 +141,11 @@ std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double
         std::log(prior.ratio.y() * c), std::log(c);
     landmark = UprightLandmark(observation.plane_in_camera, parameters, prior.shape_exponent);
     if (!IsInFront(landmark)) return std::nullopt;
+    settled = true;
     for (size_t i = 0; i < depths_m.size(); ++i) {
-      depths_m[i] = TangentDepth(observation.edges[i], landmark);
+      const double depth_m = TangentDepth(observation.edges[i], landmark);
+      settled = settled && std::abs(depth_m - depths_m[i]) < kDepthTolerance * depth_m;
+      depths_m[i] = depth_m;
     }
   }
   return landmark;
@@ -226,7 +227,12 @@ std::vector<size_t> CircularMinima(const std::vector<double>& values) {
   };
   std::vector<size_t> minima;
   for (size_t i = 0; i < n; ++i) {
-    if (std::isfinite(height(i)) && height(i) <= height(i + 1) && height(i) < height(i + n - 1)) {
+    // Of a plateau, its first index; of a constant curve, index 0.
+    if (!std::isfinite(height(i)) || (i > 0 && height(i) == height(i - 1))) continue;
+    size_t end = i + 1;
+    while (end < i + n && height(end) == height(i)) ++end;
+    const bool is_constant = end == i + n;
+    if (is_constant || (height(end) > height(i) && height(i) < height(i + n - 1))) {
       minima.push_back(i);
     }
   }

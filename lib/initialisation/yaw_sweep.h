@@ -34,8 +34,8 @@ Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& det
 
 // At a given yaw and with the prior's ratio, the tangencies are linear in the foot and the size:
 // the least squares solution over the measured edges, and over those bounds that it would not
-// reach. Tangent points are at the depths of a first solution, found the same way. None when the
-// plane is not in view or the body would not be in front of the camera.
+// reach. Tangent points are at their depths on the solution itself, found by repetition. None when
+// the plane is not in view or the body would not be in front of the camera.
 std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw);
 
 // What makes one yaw better than another.
@@ -64,7 +64,8 @@ struct YawSweep {
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
                   double step);
 
-// The indices of a circular curve's local minima, lowest first; NaN counts as high.
+// The indices of a circular curve's local minima, lowest first, of flat ones their first; NaN
+// counts as high.
 std::vector<size_t> CircularMinima(const std::vector<double>& values);
 
 // The best `max_count` local optima over the circle, yaw refined, lowest cost first.

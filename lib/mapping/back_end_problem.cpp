@@ -241,6 +241,7 @@ void BackEndProblem::Solve() {
   summary_.final_cost = summary.final_cost;
   summary_.iterations += static_cast<int>(summary.iterations.size()) - 1;
   summary_.converged = summary.termination_type == ceres::CONVERGENCE;
+  summary_.detector_bias_px = detector_bias_px_;
   for (const auto& iteration : summary.iterations) {
     summary_.cost_per_iteration.push_back(iteration.cost);
   }

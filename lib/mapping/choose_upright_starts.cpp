@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <numbers>
 
 #include "initialisation/upright.h"
@@ -16,6 +17,19 @@ constexpr size_t kMaxViews = 16;
 constexpr size_t kMaxCandidates = 12;
 // Tangent depths and visible edges depend on the landmark: fitted twice.
 constexpr int kRounds = 2;
+
+// What its box shows is in front of a camera: of two landmarks, first the one that is in more
+// views.
+struct FitCost {
+  size_t views_behind;
+  double cost;
+  auto operator<=>(const FitCost&) const = default;
+};
+
+struct Candidate {
+  Landmark landmark_in_world;
+  FitCost cost;
+};
 
 // The cost of one object's landmark in the world over views of it, camera poses held.
 class ObjectFit {
@@ -34,44 +48,53 @@ class ObjectFit {
 
   const Plane& plane_in_world() const { return plane_; }
 
-  double Cost(const Landmark& landmark_in_world) const {
+  FitCost Cost(const Landmark& landmark_in_world) const {
+    const auto behind = std::count_if(views_.begin(), views_.end(), [&](int view) {
+      return !IsInFront(InCamera(view, landmark_in_world));
+    });
     double cost = 0.0;
     for (const auto& term : Terms(landmark_in_world)) {
       Eigen::VectorXd residuals(term->NumResiduals());
       term->Evaluate(landmark_in_world, residuals, nullptr);
       cost += 0.5 * residuals.squaredNorm();
     }
-    return cost;
+    return {static_cast<size_t>(behind), cost};
   }
 
-  std::optional<UprightSolution> Fit(const Landmark& start_in_world) const {
+  std::optional<Candidate> Fit(const Landmark& start_in_world) const {
     Landmark landmark = start_in_world;
     for (int round = 0; round < kRounds; ++round) {
       const auto solution = FitUpright(plane_, landmark, Terms(landmark), /*yaw_is_free=*/true);
       if (!solution) return std::nullopt;
       landmark = solution->landmark_in_camera;
     }
-    return UprightSolution{landmark, Cost(landmark)};
+    return Candidate{landmark, Cost(landmark)};
   }
 
  private:
+  Rigid3d CameraFromWorld(int view) const {
+    const Detection& detection = sequence_.detections[static_cast<size_t>(view)];
+    return sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse();
+  }
+  Landmark InCamera(int view, const Landmark& landmark_in_world) const {
+    return Transform(CameraFromWorld(view), landmark_in_world);
+  }
+
   LandmarkTerms Terms(const Landmark& landmark_in_world) const {
     LandmarkTerms terms;
     if (prior_) terms.push_back(std::make_unique<RatioTerm>(*prior_));
-    for (const int index : views_) {
-      const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
-      const Frame& frame = sequence_.frames[static_cast<size_t>(detection.frame_index)];
-      const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
-      const Landmark in_camera = Transform(camera_from_world, landmark_in_world);
-      if (!(Farthest(in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0)) continue;
+    for (const int view : views_) {
+      const Detection& detection = sequence_.detections[static_cast<size_t>(view)];
+      const Landmark in_camera = InCamera(view, landmark_in_world);
+      if (!IsInFront(in_camera)) continue;
       const auto add = [&](std::unique_ptr<const LandmarkTerm> term) {
-        terms.push_back(std::make_unique<RobustViewTerm>(std::move(term), camera_from_world,
+        terms.push_back(std::make_unique<RobustViewTerm>(std::move(term), CameraFromWorld(view),
                                                          options_.huber_delta));
       };
       add(std::make_unique<BoxTerm>(BoxEdges(sequence_.camera, detection.box, detection.is_bound,
                                              options_.detection_sigma_fraction),
                                     in_camera));
-      const auto image = edge_images_.find(index);
+      const auto image = edge_images_.find(view);
       if (image != edge_images_.end()) {
         add(std::make_unique<EdgeTerm>(*image->second, sequence_.camera, in_camera,
                                        options_.edges));
@@ -88,24 +111,15 @@ class ObjectFit {
   Plane plane_;
 };
 
-struct Candidate {
-  Landmark landmark_in_world;
-  double cost;
-};
-
 // The cheapest of each bin of yaw, cheapest first.
 std::vector<Candidate> BestOfEachYaw(const ObjectFit& fit, const std::vector<Landmark>& landmarks) {
   std::map<long, Candidate> best;
   for (const Landmark& landmark : landmarks) {
     const double yaw = Yaw(fit.plane_in_world().normal, landmark.frame_from_object.rotation);
     const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
-    const double cost = fit.Cost(landmark);
-    const auto found = best.find(bin);
-    if (found == best.end()) {
-      best.emplace(bin, Candidate{landmark, cost});
-    } else if (cost < found->second.cost) {
-      found->second = {landmark, cost};
-    }
+    const Candidate candidate{landmark, fit.Cost(landmark)};
+    const auto [found, is_new] = best.emplace(bin, candidate);
+    if (!is_new && candidate.cost < found->second.cost) found->second = candidate;
   }
   std::vector<Candidate> candidates;
   for (const auto& [bin, candidate] : best) candidates.push_back(candidate);
@@ -137,12 +151,12 @@ std::vector<std::optional<Landmark>> ChooseUprightStarts(
   for (size_t i = 0; i < starts.size(); ++i) {
     if (hypotheses[i].empty()) continue;
     const ObjectFit fit(sequence, detections[i], priors[i], edge_images, options);
-    std::optional<UprightSolution> best;
+    std::optional<Candidate> best;
     for (const Candidate& candidate : BestOfEachYaw(fit, hypotheses[i])) {
       const auto solution = fit.Fit(candidate.landmark_in_world);
       if (solution && (!best || solution->cost < best->cost)) best = solution;
     }
-    if (best) starts[i] = best->landmark_in_camera;
+    if (best) starts[i] = best->landmark_in_world;
   }
   return starts;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -57,6 +58,9 @@ struct SolverSummary {
   std::vector<double> cost_per_iteration;
   std::map<std::string, int> residuals;  // residual blocks by kind
   std::map<std::string, int> gated;      // what was left out before the solve, by reason
+  // How far outwards the left, top, right and bottom edges of all boxes have to move to fit; zero
+  // where no bias is estimated.
+  std::array<double, 4> detector_bias_px{};
 };
 
 // The result of the back end.

@@ -85,7 +85,7 @@ void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sa
 
 std::vector<ModelPoint> VisibleModelPoints(const Camera& camera, const Landmark& landmark_in_camera,
                                            double spacing_px) {
-  if (!(Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0)) return {};
+  if (!IsInFront(landmark_in_camera)) return {};
   PointSampler sampler(camera, landmark_in_camera, spacing_px);
   if (landmark_in_camera.shape_exponent <= kMaxEdgyExponent) {
     AddCuboidEdges(landmark_in_camera.frame_from_object.Inverse().translation.cwiseQuotient(

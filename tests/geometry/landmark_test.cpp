@@ -3,14 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include "support/random.h"
+#include "support/shape_exponents.h"
 
 namespace soslam {
 namespace {
 
-Eigen::Vector3d RandomSurfacePoint(const Landmark& landmark) {
-  const Eigen::Vector3d on_sphere = RandomRotation() * Eigen::Vector3d::UnitX();
-  return landmark.frame_from_object * landmark.half_axes.cwiseProduct(on_sphere);
+void ExpectNear(const Box& one, const Box& other, double tolerance) {
+  EXPECT_NEAR(one.x_min, other.x_min, tolerance);
+  EXPECT_NEAR(one.y_min, other.y_min, tolerance);
+  EXPECT_NEAR(one.x_max, other.x_max, tolerance);
+  EXPECT_NEAR(one.y_max, other.y_max, tolerance);
 }
 
 TEST(Landmark, QuadricIsZeroOnTheSurfaceAndInverseOfTheDualQuadric) {
@@ -54,46 +56,127 @@ TEST(Landmark, AHyperboloidIsNotProper) {
       LandmarkFromDualQuadric(Eigen::Matrix4d::Constant(std::numeric_limits<double>::quiet_NaN())));
 }
 
-TEST(OutlineBox, IsTheTightBoxOfTheProjectedSurface) {
-  for (int i = 0; i < 20; ++i) {
-    const Landmark landmark = RandomLandmarkInCamera();
-    const auto box = OutlineBox(TestCamera(), landmark);
-    ASSERT_TRUE(box);
-    Box sampled{1e9, 1e9, -1e9, -1e9};
-    for (int k = 0; k < 40000; ++k) {
-      const auto pixel = TestCamera().Project(RandomSurfacePoint(landmark));
-      ASSERT_TRUE(pixel);
-      EXPECT_TRUE(box->Contains(*pixel));
-      sampled = {std::min(sampled.x_min, pixel->x()), std::min(sampled.y_min, pixel->y()),
-                 std::max(sampled.x_max, pixel->x()), std::max(sampled.y_max, pixel->y())};
+TEST(Farthest, MovesWithTheLandmark) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const Landmark landmark = WithShape({RandomRigid(), RandomVector(0.1, 2.0)}, p);
+      const Eigen::Vector3d direction = RandomVector(-2, 2);
+      const FarthestPoint farthest = Farthest(landmark, direction);
+      EXPECT_NEAR(direction.dot(farthest.point), farthest.distance, 1e-9);
+      const Rigid3d motion = RandomRigid();
+      const FarthestPoint moved =
+          Farthest(Transform(motion, landmark), motion.rotation * direction);
+      EXPECT_LT((moved.point - motion * farthest.point).norm(), 1e-9);
+      EXPECT_NEAR(moved.distance,
+                  farthest.distance + (motion.rotation * direction).dot(motion.translation), 1e-9);
     }
-    // Samples come within about 1/40000 of the extent of each tangent point.
-    EXPECT_NEAR(sampled.x_min, box->x_min, 0.5);
-    EXPECT_NEAR(sampled.y_min, box->y_min, 0.5);
-    EXPECT_NEAR(sampled.x_max, box->x_max, 0.5);
-    EXPECT_NEAR(sampled.y_max, box->y_max, 0.5);
   }
+}
+
+TEST(OutlineBox, IsTheTightBoxOfTheProjectedSurface) {
+  for (const double p : kShapeExponents) {
+    SCOPED_TRACE(p);
+    for (int i = 0; i < 5; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      const auto box = OutlineBox(TestCamera(), landmark);
+      ASSERT_TRUE(box);
+      Box sampled{1e9, 1e9, -1e9, -1e9};
+      for (int k = 0; k < 40000; ++k) {
+        const auto pixel = TestCamera().Project(RandomSurfacePoint(landmark));
+        ASSERT_TRUE(pixel);
+        sampled = {std::min(sampled.x_min, pixel->x()), std::min(sampled.y_min, pixel->y()),
+                   std::max(sampled.x_max, pixel->x()), std::max(sampled.y_max, pixel->y())};
+      }
+      const Box margin{box->x_min - 1e-9, box->y_min - 1e-9, box->x_max + 1e-9, box->y_max + 1e-9};
+      EXPECT_TRUE(margin.Contains({sampled.x_min, sampled.y_min}));
+      EXPECT_TRUE(margin.Contains({sampled.x_max, sampled.y_max}));
+      // Samples come within about 1/40000 of the extent of each tangent point; rounded edges reach
+      // a thousandth of the size farther.
+      ExpectNear(sampled, *box, 0.5);
+    }
+  }
+}
+
+TEST(OutlineBox, OfTheCuboidHoldsItsCorners) {
+  const Camera camera = TestCamera();
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = WithShape(RandomLandmarkInCamera(), kCuboidExponent);
+    Box corners{1e9, 1e9, -1e9, -1e9};
+    double nearest = 1e9;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Array3d side(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      const Eigen::Vector3d point =
+          landmark.frame_from_object * (side * landmark.half_axes.array()).matrix();
+      const Eigen::Vector2d pixel = *camera.Project(point);
+      corners = {std::min(corners.x_min, pixel.x()), std::min(corners.y_min, pixel.y()),
+                 std::max(corners.x_max, pixel.x()), std::max(corners.y_max, pixel.y())};
+      nearest = std::min(nearest, point.z());
+    }
+    ExpectNear(*OutlineBox(camera, landmark), corners,
+               1.5 * camera.fy * kEdgeRounding * landmark.half_axes.sum() / nearest);
+  }
+}
+
+// The ends of the dual conic C* = K [I | 0] Q* [I | 0]^T K^T: lines x = t with l^T C* l = 0.
+TEST(OutlineBox, OfTheEllipsoidIsThatOfTheDualConic) {
+  const Eigen::Matrix<double, 3, 4> projection = TestCamera().ProjectionMatrix(Rigid3d());
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = RandomLandmarkInCamera();
+    const Eigen::Matrix3d conic = projection * DualQuadric(landmark) * projection.transpose();
+    const auto end = [&](int axis, double sign) {
+      const double middle = conic(axis, 2) / conic(2, 2);
+      return middle + sign * std::sqrt(middle * middle - conic(axis, axis) / conic(2, 2));
+    };
+    ExpectNear(*OutlineBox(TestCamera(), landmark), {end(0, -1), end(1, -1), end(0, 1), end(1, 1)},
+               1e-6);
+  }
+}
+
+TEST(OutlineEnd, ReachesFarthestInItsDirection) {
+  const Camera camera = TestCamera();
+  for (const double p : kShapeExponents) {
+    const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+    for (int i = 0; i < 20; ++i) {
+      const double angle = RandomUniform(-3, 3);
+      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+      const auto end = OutlineEnd(camera, landmark, direction);
+      ASSERT_TRUE(end);
+      EXPECT_NEAR(direction.dot(*camera.Project(end->point)), end->end_px, 1e-6);
+      for (int k = 0; k < 100; ++k) {
+        EXPECT_LT(direction.dot(*camera.Project(RandomSurfacePoint(landmark))), end->end_px + 1e-9);
+      }
+    }
+  }
+  const Landmark behind{{Eigen::Quaterniond::Identity(), {0, 0, -3}}, {1, 1, 1}};
+  EXPECT_FALSE(OutlineEnd(camera, behind, {1, 0}));
 }
 
 TEST(OutlineBox, NeedsTheWholeLandmarkInFront) {
-  Landmark landmark{Rigid3d(), {0.5, 0.5, 0.5}};
-  for (const double depth : {-2.0, 0.0, 0.4, 0.5}) {
-    landmark.frame_from_object.translation.z() = depth;
-    EXPECT_FALSE(OutlineBox(TestCamera(), landmark)) << depth;
+  for (const double p : kShapeExponents) {
+    // An edge of the cuboid, in the camera's plane, reaches farther by the rounding.
+    Landmark landmark = WithShape({Rigid3d(), {0.5, 0.5, 0.5}}, p);
+    for (const double depth : {-2.0, 0.0, 0.4, 0.5}) {
+      landmark.frame_from_object.translation.z() = depth;
+      EXPECT_FALSE(OutlineBox(TestCamera(), landmark)) << depth;
+    }
+    landmark.frame_from_object.translation.z() = 0.51;
+    EXPECT_TRUE(OutlineBox(TestCamera(), landmark));
   }
-  landmark.frame_from_object.translation.z() = 0.51;
-  EXPECT_TRUE(OutlineBox(TestCamera(), landmark));
 }
 
 TEST(NearestIntersection, IsOnTheSurfaceAndNearest) {
-  for (int i = 0; i < 200; ++i) {
-    const Landmark landmark = RandomLandmarkInCamera();
-    const Eigen::Vector3d target = RandomSurfacePoint(landmark);
-    const auto depth = NearestIntersection(landmark, Eigen::Vector3d::Zero(), target);
-    ASSERT_TRUE(depth);
-    const Eigen::Vector4d point = (*depth * target).homogeneous();
-    EXPECT_NEAR(point.dot(Quadric(landmark) * point), 0.0, 1e-9);
-    EXPECT_LE(*depth, 1.0 + 1e-9);  // the target itself, or a point before it
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 200; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      // A little inside, as rays to the outline only graze the surface.
+      const Eigen::Vector3d target =
+          landmark.Centre() + 0.99 * (RandomSurfacePoint(landmark) - landmark.Centre());
+      const auto depth = NearestIntersection(landmark, Eigen::Vector3d::Zero(), target);
+      ASSERT_TRUE(depth);
+      const Eigen::Vector3d in_object = landmark.frame_from_object.Inverse() * (*depth * target);
+      EXPECT_NEAR(SurfaceNorm(landmark.half_axes, p, in_object), 1.0, 1e-9);
+      EXPECT_LT(*depth, 1.0);
+    }
   }
 }
 

@@ -3,15 +3,18 @@
 
 #include <gtest/gtest.h>
 
-#include "support/random.h"
+#include "support/shape_exponents.h"
 
 namespace soslam {
 namespace {
 
+constexpr std::array kTestedExponents = {kCuboidExponent, 1.1, 1.5, kEllipsoidExponent};
+
 // The body around the optical axis, so that the sampled pixels hit it.
-Landmark CentralLandmark() {
+Landmark CentralLandmark(double shape_exponent = kEllipsoidExponent) {
   return {{RandomRotation(), Eigen::Vector3d(0, 0, 3) + RandomVector(-0.05, 0.05)},
-          RandomVector(0.5, 0.9)};
+          RandomVector(0.5, 0.9),
+          shape_exponent};
 }
 
 Eigen::Vector2d RandomPixel() { return {RandomUniform(295, 345), RandomUniform(220, 265)}; }
@@ -41,12 +44,13 @@ void ExpectJacobian(const Eigen::MatrixXd& analytic, const Landmark& landmark,
 
 TEST(VisibleSurface, PointIsOnTheSurfaceOnTheRayAndVisible) {
   for (int i = 0; i < 100; ++i) {
-    const Landmark landmark = CentralLandmark();
+    const double p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
+    const Landmark landmark = CentralLandmark(p);
     const VisibleSurface surface(TestCamera(), landmark);
     const Eigen::Vector2d pixel = RandomPixel();
     const auto point = surface.FromPixel(pixel);
     ASSERT_TRUE(point);
-    EXPECT_NEAR(point->in_object.cwiseQuotient(landmark.half_axes).squaredNorm(), 1.0, 1e-9);
+    EXPECT_NEAR(SurfaceNorm(landmark.half_axes, p, point->in_object), 1.0, 1e-9);
     EXPECT_LT((surface.ToPixel(*point)->pixel - pixel).norm(), 1e-9);
     EXPECT_GT(surface.ViewingCosine(*point), 0.0);
     const double depth =
@@ -88,8 +92,10 @@ TEST(VisibleSurface, TangentPlaneAgreesAtTheContactAndToFirstOrderAround) {
 }
 
 TEST(VisibleSurface, JacobiansAgreeWithNumbers) {
-  for (int i = 0; i < 50; ++i) {
-    const Landmark landmark = CentralLandmark();
+  for (int i = 0; i < 80; ++i) {
+    const double p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
+    SCOPED_TRACE(p);
+    const Landmark landmark = CentralLandmark(p);
     const Eigen::Vector2d pixel = RandomPixel();
     const Eigen::Vector2d edge = pixel + Eigen::Vector2d(7, -5);
     const VisibleSurface surface(TestCamera(), landmark);
@@ -107,6 +113,45 @@ TEST(VisibleSurface, JacobiansAgreeWithNumbers) {
                      const VisibleSurface at(TestCamera(), moved);
                      return at.ToPixel(at.MirrorImage(*at.FromPixel(pixel)))->pixel;
                    });
+  }
+}
+
+TEST(VisibleSurface, AFaceOfTheCuboidIsItsTangentPlane) {
+  // Its front looks at the camera.
+  const Landmark landmark{
+      {Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitY())),
+       {0, 0, 3}},
+      {0.5, 0.6, 0.7},
+      kCuboidExponent};
+  const VisibleSurface surface(TestCamera(), landmark);
+  const auto contact = surface.FromPixel({300, 230});
+  EXPECT_NEAR(contact->in_object.x(), 0.5, 1e-12);
+  EXPECT_LT((surface.FromPixelOnTangentPlane({340, 260}, *contact)->in_object -
+             surface.FromPixel({340, 260})->in_object)
+                .norm(),
+            1e-12);
+}
+
+TEST(VisibleSurface, HiddenFacesOfTheCuboidLookAway) {
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = CentralLandmark(kCuboidExponent);
+    const VisibleSurface surface(TestCamera(), landmark);
+    const Eigen::Vector3d camera_in_object =
+        landmark.frame_from_object.Inverse() * Eigen::Vector3d::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        VisibleSurface::Point point{landmark.half_axes.cwiseProduct(RandomVector(-0.99, 0.99)), {}};
+        point.in_object[axis] = side * landmark.half_axes[axis];
+        const bool is_hidden = side * camera_in_object[axis] <= landmark.half_axes[axis];
+        EXPECT_EQ(surface.ViewingCosine(point) <= 0.0, is_hidden);
+        // What is not hidden is what the pixel's ray meets first.
+        const auto pixel = surface.ToPixel(point);
+        ASSERT_TRUE(pixel);
+        const auto seen = surface.FromPixel(pixel->pixel);
+        ASSERT_TRUE(seen);
+        EXPECT_EQ((seen->in_object - point.in_object).norm() > 1e-9, is_hidden);
+      }
+    }
   }
 }
 

@@ -13,7 +13,8 @@
 
 namespace soslam {
 
-// Checks a residual's Jacobians, in the tangent spaces of its pose and landmark blocks, against
+// Checks a residual's Jacobians, in the tangent spaces of its blocks (poses, landmarks, and vectors
+// of any other size), against
 // fourth-order central differences, whose error here is about 1e-10 of the residual's scale.
 // (Ceres' own checker perturbs quaternion coefficients, which leaves the manifold and loses half of
 // the digits.)
@@ -41,8 +42,10 @@ inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
 
   for (size_t block = 0; block < blocks.size(); ++block) {
     const int size = residual.parameter_block_sizes()[block];
-    const std::unique_ptr<ceres::Manifold> manifold(size == kPoseSize ? NewPoseManifold()
-                                                                      : NewLandmarkManifold());
+    const std::unique_ptr<ceres::Manifold> manifold(
+        size == kPoseSize       ? NewPoseManifold()
+        : size == kLandmarkSize ? NewLandmarkManifold()
+                                : new ceres::EuclideanManifold<ceres::DYNAMIC>(size));
     Matrix plus_jacobian(size, manifold->TangentSize());
     manifold->PlusJacobian(blocks[block], plus_jacobian.data());
     const Matrix analytic = ambient[block] * plus_jacobian;

@@ -68,7 +68,14 @@ inline MapEstimate RandomMap() {
   MapEstimate map;
   map.objects = RandomObjectEstimates();
   for (int i = 0; i < 5; ++i) map.world_from_camera.push_back(RandomRigid());
-  map.solver = {12.5, 0.1, 3, true, {12.5, 1.0 / 7.0, 0.1}, {{"detection", 40}}, {{"no_plane", 1}}};
+  map.solver = {12.5,
+                0.1,
+                3,
+                true,
+                {12.5, 1.0 / 7.0, 0.1},
+                {{"detection", 40}},
+                {{"no_plane", 1}},
+                {1.5, -0.25, 1.0 / 3.0, 0.0}};
   return map;
 }
 

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/tangency.h"
+
+#include <gtest/gtest.h>
+
+#include "support/jacobians.h"
+#include "support/random_scene.h"
+#include "support/shape_exponents.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kSigmaFraction = 0.05;
+
+BoxEdge RandomEdge() {
+  const Box box{RandomUniform(100, 250), RandomUniform(100, 200), RandomUniform(350, 500),
+                RandomUniform(250, 400)};
+  return BoxEdges(TestCamera(), box, {}, kSigmaFraction)[static_cast<size_t>(TestRandom()() % 4)];
+}
+
+double AtOwnDepth(const BoxEdge& edge, const Landmark& landmark, double bias_px = 0.0) {
+  return Tangency(edge, landmark, TangentDepth(edge, landmark), bias_px, nullptr);
+}
+
+TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
+  const Camera camera = TestCamera();
+  const Box box{100, 120, 300, 180};
+  const auto edges = BoxEdges(camera, box, {true, false, false, true}, kSigmaFraction);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d point(RandomUniform(-1, 1), RandomUniform(-1, 1), RandomUniform(1, 4));
+    const Eigen::Vector2d pixel = *camera.Project(point);
+    const double outside[] = {box.x_min - pixel.x(), box.y_min - pixel.y(), pixel.x() - box.x_max,
+                              pixel.y() - box.y_max};
+    for (size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(edges[k].plane.dot(point) / point.z(), outside[k], 1e-9);
+    }
+  }
+  EXPECT_TRUE(edges[0].is_bound && edges[3].is_bound);
+  EXPECT_FALSE(edges[1].is_bound || edges[2].is_bound);
+  EXPECT_DOUBLE_EQ(edges[0].sigma_px, 10.0);
+  EXPECT_DOUBLE_EQ(edges[1].sigma_px, 3.0);
+  // Not below a pixel.
+  EXPECT_DOUBLE_EQ(BoxEdges(camera, {100, 100, 110, 110}, {}, 0.05)[2].sigma_px, 1.0);
+}
+
+TEST(Tangency, IsZeroForTheOutlineBoxAndGrowsByPixels) {
+  const Camera camera = TestCamera();
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      Box box = *OutlineBox(camera, landmark);
+      for (const BoxEdge& edge : BoxEdges(camera, box, {}, kSigmaFraction)) {
+        EXPECT_NEAR(AtOwnDepth(edge, landmark), 0.0, 1e-9) << p;
+      }
+      // An edge 0.01 px farther in is 0.01 px too far in, with the tangent point's depth.
+      box.x_max -= 0.01;
+      const BoxEdge edge = BoxEdges(camera, box, {}, kSigmaFraction)[2];
+      EXPECT_NEAR(AtOwnDepth(edge, landmark) * edge.sigma_px, 0.01, 1e-4) << p;
+    }
+  }
+}
+
+// pi^T Q* pi = h^2 - (n . c + d)^2, so that both vanish together (h + n . c + d > 0 for planes
+// that do not pass the ellipsoid on the wrong side).
+TEST(Tangency, OfAnEllipsoidIsTheDualQuadricForm) {
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = RandomLandmarkInCamera();
+    const BoxEdge edge = RandomEdge();
+    const Eigen::Vector4d pi(edge.plane.x(), edge.plane.y(), edge.plane.z(), 0.0);
+    const double form = pi.dot(DualQuadric(landmark) * pi);
+    const double at_centre = edge.plane.dot(landmark.Centre());
+    const double extent = Farthest(landmark, edge.plane).distance - at_centre;
+    EXPECT_NEAR(form, extent * extent - at_centre * at_centre, 1e-7 * extent * extent);
+    // The plane moved along its normal until it touches.
+    const double depth = TangentDepth(edge, landmark);
+    const double in_metres = Tangency(edge, landmark, depth, 0.0, nullptr) * depth * edge.sigma_px;
+    Landmark touching = landmark;
+    touching.frame_from_object.translation -= in_metres / edge.plane.squaredNorm() * edge.plane;
+    EXPECT_NEAR(AtOwnDepth(edge, touching), 0.0, 1e-9);
+    EXPECT_NEAR(pi.dot(DualQuadric(touching) * pi), 0.0, 1e-7 * extent * extent);
+  }
+}
+
+TEST(Tangency, MovesWithCameraAndBody) {
+  for (const double p : kShapeExponents) {
+    const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+    const BoxEdge edge = RandomEdge();
+    const Eigen::Quaterniond turn = RandomRotation();
+    BoxEdge turned = edge;
+    turned.plane = turn * edge.plane;
+    EXPECT_NEAR(Tangency(turned, Transform({turn, {0, 0, 0}}, landmark), 3.0, 0.5, nullptr),
+                Tangency(edge, landmark, 3.0, 0.5, nullptr), 1e-9);
+    // Nor does it change with the unit of length.
+    Landmark larger = landmark;
+    larger.half_axes *= 10.0;
+    larger.frame_from_object.translation *= 10.0;
+    EXPECT_NEAR(AtOwnDepth(edge, larger), AtOwnDepth(edge, landmark), 1e-9);
+  }
+}
+
+TEST(Tangency, BiasShiftsTheEdge) {
+  const Camera camera = TestCamera();
+  const Landmark landmark = WithShape(RandomLandmarkInCamera(), 1.3);
+  const Box box = *OutlineBox(camera, landmark);
+  const Box wide{box.x_min - 2.5, box.y_min - 2.5, box.x_max + 2.5, box.y_max + 2.5};
+  const auto tight = BoxEdges(camera, box, {}, kSigmaFraction);
+  for (const BoxEdge& edge : tight) {
+    EXPECT_NEAR(AtOwnDepth(edge, landmark, 2.5), -2.5 / edge.sigma_px, 1e-9);
+  }
+  // The edges of a box that is 2.5 px too wide fit with a bias of -2.5 px, up to the cosine between
+  // their planes and those of the tight box.
+  for (const BoxEdge& edge : BoxEdges(camera, wide, {}, kSigmaFraction)) {
+    EXPECT_NEAR(AtOwnDepth(edge, landmark, -2.5), 0.0, 1e-3);
+  }
+}
+
+TEST(Tangency, OfABoundCountsOnlyWhatIsMissing) {
+  int reached = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = WithShape(RandomLandmarkInCamera(), RandomUniform(1, 2));
+    const BoxEdge measured = RandomEdge();
+    BoxEdge bound = measured;
+    bound.is_bound = true;
+    const double bias_px = RandomUniform(-3, 3);
+    LandmarkJacobian1 of_measured, of_bound;
+    const double expected = Tangency(measured, landmark, 3.0, bias_px, &of_measured);
+    const double found = Tangency(bound, landmark, 3.0, bias_px, &of_bound);
+    EXPECT_EQ(found, std::min(expected, 0.0));
+    EXPECT_EQ(of_bound, expected > 0.0 ? LandmarkJacobian1::Zero().eval() : of_measured);
+    reached += expected > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(reached, 10);
+  EXPECT_LT(reached, 90);
+}
+
+TEST(TangencyResidual, JacobiansAgreeWithNumbers) {
+  for (const double p : kShapeExponents) {
+    SCOPED_TRACE(p);
+    for (int i = 0; i < 20; ++i) {
+      RandomView view;
+      BoxEdge edge = RandomEdge();
+      // Off the rounded kinks, whose scale is not far from the steps of the numeric differences.
+      const Eigen::Vector3d in_object =
+          view.LandmarkInCamera().frame_from_object.rotation.conjugate() * edge.plane.normalized();
+      if (p < 1.2 && in_object.cwiseAbs().minCoeff() < 0.1) continue;
+      for (const bool is_bound : {false, true}) {
+        edge.is_bound = is_bound;
+        const TangencyResidual residual(edge, WithShape(view.LandmarkInCamera(), p));
+        const double bias_px = RandomUniform(-2, 2);
+        ExpectCorrectJacobians(residual,
+                               {view.camera_block.data(), view.landmark_block.data(), &bias_px});
+      }
+    }
+  }
+}
+
+TEST(TangencyResidual, IsTheTangencyAtItsStartAndDoesNotChangeWithTheWorld) {
+  RandomView view;
+  const Landmark start = WithShape(view.LandmarkInCamera(), 1.4);
+  const BoxEdge edge = RandomEdge();
+  const TangencyResidual residual(edge, start);
+  const double bias_px = 0.7;
+  const auto evaluate = [&] {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    const double* blocks[] = {view.camera_block.data(), view.landmark_block.data(), &bias_px};
+    EXPECT_TRUE(residual.Evaluate(blocks, &value, nullptr));
+    return value;
+  };
+  EXPECT_NEAR(evaluate(), AtOwnDepth(edge, start, bias_px), 1e-9);
+  view.Move(RandomRigid(10.0));
+  EXPECT_NEAR(evaluate(), AtOwnDepth(edge, start, bias_px), 1e-9);
+}
+
+}  // namespace
+}  // namespace soslam

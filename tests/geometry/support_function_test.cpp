@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/support_function.h"
+
+#include <gtest/gtest.h>
+
+#include "support/shape_exponents.h"
+
+namespace soslam {
+namespace {
+
+// Half axes, an exponent (each of kShapeExponents, then any) and a direction.
+struct RandomCase {
+  explicit RandomCase(size_t i)
+      : p(i < kShapeExponents.size() ? kShapeExponents[i] : RandomUniform(1.0, 2.0)) {}
+
+  double p;
+  Eigen::Vector3d half_axes = RandomVector(0.1, 1.0);
+  Eigen::Vector3d direction = RandomUniform(0.1, 3.0) * RandomDirection();
+};
+
+constexpr size_t kCases = 300;
+
+double Extent(const Eigen::Vector3d& half_axes, double p, const Eigen::Vector3d& direction) {
+  return SupportFunction(half_axes, p, direction).extent;
+}
+
+TEST(SupportFunction, DerivativesAgreeWithNumbers) {
+  constexpr double kStep = 1e-6;
+  for (size_t i = 0; i < kCases; ++i) {
+    RandomCase random(i);
+    // Off the rounded kinks, where second derivatives are up to 1 / kEdgeRounding.
+    random.direction = random.direction.array().sign() * (0.1 + random.direction.array().abs());
+    const auto& [p, half_axes, direction] = random;
+    const SupportValue value = SupportFunction(half_axes, p, direction);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
+      EXPECT_NEAR(
+          value.contact[k],
+          (Extent(half_axes, p, direction + step) - Extent(half_axes, p, direction - step)) /
+              (2 * kStep),
+          1e-8)
+          << p;
+      const Eigen::Vector3d larger = half_axes.array() * step.array().exp();
+      const Eigen::Vector3d smaller = half_axes.array() * (-step).array().exp();
+      EXPECT_NEAR(value.by_log_half_axes[k],
+                  (Extent(larger, p, direction) - Extent(smaller, p, direction)) / (2 * kStep),
+                  1e-8)
+          << p;
+    }
+    EXPECT_NEAR(
+        value.by_shape_exponent,
+        (Extent(half_axes, p + kStep, direction) - Extent(half_axes, p - kStep, direction)) /
+            (2 * kStep),
+        1e-8)
+        << p;
+  }
+}
+
+TEST(SupportFunction, TheContactReachesAsFarAsTheExtentInAnyDirection) {
+  for (size_t i = 0; i < kCases; ++i) {
+    const RandomCase random(i);
+    for (const Eigen::Vector3d& direction : {random.direction, Eigen::Vector3d(0, 0, -2)}) {
+      const SupportValue value = SupportFunction(random.half_axes, random.p, direction);
+      EXPECT_NEAR(value.contact.dot(direction), value.extent, 1e-12);
+      EXPECT_NEAR(value.by_log_half_axes.sum(), value.extent, 1e-12);  // homogeneous in the size
+      // No point of the body reaches farther.
+      const Eigen::Vector3d other = RandomDirection();
+      EXPECT_LE(SupportFunction(random.half_axes, random.p, other).contact.dot(direction),
+                value.extent + 1e-12);
+    }
+  }
+}
+
+TEST(SupportFunction, IsHomogeneousEvenAndConvex) {
+  for (size_t i = 0; i < kCases; ++i) {
+    const RandomCase random(i);
+    const auto& [p, half_axes, direction] = random;
+    const double extent = Extent(half_axes, p, direction);
+    EXPECT_NEAR(Extent(half_axes, p, 7.0 * direction), 7.0 * extent, 1e-12);
+    EXPECT_NEAR(Extent(half_axes, p, -direction), extent, 1e-12);
+    const Eigen::Vector3d other = RandomVector(-1, 1);
+    EXPECT_LE(Extent(half_axes, p, direction + other),
+              extent + Extent(half_axes, p, other) + 1e-12);
+  }
+}
+
+TEST(SupportFunction, GrowsFromTheEllipsoidToTheCuboid) {
+  for (size_t i = 0; i < kCases; ++i) {
+    const RandomCase random(i);
+    const Eigen::Vector3d scaled = random.half_axes.cwiseProduct(random.direction);
+    EXPECT_NEAR(Extent(random.half_axes, kEllipsoidExponent, random.direction), scaled.norm(),
+                1e-12);
+    // The exact norm, plus at most the rounding.
+    const double exact = std::pow(scaled.array().abs().pow(random.p).sum(), 1.0 / random.p);
+    const double extent = Extent(random.half_axes, random.p, random.direction);
+    EXPECT_GE(extent, exact - 1e-12);
+    EXPECT_LE(extent, exact + kEdgeRounding * random.direction.norm() * random.half_axes.sum());
+    EXPECT_LE(extent, Extent(random.half_axes, kCuboidExponent, random.direction) + 1e-12);
+  }
+}
+
+TEST(SupportFunction, TouchesTheCuboidAtItsCorners) {
+  for (size_t i = 0; i < kCases; ++i) {
+    RandomCase random(i);
+    random.direction = random.direction.array().sign() * (0.2 + random.direction.array().abs());
+    const Eigen::Vector3d corner = random.direction.array().sign() * random.half_axes.array();
+    EXPECT_LT(
+        (SupportFunction(random.half_axes, kCuboidExponent, random.direction).contact - corner)
+            .norm(),
+        0.002);
+  }
+}
+
+// A kink of the cuboid is smooth: the contact crosses the face within about the rounding.
+TEST(SupportFunction, FacesOfTheCuboidHaveTheirMiddleAsContact) {
+  const Eigen::Vector3d half_axes(0.2, 0.3, 0.4);
+  const auto contact = [&](double tilt) {
+    return SupportFunction(half_axes, kCuboidExponent, {tilt, 0, 1}).contact;
+  };
+  EXPECT_NEAR(contact(0.0).x(), 0.0, 1e-12);
+  EXPECT_NEAR(contact(0.0).z(), 0.4, kEdgeRounding * half_axes.sum());
+  EXPECT_NEAR(contact(kEdgeRounding).x(), 0.2 / std::sqrt(2.0), 1e-5);
+  EXPECT_NEAR(contact(100 * kEdgeRounding).x(), 0.2, 1e-4);
+}
+
+TEST(SupportFunction, IsZeroForAFlatBodySeenFromItsSide) {
+  const SupportValue value = SupportFunction({0, 1, 1}, kEllipsoidExponent, {1, 0, 0});
+  EXPECT_EQ(value.extent, 0.0);
+  EXPECT_TRUE(value.contact.isZero());
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/surface.h"
+
+#include <gtest/gtest.h>
+
+#include "support/shape_exponents.h"
+
+namespace soslam {
+namespace {
+
+// A ray from outside towards a point well inside the body.
+struct RandomRay {
+  Eigen::Vector3d half_axes = RandomVector(0.2, 1.0);
+  Eigen::Vector3d origin = RandomUniform(2.0, 4.0) * RandomDirection();
+  Eigen::Vector3d direction =
+      RandomUniform(0.2, 2.0) * (half_axes.cwiseProduct(RandomVector(-0.4, 0.4)) - origin);
+};
+
+// Where the ray enters the cuboid, from the planes of its faces one by one.
+double CuboidEntry(const RandomRay& ray) {
+  for (int i = 0; i < 3; ++i) {
+    const double side = std::copysign(ray.half_axes[i], -ray.direction[i]);
+    const double depth = (side - ray.origin[i]) / ray.direction[i];
+    const Eigen::Vector3d point = ray.origin + depth * ray.direction;
+    bool on_face = depth > 0.0;
+    for (int k = 0; k < 3; ++k) on_face &= k == i || std::abs(point[k]) <= ray.half_axes[k];
+    if (on_face) return depth;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(BodySurface, EntryIsTheFirstPointOfTheBody) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 200; ++i) {
+      const RandomRay ray;
+      const auto depth = BodySurface(ray.half_axes, p).Entry(ray.origin, ray.direction);
+      ASSERT_TRUE(depth) << p;
+      EXPECT_GT(*depth, 0.0);
+      const auto norm_at = [&](double at) {
+        return SurfaceNorm(ray.half_axes, p, ray.origin + at * ray.direction);
+      };
+      EXPECT_NEAR(norm_at(*depth), 1.0, 1e-9) << p;
+      for (int k = 0; k < 20; ++k) EXPECT_GT(norm_at(*depth * 0.05 * k), 1.0);
+    }
+  }
+}
+
+TEST(BodySurface, EntryOfTheEllipsoidSolvesItsQuadratic) {
+  for (int i = 0; i < 200; ++i) {
+    const RandomRay ray;
+    const Eigen::Vector3d o = ray.origin.cwiseQuotient(ray.half_axes);
+    const Eigen::Vector3d d = ray.direction.cwiseQuotient(ray.half_axes);
+    const double root = std::sqrt(std::pow(o.dot(d), 2) - d.dot(d) * (o.dot(o) - 1.0));
+    const double expected = (-o.dot(d) - root) / d.dot(d);
+    const auto entry = [&](double p) {
+      return *BodySurface(ray.half_axes, p).Entry(ray.origin, ray.direction);
+    };
+    EXPECT_NEAR(entry(2.0), expected, 1e-12);
+    EXPECT_NEAR(entry(2.0 - 1e-9), expected, 1e-7);  // by Newton's method
+  }
+}
+
+TEST(BodySurface, EntryOfTheCuboidAndNearlyOfItsRoundedForms) {
+  for (int i = 0; i < 200; ++i) {
+    const RandomRay ray;
+    const auto entry = [&](double p) {
+      return *BodySurface(ray.half_axes, p).Entry(ray.origin, ray.direction);
+    };
+    const double expected = CuboidEntry(ray);
+    EXPECT_NEAR(entry(1.0), expected, 1e-12);
+    // A body of exponent 1.02 holds the cuboid of 3^(-1/q) = 0.979 times its size, and a ray enters
+    // that at a smaller part of its half axes.
+    RandomRay inner = ray;
+    inner.half_axes *= std::pow(3.0, -0.02 / 1.02);
+    EXPECT_GE(entry(1.02), expected - 1e-12);
+    EXPECT_LE(entry(1.02), CuboidEntry(inner) + 1e-12);
+    EXPECT_NEAR(entry(1.0001), expected, 1e-12);  // sharper than it is worth telling apart
+  }
+}
+
+TEST(BodySurface, GradientIsTheOutwardNormal) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 200; ++i) {
+      const RandomRay ray;
+      const BodySurface surface(ray.half_axes, p);
+      const Eigen::Vector3d point =
+          ray.origin + *surface.Entry(ray.origin, ray.direction) * ray.direction;
+      const Eigen::Vector3d gradient = surface.Gradient(point);
+      EXPECT_NEAR(gradient.dot(point), 1.0, 1e-9) << p;
+      EXPECT_LT(gradient.dot(ray.direction), 0.0);
+      // The body reaches no farther than the tangent plane, gradient . x = 1.
+      const SupportValue support = SupportFunction(ray.half_axes, p, gradient);
+      EXPECT_NEAR(support.extent, 1.0, kEdgeRounding * gradient.norm() * ray.half_axes.sum()) << p;
+      // And touches it at the point alone, unless that is on an almost flat face.
+      const double least = gradient.cwiseProduct(ray.half_axes).cwiseAbs().minCoeff();
+      if (p < kEllipsoidExponent && least < 0.1) continue;
+      if (p == kCuboidExponent) continue;
+      EXPECT_LT((support.contact - point).norm(),
+                p == kEllipsoidExponent ? 1e-9 : 5 * kEdgeRounding)
+          << p;
+    }
+  }
+}
+
+TEST(BodySurface, GradientOfTheCuboidIsThatOfTheFace) {
+  const BodySurface cuboid({0.5, 1.0, 2.0}, kCuboidExponent);
+  EXPECT_EQ(cuboid.Gradient({-0.5, 0.3, 1.2}), Eigen::Vector3d(-2, 0, 0));
+  EXPECT_EQ(cuboid.Gradient({0.2, 1.0, -1.9}), Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(cuboid.Gradient({0.2, -0.7, -2.0}), Eigen::Vector3d(0, 0, -0.5));
+}
+
+TEST(BodySurface, GradientChangesAsItSays) {
+  constexpr double kStep = 1e-6;
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d half_axes = RandomVector(0.2, 1.0);
+      const Eigen::Vector3d point = half_axes.cwiseProduct(RandomVector(-0.9, 0.9));
+      const BodySurface surface(half_axes, p);
+      const Eigen::Vector3d by_axes = -surface.GradientByLogHalfAxes() * surface.Gradient(point);
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
+        const auto with_axes = [&](double sign) {
+          const Eigen::Vector3d moved = half_axes.array() * (sign * step).array().exp();
+          return BodySurface(moved, p).Gradient(point)[k];
+        };
+        EXPECT_NEAR(
+            surface.GradientByPoint(point)[k],
+            (surface.Gradient(point + step)[k] - surface.Gradient(point - step)[k]) / (2 * kStep),
+            1e-4)
+            << p;
+        EXPECT_NEAR(by_axes[k], (with_axes(1) - with_axes(-1)) / (2 * kStep), 1e-4) << p;
+      }
+    }
+  }
+}
+
+TEST(BodySurface, MissesBesideBehindAndFromInside) {
+  const Eigen::Vector3d half_axes(1.0, 1.0, 1.0);
+  for (const double p : kShapeExponents) {
+    const BodySurface surface(half_axes, p);
+    EXPECT_NEAR(*surface.Entry({0, 0, -3}, {0, 0, 2}), 1.0, 1e-12) << p;
+    EXPECT_FALSE(surface.Entry({0, 0, -3}, {0, 0, -1})) << p;
+    EXPECT_FALSE(surface.Entry({0, 0, -3}, {0, 1, 1})) << p;
+    EXPECT_FALSE(surface.Entry({0, 2, -3}, {0, 0, 1})) << p;
+    EXPECT_FALSE(surface.Entry({0.1, 0.2, 0.3}, {0, 0, 1})) << p;
+    // Past a corner of the cuboid around it, which only the cuboid fills.
+    EXPECT_EQ(surface.Entry({0.99, 3, -1.04}, {0, -1, 1}).has_value(), p == kCuboidExponent) << p;
+  }
+}
+
+TEST(BodySurface, IsSeenFromInsideTheCuboidAroundIt) {
+  for (const double p : {1.02, 1.1, 1.5, 2.0}) {
+    const BodySurface surface({0.5, 0.6, 0.7}, p);
+    const Eigen::Vector3d origin(0.499, 0.599, 0.699);
+    const auto depth = surface.Entry(origin, -origin);
+    ASSERT_TRUE(depth) << p;
+    EXPECT_NEAR(SurfaceNorm({0.5, 0.6, 0.7}, p, (1.0 - *depth) * origin), 1.0, 1e-9) << p;
+    EXPECT_FALSE(surface.Entry(origin, origin)) << p;
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The back end for bodies of any shape.
+#include <gtest/gtest.h>
+
+#include "evaluation/iou.h"
+#include "evaluation/metrics.h"
+#include "mapping/back_end.h"
+#include "mapping/choose_starts.h"
+#include "support/drawn_cuboids.h"
+#include "support/random.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+// Cuboids, exact boxes.
+Sequence Cuboids(int objects, int frames) {
+  Sequence sequence = SyntheticSequence(RandomScene(5, objects, frames, {Shape::kBox}), false);
+  for (Object& object : sequence.objects) {
+    object.ground_truth->landmark_in_world.shape_exponent = kCuboidExponent;
+  }
+  return sequence;
+}
+
+BackEndInput TruthInput(const Sequence& sequence) {
+  BackEndInput input{sequence, {}, {}, {}, {}};
+  for (const Object& object : sequence.objects) {
+    const Landmark& landmark = object.ground_truth->landmark_in_world;
+    input.starts.push_back(landmark);
+    input.priors.push_back(ShapePrior{
+        landmark.half_axes.head<2>() / landmark.half_axes.z(), {0.02, 0.02}, kCuboidExponent});
+  }
+  return input;
+}
+
+// Images in which each object's visible faces are drawn, for all of its detections.
+std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& sequence) {
+  std::map<int, std::shared_ptr<const EdgeImage>> images;
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[i];
+    const Landmark in_camera = Transform(
+        sequence.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
+        sequence.objects[static_cast<size_t>(detection.object_index)]
+            .ground_truth->landmark_in_world);
+    const EdgeMaps maps =
+        ComputeEdgeMaps(DrawCuboids(sequence.camera, {in_camera}), EdgesOptions());
+    images[static_cast<int>(i)] =
+        std::make_shared<const EdgeImage>(maps, detection.box, std::vector<Box>());
+  }
+  return images;
+}
+
+OptimiseOptions TangencyOptions() {
+  OptimiseOptions options;
+  options.detection_model = DetectionModel::kTangency;
+  options.variances.support_angle_deg2 = 0.25;
+  options.variances.support_tangency_dm4 = 0.1;
+  options.covariances = false;
+  return options;
+}
+
+void Disturb(BackEndInput* input) {
+  for (auto& start : input->starts) {
+    *start = Turned(*start, RandomUniform(-0.1, 0.1));
+    start->frame_from_object.translation += RandomVector(-0.05, 0.05);
+    start->half_axes *= RandomUniform(0.9, 1.1);
+  }
+}
+
+void ExpectTruth(const Sequence& sequence, const MapEstimate& map, double min_iou) {
+  for (const ObjectMetrics& object : EvaluateMap(sequence, map).objects) {
+    EXPECT_GT(object.iou, min_iou);
+  }
+}
+
+double MeanIou(const Sequence& sequence, const MapEstimate& map) {
+  return EvaluateMap(sequence, map).summary.iou_mean.value();
+}
+
+TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
+  const Sequence sequence = Cuboids(5, 20);
+  const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());
+  // The support function rounds edges by a thousandth of the body's size, kEdgeRounding: by a tenth
+  // of a sigma (1 px or more) of a box edge at most.
+  const auto edges = 4.0 * static_cast<double>(sequence.detections.size());
+  EXPECT_LT(map.solver.initial_cost, 0.5 * 0.1 * 0.1 * edges);
+  EXPECT_GT(map.solver.initial_cost, 0.0);
+  EXPECT_EQ(map.solver.residuals.at("detection"), static_cast<int>(sequence.detections.size()));
+  EXPECT_EQ(map.solver.residuals.at("ratio"), 5);
+  EXPECT_EQ(map.solver.residuals.count("edges"), 0u);
+  EXPECT_TRUE(map.solver.gated.empty());
+  EXPECT_EQ(map.solver.detector_bias_px, (std::array<double, 4>{}));
+  for (const ObjectEstimate& object : map.objects) {
+    EXPECT_EQ(object.landmark_in_world->shape_exponent, kCuboidExponent);
+  }
+}
+
+TEST(TangencyBackEnd, ComesBackFromADisturbedStart) {
+  const Sequence sequence = Cuboids(5, 20);
+  BackEndInput input = TruthInput(sequence);
+  Disturb(&input);
+  const MapEstimate map = OptimiseMap(input, TangencyOptions());
+  ExpectTruth(sequence, map, 0.97);
+  EXPECT_LT(map.solver.final_cost, 1e-3 * map.solver.initial_cost);
+}
+
+// A bias of all boxes looks like larger or nearer objects: ratios and poses have to be known.
+TEST(TangencyBackEnd, FindsTheBiasOfTheDetector) {
+  Sequence sequence = Cuboids(5, 20);
+  for (Detection& detection : sequence.detections) detection.box.y_min -= 8.0;
+  OptimiseOptions options = TangencyOptions();
+  options.odometry_rotation_sigma_deg = 1e-3;
+  options.odometry_translation_sigma_m = 1e-4;
+  BackEndInput input = TruthInput(sequence);
+  for (auto& prior : input.priors) prior->log_sigma = {0.005, 0.005};
+
+  options.detector_bias_sigma_px = 10.0;
+  const MapEstimate with = OptimiseMap(input, options);
+  const std::array<double, 4>& bias = with.solver.detector_bias_px;
+  // What the boxes' edges have to move outwards: the upper ones back down.
+  EXPECT_NEAR(bias[0], 0.0, 1.0);
+  EXPECT_NEAR(bias[1], -8.0, 1.0);
+  EXPECT_NEAR(bias[2], 0.0, 1.0);
+  EXPECT_NEAR(bias[3], 0.0, 1.0);
+
+  options.detector_bias_sigma_px = 0.0;
+  const MapEstimate without = OptimiseMap(input, options);
+  EXPECT_EQ(without.solver.detector_bias_px, (std::array<double, 4>{}));
+  EXPECT_GT(without.solver.final_cost, 2.0 * with.solver.final_cost);
+  EXPECT_GT(MeanIou(sequence, with), MeanIou(sequence, without));
+}
+
+// A ratio far from its prior costs what its spread says: no loss makes outliers cheap.
+TEST(TangencyBackEnd, RatiosAreWithoutLoss) {
+  const Sequence sequence = Cuboids(3, 10);
+  BackEndInput input = TruthInput(sequence);
+  const double at_truth = OptimiseMap(input, TangencyOptions()).solver.initial_cost;
+  input.priors[0]->ratio *= 2.0;
+  input.priors[0]->log_sigma = {0.1, 0.2};
+  const double doubled = OptimiseMap(input, TangencyOptions()).solver.initial_cost;
+  EXPECT_NEAR(doubled - at_truth, 0.5 * std::pow(std::log(2.0), 2) * (1e2 + 25.0), 1e-6);
+
+  input.priors[0].reset();
+  const MapEstimate map = OptimiseMap(input, TangencyOptions());
+  EXPECT_EQ(map.solver.residuals.at("ratio"), 2);
+  EXPECT_EQ(map.solver.gated.at("object_without_ratio"), 1);
+}
+
+// An object may reach beyond a bound of its box, but not stay short of it.
+TEST(TangencyBackEnd, BoundsCostNothingWhereTheObjectReachesFarther) {
+  const Sequence whole = Cuboids(4, 20);
+  Sequence cut = whole;
+  for (Detection& detection : cut.detections) detection.box.x_max -= 0.3 * detection.box.Width();
+  const auto initial_cost = [&](const Sequence& sequence) {
+    return OptimiseMap(TruthInput(sequence), TangencyOptions()).solver.initial_cost;
+  };
+  const double of_whole = initial_cost(whole);
+  EXPECT_GT(initial_cost(cut), 100.0 * of_whole);
+  for (Detection& detection : cut.detections) detection.is_bound[2] = true;
+  EXPECT_LT(initial_cost(cut), of_whole * 1.5);
+
+  BackEndInput input = TruthInput(cut);
+  Disturb(&input);
+  ExpectTruth(cut, OptimiseMap(input, TangencyOptions()), 0.97);
+
+  for (Detection& detection : cut.detections) detection.box.x_max += 60.0;
+  EXPECT_GT(initial_cost(cut), 100.0 * of_whole);
+}
+
+TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
+  const Sequence sequence = Cuboids(3, 8);
+  Sequence noisy = sequence;
+  for (Detection& detection : noisy.detections) {
+    detection.box.x_min += RandomUniform(-4, 4);
+    detection.box.y_min += RandomUniform(-4, 4);
+    detection.box.x_max += RandomUniform(-4, 4);
+    detection.box.y_max += RandomUniform(-4, 4);
+  }
+  BackEndInput input = TruthInput(noisy);
+  for (auto& prior : input.priors) prior->log_sigma = {0.2, 0.2};
+  const MapEstimate boxes = OptimiseMap(input, TangencyOptions());
+  input.edge_images = DrawnEdges(sequence);
+  const MapEstimate edges = OptimiseMap(input, TangencyOptions());
+  EXPECT_EQ(edges.solver.residuals.at("edges"), static_cast<int>(sequence.detections.size()));
+  const double with = MeanIou(sequence, edges);
+  EXPECT_GT(with, MeanIou(sequence, boxes));
+  EXPECT_GT(with, 0.9);
+}
+
+// A rigid motion of the whole world leaves the cost unchanged and moves the result.
+TEST(TangencyBackEnd, MovesWithTheWorld) {
+  Sequence sequence = Cuboids(3, 8);
+  const auto edge_images = DrawnEdges(sequence);
+  for (Detection& detection : sequence.detections) {
+    detection.box.x_min += RandomUniform(-3, 3);
+    detection.box.y_max += RandomUniform(-3, 3);
+  }
+  BackEndInput input = TruthInput(sequence);
+  input.edge_images = edge_images;
+  OptimiseOptions options = TangencyOptions();
+  options.detector_bias_sigma_px = 2.0;
+  const MapEstimate before = OptimiseMap(input, options);
+
+  const Rigid3d motion = RandomRigid();
+  Sequence moved = sequence;
+  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
+  for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
+  BackEndInput moved_input{moved, input.starts, input.priors, {}, edge_images};
+  for (auto& start : moved_input.starts) *start = Transform(motion, *start);
+  const MapEstimate after = OptimiseMap(moved_input, options);
+
+  EXPECT_NEAR(after.solver.initial_cost, before.solver.initial_cost,
+              1e-9 * before.solver.initial_cost);
+  // The distance map has kinks, where the solver's way depends on the last digits.
+  EXPECT_NEAR(after.solver.final_cost, before.solver.final_cost, 0.02 * before.solver.final_cost);
+  EXPECT_EQ(after.solver.residuals, before.solver.residuals);
+  for (size_t i = 0; i < before.objects.size(); ++i) {
+    const Landmark expected = Transform(motion, *before.objects[i].landmark_in_world);
+    EXPECT_GT(BoxIou(*after.objects[i].landmark_in_world, expected), 0.97) << i;
+  }
+}
+
+class UprightStarts : public testing::Test {
+ protected:
+  UprightStarts() {
+    // Of each observation the truth, and before it a landmark of another yaw, which differs from
+    // observation to observation.
+    for (size_t i = 0; i < sequence_.detections.size(); ++i) {
+      const Detection& detection = sequence_.detections[i];
+      const Landmark truth = Transform(
+          sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
+          sequence_.objects[static_cast<size_t>(detection.object_index)]
+              .ground_truth->landmark_in_world);
+      const double turn = RandomUniform(0.5, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
+      estimates_.observations.push_back(
+          {static_cast<int>(i), {{Turned(truth, turn), 0.0}, {truth, 1.0}}, ""});
+    }
+  }
+  std::vector<std::optional<Landmark>> Choose() const {
+    return ChooseUprightStarts(sequence_, estimates_, TruthInput(sequence_).priors, edge_images_,
+                               TangencyOptions());
+  }
+
+  Sequence sequence_ = Cuboids(4, 12);
+  LandmarkEstimates estimates_;
+  std::map<int, std::shared_ptr<const EdgeImage>> edge_images_;
+};
+
+TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
+  for (const bool edges : {false, true}) {
+    if (edges) edge_images_ = DrawnEdges(sequence_);
+    const auto starts = Choose();
+    for (size_t i = 0; i < starts.size(); ++i) {
+      ASSERT_TRUE(starts[i]);
+      EXPECT_EQ(starts[i]->shape_exponent, kCuboidExponent);
+      EXPECT_GT(BoxIou(*starts[i], sequence_.objects[i].ground_truth->landmark_in_world), 0.95)
+          << "object " << i << ", edges " << edges;
+    }
+  }
+}
+
+TEST_F(UprightStarts, AreEmptyForObjectsWithoutHypotheses) {
+  for (ObservationEstimate& observation : estimates_.observations) {
+    const Detection& detection =
+        sequence_.detections[static_cast<size_t>(observation.detection_index)];
+    if (detection.object_index == 1) observation = {observation.detection_index, {}, "no_solution"};
+  }
+  const auto starts = Choose();
+  ASSERT_EQ(starts.size(), 4u);
+  for (size_t i = 0; i < starts.size(); ++i) EXPECT_EQ(starts[i].has_value(), i != 1) << i;
+}
+
+// A body that reaches behind a camera is not what its box shows, however well others are explained.
+TEST_F(UprightStarts, AreNotBehindTheCamerasThatSeeTheObject) {
+  const Detection& detection = sequence_.detections.front();
+  const Rigid3d& world_from_camera =
+      sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera;
+  Landmark behind = sequence_.objects[static_cast<size_t>(detection.object_index)]
+                        .ground_truth->landmark_in_world;
+  const Eigen::Vector3d backwards = world_from_camera.rotation * Eigen::Vector3d(0.0, 0.0, -1.0);
+  behind.frame_from_object.translation += 30.0 * Eigen::Vector3d(backwards.x(), backwards.y(), 0.0);
+  estimates_.observations.front().hypotheses.front().landmark_in_camera =
+      Transform(world_from_camera.Inverse(), Turned(behind, 0.3));
+  const auto starts = Choose();
+  const auto object_index = static_cast<size_t>(detection.object_index);
+  ASSERT_TRUE(starts[object_index]);
+  EXPECT_GT(BoxIou(*starts[object_index],
+                   sequence_.objects[object_index].ground_truth->landmark_in_world),
+            0.97);
+}
+
+}  // namespace
+}  // namespace soslam

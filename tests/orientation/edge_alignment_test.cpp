@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "orientation/edge_alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "initialisation/upright.h"
+#include "support/drawn_cuboids.h"
+#include "support/jacobians.h"
+#include "support/random_scene.h"
+
+namespace soslam {
+namespace {
+
+const Plane kFloor{Eigen::Vector3d(0.05, -1.0, -0.3).normalized(), 1.0};
+
+Landmark Cuboid(double yaw) {
+  return StandingCuboid(TestCamera(), kFloor, {310, 320}, yaw, {0.4, 0.25, 0.3});
+}
+
+EdgeImage ImageOf(const Landmark& landmark, const std::vector<Box>& nearer_boxes = {}) {
+  return {ComputeEdgeMaps(DrawCuboids(TestCamera(), {landmark}), EdgesOptions()),
+          *OutlineBox(TestCamera(), landmark), nearer_boxes};
+}
+
+double SumOfSquares(const EdgeTerm& term, const Landmark& landmark) {
+  Eigen::VectorXd residuals(term.NumResiduals());
+  term.Evaluate(landmark, residuals, nullptr);
+  return residuals.squaredNorm();
+}
+
+// What all points cost together when none is near an edge.
+double LargestCost(const Box& box, const EdgeOptions& options) {
+  return 2.0 * (box.Width() + box.Height()) / options.edge_correlation_px *
+         std::pow(options.edge_truncation_px / options.edge_sigma_px, 2);
+}
+
+// The mean distance (px) between the points of two landmarks.
+double MeanMotion(const Landmark& one, const Landmark& other) {
+  double sum = 0.0;
+  const auto points = VisibleModelPoints(TestCamera(), one, 4.0);
+  for (const ModelPoint& point : points) {
+    const auto pixel = [&](const Landmark& landmark) {
+      return *TestCamera().Project(landmark.frame_from_object *
+                                   landmark.half_axes.cwiseProduct(point.in_unit_body));
+    };
+    sum += (pixel(other) - pixel(one)).norm();
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
+  for (const double yaw : {0.3, 1.0, -0.8}) {
+    const Landmark truth = Cuboid(yaw);
+    const EdgeImage image = ImageOf(truth);
+    const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
+    const double largest = LargestCost(image.box, EdgeOptions());
+    const double at_truth = SumOfSquares(term, truth);
+    // Edges are found to half a pixel, and none at the corners: (0.5 / 8)^2 and a few points.
+    EXPECT_LT(at_truth, 0.05 * largest) << yaw;
+    EXPECT_NEAR(term.Support(truth), 1.0 - at_truth / largest, 1e-12);
+    const UprightVector parameters = UprightParameters(kFloor, truth);
+    for (int i = 0; i < 6; ++i) {
+      for (const double direction : {-1.0, 1.0}) {
+        const auto moved = [&](double step) {
+          UprightVector at = parameters;
+          at(i) += direction * step;
+          return UprightLandmark(kFloor, at, kCuboidExponent);
+        };
+        const double step = 4.0 * 1e-4 / MeanMotion(truth, moved(1e-4));  // 4 px on average
+        EXPECT_GT(SumOfSquares(term, moved(step)), at_truth + 0.05 * largest)
+            << "yaw " << yaw << ", parameter " << i << ", direction " << direction;
+      }
+    }
+  }
+}
+
+TEST(EdgeTerm, IsBounded) {
+  const Landmark truth = Cuboid(0.3);
+  const EdgeImage image = ImageOf(truth);
+  const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
+  const double largest = LargestCost(image.box, EdgeOptions());
+  for (int i = 0; i < 100; ++i) {
+    Landmark landmark = RandomLandmarkInCamera();
+    landmark.frame_from_object.translation += RandomVector(-3.0, 3.0);  // also out of the image
+    const double cost = SumOfSquares(term, landmark);
+    EXPECT_LE(cost, largest * (1.0 + 1e-12));
+    EXPECT_NEAR(term.Support(landmark), 1.0 - cost / largest, 1e-12);
+  }
+  Landmark behind = truth;
+  behind.frame_from_object.translation.z() = -3.0;
+  EXPECT_NEAR(SumOfSquares(term, behind), largest, 1e-9);
+  EXPECT_NEAR(term.Support(behind), 0.0, 1e-12);
+}
+
+TEST(EdgeTerm, SupportSquaredScalesTheCostOfTheBackEnd) {
+  const Landmark truth = Cuboid(0.3);
+  const auto image = std::make_shared<const EdgeImage>(ImageOf(truth));
+  const Landmark start = Turned(truth, 0.1);
+  const EdgeTerm term(*image, TestCamera(), start, EdgeOptions());
+  EXPECT_GT(term.Support(start), 0.1);
+  EXPECT_LT(term.Support(start), 0.9);
+  const EdgeAlignmentResidual residual(image, TestCamera(), start, EdgeOptions());
+  const PoseBlock pose = Pack(Rigid3d());
+  const LandmarkBlock block = Pack(start);
+  Eigen::VectorXd residuals(residual.num_residuals());
+  const std::array<const double*, 2> blocks = {pose.data(), block.data()};
+  ASSERT_TRUE(residual.Evaluate(blocks.data(), residuals.data(), nullptr));
+  EXPECT_NEAR(residuals.squaredNorm(), std::pow(term.Support(start), 2) * SumOfSquares(term, start),
+              1e-9);
+}
+
+TEST(EdgeTerm, LeavesOutPointsInNearerBoxesAndOutsideTheImage) {
+  const Camera camera = TestCamera();
+  const Box half{0, 0, 310, 480};
+  for (const double right : {0.0, 1.0}) {
+    Landmark truth = Cuboid(0.3);
+    truth.frame_from_object.translation.x() += right;
+    const EdgeImage image = ImageOf(truth, {half});
+    int expected = 0;
+    for (const ModelPoint& point :
+         VisibleModelPoints(camera, truth, EdgeOptions().edge_spacing_px)) {
+      const Eigen::Vector2d pixel = *camera.Project(
+          truth.frame_from_object * truth.half_axes.cwiseProduct(point.in_unit_body));
+      if (pixel.x() > 310.0 && pixel.x() <= camera.width - 1.0) ++expected;
+    }
+    const EdgeTerm term(image, camera, truth, EdgeOptions());
+    EXPECT_EQ(term.NumResiduals(), expected);
+    EXPECT_GT(expected, 0);
+  }
+  const Landmark truth = Cuboid(0.3);
+  const EdgeImage hidden = ImageOf(truth, {{0, 0, 640, 480}});
+  const EdgeTerm term(hidden, camera, truth, EdgeOptions());
+  EXPECT_EQ(term.NumResiduals(), 0);
+  EXPECT_EQ(term.Support(truth), 0.0);
+}
+
+// A distance that is linear in the pixel, in steps that single precision holds exactly, so that
+// bilinear interpolation reproduces it; every pixel's nearest edge is the same, a vertical one.
+EdgeMaps LinearMaps(const Camera& camera) {
+  EdgeMaps maps;
+  const cv::Size size(camera.width, camera.height);
+  maps.grey = cv::Mat(size, CV_8UC1);
+  maps.edges = cv::Mat::zeros(size, CV_8UC1);
+  maps.nearest_edge = cv::Mat(size, CV_16SC2, cv::Scalar(110, 200));
+  maps.distance = cv::Mat(size, CV_32FC1);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      maps.grey.at<unsigned char>(y, x) = static_cast<unsigned char>(std::min(x, 255));
+      maps.distance.at<float>(y, x) = 4.0F + static_cast<float>(2 * x + y) / 128.0F;
+    }
+  }
+  return maps;
+}
+
+EdgeOptions AnyDirection() {
+  EdgeOptions options;
+  options.edge_direction_tolerance_deg = 90.0;
+  return options;
+}
+
+// A cuboid in front of a camera anywhere, all of it in the image.
+RandomView CuboidView() {
+  for (;;) {
+    RandomView view;
+    view.landmark_in_world.shape_exponent = kCuboidExponent;
+    const auto box = OutlineBox(TestCamera(), view.LandmarkInCamera());
+    if (box && DistanceToBorder(*box, 640, 480) > 2.0) return view;
+  }
+}
+
+TEST(EdgeAlignmentResidual, JacobiansAgreeWithNumbers) {
+  const auto image = std::make_shared<const EdgeImage>(LinearMaps(TestCamera()),
+                                                       Box{200, 150, 400, 330}, std::vector<Box>());
+  for (int i = 0; i < 10; ++i) {
+    const RandomView view = CuboidView();
+    const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
+                                         AnyDirection());
+    ASSERT_GT(residual.num_residuals(), 0);
+    ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
+  }
+}
+
+TEST(EdgeAlignmentResidual, IsTheSameWhereverTheWorldIs) {
+  const auto image = std::make_shared<const EdgeImage>(LinearMaps(TestCamera()),
+                                                       Box{200, 150, 400, 330}, std::vector<Box>());
+  for (int i = 0; i < 10; ++i) {
+    RandomView view = CuboidView();
+    const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
+                                         EdgeOptions());
+    const auto evaluate = [&] {
+      Eigen::VectorXd residuals(residual.num_residuals());
+      const std::array<const double*, 2> blocks = {view.camera_block.data(),
+                                                   view.landmark_block.data()};
+      EXPECT_TRUE(residual.Evaluate(blocks.data(), residuals.data(), nullptr));
+      return residuals;
+    };
+    const Eigen::VectorXd before = evaluate();
+    view.Move(RandomRigid());
+    EXPECT_LT((evaluate() - before).norm(), 1e-9);
+  }
+}
+
+// Seen from right in front, all edges of a cuboid are vertical or horizontal in the image: of a
+// vertical image edge everywhere, the latter are as far away as can be.
+TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
+  EdgeMaps maps = LinearMaps(TestCamera());
+  maps.distance = cv::Scalar(0.0);
+  const EdgeImage image(maps, {200, 150, 400, 330}, {});
+  const Landmark landmark{{{1, 0, 0, 0}, {0, 0, 3}}, {0.5, 0.4, 0.3}, kCuboidExponent};
+  const EdgeTerm term(image, TestCamera(), landmark, EdgeOptions());
+  Eigen::VectorXd residuals(term.NumResiduals());
+  term.Evaluate(landmark, residuals, nullptr);
+  const auto points = VisibleModelPoints(TestCamera(), landmark, EdgeOptions().edge_spacing_px);
+  ASSERT_EQ(static_cast<int>(points.size()), term.NumResiduals());
+  const double largest =
+      std::sqrt(LargestCost(image.box, EdgeOptions()) / static_cast<double>(points.size()));
+  for (size_t i = 0; i < points.size(); ++i) {
+    const bool vertical = std::abs(points[i].along.y()) > 0.5;
+    EXPECT_NEAR(residuals[static_cast<Eigen::Index>(i)], vertical ? 0.0 : largest, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "orientation/refine_orientation.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "evaluation/iou.h"
+#include "synthesis/render.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+
+// Three textured boxes on a floor, none along the world's axes, that a camera drives past.
+Scene BoxScene() {
+  Scene scene;
+  scene.camera = {640, 480, 533.0, 533.0, 319.5, 239.5};
+  scene.planes.push_back({0, "floor", Plane{}, std::nullopt});
+  scene.objects = {
+      {1, "box", Shape::kBox, {0.30, 0.50, 0.25}, {2.9, 0.1}, 150.0 * kDegrees, 0, 1},
+      {2, "box", Shape::kBox, {0.22, 0.30, 0.36}, {3.1, -1.1}, -165.0 * kDegrees, 0, 2},
+      {3, "box", Shape::kBox, {0.40, 0.30, 0.46}, {3.8, 1.2}, 205.0 * kDegrees, 0, 3}};
+  scene.trajectory.frames = 4;
+  scene.trajectory.waypoints = {{{0.3, -0.7, 1.15}, {3.2, 0.0, 0.4}},
+                                {{0.4, 0.0, 1.12}, {3.2, 0.0, 0.4}},
+                                {{0.3, 0.7, 1.15}, {3.2, 0.0, 0.4}}};
+  return scene;
+}
+
+class RefineBoxes : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const Scene scene = BoxScene();
+    sequence_ = new Sequence(SyntheticSequence(scene, false));
+    for (const Frame& frame : sequence_->frames) {
+      cv::Mat grey;
+      cv::cvtColor(RenderFrame(scene, frame.world_from_camera), grey, cv::COLOR_BGR2GRAY);
+      maps_->push_back(ComputeEdgeMaps(grey, EdgesOptions()));
+    }
+  }
+  static void TearDownTestSuite() {
+    delete sequence_;
+    delete maps_;
+  }
+
+  static const Detection& DetectionAt(int index) {
+    return sequence_->detections[static_cast<size_t>(index)];
+  }
+  static Landmark TrueLandmark(const Detection& detection) {
+    return Transform(
+        sequence_->frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
+        sequence_->objects[static_cast<size_t>(detection.object_index)]
+            .ground_truth->landmark_in_world);
+  }
+  static RefinedObservation Refine(int index, const ProfileOptions& options) {
+    const Eigen::Vector3d half_axes = TrueLandmark(DetectionAt(index)).half_axes;
+    const ShapePrior prior{half_axes.head<2>() / half_axes.z(), {0.02, 0.02}, kCuboidExponent};
+    return RefineOrientation(*sequence_, index,
+                             (*maps_)[static_cast<size_t>(DetectionAt(index).frame_index)], prior,
+                             options, SymmetryOptions());
+  }
+
+  static inline Sequence* sequence_ = nullptr;
+  static inline std::vector<EdgeMaps>* maps_ = new std::vector<EdgeMaps>;
+};
+
+TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxes) {
+  const int observations = static_cast<int>(sequence_->detections.size());
+  ASSERT_GE(observations, 10);
+  int good = 0;
+  for (int i = 0; i < observations; ++i) {
+    const RefinedObservation refined = Refine(i, ProfileOptions());
+    ASSERT_EQ(refined.estimate.failure, "");
+    EXPECT_EQ(refined.estimate.detection_index, i);
+    const Landmark& found = refined.estimate.hypotheses.front().landmark_in_camera;
+    EXPECT_EQ(found.shape_exponent, kCuboidExponent);
+    const Landmark truth = TrueLandmark(DetectionAt(i));
+    const double error =
+        YawDifferenceModuloPi(refined.record.refined_yaw, *refined.record.true_yaw);
+    const double iou = BoxIou(found, truth);
+    good += std::abs(error) < 1.0 * kDegrees && iou > 0.9 ? 1 : 0;
+  }
+  EXPECT_GE(good, 0.9 * observations) << observations;
+}
+
+TEST_F(RefineBoxes, RecordsTheCurvesOfAllParts) {
+  const ProfileOptions options;
+  const RefinedObservation refined = Refine(0, options);
+  const SymmetryRecord& record = refined.record;
+  EXPECT_EQ(record.frame_id, sequence_->frames[0].id);
+  EXPECT_EQ(record.object_id, sequence_->objects[0].id);
+  EXPECT_EQ(record.yaw.size(), 60u);  // half a turn in steps of 3 degrees
+  ASSERT_EQ(record.cost.size(), 3u);
+  for (const char* part : {"total", "edge_alignment", "texture_symmetry"}) {
+    ASSERT_EQ(record.cost.count(part), 1u) << part;
+    EXPECT_EQ(record.cost.at(part).size(), record.yaw.size()) << part;
+  }
+  for (size_t i = 0; i < record.yaw.size(); ++i) {
+    const double total = record.cost.at("total")[i];
+    if (std::isnan(total)) continue;
+    EXPECT_LE(record.cost.at("texture_symmetry")[i], options.symmetry_observations);
+    EXPECT_GE(record.cost.at("texture_symmetry")[i], 0.0);
+    EXPECT_GE(record.cost.at("edge_alignment")[i], 0.0);
+  }
+  ASSERT_TRUE(record.yaw_sigma);
+  EXPECT_TRUE(std::isfinite(*record.yaw_sigma));
+  EXPECT_FALSE(record.samples.empty());
+  EXPECT_EQ(record.samples.size(), record.mirrored.size());
+  double last = 0.0;
+  for (const Hypothesis& hypothesis : refined.estimate.hypotheses) {
+    EXPECT_GE(hypothesis.cost, last);
+    last = hypothesis.cost;
+  }
+}
+
+TEST_F(RefineBoxes, LeavesOutPartsThatAreSwitchedOff) {
+  ProfileOptions options;
+  options.edge_alignment = false;
+  options.texture_symmetry = false;
+  const RefinedObservation refined = Refine(0, options);
+  EXPECT_EQ(refined.estimate.failure, "");
+  EXPECT_EQ(refined.record.cost.size(), 1u);
+  EXPECT_EQ(refined.record.cost.count("total"), 1u);
+}
+
+TEST_F(RefineBoxes, NeedsAPrior) {
+  const RefinedObservation refined = RefineOrientation(*sequence_, 0, maps_->front(), std::nullopt,
+                                                       ProfileOptions(), SymmetryOptions());
+  EXPECT_EQ(refined.estimate.failure, "no_ratio_for_label");
+  EXPECT_TRUE(refined.estimate.hypotheses.empty());
+  EXPECT_TRUE(refined.record.true_yaw);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+#include "image/edge_maps.h"
+
+namespace soslam {
+
+// A cuboid upright on a plane, its foot at that depth behind a pixel.
+inline Landmark StandingCuboid(const Camera& camera, const Plane& plane_in_camera,
+                               const Eigen::Vector2d& foot_pixel, double yaw,
+                               const Eigen::Vector3d& half_axes) {
+  const Eigen::Vector3d ray = camera.Ray(foot_pixel);
+  const Eigen::Vector3d foot = -plane_in_camera.offset / plane_in_camera.normal.dot(ray) * ray;
+  return {
+      {UprightRotation(plane_in_camera.normal, yaw), foot + half_axes.z() * plane_in_camera.normal},
+      half_axes,
+      kCuboidExponent};
+}
+
+// A dark image with the visible faces of cuboids in it, each face in a grey of its own: the edges
+// in the image are the visible edges of the cuboids.
+inline cv::Mat DrawCuboids(const Camera& camera, const std::vector<Landmark>& landmarks_in_camera) {
+  cv::Mat image(camera.height, camera.width, CV_8UC1, cv::Scalar(20));
+  constexpr int kFractionBits = 8;
+  for (const Landmark& landmark : landmarks_in_camera) {
+    const Eigen::Vector3d camera_in_unit_body =
+        landmark.frame_from_object.Inverse().translation.cwiseQuotient(landmark.half_axes);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        if (!(sign * camera_in_unit_body[axis] > 1.0)) continue;
+        std::vector<cv::Point> corners;
+        for (const auto& [i, j] : {std::pair(-1.0, -1.0), {-1.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}}) {
+          Eigen::Vector3d corner;
+          corner[axis] = sign;
+          corner[(axis + 1) % 3] = i;
+          corner[(axis + 2) % 3] = j;
+          const auto pixel =
+              camera.Project(landmark.frame_from_object * landmark.half_axes.cwiseProduct(corner));
+          corners.emplace_back(static_cast<int>(std::lround(pixel->x() * (1 << kFractionBits))),
+                               static_cast<int>(std::lround(pixel->y() * (1 << kFractionBits))));
+        }
+        cv::fillConvexPoly(image, corners, cv::Scalar(95 + 75 * axis), cv::LINE_8, kFractionBits);
+      }
+    }
+  }
+  return image;
+}
+
+}  // namespace soslam
