@@ -148,6 +148,12 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
     residuals[i] = std::copysign(root, residuals[i]);
     if (jacobian != nullptr) jacobian->row(i) *= slope;
   }
+  residuals *= root_weight_;
+  if (jacobian != nullptr) *jacobian *= root_weight_;
+}
+
+Eigen::Vector3d WorldAxis(const Plane& plane_in_world) {
+  return UprightRotation(plane_in_world.normal, 0.0) * Eigen::Vector3d::UnitX();
 }
 
 AxisTerm::AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera,

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -64,14 +65,16 @@ class RatioTerm final : public LandmarkTerm {
   ShapePrior prior_;
 };
 
-// A term of one camera, for a landmark in another frame; each residual under a Huber loss.
+// A term of one camera, for a landmark in another frame; each residual under a Huber loss, and the
+// cost multiplied by a weight.
 class RobustViewTerm final : public LandmarkTerm {
  public:
   RobustViewTerm(std::unique_ptr<const LandmarkTerm> term, const Rigid3d& camera_from_reference,
-                 double huber_delta)
+                 double huber_delta, double weight)
       : term_(std::move(term)),
         camera_from_reference_(camera_from_reference),
-        huber_delta_(huber_delta) {}
+        huber_delta_(huber_delta),
+        root_weight_(std::sqrt(weight)) {}
   int NumResiduals() const override { return term_->NumResiduals(); }
   void Evaluate(const Landmark& landmark_in_reference, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
@@ -80,7 +83,11 @@ class RobustViewTerm final : public LandmarkTerm {
   std::unique_ptr<const LandmarkTerm> term_;
   Rigid3d camera_from_reference_;
   double huber_delta_;
+  double root_weight_;
 };
+
+// A horizontal axis of the world on a plane: x, or y where x is vertical.
+Eigen::Vector3d WorldAxis(const Plane& plane_in_world);
 
 // A weak preference for a yaw along or across a horizontal axis of the world, as furniture stands:
 // costs `weight` sin^2(2 d), d the angle between them, so at most `weight`.

@@ -166,8 +166,7 @@ Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& det
   const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
   const Plane& plane = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
   const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-  return frame.world_from_camera.rotation.conjugate() *
-         (UprightRotation(plane.normal, 0.0) * Eigen::Vector3d::UnitX());
+  return frame.world_from_camera.rotation.conjugate() * WorldAxis(plane);
 }
 
 YawObjective BoxObjective(const UprightObservation& observation) {

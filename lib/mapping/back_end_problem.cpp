@@ -6,12 +6,15 @@
 #include "base/error.h"
 #include "constraints/bias.h"
 #include "constraints/detection.h"
-#include "constraints/log_ratio.h"
 #include "constraints/manifolds.h"
 #include "constraints/odometry.h"
 #include "constraints/scale_ratio.h"
+#include "constraints/standing.h"
 #include "constraints/support.h"
 #include "constraints/tangency.h"
+#include "initialisation/landmark_term_residual.h"
+#include "mapping/view_weights.h"
+#include "orientation/texture_asymmetry.h"
 #include "symmetry/sampling.h"
 
 namespace soslam {
@@ -48,6 +51,7 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
     problem_.AddParameterBlock(pose.data(), kPoseSize, NewPoseManifold());
   }
   problem_.SetParameterBlockConstant(poses_.front().data());
+  WeighViews();
   AddOdometry();
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     if (input.starts[i]) AddLandmark(i);
@@ -67,6 +71,19 @@ Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
                    LandmarkInWorld(static_cast<size_t>(detection.object_index)));
 }
 
+void BackEndProblem::WeighViews() {
+  view_weights_.assign(input_.sequence.detections.size(), 1.0);
+  const auto detections = DetectionsByObject(input_.sequence);
+  for (size_t i = 0; i < detections.size(); ++i) {
+    if (!input_.starts[i]) continue;
+    const auto weights = ViewWeights(input_.sequence, detections[i], input_.starts[i]->Centre(),
+                                     options_.view_correlation_deg * std::numbers::pi / 180.0);
+    for (size_t k = 0; k < weights.size(); ++k) {
+      view_weights_[static_cast<size_t>(detections[i][k])] = weights[k];
+    }
+  }
+}
+
 void BackEndProblem::AddOdometry() {
   const auto& frames = input_.sequence.frames;
   for (size_t i = 1; i < frames.size(); ++i) {
@@ -83,17 +100,30 @@ void BackEndProblem::AddOdometry() {
 
 void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
+  const Plane& plane =
+      input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
   double* landmark = landmarks_[object_index].data();
   problem_.AddParameterBlock(landmark, kLandmarkSize, NewLandmarkManifold());
   if (options_.support) {
-    const Plane& plane =
-        input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-    problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
-                                                  options_.variances.SupportTangencyM4()),
-                              &loss_, landmark);
+    if (options_.detection_model == DetectionModel::kTangency) {
+      // No loss: a body that floats is not an outlier, but wrong.
+      problem_.AddResidualBlock(
+          new StandingResidual(plane, options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
+                               options_.standing_height_sigma_m),
+          nullptr, landmark);
+    } else {
+      problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
+                                                    options_.variances.SupportTangencyM4()),
+                                &loss_, landmark);
+    }
     ++summary_.residuals["support"];
   }
   if (options_.ratio) AddRatio(object_index);
+  if (options_.detection_model == DetectionModel::kTangency && options_.axes_weight > 0.0) {
+    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<AxisTerm>(
+                                  plane, WorldAxis(plane), options_.axes_weight)),
+                              nullptr, landmark);
+  }
 }
 
 void BackEndProblem::AddRatio(size_t object_index) {
@@ -105,8 +135,8 @@ void BackEndProblem::AddRatio(size_t object_index) {
   double* landmark = landmarks_[object_index].data();
   if (options_.detection_model == DetectionModel::kTangency) {
     // No loss: a ratio far from the prior is as unlikely as its spread says.
-    problem_.AddResidualBlock(new LogRatioResidual(prior->ratio, prior->log_sigma), nullptr,
-                              landmark);
+    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<RatioTerm>(*prior)),
+                              nullptr, landmark);
   } else {
     problem_.AddResidualBlock(new ScaleRatioResidual(prior->ratio, options_.variances.ratio),
                               &loss_, landmark);
@@ -115,7 +145,8 @@ void BackEndProblem::AddRatio(size_t object_index) {
 }
 
 void BackEndProblem::AddDetections() {
-  for (const Detection& detection : input_.sequence.detections) {
+  for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
+    const Detection& detection = input_.sequence.detections[i];
     if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
       ++summary_.gated["detection_of_object_without_start"];
       continue;
@@ -125,13 +156,14 @@ void BackEndProblem::AddDetections() {
       ++summary_.gated["landmark_behind_camera"];
       continue;
     }
-    AddDetection(detection, landmark_in_camera);
+    AddDetection(i, landmark_in_camera);
     ++summary_.residuals["detection"];
   }
   if (options_.detection_model == DetectionModel::kTangency) HoldBias();
 }
 
-void BackEndProblem::AddDetection(const Detection& detection, const Landmark& landmark_in_camera) {
+void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_camera) {
+  const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.camera;
   double* pose = Pose(detection).data();
   double* landmark = LandmarkOf(detection).data();
@@ -141,6 +173,7 @@ void BackEndProblem::AddDetection(const Detection& detection, const Landmark& la
         pose, landmark);
     return;
   }
+  view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
   const auto edges =
       BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction);
   for (size_t i = 0; i < edges.size(); ++i) {
@@ -149,8 +182,8 @@ void BackEndProblem::AddDetection(const Detection& detection, const Landmark& la
       ++summary_.gated["edge_behind_camera"];
       continue;
     }
-    problem_.AddResidualBlock(new TangencyResidual(edges[i], landmark_in_camera), &loss_, pose,
-                              landmark, &detector_bias_px_[i]);
+    problem_.AddResidualBlock(new TangencyResidual(edges[i], landmark_in_camera),
+                              &view_losses_.back(), pose, landmark, &detector_bias_px_[i]);
   }
 }
 
@@ -167,14 +200,28 @@ void BackEndProblem::HoldBias() {
 
 void BackEndProblem::AddSymmetry() {
   for (const auto& [detection_index, image] : input_.symmetry_images) {
-    AddSymmetry(input_.sequence.detections[static_cast<size_t>(detection_index)], image);
+    AddSymmetry(static_cast<size_t>(detection_index), image);
   }
 }
 
-void BackEndProblem::AddSymmetry(const Detection& detection,
-                                 const std::shared_ptr<const SymmetryImage>& image) {
+void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image) {
+  const Detection& detection = input_.sequence.detections[index];
   if (!input_.starts[static_cast<size_t>(detection.object_index)]) return;
   const Landmark in_camera = LandmarkInCamera(detection);
+  if (options_.detection_model == DetectionModel::kTangency) {
+    auto residual = std::make_unique<AsymmetryResidual>(
+        image, input_.sequence.camera, detection.box, in_camera, options_.texture,
+        options_.symmetry_options, view_weights_[index]);
+    if (residual->num_residuals() == 0) {
+      ++summary_.gated["symmetry_with_too_few_visible_pairs"];
+      return;
+    }
+    summary_.residuals["symmetry"] += residual->num_residuals();
+    // No further loss: a pair's residual is bounded.
+    problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection).data(),
+                              LandmarkOf(detection).data());
+    return;
+  }
   const Camera& camera = input_.sequence.camera;
   const SymmetryOptions& symmetry = options_.symmetry_options;
   const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
@@ -203,7 +250,8 @@ void BackEndProblem::RenewEdges() {
     const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
     if (!input_.starts[static_cast<size_t>(detection.object_index)]) continue;
     auto residual = std::make_unique<EdgeAlignmentResidual>(
-        image, input_.sequence.camera, LandmarkInCamera(detection), options_.edges);
+        image, input_.sequence.camera, LandmarkInCamera(detection), options_.edges,
+        view_weights_[static_cast<size_t>(detection_index)]);
     if (residual->num_residuals() == 0) continue;
     // No further loss: a point's residual is bounded.
     edges_.push_back(problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection).data(),

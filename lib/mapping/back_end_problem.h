@@ -3,6 +3,7 @@
 
 #include <ceres/ceres.h>
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -36,12 +37,13 @@ class BackEndProblem {
   const std::vector<PoseBlock>& poses() const { return poses_; }
 
  private:
+  void WeighViews();
   void AddOdometry();
   void AddLandmark(size_t object_index);
   void AddRatio(size_t object_index);
   void AddDetections();
-  void AddDetection(const Detection& detection, const Landmark& landmark_in_camera);
-  void AddSymmetry(const Detection& detection, const std::shared_ptr<const SymmetryImage>& image);
+  void AddDetection(size_t index, const Landmark& landmark_in_camera);
+  void AddSymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image);
   void HoldBias();
   // A detection's landmark as its camera sees it, where the variables are.
   Landmark LandmarkInCamera(const Detection& detection) const;
@@ -56,6 +58,8 @@ class BackEndProblem {
   const BackEndInput& input_;
   const OptimiseOptions& options_;
   ceres::HuberLoss loss_;
+  std::vector<double> view_weights_;  // one per detection
+  std::deque<ceres::ScaledLoss> view_losses_;
   ceres::Problem problem_;
   std::vector<PoseBlock> poses_;
   std::vector<LandmarkBlock> landmarks_;

@@ -6,6 +6,9 @@
 
 #include "initialisation/upright.h"
 #include "mapping/choose_starts.h"
+#include "mapping/view_weights.h"
+#include "orientation/edge_alignment.h"
+#include "orientation/texture_asymmetry.h"
 
 namespace soslam {
 namespace {
@@ -34,16 +37,13 @@ struct Candidate {
 // The cost of one object's landmark in the world over views of it, camera poses held.
 class ObjectFit {
  public:
-  ObjectFit(const Sequence& sequence, const std::vector<int>& detections,
-            const std::optional<ShapePrior>& prior,
-            const std::map<int, std::shared_ptr<const EdgeImage>>& edge_images,
+  ObjectFit(const BackEndInput& input, size_t object_index, const std::vector<int>& detections,
             const OptimiseOptions& options)
-      : sequence_(sequence), prior_(prior), edge_images_(edge_images), options_(options) {
+      : input_(input), prior_(input.priors[object_index]), options_(options) {
     const size_t views = std::min(kMaxViews, detections.size());
     for (size_t i = 0; i < views; ++i) views_.push_back(detections[i * detections.size() / views]);
-    const Object& object = sequence.objects[static_cast<size_t>(
-        sequence.detections[static_cast<size_t>(detections.front())].object_index)];
-    plane_ = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+    const Object& object = input.sequence.objects[object_index];
+    plane_ = input.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
   }
 
   const Plane& plane_in_world() const { return plane_; }
@@ -58,6 +58,7 @@ class ObjectFit {
       term->Evaluate(landmark_in_world, residuals, nullptr);
       cost += 0.5 * residuals.squaredNorm();
     }
+    cost += TextureCost(landmark_in_world);
     return {static_cast<size_t>(behind), cost};
   }
 
@@ -72,40 +73,63 @@ class ObjectFit {
   }
 
  private:
+  const Detection& DetectionOf(int view) const {
+    return input_.sequence.detections[static_cast<size_t>(view)];
+  }
   Rigid3d CameraFromWorld(int view) const {
-    const Detection& detection = sequence_.detections[static_cast<size_t>(view)];
-    return sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse();
+    const auto frame = static_cast<size_t>(DetectionOf(view).frame_index);
+    return input_.sequence.frames[frame].world_from_camera.Inverse();
   }
   Landmark InCamera(int view, const Landmark& landmark_in_world) const {
     return Transform(CameraFromWorld(view), landmark_in_world);
   }
 
+  std::vector<double> Weights(const Landmark& landmark_in_world) const {
+    return ViewWeights(input_.sequence, views_, landmark_in_world.Centre(),
+                       options_.view_correlation_deg * std::numbers::pi / 180.0);
+  }
+
   LandmarkTerms Terms(const Landmark& landmark_in_world) const {
     LandmarkTerms terms;
     if (prior_) terms.push_back(std::make_unique<RatioTerm>(*prior_));
-    for (const int view : views_) {
-      const Detection& detection = sequence_.detections[static_cast<size_t>(view)];
-      const Landmark in_camera = InCamera(view, landmark_in_world);
+    terms.push_back(std::make_unique<AxisTerm>(plane_, WorldAxis(plane_), options_.axes_weight));
+    const std::vector<double> weights = Weights(landmark_in_world);
+    for (size_t i = 0; i < views_.size(); ++i) {
+      const Landmark in_camera = InCamera(views_[i], landmark_in_world);
       if (!IsInFront(in_camera)) continue;
       const auto add = [&](std::unique_ptr<const LandmarkTerm> term) {
-        terms.push_back(std::make_unique<RobustViewTerm>(std::move(term), CameraFromWorld(view),
-                                                         options_.huber_delta));
+        terms.push_back(std::make_unique<RobustViewTerm>(
+            std::move(term), CameraFromWorld(views_[i]), options_.huber_delta, weights[i]));
       };
-      add(std::make_unique<BoxTerm>(BoxEdges(sequence_.camera, detection.box, detection.is_bound,
-                                             options_.detection_sigma_fraction),
-                                    in_camera));
-      const auto image = edge_images_.find(view);
-      if (image != edge_images_.end()) {
-        add(std::make_unique<EdgeTerm>(*image->second, sequence_.camera, in_camera,
-                                       options_.edges));
+      const Camera& camera = input_.sequence.camera;
+      const Detection& detection = DetectionOf(views_[i]);
+      add(std::make_unique<BoxTerm>(
+          BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction),
+          in_camera));
+      const auto image = input_.edge_images.find(views_[i]);
+      if (image != input_.edge_images.end()) {
+        add(std::make_unique<EdgeTerm>(*image->second, camera, in_camera, options_.edges));
       }
     }
     return terms;
   }
 
-  const Sequence& sequence_;
+  double TextureCost(const Landmark& landmark_in_world) const {
+    const std::vector<double> weights = Weights(landmark_in_world);
+    double cost = 0.0;
+    for (size_t i = 0; i < views_.size(); ++i) {
+      const auto image = input_.symmetry_images.find(views_[i]);
+      if (image == input_.symmetry_images.end()) continue;
+      cost += weights[i] * AsymmetryCost(*image->second, input_.sequence.camera,
+                                         DetectionOf(views_[i]).box,
+                                         InCamera(views_[i], landmark_in_world), options_.texture,
+                                         options_.symmetry_options);
+    }
+    return cost;
+  }
+
+  const BackEndInput& input_;
   const std::optional<ShapePrior>& prior_;
-  const std::map<int, std::shared_ptr<const EdgeImage>>& edge_images_;
   const OptimiseOptions& options_;
   std::vector<int> views_;
   Plane plane_;
@@ -131,11 +155,10 @@ std::vector<Candidate> BestOfEachYaw(const ObjectFit& fit, const std::vector<Lan
 
 }  // namespace
 
-std::vector<std::optional<Landmark>> ChooseUprightStarts(
-    const Sequence& sequence, const LandmarkEstimates& estimates,
-    const std::vector<std::optional<ShapePrior>>& priors,
-    const std::map<int, std::shared_ptr<const EdgeImage>>& edge_images,
-    const OptimiseOptions& options) {
+std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& input,
+                                                         const LandmarkEstimates& estimates,
+                                                         const OptimiseOptions& options) {
+  const Sequence& sequence = input.sequence;
   std::vector<std::vector<Landmark>> hypotheses(sequence.objects.size());
   for (const ObservationEstimate& observation : estimates.observations) {
     const Detection& detection =
@@ -150,7 +173,7 @@ std::vector<std::optional<Landmark>> ChooseUprightStarts(
   std::vector<std::optional<Landmark>> starts(sequence.objects.size());
   for (size_t i = 0; i < starts.size(); ++i) {
     if (hypotheses[i].empty()) continue;
-    const ObjectFit fit(sequence, detections[i], priors[i], edge_images, options);
+    const ObjectFit fit(input, i, detections[i], options);
     std::optional<Candidate> best;
     for (const Candidate& candidate : BestOfEachYaw(fit, hypotheses[i])) {
       const auto solution = fit.Fit(candidate.landmark_in_world);

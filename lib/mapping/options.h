@@ -34,7 +34,12 @@ struct OptimiseOptions {
   int symmetry_views = 1;
   double detection_sigma_fraction = 0.02;
   double detector_bias_sigma_px = 0.0;
+  double view_correlation_deg = 20.0;
+  double axes_weight = 1.0;
+  double standing_angle_sigma_deg = 0.1;
+  double standing_height_sigma_m = 0.002;
   EdgeOptions edges;
+  TextureOptions texture;
   double huber_delta = 1.0;
   SymmetryOptions symmetry_options;
   bool covariances = true;
@@ -56,6 +61,7 @@ struct OptimiseOptions {
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the bodies' edges with the images'");
     edges.Describe(visit);
+    texture.Describe(visit);
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
                "tangency: standard deviation of a detector's box edge, as a fraction of the box's "
                "width or height; at least 1 px");
@@ -63,6 +69,18 @@ struct OptimiseOptions {
         "detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
         "tangency: standard deviation of a bias that each of the four edges has in all boxes "
         "of the sequence, estimated along; 0: no bias");
+    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+               "tangency: what a body of the label's shape cannot explain in a box, boxes from "
+               "viewpoints closer than this angle at the object share, so that they count as one; "
+               "0: all boxes are independent");
+    visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
+               "tangency: cost (negative logarithm of a likelihood) of a yaw half-way between the "
+               "world's horizontal axes; 0 for objects that stand anyhow");
+    visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
+               "tangency: standard deviation of the tilt of a body on its support plane");
+    visit.Real(
+        "standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
+        "tangency: standard deviation of the height of a body's foot over its support plane");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
     variances.Describe(visit);

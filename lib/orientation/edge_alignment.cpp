@@ -96,12 +96,12 @@ void EdgeTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Ve
 
 EdgeAlignmentResidual::EdgeAlignmentResidual(std::shared_ptr<const EdgeImage> image,
                                              const Camera& camera, const Landmark& start_in_camera,
-                                             const EdgeOptions& options)
+                                             const EdgeOptions& options, double weight)
     : image_(std::move(image)),
       term_(*image_, camera, start_in_camera, options),
       shape_exponent_(start_in_camera.shape_exponent) {
   const double support = term_.Support(start_in_camera);
-  term_.Weigh(support * support);
+  term_.Weigh(weight * support * support);
   set_num_residuals(term_.NumResiduals());
   *mutable_parameter_block_sizes() = {kPoseSize, kLandmarkSize};
 }

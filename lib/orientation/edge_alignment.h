@@ -57,13 +57,14 @@ class EdgeTerm final : public LandmarkTerm {
   double weight_;
 };
 
-// The same for the back end, weighted by the square of the start's support: where a body's edges
-// are not seen in the image, as those of a chair's cuboid are not, what they happen to lie near
-// says nothing. Residuals: one per point. Blocks: world_from_camera, landmark in the world.
+// The same for the back end, its cost multiplied by `weight` and by the square of the start's
+// support: where a body's edges are not seen in the image, as those of a chair's cuboid are not,
+// what they happen to lie near says nothing. Residuals: one per point. Blocks: world_from_camera,
+// landmark in the world.
 class EdgeAlignmentResidual final : public ceres::CostFunction {
  public:
   EdgeAlignmentResidual(std::shared_ptr<const EdgeImage> image, const Camera& camera,
-                        const Landmark& start_in_camera, const EdgeOptions& options);
+                        const Landmark& start_in_camera, const EdgeOptions& options, double weight);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 

@@ -32,6 +32,20 @@ struct EdgeOptions {
   }
 };
 
+// What the texture's symmetry says about a yaw.
+struct TextureOptions {
+  double asymmetry_cost = 2.0;
+  double asymmetry_scale = 0.03;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Real("asymmetry_cost", &asymmetry_cost, {0.0, 1e6},
+               "negative log likelihood of a texture that is not symmetric");
+    visit.Real("asymmetry_scale", &asymmetry_scale, {1e-6, 1e6},
+               "mean descriptor difference that counts as not symmetric, as a fraction of the "
+               "object's size (the cubic root of its half axes' product)");
+  }
+};
+
 // What the orientation profile of an observation is made of, besides box, ratio prior and world
 // axes.
 struct ProfileOptions {
@@ -39,8 +53,7 @@ struct ProfileOptions {
   bool texture_symmetry = true;
   UprightOptions upright;
   EdgeOptions edges;
-  double symmetry_observations = 4.0;
-  double symmetry_scale = 0.05;
+  TextureOptions texture;
 
   void Describe(OptionVisitor& visit) {
     visit.Flag("edge_alignment", &edge_alignment,
@@ -48,11 +61,7 @@ struct ProfileOptions {
     visit.Flag("texture_symmetry", &texture_symmetry, "profile: use the symmetry of the texture");
     upright.Describe(visit);
     edges.Describe(visit);
-    visit.Real("symmetry_observations", &symmetry_observations, {0.0, 1e6},
-               "profile: the largest cost of a texture that is not symmetric");
-    visit.Real("symmetry_scale", &symmetry_scale, {1e-6, 1e6},
-               "profile: mean descriptor difference that counts as not symmetric, as a fraction of "
-               "the object's size (the cubic root of its half axes' product)");
+    texture.Describe(visit);
   }
 };
 

@@ -11,8 +11,8 @@
 #include "initialisation/yaw_sweep.h"
 #include "model/occlusion.h"
 #include "orientation/edge_alignment.h"
+#include "orientation/texture_asymmetry.h"
 #include "symmetry/sampling.h"
-#include "symmetry/yaw_profile.h"
 
 namespace soslam {
 namespace {
@@ -48,18 +48,14 @@ class OrientationProfile {
       objective.rounds = kEdgeRounds;
     }
     if (options_.texture_symmetry) {
-      objective.extra_cost = [this](const Landmark& landmark) { return AsymmetryCost(landmark); };
+      objective.extra_cost = [this](const Landmark& landmark) { return TextureCost(landmark); };
     }
     return objective;
   }
 
-  // The mean descriptor difference against what counts as no symmetry at all.
-  double AsymmetryCost(const Landmark& landmark) const {
-    const auto difference =
-        SymmetryCost(symmetry_image_, observation_.camera, landmark, Samples(landmark),
-                     symmetry_options_.descriptor, symmetry_options_);
-    const double scale = options_.symmetry_scale * std::cbrt(landmark.half_axes.prod());
-    return options_.symmetry_observations * (difference ? std::min(1.0, *difference / scale) : 1.0);
+  double TextureCost(const Landmark& landmark) const {
+    return AsymmetryCost(symmetry_image_, observation_.camera, detection_.box, landmark,
+                         options_.texture, symmetry_options_);
   }
 
   double EdgeCost(const Landmark& landmark) const {
@@ -72,7 +68,8 @@ class OrientationProfile {
   void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
     const SymmetryDescriptor evaluate(symmetry_options_.descriptor, symmetry_image_,
                                       observation_.camera, landmark);
-    for (const Eigen::Vector2d& pixel : Samples(landmark)) {
+    for (const Eigen::Vector2d& pixel : SamplePixels(symmetry_image_.maps, observation_.camera,
+                                                     landmark, detection_.box, symmetry_options_)) {
       if (const auto pair = evaluate.Evaluate(pixel, symmetry_options_.min_viewing_cosine, false)) {
         record->samples.push_back(pixel.cast<float>());
         record->mirrored.push_back(pair->mirror_pixel.cast<float>());
@@ -81,11 +78,6 @@ class OrientationProfile {
   }
 
  private:
-  std::vector<Eigen::Vector2d> Samples(const Landmark& landmark) const {
-    return SamplePixels(symmetry_image_.maps, observation_.camera, landmark, detection_.box,
-                        symmetry_options_);
-  }
-
   const Detection& detection_;
   const ProfileOptions& options_;
   const SymmetryOptions& symmetry_options_;
@@ -106,7 +98,7 @@ void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
     }
     if (options.texture_symmetry) {
       record->cost["texture_symmetry"].push_back(
-          solution ? profile.AsymmetryCost(solution->landmark_in_camera) : none);
+          solution ? profile.TextureCost(solution->landmark_in_camera) : none);
     }
   }
 }

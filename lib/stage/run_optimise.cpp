@@ -76,7 +76,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int /*
   BackEndInput input{sequence, {}, priors, {}, {}};
   if (options.symmetry || options.edge_alignment) ReadImages(options, files.at("edges"), &input);
   input.starts = options.detection_model == DetectionModel::kTangency
-                     ? ChooseUprightStarts(sequence, estimates, priors, input.edge_images, options)
+                     ? ChooseUprightStarts(input, estimates, options)
                      : ChooseStarts(sequence, estimates);
   if (std::none_of(input.starts.begin(), input.starts.end(),
                    [](const auto& start) { return start.has_value(); })) {

@@ -54,8 +54,8 @@ std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& seque
 OptimiseOptions TangencyOptions() {
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;
-  options.variances.support_angle_deg2 = 0.25;
-  options.variances.support_tangency_dm4 = 0.1;
+  options.view_correlation_deg = 0.0;  // exact boxes
+  options.axes_weight = 0.0;           // random yaws
   options.covariances = false;
   return options;
 }
@@ -238,8 +238,9 @@ class UprightStarts : public testing::Test {
     }
   }
   std::vector<std::optional<Landmark>> Choose() const {
-    return ChooseUprightStarts(sequence_, estimates_, TruthInput(sequence_).priors, edge_images_,
-                               TangencyOptions());
+    BackEndInput input = TruthInput(sequence_);
+    input.edge_images = edge_images_;
+    return ChooseUprightStarts(input, estimates_, TangencyOptions());
   }
 
   Sequence sequence_ = Cuboids(4, 12);

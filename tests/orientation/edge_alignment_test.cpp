@@ -92,21 +92,21 @@ TEST(EdgeTerm, IsBounded) {
   EXPECT_NEAR(term.Support(behind), 0.0, 1e-12);
 }
 
-TEST(EdgeTerm, SupportSquaredScalesTheCostOfTheBackEnd) {
+TEST(EdgeAlignmentResidual, IsScaledByItsWeightAndTheSquaredSupport) {
   const Landmark truth = Cuboid(0.3);
   const auto image = std::make_shared<const EdgeImage>(ImageOf(truth));
   const Landmark start = Turned(truth, 0.1);
   const EdgeTerm term(*image, TestCamera(), start, EdgeOptions());
   EXPECT_GT(term.Support(start), 0.1);
   EXPECT_LT(term.Support(start), 0.9);
-  const EdgeAlignmentResidual residual(image, TestCamera(), start, EdgeOptions());
+  const EdgeAlignmentResidual residual(image, TestCamera(), start, EdgeOptions(), 0.25);
   const PoseBlock pose = Pack(Rigid3d());
   const LandmarkBlock block = Pack(start);
   Eigen::VectorXd residuals(residual.num_residuals());
   const std::array<const double*, 2> blocks = {pose.data(), block.data()};
   ASSERT_TRUE(residual.Evaluate(blocks.data(), residuals.data(), nullptr));
-  EXPECT_NEAR(residuals.squaredNorm(), std::pow(term.Support(start), 2) * SumOfSquares(term, start),
-              1e-9);
+  EXPECT_NEAR(residuals.squaredNorm(),
+              0.25 * std::pow(term.Support(start), 2) * SumOfSquares(term, start), 1e-9);
 }
 
 TEST(EdgeTerm, LeavesOutPointsInNearerBoxesAndOutsideTheImage) {
@@ -174,7 +174,7 @@ TEST(EdgeAlignmentResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 10; ++i) {
     const RandomView view = CuboidView();
     const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
-                                         AnyDirection());
+                                         AnyDirection(), 1.0);
     ASSERT_GT(residual.num_residuals(), 0);
     ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
   }
@@ -186,7 +186,7 @@ TEST(EdgeAlignmentResidual, IsTheSameWhereverTheWorldIs) {
   for (int i = 0; i < 10; ++i) {
     RandomView view = CuboidView();
     const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
-                                         EdgeOptions());
+                                         EdgeOptions(), 1.0);
     const auto evaluate = [&] {
       Eigen::VectorXd residuals(residual.num_residuals());
       const std::array<const double*, 2> blocks = {view.camera_block.data(),

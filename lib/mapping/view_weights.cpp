@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/view_weights.h"
+
+#include <cmath>
+
+namespace soslam {
+
+std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>& detections,
+                                const Eigen::Vector3d& centre_in_world, double correlation_rad) {
+  std::vector<double> weights(detections.size(), 1.0);
+  if (!(correlation_rad > 0.0)) return weights;
+  std::vector<Eigen::Vector3d> directions;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    directions.push_back((centre_in_world - frame.world_from_camera.translation).normalized());
+  }
+  for (size_t i = 0; i < weights.size(); ++i) {
+    double views = 0.0;
+    for (const Eigen::Vector3d& other : directions) {
+      const double angle = std::atan2(directions[i].cross(other).norm(), directions[i].dot(other));
+      views += std::exp(-0.5 * std::pow(angle / correlation_rad, 2));
+    }
+    weights[i] = 1.0 / views;
+  }
+  return weights;
+}
+
+}  // namespace soslam

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "orientation/texture_asymmetry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "symmetry/sampling.h"
+
+namespace soslam {
+namespace {
+
+double Scale(const Landmark& landmark, const TextureOptions& options) {
+  return options.asymmetry_scale * std::cbrt(landmark.half_axes.prod());
+}
+
+// The samples whose pairs are visible; none when they are too few.
+std::vector<Eigen::Vector2d> VisiblePairs(const SymmetryDescriptor& descriptor,
+                                          const SymmetryImage& image, const Camera& camera,
+                                          const Box& box, const Landmark& landmark_in_camera,
+                                          const SymmetryOptions& options) {
+  const auto samples = SamplePixels(image.maps, camera, landmark_in_camera, box, options);
+  std::vector<Eigen::Vector2d> visible;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(visible), [&](const auto& pixel) {
+    return descriptor.Evaluate(pixel, options.min_viewing_cosine, false).has_value();
+  });
+  const double required = std::max(static_cast<double>(options.min_pairs),
+                                   options.min_pair_fraction * static_cast<double>(samples.size()));
+  if (static_cast<double>(visible.size()) < required) visible.clear();
+  return visible;
+}
+
+}  // namespace
+
+double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
+                     const Landmark& landmark_in_camera, const TextureOptions& options,
+                     const SymmetryOptions& symmetry_options) {
+  const SymmetryDescriptor descriptor(symmetry_options.descriptor, image, camera,
+                                      landmark_in_camera);
+  const auto pixels =
+      VisiblePairs(descriptor, image, camera, box, landmark_in_camera, symmetry_options);
+  if (pixels.empty()) return options.asymmetry_cost;
+  const double squared_scale = std::pow(Scale(landmark_in_camera, options), 2);
+  double sum = 0.0;
+  for (const Eigen::Vector2d& pixel : pixels) {
+    const double squared = std::pow(descriptor.Evaluate(pixel, std::nullopt, false)->residual, 2);
+    sum += squared / (squared + squared_scale);
+  }
+  return options.asymmetry_cost * sum / static_cast<double>(pixels.size());
+}
+
+AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
+                                     const Camera& camera, const Box& box,
+                                     const Landmark& start_in_camera, const TextureOptions& options,
+                                     const SymmetryOptions& symmetry_options, double weight)
+    : image_(std::move(image)),
+      camera_(camera),
+      descriptor_(symmetry_options.descriptor),
+      pixels_(VisiblePairs(SymmetryDescriptor(descriptor_, *image_, camera, start_in_camera),
+                           *image_, camera, box, start_in_camera, symmetry_options)),
+      shape_exponent_(start_in_camera.shape_exponent),
+      scale_(Scale(start_in_camera, options)),
+      amplitude_(std::sqrt(2.0 * weight * options.asymmetry_cost /
+                           static_cast<double>(std::max<size_t>(1, pixels_.size())))) {
+  set_num_residuals(static_cast<int>(pixels_.size()));
+  *mutable_parameter_block_sizes() = {kPoseSize, kLandmarkSize};
+}
+
+bool AsymmetryResidual::Evaluate(double const* const* blocks, double* residuals,
+                                 double** jacobians) const {
+  const RelativeObservation observation(blocks, shape_exponent_);
+  const SymmetryDescriptor descriptor(descriptor_, *image_, camera_,
+                                      observation.landmark_in_camera());
+  Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> by_landmark(num_residuals(), kLandmarkDof);
+  by_landmark.setZero();
+  for (size_t i = 0; i < pixels_.size(); ++i) {
+    const auto pair = descriptor.Evaluate(pixels_[i], std::nullopt, jacobians != nullptr);
+    residuals[i] = amplitude_;
+    if (!pair) continue;
+    // d / sqrt(d^2 + s^2)
+    const double norm = std::hypot(pair->residual, scale_);
+    residuals[i] = amplitude_ * pair->residual / norm;
+    if (jacobians == nullptr) continue;
+    by_landmark.row(static_cast<Eigen::Index>(i)) =
+        amplitude_ * scale_ * scale_ / (norm * norm * norm) * pair->jacobian;
+  }
+  observation.WriteJacobians<Eigen::Dynamic>(by_landmark, blocks, jacobians);
+  return true;
+}
+
+}  // namespace soslam

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/view_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+
+// Cameras on a circle around `centre`, at these angles, each with one detection.
+struct Circle {
+  Circle(const Eigen::Vector3d& centre_in_world, const std::vector<double>& angles)
+      : centre(centre_in_world) {
+    for (const double angle : angles) {
+      Frame frame;
+      frame.world_from_camera = {
+          RandomRotation(), centre + 3.0 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)};
+      Detection detection;
+      detection.frame_index = static_cast<int>(sequence.frames.size());
+      sequence.frames.push_back(frame);
+      detections.push_back(static_cast<int>(sequence.detections.size()));
+      sequence.detections.push_back(detection);
+    }
+  }
+  std::vector<double> Weights(double correlation_rad) const {
+    return ViewWeights(sequence, detections, centre, correlation_rad);
+  }
+
+  Eigen::Vector3d centre;
+  Sequence sequence;
+  std::vector<int> detections;
+};
+
+TEST(ViewWeights, ViewsFromOnePlaceCountAsOne) {
+  const Circle circle(RandomVector(-2, 2), std::vector<double>(17, 0.3));
+  for (const double weight : circle.Weights(10 * kDegrees)) EXPECT_NEAR(weight, 1.0 / 17, 1e-12);
+}
+
+TEST(ViewWeights, ViewsFromDifferentSidesCountFully) {
+  const Circle circle(RandomVector(-2, 2), {0.0, 0.5 * std::numbers::pi, std::numbers::pi});
+  for (const double weight : circle.Weights(10 * kDegrees)) EXPECT_NEAR(weight, 1.0, 1e-9);
+}
+
+TEST(ViewWeights, TwoViewsAtTheCorrelationAngle) {
+  const Circle circle({1, 2, 3}, {0.7, 0.7 + 15 * kDegrees});
+  for (const double weight : circle.Weights(15 * kDegrees)) {
+    EXPECT_NEAR(weight, 1.0 / (1.0 + std::exp(-0.5)), 1e-12);
+  }
+}
+
+TEST(ViewWeights, AllCountWithoutCorrelation) {
+  const Circle circle({1, 2, 3}, {0.7, 0.7, 0.8});
+  EXPECT_EQ(circle.Weights(0.0), std::vector<double>(3, 1.0));
+}
+
+// More frames along the same way do not say more.
+TEST(ViewWeights, TheSumDoesNotGrowWithTheFrameRate) {
+  const auto sum = [](int frames) {
+    std::vector<double> angles;
+    for (int i = 0; i < frames; ++i) angles.push_back(0.8 * i / (frames - 1));
+    const auto weights = Circle({0, 0, 0}, angles).Weights(15 * kDegrees);
+    return std::accumulate(weights.begin(), weights.end(), 0.0);
+  };
+  EXPECT_NEAR(sum(400), sum(40), 0.05 * sum(400));
+  EXPECT_GT(sum(40), 1.0);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "initialisation/yaw_sweep.h"
+#include "support/drawn_cuboids.h"
+#include "support/random.h"
+
+namespace soslam {
+
+inline constexpr double kDetectionSigmaFraction = 0.02;
+
+// A floor as a camera sees it that looks level or down.
+inline Plane RandomFloor() {
+  const Eigen::Vector3d up(RandomUniform(-0.15, 0.15), -1.0, RandomUniform(-0.7, 0.05));
+  return {up.normalized(), RandomUniform(0.8, 1.6)};
+}
+
+inline constexpr double kMinBoxSidePx = 40.0;
+
+// A body that stands on the floor at any yaw, near enough for a box of kMinBoxSidePx.
+inline Landmark RandomUprightBody(const Plane& floor, double shape_exponent) {
+  for (;;) {
+    Landmark landmark =
+        StandingCuboid(TestCamera(), floor, {RandomUniform(150, 490), RandomUniform(250, 440)},
+                       RandomUniform(-3.1, 3.1), RandomVector(0.15, 0.6));
+    landmark.shape_exponent = shape_exponent;
+    const auto box = OutlineBox(TestCamera(), landmark);
+    if (landmark.Centre().z() > 0.0 && box && box->Width() > kMinBoxSidePx &&
+        box->Height() > kMinBoxSidePx) {
+      return landmark;
+    }
+  }
+}
+
+inline ShapePrior PriorOf(const Landmark& landmark, double log_sigma) {
+  return {landmark.half_axes.head<2>() / landmark.half_axes.z(),
+          Eigen::Vector2d::Constant(log_sigma), landmark.shape_exponent};
+}
+
+inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4>& is_bound,
+                                        const Plane& floor, const ShapePrior& prior) {
+  UprightObservation observation;
+  observation.camera = TestCamera();
+  observation.edges = BoxEdges(observation.camera, box, is_bound, kDetectionSigmaFraction);
+  observation.plane_in_camera = floor;
+  observation.prior = prior;
+  observation.world_axis_in_camera =
+      UprightRotation(floor.normal, RandomUniform(-3.1, 3.1)) * Eigen::Vector3d::UnitX();
+  return observation;
+}
+
+// A body, and the observation of it by one exact box and its true ratio.
+struct StandingBody {
+  explicit StandingBody(double shape_exponent, double ratio_log_sigma = 0.05)
+      : plane(RandomFloor()),
+        truth(RandomUprightBody(plane, shape_exponent)),
+        box(*OutlineBox(TestCamera(), truth)),
+        observation(ObservationOf(box, {}, plane, PriorOf(truth, ratio_log_sigma))) {}
+
+  double Yaw() const { return soslam::Yaw(plane.normal, truth.frame_from_object.rotation); }
+  // The same observation with another box.
+  UprightObservation Observe(const Box& other, const std::array<bool, 4>& is_bound = {}) const {
+    UprightObservation changed = observation;
+    changed.edges = BoxEdges(TestCamera(), other, is_bound, kDetectionSigmaFraction);
+    return changed;
+  }
+
+  Plane plane;
+  Landmark truth;
+  Box box;
+  UprightObservation observation;
+};
+
+// Each edge moved by up to `fraction` of the box's width or height.
+inline Box Disturbed(const Box& box, double fraction) {
+  const auto shift = [&](double side) { return fraction * side * RandomUniform(-1.0, 1.0); };
+  return {box.x_min + shift(box.Width()), box.y_min + shift(box.Height()),
+          box.x_max + shift(box.Width()), box.y_max + shift(box.Height())};
+}
+
+// The same body, called by its other horizontal axis.
+inline Landmark WithAxesExchanged(const Landmark& landmark) {
+  Landmark exchanged = Turned(landmark, 0.5 * std::numbers::pi);
+  std::swap(exchanged.half_axes.x(), exchanged.half_axes.y());
+  return exchanged;
+}
+
+// The angle (rad) between the fronts of two upright landmarks, front and back being the same.
+inline double AngleBetweenFronts(const Landmark& one, const Landmark& other) {
+  const auto front = [](const Landmark& landmark) -> Eigen::Vector3d {
+    return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitX();
+  };
+  const double cosine = std::abs(front(one).dot(front(other)));
+  return std::atan2(front(one).cross(front(other)).norm(), cosine);
+}
+
+// Whether two landmarks of one plane are the same body, within a fraction of its size.
+inline testing::AssertionResult IsSameBody(const Landmark& found, const Landmark& expected,
+                                           double tolerance) {
+  const double size = expected.half_axes.maxCoeff();
+  const double centre = (found.Centre() - expected.Centre()).norm() / size;
+  const double half_axes = (found.half_axes - expected.half_axes).norm() / size;
+  const double front = AngleBetweenFronts(found, expected);
+  if (centre <= tolerance && half_axes <= tolerance && front <= tolerance &&
+      found.shape_exponent == expected.shape_exponent) {
+    return testing::AssertionSuccess();
+  }
+  return testing::AssertionFailure()
+         << "differ by (fractions of the size) centre " << centre << ", half axes " << half_axes
+         << ", front " << front << " rad; shape exponents " << found.shape_exponent << " and "
+         << expected.shape_exponent;
+}
+
+}  // namespace soslam
