@@ -32,6 +32,7 @@ void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
   file->WriteNumber(group, "initial_yaw", record.initial_yaw);
   file->WriteNumber(group, "refined_yaw", record.refined_yaw);
   if (record.yaw_sigma) file->WriteNumber(group, "yaw_sigma", *record.yaw_sigma);
+  if (record.mirror_planes) file->WriteNumber(group, "mirror_planes", *record.mirror_planes);
   if (record.true_yaw) file->WriteNumber(group, "true_yaw", *record.true_yaw);
 }
 
@@ -50,6 +51,9 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
   record.refined_yaw = file.ReadNumber(group, "refined_yaw");
   if (file.HasAttribute(group, "yaw_sigma")) {
     record.yaw_sigma = file.ReadNumber(group, "yaw_sigma");
+  }
+  if (file.HasAttribute(group, "mirror_planes")) {
+    record.mirror_planes = static_cast<int>(std::lround(file.ReadNumber(group, "mirror_planes")));
   }
   if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");
   return record;

@@ -75,7 +75,7 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
          LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
       estimate.hypotheses.push_back({optimum.landmark_in_camera, optimum.cost});
     }
-    if (estimate.hypotheses.empty()) estimate.failure = "no_solution";
+    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(observation);
   });
   return estimates;
 }

@@ -18,7 +18,8 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const InitialiseOptions& options, int threads);
 
 // The same for bodies of any shape that stand upright: all local optima of the sweep over yaw,
-// lowest cost first. Failures: no_ratio_for_label, no_solution.
+// lowest cost first. Failures: no_ratio_for_label,
+// fewer_than_three_measured_edges, no_solution.
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const std::vector<std::optional<ShapePrior>>& priors,
                                     const UprightOptions& options, int threads);

@@ -8,7 +8,7 @@
 namespace soslam {
 namespace {
 
-constexpr int kMaxIterations = 12;
+constexpr int kMaxIterations = 50;
 
 // Horizontal axes and the point that foot coordinates count from.
 struct Ground {
@@ -181,6 +181,9 @@ std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const La
   solver.options.gradient_tolerance = 1e-10;
   solver.options.parameter_tolerance = 1e-8;
   UprightVector parameters = UprightParameters(plane_in_camera, start);
+  // The solver takes a start without a cost for an optimum.
+  Eigen::VectorXd residuals(cost.NumResiduals());
+  if (!cost(parameters.data(), residuals.data(), nullptr)) return std::nullopt;
   solver.Solve(cost, &parameters);
   if (!std::isfinite(solver.summary.final_cost) || !parameters.allFinite()) return std::nullopt;
   return UprightSolution{UprightLandmark(plane_in_camera, parameters, start.shape_exponent),

@@ -48,8 +48,6 @@ class LinearSystem {
   Eigen::Vector3d Solve() const {
     std::array<bool, 4> counts{};
     for (size_t i = 0; i < counts.size(); ++i) counts[i] = !observation_.edges[i].is_bound;
-    // With fewer than three measured edges the bounds are all there is to hold the size.
-    if (std::count(counts.begin(), counts.end(), true) < 3) counts.fill(true);
     Eigen::Vector3d solution = Solve(counts);
     const Eigen::Vector4d outside = matrix_ * solution - right_side_;
     bool missed = false;
@@ -76,21 +74,10 @@ class LinearSystem {
   Eigen::Vector4d right_side_;
 };
 
-// The depth where the ray through the middle of the box's lower edge meets the plane.
-std::optional<double> FootDepth(const UprightObservation& observation) {
-  // The edge's planes give its lines: the x of left and right, the y of the bottom.
-  const Camera& camera = observation.camera;
-  const auto pixel_of = [&](size_t edge, int axis) {
-    const Eigen::Vector3d& plane = observation.edges[edge].plane;
-    const double focal = axis == 0 ? camera.fx : camera.fy;
-    const double centre = axis == 0 ? camera.cx : camera.cy;
-    return centre - focal * plane.z() / plane(axis);
-  };
-  const Eigen::Vector3d ray = camera.Ray({0.5 * (pixel_of(0, 0) + pixel_of(2, 0)), pixel_of(3, 1)});
-  const Plane& plane = observation.plane_in_camera;
-  const double depth = -plane.offset / plane.normal.dot(ray);
-  if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
-  return depth;
+// Foot and size take three.
+bool HasEnoughEdges(const UprightObservation& observation) {
+  return std::count_if(observation.edges.begin(), observation.edges.end(),
+                       [](const BoxEdge& edge) { return !edge.is_bound; }) >= 3;
 }
 
 // Fits the terms, and again those of the result.
@@ -125,10 +112,9 @@ std::optional<UprightSolution> RefineYaw(const UprightObservation& observation,
 }  // namespace
 
 std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {
-  const auto foot_depth = FootDepth(observation);
-  if (!foot_depth) return std::nullopt;
+  if (!HasEnoughEdges(observation)) return std::nullopt;
   std::array<double, 4> depths_m;
-  depths_m.fill(*foot_depth);
+  depths_m.fill(1.0);  // as long as they are equal, their size does not matter
   Landmark landmark;
   bool settled = false;
   for (int round = 0; round < kMaxDepthRounds && !settled; ++round) {
@@ -149,6 +135,10 @@ std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double
     }
   }
   return landmark;
+}
+
+std::string WhyNoSolution(const UprightObservation& observation) {
+  return HasEnoughEdges(observation) ? "no_solution" : "fewer_than_three_measured_edges";
 }
 
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
@@ -250,7 +240,6 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   };
   std::vector<UprightSolution> optima;
   for (const size_t i : CircularMinima(sweep.Costs())) {
-    if (optima.size() == max_count) break;
     const auto solution =
         RefineYaw(observation, objective, sweep.solutions[i]->landmark_in_camera, step);
     if (!solution) continue;
@@ -261,6 +250,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   }
   std::stable_sort(optima.begin(), optima.end(),
                    [](const auto& one, const auto& other) { return one.cost < other.cost; });
+  optima.resize(std::min(optima.size(), max_count));
   return optima;
 }
 

@@ -35,8 +35,12 @@ Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& det
 // At a given yaw and with the prior's ratio, the tangencies are linear in the foot and the size:
 // the least squares solution over the measured edges, and over those bounds that it would not
 // reach. Tangent points are at their depths on the solution itself, found by repetition. None when
-// the plane is not in view or the body would not be in front of the camera.
+// fewer than three edges are measured, which leaves the size open, or when the body would not be in
+// front of the camera.
 std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw);
+
+// The failure of an observation for which SolveAtYaw finds nothing at any yaw.
+std::string WhyNoSolution(const UprightObservation& observation);
 
 // What makes one yaw better than another.
 struct YawObjective {

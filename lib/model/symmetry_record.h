@@ -27,7 +27,10 @@ struct SymmetryRecord {
   double initial_yaw = std::numeric_limits<double>::quiet_NaN();
   double refined_yaw = std::numeric_limits<double>::quiet_NaN();
   std::optional<double> yaw_sigma;  // standard deviation of the refined yaw, where it is known
-  std::optional<double> true_yaw;   // where there is ground truth
+  // In how many vertical planes the texture is symmetric, as far as it is visible: 2 for xz and yz,
+  // 1 for xz alone, 0 for none. Only of an orientation profile with texture.
+  std::optional<int> mirror_planes;
+  std::optional<double> true_yaw;  // where there is ground truth
 };
 
 }  // namespace soslam

@@ -11,6 +11,7 @@
 #include "initialisation/yaw_sweep.h"
 #include "model/occlusion.h"
 #include "orientation/edge_alignment.h"
+#include "orientation/mirror_planes.h"
 #include "orientation/texture_asymmetry.h"
 #include "symmetry/sampling.h"
 
@@ -128,7 +129,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     result.estimate.hypotheses.push_back({optimum.landmark_in_camera, optimum.cost});
   }
   if (result.estimate.hypotheses.empty()) {
-    result.estimate.failure = "no_solution";
+    result.estimate.failure = WhyNoSolution(profile.observation());
     return result;
   }
   const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
@@ -136,6 +137,10 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
   profile.RecordPairs(best, &result.record);
   result.record.refined_yaw =
       Yaw(detection.plane_in_camera.normal, best.frame_from_object.rotation);
+  if (options.texture_symmetry) {
+    result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
+                                               result.record.refined_yaw, options.texture);
+  }
   result.record.yaw_sigma = sweep.StandardDeviation(result.record.refined_yaw);
   return result;
 }

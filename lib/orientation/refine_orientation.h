@@ -15,7 +15,7 @@ namespace soslam {
 // that box, ratio prior and image edges together make best, its cost, and on top the symmetry of
 // its texture on that landmark's own surface. The best optima become the hypotheses, with their
 // costs; the curves of all parts, the yaw and its standard deviation go into the record. Failures:
-// no_ratio_for_label, no_solution.
+// no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
 RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
                                      const EdgeMaps& maps, const std::optional<ShapePrior>& prior,
                                      const ProfileOptions& options,

@@ -24,6 +24,8 @@ SymmetryRecord FullRecord() {
   record.mirrored = {{10.5F, 2.0F}, {8.0F, 4.0F}};
   record.initial_yaw = -0.1;
   record.refined_yaw = 0.1;
+  record.yaw_sigma = 0.02;
+  record.mirror_planes = 2;
   record.true_yaw = 0.09;
   return record;
 }
@@ -54,6 +56,8 @@ TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
   EXPECT_TRUE(records[0].mirrored.empty());
   EXPECT_TRUE(std::isnan(records[0].initial_yaw));
   EXPECT_TRUE(std::isnan(records[0].refined_yaw));
+  EXPECT_FALSE(records[0].yaw_sigma);
+  EXPECT_FALSE(records[0].mirror_planes);
   EXPECT_FALSE(records[0].true_yaw);
 
   const SymmetryRecord expected = FullRecord();
@@ -68,6 +72,8 @@ TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
   EXPECT_EQ(records[1].mirrored, expected.mirrored);
   EXPECT_EQ(records[1].initial_yaw, expected.initial_yaw);
   EXPECT_EQ(records[1].refined_yaw, expected.refined_yaw);
+  EXPECT_EQ(records[1].yaw_sigma, expected.yaw_sigma);
+  EXPECT_EQ(records[1].mirror_planes, expected.mirror_planes);
   EXPECT_EQ(records[1].true_yaw, expected.true_yaw);
 }
 

@@ -117,6 +117,13 @@ TEST_F(RefineBoxes, RecordsTheCurvesOfAllParts) {
   }
 }
 
+// The renderer's textures are symmetric in the xz plane alone.
+TEST_F(RefineBoxes, RecognisesTheMirrorPlaneOfTheTexture) {
+  for (size_t i = 0; i < sequence_->detections.size(); ++i) {
+    EXPECT_EQ(Refine(static_cast<int>(i), ProfileOptions()).record.mirror_planes, 1) << i;
+  }
+}
+
 TEST_F(RefineBoxes, LeavesOutPartsThatAreSwitchedOff) {
   ProfileOptions options;
   options.edge_alignment = false;

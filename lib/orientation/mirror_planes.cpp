@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "orientation/mirror_planes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "geometry/landmark.h"
+
+namespace soslam {
+namespace {
+
+// A texture counts as symmetric when it costs less than this share of the largest possible cost:
+// when most of its pairs are.
+constexpr double kSymmetricShare = 0.5;
+
+}  // namespace
+
+int MirrorPlanes(const std::vector<double>& grid, const std::vector<double>& texture_cost,
+                 double yaw, const TextureOptions& options) {
+  const auto is_symmetric = [&](double at) {
+    size_t nearest = 0;
+    for (size_t i = 1; i < grid.size(); ++i) {
+      if (std::abs(YawDifferenceModuloPi(grid[i], at)) <
+          std::abs(YawDifferenceModuloPi(grid[nearest], at))) {
+        nearest = i;
+      }
+    }
+    // The grid may be coarser than the dip is wide.
+    const size_t n = grid.size();
+    double lowest = options.asymmetry_cost;
+    for (const size_t i : {nearest + n - 1, nearest, nearest + 1}) {
+      lowest = std::fmin(lowest, texture_cost[i % n]);
+    }
+    return lowest < kSymmetricShare * options.asymmetry_cost;
+  };
+  if (!is_symmetric(yaw)) return 0;
+  return is_symmetric(yaw + 0.5 * std::numbers::pi) ? 2 : 1;
+}
+
+}  // namespace soslam

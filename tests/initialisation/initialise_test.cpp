@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/initialise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "support/level_sequence.h"
+#include "support/upright_bodies.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+// Ellipsoids and cuboids, exact boxes.
+Sequence Bodies() {
+  const Scene scene = RandomScene(4, 6, 8, {Shape::kEllipsoid, Shape::kBox});
+  Sequence sequence = SyntheticSequence(scene, false);
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].shape != Shape::kBox) continue;
+    sequence.objects[i].ground_truth->landmark_in_world.shape_exponent = kCuboidExponent;
+  }
+  return sequence;
+}
+
+std::vector<std::optional<ShapePrior>> TruePriors(const Sequence& sequence) {
+  std::vector<std::optional<ShapePrior>> priors;
+  for (const Object& object : sequence.objects) {
+    priors.push_back(PriorOf(object.ground_truth->landmark_in_world, kTrueRatioLogSigma));
+  }
+  return priors;
+}
+
+UprightOptions WithoutAxes() {
+  UprightOptions options;
+  options.axes_weight = 0.0;
+  return options;
+}
+
+Landmark TrueLandmark(const Sequence& sequence, const Detection& detection) {
+  return Transform(
+      sequence.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
+      sequence.objects[static_cast<size_t>(detection.object_index)]
+          .ground_truth->landmark_in_world);
+}
+
+void ExpectEqual(const LandmarkEstimates& one, const LandmarkEstimates& other) {
+  ASSERT_EQ(one.observations.size(), other.observations.size());
+  for (size_t i = 0; i < one.observations.size(); ++i) {
+    const auto& hypotheses = one.observations[i].hypotheses;
+    const auto& others = other.observations[i].hypotheses;
+    EXPECT_EQ(one.observations[i].detection_index, other.observations[i].detection_index);
+    EXPECT_EQ(one.observations[i].failure, other.observations[i].failure);
+    ASSERT_EQ(hypotheses.size(), others.size());
+    for (size_t k = 0; k < hypotheses.size(); ++k) {
+      EXPECT_EQ(hypotheses[k].cost, others[k].cost);
+      EXPECT_EQ(hypotheses[k].landmark_in_camera.half_axes, others[k].landmark_in_camera.half_axes);
+      EXPECT_EQ(hypotheses[k].landmark_in_camera.frame_from_object.Matrix(),
+                others[k].landmark_in_camera.frame_from_object.Matrix());
+    }
+  }
+}
+
+TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
+  const Sequence sequence = Bodies();
+  const auto priors = TruePriors(sequence);
+  const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 2);
+  ASSERT_EQ(estimates.observations.size(), sequence.detections.size());
+  EXPECT_TRUE(estimates.objects.empty());
+  for (size_t i = 0; i < estimates.observations.size(); ++i) {
+    const ObservationEstimate& estimate = estimates.observations[i];
+    const Detection& detection = sequence.detections[i];
+    EXPECT_EQ(estimate.detection_index, static_cast<int>(i));
+    EXPECT_EQ(estimate.failure, "");
+    ASSERT_FALSE(estimate.hypotheses.empty());
+    EXPECT_TRUE(
+        std::is_sorted(estimate.hypotheses.begin(), estimate.hypotheses.end(),
+                       [](const auto& one, const auto& other) { return one.cost < other.cost; }));
+    const ShapePrior& prior = *priors[static_cast<size_t>(detection.object_index)];
+    const Plane& plane = detection.plane_in_camera;
+    for (const Hypothesis& hypothesis : estimate.hypotheses) {
+      const Landmark& landmark = hypothesis.landmark_in_camera;
+      EXPECT_GE(hypothesis.cost, 0.0);
+      EXPECT_EQ(landmark.shape_exponent, prior.shape_exponent);
+      EXPECT_TRUE(IsInFront(landmark));
+      EXPECT_NEAR(plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
+      EXPECT_LT(
+          (landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(),
+          1e-9);
+    }
+  }
+}
+
+TEST(InitialiseUpright, HasTheTrueBodyAmongItsHypotheses) {
+  const Sequence sequence = Bodies();
+  const LandmarkEstimates estimates =
+      InitialiseUpright(sequence, TruePriors(sequence), WithoutAxes(), 2);
+  size_t found = 0;
+  for (const ObservationEstimate& estimate : estimates.observations) {
+    const Landmark truth =
+        TrueLandmark(sequence, sequence.detections[static_cast<size_t>(estimate.detection_index)]);
+    EXPECT_LT(estimate.hypotheses.front().cost, 1e-3);
+    found += std::any_of(estimate.hypotheses.begin(), estimate.hypotheses.end(),
+                         [&](const Hypothesis& hypothesis) {
+                           return IsSameBody(hypothesis.landmark_in_camera, truth, 0.05);
+                         })
+                 ? 1
+                 : 0;
+  }
+  // Of yaws that are almost equally good and next to each other, one stands for both.
+  EXPECT_GE(found, estimates.observations.size() * 9 / 10);
+}
+
+TEST(InitialiseUpright, NamesObjectsWithoutRatio) {
+  const Sequence sequence = Bodies();
+  auto priors = TruePriors(sequence);
+  const int without = sequence.detections.front().object_index;
+  priors[static_cast<size_t>(without)].reset();
+  const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 2);
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const bool is_without = sequence.detections[i].object_index == without;
+    EXPECT_EQ(estimates.observations[i].failure, is_without ? "no_ratio_for_label" : "");
+    EXPECT_EQ(estimates.observations[i].hypotheses.empty(), is_without);
+  }
+}
+
+TEST(InitialiseUpright, NamesDetectionsThatNoBodyExplains) {
+  // The floor's horizon is row 240.
+  Sequence sequence = LevelSequence({{300, 250, 380, 330}, {300, 100, 380, 180}});
+  sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
+  const std::vector<std::optional<ShapePrior>> priors(2, ShapePrior());
+  const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 1);
+  EXPECT_EQ(estimates.observations[0].failure, "");
+  EXPECT_FALSE(estimates.observations[0].hypotheses.empty());
+  EXPECT_EQ(estimates.observations[1].failure, "no_solution");
+  EXPECT_TRUE(estimates.observations[1].hypotheses.empty());
+}
+
+// Two edges leave the size open: no confident answer.
+TEST(InitialiseUpright, NamesDetectionsThatAreCutOnTwoSides) {
+  Sequence sequence = LevelSequence({{300, 250, 380, 330}, {300, 250, 380, 330}});
+  sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
+  sequence.detections[0].is_bound = {true, false, false, false};
+  sequence.detections[1].is_bound = {true, false, false, true};
+  const std::vector<std::optional<ShapePrior>> priors(2, ShapePrior());
+  const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 1);
+  EXPECT_EQ(estimates.observations[0].failure, "");
+  EXPECT_EQ(estimates.observations[1].failure, "fewer_than_three_measured_edges");
+  EXPECT_TRUE(estimates.observations[1].hypotheses.empty());
+}
+
+TEST(InitialiseUpright, DoesNotDependOnTheNumberOfThreads) {
+  const Sequence sequence = Bodies();
+  const auto priors = TruePriors(sequence);
+  const LandmarkEstimates alone = InitialiseUpright(sequence, priors, UprightOptions(), 1);
+  for (const int threads : {2, 5}) {
+    ExpectEqual(InitialiseUpright(sequence, priors, UprightOptions(), threads), alone);
+  }
+}
+
+// Hypotheses are in the camera frame, and the world's horizontal axes are alike.
+TEST(InitialiseUpright, DoesNotDependOnWhereTheWorldIsNorOnItsQuarterTurns) {
+  const Sequence sequence = Bodies();
+  const auto priors = TruePriors(sequence);
+  const LandmarkEstimates before = InitialiseUpright(sequence, priors, UprightOptions(), 2);
+  const Rigid3d motion = {ExpRotation({0.0, 0.0, 0.5 * std::numbers::pi}), RandomVector(-5, 5)};
+  Sequence moved = sequence;
+  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
+  for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
+  const LandmarkEstimates after = InitialiseUpright(moved, priors, UprightOptions(), 2);
+  for (size_t i = 0; i < before.observations.size(); ++i) {
+    const auto& expected = before.observations[i].hypotheses;
+    const auto& found = after.observations[i].hypotheses;
+    ASSERT_EQ(found.size(), expected.size());
+    for (size_t k = 0; k < found.size(); ++k) {
+      EXPECT_NEAR(found[k].cost, expected[k].cost, 1e-6);
+      EXPECT_TRUE(IsSameBody(found[k].landmark_in_camera, expected[k].landmark_in_camera, 1e-6));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam
