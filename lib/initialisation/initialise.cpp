@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "initialisation/multi_view.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/svd.h"
 #include "initialisation/yaw_sweep.h"
@@ -73,9 +74,38 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
         SweepYaw(observation, objective, options.yaw_grid_deg * std::numbers::pi / 180.0);
     for (const UprightSolution& optimum :
          LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
-      estimate.hypotheses.push_back({optimum.landmark_in_camera, optimum.cost});
+      estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
     }
     if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(observation);
+  });
+  return estimates;
+}
+
+LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
+                                      const std::vector<std::optional<ShapePrior>>& priors,
+                                      const InitialiseOptions& options, int threads) {
+  LandmarkEstimates estimates;
+  const auto detections = DetectionsByObject(sequence);
+  for (size_t i = 0; i < detections.size(); ++i) {
+    if (detections[i].empty()) continue;
+    ObjectEstimate object;
+    object.object_index = static_cast<int>(i);
+    object.observations = static_cast<int>(detections[i].size());
+    estimates.objects.push_back(object);
+  }
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  ParallelFor(static_cast<int>(estimates.objects.size()), threads, [&](int i) {
+    ObjectEstimate& object = estimates.objects[static_cast<size_t>(i)];
+    const auto index = static_cast<size_t>(object.object_index);
+    MultiViewObservation observation = MakeMultiViewObservation(
+        sequence, detections[index], priors[index], options.upright.detection_sigma_fraction,
+        options.view_correlation_deg * kRadians);
+    observation.axes_weight = options.upright.axes_weight;
+    if (const auto found = SolveViews(observation, options.upright.yaw_grid_deg * kRadians)) {
+      object.landmark_in_world = found->landmark;
+    } else {
+      object.failure = "not_determined_by_its_views";
+    }
   });
   return estimates;
 }

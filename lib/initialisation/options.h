@@ -13,9 +13,11 @@ namespace soslam {
 enum class InitialisationMethod {
   kSingleFrame,  // section IV: one landmark per observation
   kYawSweep,     // one landmark per observation, of any shape, closed form at each yaw
+  kMultiView,    // one landmark per object from all of its observations, of any shape
   kSvd,          // QuadricSLAM: one landmark per object from all of its observations
 };
-inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_sweep", "svd"};
+inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_sweep", "multi_view",
+                                                          "svd"};
 
 // Which of several yaws that explain a box equally well is the estimate. A box cannot tell; these
 // are assumptions about how objects stand.
@@ -36,12 +38,14 @@ struct InitialiseOptions {
   double tie_edge_px = 1.0;
   TieBreak tie_break = TieBreak::kWorldAxes;
   UprightOptions upright;
+  double view_correlation_deg = 20.0;
 
   void Describe(OptionVisitor& visit) {
     visit.Choice(
         "method", &method, kInitialisationMethodNames,
-        "one landmark per observation: an ellipsoid as in section IV, or a body of the label's "
-        "shape by a sweep over yaw; or one per object by SVD over all");
+        "one landmark per observation: an ellipsoid as in section IV (single_frame), or a body of "
+        "the label's shape by a sweep over yaw (yaw_sweep); or one per object from all of its "
+        "observations: such a body (multi_view), or an ellipsoid by SVD (svd)");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
     variances.Describe(visit);
@@ -56,6 +60,10 @@ struct InitialiseOptions {
                  "which yaw is chosen where several explain the box: nearest to the world's axes "
                  "(modulo quarter turns), or with the front facing the camera most");
     upright.Describe(visit);
+    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+               "multi_view: boxes from viewpoints closer than this angle at the object share what "
+               "the label's shape cannot explain, so that they count as one; 0: all boxes are "
+               "independent");
   }
 };
 

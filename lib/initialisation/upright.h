@@ -108,7 +108,7 @@ class AxisTerm final : public LandmarkTerm {
 // landmark and its cost, half the sum of squared residuals; none when the solver runs away.
 using LandmarkTerms = std::vector<std::unique_ptr<const LandmarkTerm>>;
 struct UprightSolution {
-  Landmark landmark_in_camera;
+  Landmark landmark;
   double cost;
 };
 std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const Landmark& start,

@@ -86,11 +86,11 @@ std::optional<UprightSolution> Fit(const UprightObservation& observation,
                                    bool yaw_is_free) {
   std::optional<UprightSolution> solution = UprightSolution{start, 0.0};
   for (int round = 0; round < objective.rounds; ++round) {
-    solution = FitUpright(observation.plane_in_camera, solution->landmark_in_camera,
-                          objective.terms(solution->landmark_in_camera), yaw_is_free);
-    if (!solution || !IsInFront(solution->landmark_in_camera)) return std::nullopt;
+    solution = FitUpright(observation.plane_in_camera, solution->landmark,
+                          objective.terms(solution->landmark), yaw_is_free);
+    if (!solution || !IsInFront(solution->landmark)) return std::nullopt;
   }
-  if (objective.extra_cost) solution->cost += objective.extra_cost(solution->landmark_in_camera);
+  if (objective.extra_cost) solution->cost += objective.extra_cost(solution->landmark);
   return solution;
 }
 
@@ -235,13 +235,11 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
                                          size_t max_count) {
   const double step = std::numbers::pi / static_cast<double>(sweep.yaw.size());
   const auto yaw_of = [&](const UprightSolution& solution) {
-    return Yaw(observation.plane_in_camera.normal,
-               solution.landmark_in_camera.frame_from_object.rotation);
+    return Yaw(observation.plane_in_camera.normal, solution.landmark.frame_from_object.rotation);
   };
   std::vector<UprightSolution> optima;
   for (const size_t i : CircularMinima(sweep.Costs())) {
-    const auto solution =
-        RefineYaw(observation, objective, sweep.solutions[i]->landmark_in_camera, step);
+    const auto solution = RefineYaw(observation, objective, sweep.solutions[i]->landmark, step);
     if (!solution) continue;
     const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {
       return std::abs(YawDifferenceModuloPi(yaw_of(*solution), yaw_of(other))) < kSameYaw;

@@ -13,7 +13,7 @@
 #include "constraints/support.h"
 #include "constraints/tangency.h"
 #include "initialisation/landmark_term_residual.h"
-#include "mapping/view_weights.h"
+#include "initialisation/view_weights.h"
 #include "orientation/texture_asymmetry.h"
 #include "symmetry/sampling.h"
 

@@ -18,10 +18,11 @@ namespace soslam {
 std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
                                                   const LandmarkEstimates& estimates);
 
-// The same for upright bodies, where single frames disagree: of the hypotheses of all observations
-// the best of every few degrees of yaw is fitted to the boxes, edges and ratio prior of views
-// spread over the whole sequence, camera poses held, and the one of lowest cost is taken; where
-// there are symmetry images, with what the texture of these views says. `input.starts` is not used.
+// The same for upright bodies, where single frames disagree: of the hypotheses of all observations,
+// the estimates from several views, and the optima of SweepViews, the best of every few degrees of
+// yaw is fitted to the boxes, edges and ratio prior of views spread over the whole sequence, camera
+// poses held, and the one of lowest cost is taken; where there are symmetry images, with what the
+// texture of these views says. `input.starts` is not used.
 std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& input,
                                                          const LandmarkEstimates& estimates,
                                                          const OptimiseOptions& options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -79,6 +80,14 @@ inline std::vector<std::vector<int>> DetectionsByObject(const Sequence& sequence
         static_cast<int>(i));
   }
   return by_object;
+}
+
+// `count` of an object's detections (all, if they are fewer), evenly over all from the first on.
+inline std::vector<int> SpreadOver(const std::vector<int>& detections, size_t count) {
+  const size_t n = std::min(count, detections.size());
+  std::vector<int> chosen;
+  for (size_t i = 0; i < n; ++i) chosen.push_back(detections[i * detections.size() / n]);
+  return chosen;
 }
 
 }  // namespace soslam

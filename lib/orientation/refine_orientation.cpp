@@ -94,12 +94,12 @@ void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
   for (const auto& solution : sweep.solutions) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     if (options.edge_alignment) {
-      record->cost["edge_alignment"].push_back(
-          solution ? profile.EdgeCost(solution->landmark_in_camera) : none);
+      record->cost["edge_alignment"].push_back(solution ? profile.EdgeCost(solution->landmark)
+                                                        : none);
     }
     if (options.texture_symmetry) {
-      record->cost["texture_symmetry"].push_back(
-          solution ? profile.TextureCost(solution->landmark_in_camera) : none);
+      record->cost["texture_symmetry"].push_back(solution ? profile.TextureCost(solution->landmark)
+                                                          : none);
     }
   }
 }
@@ -126,7 +126,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
                                   options.upright.yaw_grid_deg * std::numbers::pi / 180.0);
   for (const UprightSolution& optimum :
        LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
-    result.estimate.hypotheses.push_back({optimum.landmark_in_camera, optimum.cost});
+    result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
   }
   if (result.estimate.hypotheses.empty()) {
     result.estimate.failure = WhyNoSolution(profile.observation());

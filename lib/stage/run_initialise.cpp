@@ -44,12 +44,15 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                    table.default_prior ? "its default is used" : "their objects are left out");
       }
     }
-    estimates =
-        options.method == InitialisationMethod::kYawSweep
-            ? InitialiseUpright(sequence, ObjectPriors(sequence, table, options.ratio_prior),
-                                options.upright, threads)
-            : InitialiseSingleFrame(sequence, ObjectRatios(sequence, table, options.ratio_prior),
-                                    options, threads);
+    const auto priors = ObjectPriors(sequence, table, options.ratio_prior);
+    if (options.method == InitialisationMethod::kMultiView) {
+      estimates = InitialiseMultiView(sequence, priors, options, threads);
+    } else if (options.method == InitialisationMethod::kYawSweep) {
+      estimates = InitialiseUpright(sequence, priors, options.upright, threads);
+    } else {
+      estimates = InitialiseSingleFrame(
+          sequence, ObjectRatios(sequence, table, options.ratio_prior), options, threads);
+    }
   }
 
   const auto failures = CountFailures(estimates);

@@ -27,14 +27,6 @@ void CheckImageOptions(const OptimiseOptions& options, const StageFiles& files) 
   }
 }
 
-// `count` of an object's detections, evenly over all of them from the first on.
-std::vector<int> SpreadOver(const std::vector<int>& detections, size_t count) {
-  std::vector<int> chosen;
-  const size_t n = std::min(count, detections.size());
-  for (size_t i = 0; i < n; ++i) chosen.push_back(detections[i * detections.size() / n]);
-  return chosen;
-}
-
 // Reads the edge maps that symmetry and edge alignment look at.
 void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
                 BackEndInput* input) {

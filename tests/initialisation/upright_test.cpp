@@ -362,7 +362,7 @@ TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
       const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/false);
       ASSERT_TRUE(solution);
       EXPECT_LT(solution->cost, kCostTolerance) << p;
-      EXPECT_TRUE(IsSameBody(solution->landmark_in_camera, body.truth, 2e-3)) << p;
+      EXPECT_TRUE(IsSameBody(solution->landmark, body.truth, 2e-3)) << p;
     }
   }
 }
@@ -377,7 +377,7 @@ TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
     for (const bool yaw_is_free : {false, true}) {
       const auto solution = FitUpright(body.plane, start, terms, yaw_is_free);
       ASSERT_TRUE(solution);
-      const Landmark& landmark = solution->landmark_in_camera;
+      const Landmark& landmark = solution->landmark;
       EXPECT_NEAR(solution->cost, Cost(terms, landmark), 1e-9 * (1.0 + solution->cost));
       EXPECT_LE(solution->cost, Cost(terms, start));
       EXPECT_EQ(landmark.shape_exponent, start.shape_exponent);
@@ -403,7 +403,7 @@ TEST(FitUpright, GainsNothingWhenItIsRunAgain) {
     ASSERT_TRUE(once);
     auto again = once;
     for (int run = 0; run < 20 && again; ++run) {
-      again = FitUpright(body.plane, again->landmark_in_camera, terms, /*yaw_is_free=*/true);
+      again = FitUpright(body.plane, again->landmark, terms, /*yaw_is_free=*/true);
     }
     ASSERT_TRUE(again);
     EXPECT_LE(again->cost, once->cost + 1e-9);
@@ -436,7 +436,7 @@ TEST(FitUpright, FindsTheBodyThatSeveralViewsSee) {
       const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
       ASSERT_TRUE(solution);
       EXPECT_LT(solution->cost, 10.0 * kCostTolerance);
-      const Landmark& found = solution->landmark_in_camera;
+      const Landmark& found = solution->landmark;
       EXPECT_TRUE(IsSameBody(found, body.truth, 1e-2) ||
                   IsSameBody(WithAxesExchanged(found), body.truth, 1e-2))
           << p;
@@ -479,7 +479,7 @@ TEST(FitUpright, StaysWhereTheCostIsANumber) {
     }));
     const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
     if (!solution) continue;
-    EXPECT_TRUE(std::isfinite(Cost(terms, solution->landmark_in_camera)));
+    EXPECT_TRUE(std::isfinite(Cost(terms, solution->landmark)));
     EXPECT_LE(solution->cost, Cost(terms, start));
   }
 }

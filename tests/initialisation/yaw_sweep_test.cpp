@@ -360,7 +360,7 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
       EXPECT_NEAR(sweep.yaw[i], step * static_cast<double>(i), 1e-12);
       ASSERT_TRUE(sweep.solutions[i]);
       EXPECT_EQ(costs[i], sweep.solutions[i]->cost);
-      const Landmark& landmark = sweep.solutions[i]->landmark_in_camera;
+      const Landmark& landmark = sweep.solutions[i]->landmark;
       const double yaw = Yaw(body.plane.normal, landmark.frame_from_object.rotation);
       EXPECT_NEAR(YawDifferenceModuloPi(yaw, sweep.yaw[i]), 0.0, 1e-9);
       EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
@@ -400,10 +400,10 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
     for (size_t round = 0; round < 3; ++round) {
       EXPECT_TRUE(IsSameBody(starts[3 * i + round], landmark, 1e-9));
       const auto fit = FitUpright(body.plane, landmark, box.terms(landmark), false);
-      landmark = fit->landmark_in_camera;
+      landmark = fit->landmark;
       cost = fit->cost;
     }
-    EXPECT_TRUE(IsSameBody(sweep.solutions[i]->landmark_in_camera, landmark, 1e-9));
+    EXPECT_TRUE(IsSameBody(sweep.solutions[i]->landmark, landmark, 1e-9));
     EXPECT_NEAR(sweep.solutions[i]->cost, cost + 7.0, 1e-9);
   }
 }
@@ -430,7 +430,7 @@ TEST(LocalOptima, HaveTheTrueBodyAmongThem) {
       double nearest = kPi;
       for (const UprightSolution& optimum : optima) {
         if (optimum.cost > 0.02) continue;  // a tenth of a standard deviation of each edge
-        const Landmark& landmark = optimum.landmark_in_camera;
+        const Landmark& landmark = optimum.landmark;
         is_found = is_found || IsSameBody(landmark, body.truth, 0.02);
         nearest = std::min(nearest, AngleBetweenFronts(landmark, body.truth));
       }
@@ -472,16 +472,16 @@ TEST(LocalOptima, NoneOfManyRandomStartsIsBetter) {
         std::optional<UprightSolution> solution = UprightSolution{RandomStart(observation), 0.0};
         // Until the tangent points' depths are those of the solution.
         for (int round = 0; round < 5 && solution; ++round) {
-          const Landmark& landmark = solution->landmark_in_camera;
+          const Landmark& landmark = solution->landmark;
           solution = FitUpright(observation.plane_in_camera, landmark, objective.terms(landmark),
                                 /*yaw_is_free=*/true);
-          if (solution && !IsInFront(solution->landmark_in_camera)) solution.reset();
+          if (solution && !IsInFront(solution->landmark)) solution.reset();
         }
         if (solution) {
-          lowest = std::min(lowest, CostAtOwnDepths(objective, solution->landmark_in_camera));
+          lowest = std::min(lowest, CostAtOwnDepths(objective, solution->landmark));
         }
       }
-      const double found = CostAtOwnDepths(objective, optima.front().landmark_in_camera);
+      const double found = CostAtOwnDepths(objective, optima.front().landmark);
       EXPECT_LE(found, lowest + 0.01 + 0.02 * lowest) << "body " << i << ", " << axes_weight;
     }
   }
@@ -493,12 +493,10 @@ TEST(LocalOptima, AreSortedDistinctLandmarksInFrontOfTheCamera) {
     const auto optima = Optima(observation);
     ASSERT_FALSE(optima.empty());
     for (size_t one = 0; one < optima.size(); ++one) {
-      EXPECT_TRUE(IsInFront(optima[one].landmark_in_camera));
+      EXPECT_TRUE(IsInFront(optima[one].landmark));
       EXPECT_LE(optima[one == 0 ? 0 : one - 1].cost, optima[one].cost);
       for (size_t other = 0; other < one; ++other) {
-        EXPECT_GT(
-            AngleBetweenFronts(optima[one].landmark_in_camera, optima[other].landmark_in_camera),
-            0.5 * kDegrees);
+        EXPECT_GT(AngleBetweenFronts(optima[one].landmark, optima[other].landmark), 0.5 * kDegrees);
       }
     }
   }
@@ -514,11 +512,11 @@ TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
     objective.rounds = 5;
     const YawSweep sweep = SweepYaw(observation, objective, kStep);
     for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
-      const auto terms = objective.terms(optimum.landmark_in_camera);
+      const auto terms = objective.terms(optimum.landmark);
       for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
-        const auto nearby = FitUpright(observation.plane_in_camera,
-                                       Turned(optimum.landmark_in_camera, offset_deg * kDegrees),
-                                       terms, /*yaw_is_free=*/false);
+        const auto nearby =
+            FitUpright(observation.plane_in_camera, Turned(optimum.landmark, offset_deg * kDegrees),
+                       terms, /*yaw_is_free=*/false);
         ASSERT_TRUE(nearby);
         EXPECT_GT(nearby->cost, 0.99 * optimum.cost - 1e-2)
             << "body " << i << ", turned by " << offset_deg << " degrees";
@@ -554,9 +552,9 @@ TEST(LocalOptima, OfAFootprintWithEqualSidesAreEquallyGoodAfterAQuarterTurn) {
       const auto optima = Optima(observation);
       ASSERT_FALSE(optima.empty());
       const UprightSolution& best = optima.front();
-      const Landmark turned = WithAxesExchanged(best.landmark_in_camera);
+      const Landmark turned = WithAxesExchanged(best.landmark);
       const auto other = std::find_if(optima.begin(), optima.end(), [&](const auto& optimum) {
-        return IsSameBody(optimum.landmark_in_camera, turned, 0.02);
+        return IsSameBody(optimum.landmark, turned, 0.02);
       });
       ASSERT_NE(other, optima.end()) << "body " << i << ", p " << p;
       EXPECT_NEAR(other->cost, best.cost, 1e-3);
@@ -577,7 +575,7 @@ TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
     const YawSweep sweep = SweepYaw(body.observation, objective, kStep);
     const auto optima = LocalOptima(body.observation, objective, sweep, kAll);
     ASSERT_FALSE(optima.empty());
-    const Landmark& best = optima.front().landmark_in_camera;
+    const Landmark& best = optima.front().landmark;
     EXPECT_LT(std::abs(YawDifferenceModuloPi(
                   Yaw(body.plane.normal, best.frame_from_object.rotation), yaw)),
               0.1 * kStep);

@@ -261,12 +261,27 @@ TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
   }
 }
 
-TEST_F(UprightStarts, AreEmptyForObjectsWithoutHypotheses) {
+TEST_F(UprightStarts, ComeFromSeveralViewsWhereSingleFramesSayNothing) {
   for (ObservationEstimate& observation : estimates_.observations) {
     const Detection& detection =
         sequence_.detections[static_cast<size_t>(observation.detection_index)];
     if (detection.object_index == 1) observation = {observation.detection_index, {}, "no_solution"};
   }
+  const auto starts = Choose();
+  ASSERT_TRUE(starts[1]);
+  EXPECT_GT(BoxIou(*starts[1], sequence_.objects[1].ground_truth->landmark_in_world), 0.95);
+}
+
+TEST_F(UprightStarts, AreEmptyForObjectsThatNothingIsKnownOf) {
+  for (ObservationEstimate& observation : estimates_.observations) {
+    observation = {observation.detection_index, {}, "no_solution"};
+  }
+  // One view of it is left, which says nothing by itself.
+  bool seen = false;
+  std::erase_if(sequence_.detections, [&](const Detection& detection) {
+    return detection.object_index == 1 && std::exchange(seen, true);
+  });
+  estimates_.observations.resize(sequence_.detections.size());
   const auto starts = Choose();
   ASSERT_EQ(starts.size(), 4u);
   for (size_t i = 0; i < starts.size(); ++i) EXPECT_EQ(starts[i].has_value(), i != 1) << i;

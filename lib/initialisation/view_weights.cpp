@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/view_weights.h"
+#include "initialisation/view_weights.h"
 
 #include <cmath>
 

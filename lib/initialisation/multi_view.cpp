@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/multi_view.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "initialisation/view_weights.h"
+#include "initialisation/yaw_sweep.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kMaxRounds = 20;
+constexpr double kSettled = 1e-6;  // relative change of the half axes
+// A direction that is known so much less than the best known one is not known at all.
+constexpr double kMinInformationShare = 1e-9;
+
+using Unknowns = Eigen::Matrix<double, 5, 1>;  // foot x, foot y, a, b, c
+
+// The point nearest to the rays through the middles of all boxes.
+Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
+  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  for (const BoxView& view : observation.views) {
+    // The middle lies on the planes half-way between opposite edges.
+    for (const size_t i : {0, 1}) {
+      const Eigen::Vector3d middle = view.edges[i].plane - view.edges[i + 2].plane;
+      const Eigen::Vector3d normal =
+          view.camera_from_world.rotation.conjugate() * middle.normalized();
+      const double offset = middle.normalized().dot(view.camera_from_world.translation);
+      normal_matrix += normal * normal.transpose();
+      right_side -= offset * normal;
+    }
+  }
+  const Plane& plane = observation.plane_in_world;
+  normal_matrix += plane.normal * plane.normal.transpose();
+  right_side -= plane.offset * plane.normal;
+  return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
+}
+
+class LinearViews {
+ public:
+  LinearViews(const MultiViewObservation& observation, double yaw)
+      : observation_(observation),
+        world_from_object_(UprightRotation(observation.plane_in_world.normal, yaw)),
+        x_(UprightRotation(observation.plane_in_world.normal, 0.0) * Eigen::Vector3d::UnitX()),
+        y_(observation.plane_in_world.normal.cross(x_)) {
+    Start();
+  }
+
+  std::optional<UprightSolution> Solve() {
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const Eigen::Vector3d before = landmark_.half_axes;
+      if (!Step(/*is_first=*/round == 0)) return std::nullopt;
+      if ((landmark_.half_axes - before).norm() < kSettled * before.norm()) break;
+    }
+    for (const BoxView& view : observation_.views) {
+      if (!IsInFront(Transform(view.camera_from_world, landmark_))) return std::nullopt;
+    }
+    return UprightSolution{landmark_, Cost()};
+  }
+
+ private:
+  // As large as the boxes are high, where their rays meet.
+  void Start() {
+    const Eigen::Vector3d point = NearestToAllRays(observation_);
+    Eigen::Vector3d proportions = Eigen::Vector3d::Ones();
+    if (observation_.prior) proportions.head<2>() = observation_.prior->ratio;
+    landmark_.frame_from_object = {world_from_object_, point};
+    landmark_.half_axes = proportions;
+    landmark_.shape_exponent = observation_.ShapeExponent();
+    double sum = 0.0;
+    for (const BoxView& view : observation_.views) {
+      const double depth = (view.camera_from_world * point).z();
+      const Eigen::Vector3d height = view.edges[1].plane + view.edges[3].plane;
+      sum += 0.5 * std::abs(depth * height.z() / view.edges[3].plane.y());
+    }
+    landmark_.half_axes *= sum / static_cast<double>(observation_.views.size());
+  }
+
+  bool Step(bool is_first) {
+    Eigen::Matrix<double, 5, 5> normal_matrix = Eigen::Matrix<double, 5, 5>::Zero();
+    Unknowns right_side = Unknowns::Zero();
+    const auto add = [&](const Unknowns& row, double constant, double weight) {
+      normal_matrix += weight * row * row.transpose();
+      right_side -= weight * constant * row;
+    };
+    for (const BoxView& view : observation_.views) {
+      const Landmark in_camera = Transform(view.camera_from_world, landmark_);
+      for (const BoxEdge& edge : view.edges) AddEdge(view, edge, in_camera, is_first, add);
+    }
+    if (observation_.prior) AddRatio(add);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(normal_matrix);
+    const Unknowns& information = eigen.eigenvalues();  // ascending, 1 / m^2
+    if (!(information(0) > kMinInformationShare * information(4))) return false;
+    const Unknowns unknowns = eigen.eigenvectors() * information.cwiseInverse().asDiagonal() *
+                              eigen.eigenvectors().transpose() * right_side;
+    if (!unknowns.allFinite() || !(unknowns.tail<3>().minCoeff() > 0.0)) return false;
+    const Plane& plane = observation_.plane_in_world;
+    landmark_.half_axes = unknowns.tail<3>();
+    landmark_.frame_from_object.translation = -plane.offset * plane.normal + unknowns(0) * x_ +
+                                              unknowns(1) * y_ + unknowns(4) * plane.normal;
+    return true;
+  }
+
+  template <typename Add>
+  void AddEdge(const BoxView& view, const BoxEdge& edge, const Landmark& in_camera, bool is_first,
+               const Add& add) const {
+    const double start_depth = in_camera.Centre().z();
+    const double depth = is_first ? start_depth : TangentDepth(edge, in_camera);
+    if (!(depth > 0.0)) return;
+    const double residual = Tangency(edge, in_camera, depth, 0.0, nullptr);
+    // Where the body is at first says nothing about what a bound allows, and who is an outlier.
+    if (edge.is_bound && (is_first || residual == 0.0)) return;
+    const double size = std::abs(residual);
+    const double robust =
+        is_first || size <= observation_.huber_delta ? 1.0 : observation_.huber_delta / size;
+    const Plane& plane = observation_.plane_in_world;
+    const Eigen::Vector3d normal = view.camera_from_world.rotation.conjugate() * edge.plane;
+    const SupportValue support = SupportFunction(landmark_.half_axes, landmark_.shape_exponent,
+                                                 world_from_object_.conjugate() * normal);
+    Unknowns row;
+    row << normal.dot(x_), normal.dot(y_),
+        support.by_log_half_axes.cwiseQuotient(landmark_.half_axes);
+    row(4) += normal.dot(plane.normal);
+    const double constant = edge.plane.dot(view.camera_from_world.translation) -
+                            plane.offset * normal.dot(plane.normal);
+    const double scale = 1.0 / (depth * edge.sigma_px);
+    add(scale * row, scale * constant, view.weight * robust);
+  }
+
+  // log(s / (r c)) is (s - r c) / (r c) to first order.
+  template <typename Add>
+  void AddRatio(const Add& add) const {
+    for (int i = 0; i < 2; ++i) {
+      const double expected = observation_.prior->ratio[i] * landmark_.half_axes.z();
+      const double scale = 1.0 / (observation_.prior->log_sigma[i] * expected);
+      Unknowns row = Unknowns::Zero();
+      row(2 + i) = scale;
+      row(4) = -scale * observation_.prior->ratio[i];
+      add(row, 0.0, 1.0);
+    }
+  }
+
+  double Cost() const {
+    double cost = 0.0;
+    for (const BoxView& view : observation_.views) {
+      const Landmark in_camera = Transform(view.camera_from_world, landmark_);
+      for (const BoxEdge& edge : view.edges) {
+        const double size =
+            std::abs(Tangency(edge, in_camera, TangentDepth(edge, in_camera), 0.0, nullptr));
+        const double delta = observation_.huber_delta;
+        cost += view.weight * (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
+      }
+    }
+    if (observation_.prior) {
+      Eigen::VectorXd residuals(2);
+      RatioTerm(*observation_.prior).Evaluate(landmark_, residuals, nullptr);
+      cost += 0.5 * residuals.squaredNorm();
+    }
+    return cost;
+  }
+
+  const MultiViewObservation& observation_;
+  Eigen::Quaterniond world_from_object_;
+  Eigen::Vector3d x_;
+  Eigen::Vector3d y_;
+  Landmark landmark_;
+};
+
+}  // namespace
+
+MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
+                                              const std::vector<int>& detections,
+                                              const std::optional<ShapePrior>& prior,
+                                              double detection_sigma_fraction,
+                                              double view_correlation_rad) {
+  MultiViewObservation observation;
+  observation.prior = prior;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
+    observation.plane_in_world =
+        sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+    observation.views.push_back(
+        {BoxEdges(sequence.camera, detection.box, detection.is_bound, detection_sigma_fraction),
+         frame.world_from_camera.Inverse()});
+  }
+  const auto weights =
+      ViewWeights(sequence, detections, NearestToAllRays(observation), view_correlation_rad);
+  for (size_t i = 0; i < weights.size(); ++i) observation.views[i].weight = weights[i];
+  return observation;
+}
+
+LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {
+  LandmarkTerms terms;
+  const Plane& plane = observation.plane_in_world;
+  if (observation.prior) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
+  terms.push_back(std::make_unique<AxisTerm>(plane, WorldAxis(plane), observation.axes_weight));
+  for (const BoxView& view : observation.views) {
+    const Landmark in_camera = Transform(view.camera_from_world, start_in_world);
+    if (!IsInFront(in_camera)) continue;
+    terms.push_back(std::make_unique<RobustViewTerm>(
+        std::make_unique<BoxTerm>(view.edges, in_camera), view.camera_from_world,
+        observation.huber_delta, view.weight));
+  }
+  return terms;
+}
+
+std::optional<UprightSolution> SolveViewsAtYaw(const MultiViewObservation& observation,
+                                               double yaw) {
+  return LinearViews(observation, yaw).Solve();
+}
+
+std::vector<UprightSolution> SweepViews(const MultiViewObservation& observation, double step) {
+  const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
+  std::vector<std::optional<UprightSolution>> solutions;
+  std::vector<double> costs;
+  for (int i = 0; i < steps; ++i) {
+    solutions.push_back(SolveViewsAtYaw(observation, i * std::numbers::pi / steps));
+    costs.push_back(solutions.back() ? solutions.back()->cost
+                                     : std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<UprightSolution> optima;
+  for (const size_t i : CircularMinima(costs)) optima.push_back(*solutions[i]);
+  return optima;
+}
+
+std::optional<UprightSolution> SolveViews(const MultiViewObservation& observation, double step) {
+  std::optional<UprightSolution> best;
+  for (const UprightSolution& optimum : SweepViews(observation, step)) {
+    const auto solution =
+        FitUpright(observation.plane_in_world, optimum.landmark,
+                   ViewTerms(observation, optimum.landmark), /*yaw_is_free=*/true);
+    if (solution && (!best || solution->cost < best->cost)) best = solution;
+  }
+  return best;
+}
+
+}  // namespace soslam

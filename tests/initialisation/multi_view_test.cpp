@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/multi_view.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "evaluation/iou.h"
+#include "initialisation/initialise.h"
+#include "initialisation/yaw_sweep.h"
+#include "support/shape_exponents.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+constexpr double kSigmaFraction = 0.02;
+
+// A camera at `position` that looks at `target`, level.
+Rigid3d LookingAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {
+  const Eigen::Vector3d z = (target - position).normalized();
+  const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, z.cross(x), z;
+  return {Eigen::Quaterniond(axes), position};
+}
+
+// An upright body on the floor, seen with exact boxes, and what is known of it.
+struct World {
+  explicit World(double shape_exponent) {
+    truth.shape_exponent = shape_exponent;
+    truth.half_axes = RandomVector(0.2, 0.6);
+    truth.frame_from_object = {
+        UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
+        {RandomUniform(-0.3, 0.3), RandomUniform(-0.3, 0.3), truth.half_axes.z()}};
+    sequence.camera = TestCamera();
+    sequence.planes = {{0, Plane()}};
+    sequence.objects.resize(1);
+  }
+  void AddView(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {
+    Detection detection;
+    detection.frame_index = static_cast<int>(sequence.frames.size());
+    Frame frame;
+    frame.world_from_camera = LookingAt(position, target);
+    sequence.frames.push_back(frame);
+    detection.box =
+        *OutlineBox(sequence.camera, Transform(frame.world_from_camera.Inverse(), truth));
+    sequence.detections.push_back(detection);
+  }
+  void AddArc(int views) {
+    for (int i = 0; i < views; ++i) {
+      const double angle = 1.5 * i / (views - 1);
+      AddView({4.0 * std::cos(angle), 4.0 * std::sin(angle), 1.6}, {0, 0, 0.4});
+    }
+  }
+  void AddStraightAhead(int views) {
+    for (int i = 0; i < views; ++i) AddView({6.0 - 0.3 * i, 0.2, 1.2}, {-2.0, 0.2, 0.2});
+  }
+  ShapePrior Prior(double log_sigma) const {
+    return {truth.half_axes.head<2>() / truth.half_axes.z(),
+            {log_sigma, log_sigma},
+            truth.shape_exponent};
+  }
+  MultiViewObservation Observation(const std::optional<ShapePrior>& prior) const {
+    return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0], prior,
+                                    kSigmaFraction, 0.0);
+  }
+  double TrueYaw() const { return Yaw(Eigen::Vector3d::UnitZ(), truth.frame_from_object.rotation); }
+
+  Landmark truth;
+  Sequence sequence;
+};
+
+void ExpectSame(const Landmark& found, const Landmark& expected, double tolerance) {
+  EXPECT_LT((found.Centre() - expected.Centre()).norm(), tolerance);
+  EXPECT_LT((found.half_axes - expected.half_axes).norm(), tolerance);
+  EXPECT_EQ(found.shape_exponent, expected.shape_exponent);
+}
+
+TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
+  for (const double p : kShapeExponents) {
+    SCOPED_TRACE(p);
+    for (int i = 0; i < 20; ++i) {
+      World world(p);
+      world.AddArc(6);
+      const auto found = SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
+      ASSERT_TRUE(found);
+      ExpectSame(found->landmark, world.truth, 1e-4);
+      EXPECT_LT(found->cost, 1e-4);
+    }
+  }
+}
+
+TEST(SolveViewsAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
+  for (int i = 0; i < 20; ++i) {
+    World world(kCuboidExponent);
+    world.AddArc(6);
+    const auto found = SolveViewsAtYaw(world.Observation(std::nullopt), world.TrueYaw());
+    ASSERT_TRUE(found);
+    ExpectSame(found->landmark, world.truth, 1e-4);
+  }
+}
+
+// With the ratio held, one view is what the sweep over yaw of a single frame solves.
+TEST(SolveViewsAtYaw, OfOneViewIsTheSingleFrameSolution) {
+  for (const double p : kShapeExponents) {
+    SCOPED_TRACE(p);
+    for (int i = 0; i < 20; ++i) {
+      World world(p);
+      world.AddView({3.0, 1.0, 1.5}, {0, 0, 0.4});
+      Detection& detection = world.sequence.detections[0];
+      detection.box.x_min -= RandomUniform(-1, 1);
+      detection.box.y_max += RandomUniform(-1, 1);
+      detection.plane_in_camera =
+          Transform(world.sequence.frames[0].world_from_camera.Inverse(), Plane());
+      const ShapePrior prior = world.Prior(1e-5);
+      const double yaw = RandomUniform(-1.5, 1.5);
+      MultiViewObservation observation = world.Observation(prior);
+      observation.huber_delta = 1e6;
+      const auto found = SolveViewsAtYaw(observation, yaw);
+      ASSERT_TRUE(found);
+      const Rigid3d& world_from_camera = world.sequence.frames[0].world_from_camera;
+      const UprightObservation single =
+          MakeUprightObservation(world.sequence, detection, prior, UprightOptions());
+      const double yaw_in_camera =
+          Yaw(detection.plane_in_camera.normal, world_from_camera.rotation.conjugate() *
+                                                    UprightRotation(Eigen::Vector3d::UnitZ(), yaw));
+      const auto expected = SolveAtYaw(single, yaw_in_camera);
+      ASSERT_TRUE(expected);
+      ExpectSame(found->landmark, Transform(world_from_camera, *expected), 1e-5);
+    }
+  }
+}
+
+TEST(SolveViewsAtYaw, IsNotMisledByOneWrongBox) {
+  World world(kCuboidExponent);
+  world.AddArc(12);
+  world.sequence.detections[5].box.x_max += 150.0;
+  world.sequence.detections[5].box.y_min -= 80.0;
+  const auto found = SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
+  ASSERT_TRUE(found);
+  EXPECT_GT(BoxIou(found->landmark, world.truth), 0.9);
+}
+
+TEST(SolveViewsAtYaw, TakesBoundsForBounds) {
+  World world(kCuboidExponent);
+  world.AddArc(8);
+  for (Detection& detection : world.sequence.detections) {
+    detection.box.y_max -= 0.3 * detection.box.Height();
+  }
+  const auto solve = [&] {
+    return SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
+  };
+  const auto taken_for_measured = solve();
+  EXPECT_TRUE(!taken_for_measured || BoxIou(taken_for_measured->landmark, world.truth) < 0.95);
+  for (Detection& detection : world.sequence.detections) detection.is_bound[3] = true;
+  const auto found = solve();
+  ASSERT_TRUE(found);
+  ExpectSame(found->landmark, world.truth, 1e-4);
+}
+
+TEST(SolveViewsAtYaw, IsNoneWhereTheViewsDoNotDetermineTheBody) {
+  World world(kCuboidExponent);
+  world.AddView({3.0, 1.0, 1.5}, {0, 0, 0.4});
+  EXPECT_FALSE(SolveViewsAtYaw(world.Observation(std::nullopt), world.TrueYaw()));
+}
+
+TEST(SweepViews, FindsTheYaw) {
+  int first = 0;
+  for (int i = 0; i < 20; ++i) {
+    World world(kCuboidExponent);
+    world.AddArc(8);
+    const auto optima = SweepViews(world.Observation(world.Prior(0.1)), 3.0 * kDegrees);
+    ASSERT_FALSE(optima.empty());
+    for (size_t k = 1; k < optima.size(); ++k) EXPECT_LE(optima[k - 1].cost, optima[k].cost);
+    const double yaw = Yaw(Eigen::Vector3d::UnitZ(), optima[0].landmark.frame_from_object.rotation);
+    first += std::abs(YawDifferenceModuloPi(yaw, world.TrueYaw())) < 3.0 * kDegrees ? 1 : 0;
+  }
+  EXPECT_GE(first, 19);  // a random body may be as long as it is deep
+}
+
+TEST(SolveViews, PolishesTheYaw) {
+  for (int i = 0; i < 10; ++i) {
+    World world(kCuboidExponent);
+    world.AddArc(8);
+    const auto found = SolveViews(world.Observation(world.Prior(0.05)), 3.0 * kDegrees);
+    ASSERT_TRUE(found);
+    EXPECT_GT(BoxIou(found->landmark, world.truth), 0.97);
+  }
+}
+
+// Moving straight ahead, parallax is too small for the dual quadric of noisy boxes.
+TEST(InitialiseMultiView, NeedsNoWideBaseline) {
+  double multi_view = 0.0;
+  double svd = 0.0;
+  constexpr int kWorlds = 20;
+  for (int i = 0; i < kWorlds; ++i) {
+    World world(kCuboidExponent);
+    world.AddStraightAhead(8);
+    for (Detection& detection : world.sequence.detections) {
+      detection.box.x_min += RandomUniform(-1, 1);
+      detection.box.y_min += RandomUniform(-1, 1);
+      detection.box.x_max += RandomUniform(-1, 1);
+      detection.box.y_max += RandomUniform(-1, 1);
+    }
+    InitialiseOptions options;
+    options.upright.axes_weight = 0.0;
+    const auto iou = [&](const LandmarkEstimates& estimates) {
+      const auto& landmark = estimates.objects.at(0).landmark_in_world;
+      return landmark ? BoxIou(*landmark, world.truth) / kWorlds : 0.0;
+    };
+    multi_view += iou(InitialiseMultiView(world.sequence, {world.Prior(0.1)}, options, 1));
+    svd += iou(InitialiseSvd(world.sequence));
+  }
+  EXPECT_GT(multi_view, 0.7);
+  EXPECT_LT(svd, 0.3);
+}
+
+TEST(InitialiseMultiView, SaysWhichObjectsAreNotDetermined) {
+  World world(kCuboidExponent);
+  world.AddView({3.0, 1.0, 1.5}, {0, 0, 0.4});
+  const LandmarkEstimates estimates =
+      InitialiseMultiView(world.sequence, {std::nullopt}, InitialiseOptions(), 1);
+  ASSERT_EQ(estimates.objects.size(), 1u);
+  EXPECT_FALSE(estimates.objects[0].landmark_in_world);
+  EXPECT_EQ(estimates.objects[0].failure, "not_determined_by_its_views");
+}
+
+}  // namespace
+}  // namespace soslam
