@@ -6,6 +6,7 @@ DATASET ?=
 VARIANT ?= all
 DATA_ROOT ?= data
 RESULTS ?= results
+PIPELINES ?= pipelines
 THREADS ?= 0
 BUILD ?= build
 CMAKE_ARGS ?=
@@ -19,11 +20,11 @@ STAGES := $(patsubst stages/%.cpp,soslam-%,$(wildcard stages/*.cpp))
 SOURCES = $(shell find lib stages tests -name '*.h' -o -name '*.cpp')
 PLAN = $(RESULTS)/$(DATASET)/plan.mk
 PLAN_COMMAND = $(BIN)/soslam-plan --dataset $(DATA_ROOT)/$(DATASET) --name $(DATASET) \
-  --pipelines pipelines --results $(RESULTS) --variants '$(filter-out all,$(VARIANT))'
+  --pipelines $(PIPELINES) --results $(RESULTS) --variants '$(filter-out all,$(VARIANT))'
 
 one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
 $(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
-ifneq ($(filter run,$(MAKECMDGOALS)),)
+ifneq ($(filter run ablation,$(MAKECMDGOALS)),)
 $(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
 endif
 
@@ -32,8 +33,8 @@ help: ## List the targets
 	@echo 'make <target> [NAME=value ...]'
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16 | sed 's/^/  /'
 	@echo 'DATASET=<name of a folder in DATA_ROOT>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
-	@echo 'RESULTS=results, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
-	@echo 'Variants: $(sort $(basename $(notdir $(wildcard pipelines/variants/*.json))))'
+	@echo 'RESULTS=results, PIPELINES=pipelines, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
+	@echo 'Variants: $(sort $(basename $(notdir $(wildcard $(PIPELINES)/variants/*.json))))'
 
 .PHONY: demo
 demo: ## Run all variants on the sequence that comes with the project, and print the table
@@ -47,6 +48,10 @@ run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of
 	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
 	+@if test -e $(PLAN); then $(MAKE) --output-sync -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
 	else echo '# then the stages that $(PLAN) lists'; fi
+
+.PHONY: ablation
+ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RESULTS/ablation
+	+@$(MAKE) run PIPELINES=pipelines/ablation RESULTS=$(RESULTS)/ablation
 
 .PHONY: tables
 tables: build ## Compare all variants of all datasets in RESULTS

@@ -32,6 +32,7 @@ inline constexpr std::array kTieBreakNames = {"world_axes", "facing_camera"};
 struct InitialiseOptions {
   InitialisationMethod method = InitialisationMethod::kSingleFrame;
   RatioPrior ratio_prior = RatioPrior::kTable;
+  ShapeSource shape = ShapeSource::kTable;
   ConstraintVariances variances;
   int yaw_starts = 12;
   int max_iterations = 100;
@@ -48,6 +49,8 @@ struct InitialiseOptions {
         "observations: such a body (multi_view), or an ellipsoid by SVD (svd)");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
+    visit.Choice("shape", &shape, kShapeSourceNames,
+                 "yaw_sweep, multi_view: where the shape exponent comes from");
     variances.Describe(visit);
     visit.Integer("yaw_starts", &yaw_starts, {1, 360},
                   "starting yaws over half a turn of the single-frame solve, eq. (12)");

@@ -30,10 +30,14 @@ std::optional<ShapePrior> SemanticTable::Find(const std::string& label) const {
 }
 
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
-                                                    const SemanticTable& table, RatioPrior prior) {
+                                                    const SemanticTable& table, RatioPrior prior,
+                                                    ShapeSource shape) {
   std::vector<std::optional<ShapePrior>> priors;
   for (const Object& object : sequence.objects) {
     priors.push_back(ObjectPrior(object, table, prior));
+    if (!priors.back() || shape == ShapeSource::kTable) continue;
+    priors.back()->shape_exponent =
+        shape == ShapeSource::kCuboid ? kCuboidExponent : kEllipsoidExponent;
   }
   return priors;
 }

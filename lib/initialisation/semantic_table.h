@@ -37,6 +37,14 @@ enum class RatioPrior {
 };
 inline constexpr std::array kRatioPriorNames = {"table", "unit", "groundtruth"};
 
+// Where an object's shape exponent comes from.
+enum class ShapeSource {
+  kTable,      // its label's entry in the semantic table
+  kCuboid,     // cuboids all
+  kEllipsoid,  // ellipsoids all, as in the paper
+};
+inline constexpr std::array kShapeSourceNames = {"table", "cuboid", "ellipsoid"};
+
 // log_sigma of a true ratio: exact up to the annotation, which is taken to be good to 2 %.
 inline constexpr double kTrueRatioLogSigma = 0.02;
 
@@ -44,7 +52,8 @@ inline constexpr double kTrueRatioLogSigma = 0.02;
 // ratio of the table's prior, kGroundTruth the shape exponent only; of a default ShapePrior where
 // the table has none.
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
-                                                    const SemanticTable& table, RatioPrior prior);
+                                                    const SemanticTable& table, RatioPrior prior,
+                                                    ShapeSource shape = ShapeSource::kTable);
 
 // The ratios of ObjectPriors.
 std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequence,

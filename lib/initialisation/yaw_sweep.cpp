@@ -18,6 +18,8 @@ constexpr double kDepthTolerance = 1e-10;
 constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
 // Of the finer grid around a grid point, either way.
 constexpr int kRefinementSteps = 10;
+// Of the likelihood between two yaws of the grid.
+constexpr int kLikelihoodSteps = 100;
 
 // Foot x, foot y and half height c of the body with the prior's ratio, given the tangent depths.
 class LinearSystem {
@@ -180,18 +182,33 @@ std::vector<double> YawSweep::Costs() const {
   return costs;
 }
 
-double YawSweep::StandardDeviation(double centre) const {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const auto& solution : solutions) {
-    if (solution) lowest = std::min(lowest, solution->cost);
-  }
-  double sum = 0.0;
-  double squares = 0.0;
+double YawSweep::StandardDeviation(double centre, double cost) const {
+  // Nodes by their distance from the centre, which is one itself. The cost is linear in between,
+  // and quadratic next to the optimum, which may be much narrower than the grid.
+  std::vector<std::pair<double, double>> nodes = {{0.0, cost}};
+  double lowest = cost;
+  const double step = std::numbers::pi / static_cast<double>(yaw.size());
   for (size_t i = 0; i < yaw.size(); ++i) {
     if (!solutions[i]) continue;
-    const double likelihood = std::exp(lowest - solutions[i]->cost);
-    sum += likelihood;
-    squares += likelihood * std::pow(YawDifferenceModuloPi(yaw[i], centre), 2);
+    nodes.emplace_back(YawDifferenceModuloPi(yaw[i], centre), solutions[i]->cost);
+    lowest = std::min(lowest, solutions[i]->cost);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (size_t i = 1; i < nodes.size(); ++i) {
+    const double from = nodes[i - 1].first;
+    const double to = nodes[i].first;
+    if (to - from > 1.5 * step) continue;  // no landmark in between
+    const double from_height = std::sqrt(nodes[i - 1].second - lowest);
+    const double to_height = std::sqrt(nodes[i].second - lowest);
+    for (int k = 0; k < kLikelihoodSteps; ++k) {
+      const double share = (k + 0.5) / kLikelihoodSteps;
+      const double height = from_height + share * (to_height - from_height);
+      const double mass = (to - from) * std::exp(-height * height);
+      sum += mass;
+      squares += mass * std::pow(from + share * (to - from), 2);
+    }
   }
   return std::sqrt(squares / sum);
 }

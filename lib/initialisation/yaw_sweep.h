@@ -62,8 +62,8 @@ struct YawSweep {
   std::vector<std::optional<UprightSolution>> solutions;
 
   std::vector<double> Costs() const;  // NaN where there is no landmark
-  // The spread of the yaw about `yaw` (rad), when exp(-cost) is its likelihood.
-  double StandardDeviation(double yaw) const;
+  // The spread of the yaw about an optimum (rad) and its cost, when exp(-cost) is its likelihood.
+  double StandardDeviation(double yaw, double cost) const;
 };
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
                   double step);

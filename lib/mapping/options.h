@@ -24,6 +24,7 @@ struct OptimiseOptions {
   bool symmetry = false;
   bool edge_alignment = false;
   RatioPrior ratio_prior = RatioPrior::kTable;
+  ShapeSource shape = ShapeSource::kTable;
   // The paper's numbers read in metres, unlike in one frame: with dozens of boxes to a landmark,
   // what an ellipsoid cannot fit in them would outvote the one support and the one ratio
   // constraint.
@@ -83,6 +84,8 @@ struct OptimiseOptions {
         "tangency: standard deviation of the height of a body's foot over its support plane");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
+    visit.Choice("shape", &shape, kShapeSourceNames,
+                 "tangency: where the shape exponent comes from");
     variances.Describe(visit);
     visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
                "standard deviation of the odometry between two frames");

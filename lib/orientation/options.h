@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/options.h"
+#include "initialisation/semantic_table.h"
 #include "initialisation/upright_options.h"
 #include "symmetry/options.h"
 
@@ -51,6 +52,7 @@ struct TextureOptions {
 struct ProfileOptions {
   bool edge_alignment = true;
   bool texture_symmetry = true;
+  ShapeSource shape = ShapeSource::kTable;
   UprightOptions upright;
   EdgeOptions edges;
   TextureOptions texture;
@@ -59,6 +61,8 @@ struct ProfileOptions {
     visit.Flag("edge_alignment", &edge_alignment,
                "profile: use the alignment of the body's edges with the image's");
     visit.Flag("texture_symmetry", &texture_symmetry, "profile: use the symmetry of the texture");
+    visit.Choice("shape", &shape, kShapeSourceNames,
+                 "profile: where the shape exponent comes from");
     upright.Describe(visit);
     edges.Describe(visit);
     texture.Describe(visit);

@@ -141,7 +141,8 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
                                                result.record.refined_yaw, options.texture);
   }
-  result.record.yaw_sigma = sweep.StandardDeviation(result.record.refined_yaw);
+  result.record.yaw_sigma =
+      sweep.StandardDeviation(result.record.refined_yaw, result.estimate.hypotheses.front().cost);
   return result;
 }
 

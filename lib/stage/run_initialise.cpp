@@ -44,7 +44,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                    table.default_prior ? "its default is used" : "their objects are left out");
       }
     }
-    const auto priors = ObjectPriors(sequence, table, options.ratio_prior);
+    const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
     if (options.method == InitialisationMethod::kMultiView) {
       estimates = InitialiseMultiView(sequence, priors, options, threads);
     } else if (options.method == InitialisationMethod::kYawSweep) {

@@ -62,8 +62,8 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int /*threads*/) {
   CheckImageOptions(options, files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
-  const auto priors =
-      ObjectPriors(sequence, ReadSemanticTable(files.at("table")), options.ratio_prior);
+  const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
+                                   options.ratio_prior, options.shape);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input{sequence, {}, priors, {}, {}};
   if (options.symmetry || options.edge_alignment) ReadImages(options, files.at("edges"), &input);

@@ -90,8 +90,8 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
         "parameters = all needs a descriptor with a derivative; found descriptor = brief");
   }
   const Sequence sequence = ReadSequence(files.at("sequence"));
-  const auto priors =
-      ObjectPriors(sequence, ReadSemanticTable(files.at("table")), options.turn.ratio_prior);
+  const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
+                                   options.turn.ratio_prior, options.profile.shape);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
   const auto groups = GroupByFrame(sequence, estimates);
   if (groups.empty()) {

@@ -22,6 +22,9 @@ using nlohmann::json;
 // The methods that the paper compares, in its order.
 constexpr std::array kPaperVariants = {"SVD",     "Init1-1", "InitP", "InitPT",
                                        "Quadric", "OursP",   "OursPT"};
+// Those that this project adds: the same steps for bodies of any shape.
+constexpr std::array kShapeVariants = {"MultiView", "InitS",  "InitST", "InitSTE",
+                                       "OursS",     "OursST", "OursSTE"};
 
 struct Column {
   const char* title;
@@ -58,13 +61,16 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
   return names;
 }
 
-// All variants of a dataset in the order of the table; empty when none has metrics.
+// The variants of a dataset in the order of the table: the paper's, also those without metrics,
+// then ours and any others that have some. Empty when none has metrics.
 std::vector<VariantMetrics> ReadVariants(const fs::path& dataset) {
   std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
-  for (const std::string& name : SubfoldersOf(dataset)) {
-    const bool known = std::find(names.begin(), names.end(), name) != names.end();
-    if (!known && fs::exists(dataset / name / "metrics.json")) names.push_back(name);
-  }
+  const auto add = [&](const std::string& name) {
+    const bool is_listed = std::find(names.begin(), names.end(), name) != names.end();
+    if (!is_listed && fs::exists(dataset / name / "metrics.json")) names.push_back(name);
+  };
+  std::for_each(kShapeVariants.begin(), kShapeVariants.end(), add);
+  for (const std::string& name : SubfoldersOf(dataset)) add(name);
   std::vector<VariantMetrics> variants;
   bool any = false;
   for (const std::string& name : names) {

@@ -59,6 +59,20 @@ TEST(ObjectPriors, GroundTruthIsSharpAndKeepsTheShapeOfTheLabel) {
               ElementsAre(Is(cup), Eq(std::nullopt), Is({kTrueRatio, sharp, 1.1})));
 }
 
+TEST(ObjectPriors, ShapesCanBeTheSameForAll) {
+  for (const auto& [shape, exponent] : {std::pair(ShapeSource::kCuboid, kCuboidExponent),
+                                        std::pair(ShapeSource::kEllipsoid, kEllipsoidExponent)}) {
+    const auto priors = ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kTable, shape);
+    const auto of_table = ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kTable);
+    for (size_t i = 0; i < priors.size(); ++i) {
+      EXPECT_EQ(priors[i]->shape_exponent, exponent);
+      EXPECT_EQ(priors[i]->ratio, of_table[i]->ratio);
+      EXPECT_EQ(priors[i]->log_sigma, of_table[i]->log_sigma);
+    }
+    EXPECT_FALSE(ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kTable, shape).back());
+  }
+}
+
 TEST(ObjectRatios, AreThoseOfThePriors) {
   EXPECT_THAT(ObjectRatios(CupCupWhisk(), kCupsOnly, RatioPrior::kTable),
               ElementsAre(Eq(kCup.ratio), Eq(kCup.ratio), Eq(std::nullopt)));

@@ -648,34 +648,53 @@ TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
     const double sigma = RandomUniform(2.0, 10.0) * kDegrees;
     const double mean = RandomYaw();  // also where the grid goes round
     const double offset = RandomUniform(-1e4, 1e4);
-    const YawSweep sweep = SweepOf(
-        [&](double yaw) {
-          return offset + 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2);
-        },
-        180);
-    EXPECT_NEAR(sweep.StandardDeviation(mean), sigma, 1e-6 * sigma);
-    EXPECT_NEAR(sweep.StandardDeviation(mean + kPi), sigma, 1e-6 * sigma);
+    const auto cost = [&](double yaw) {
+      return offset + 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2);
+    };
+    const YawSweep sweep = SweepOf(cost, 360);
+    EXPECT_NEAR(sweep.StandardDeviation(mean, offset), sigma, 0.02 * sigma);
+    EXPECT_NEAR(sweep.StandardDeviation(mean + kPi, offset), sigma, 0.02 * sigma);
     // About another yaw, the way there counts too.
-    const double away = RandomUniform(-0.3, 0.3);
-    EXPECT_NEAR(sweep.StandardDeviation(mean + away), std::hypot(sigma, away), 1e-6);
+    const double away = mean + RandomUniform(-0.3, 0.3);
+    EXPECT_NEAR(sweep.StandardDeviation(away, cost(away)),
+                std::hypot(sigma, YawDifferenceModuloPi(away, mean)), 0.01);
+  }
+}
+
+// However narrow: it is not the distance to the nearest yaw of the grid.
+TEST(YawSweep, StandardDeviationOfAPeakBetweenTwoYawsOfTheGrid) {
+  for (int i = 0; i < 50; ++i) {
+    const double sigma = RandomUniform(0.1, 0.5) * kDegrees;
+    const double mean = RandomYaw();
+    const YawSweep sweep = SweepOf(
+        [&](double yaw) { return 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2); },
+        60);
+    EXPECT_NEAR(sweep.StandardDeviation(mean, 0.0), sigma, 0.05 * sigma);
   }
 }
 
 TEST(YawSweep, StandardDeviationOfAnyYawIsThatOfAUniformDistribution) {
   const YawSweep sweep = SweepOf([](double) { return 3.0; }, 1800);
   for (int i = 0; i < 20; ++i) {
-    EXPECT_NEAR(sweep.StandardDeviation(RandomYaw()), kPi / std::sqrt(12.0), 1e-5);
+    EXPECT_NEAR(sweep.StandardDeviation(RandomYaw(), 3.0), kPi / std::sqrt(12.0), 2e-3);
   }
 }
 
 TEST(YawSweep, StandardDeviationLeavesOutYawsWithoutALandmark) {
-  // Nothing but 20 degrees around the mean.
+  // Nothing but 20 degrees around the mean, and 10 degrees further on.
   YawSweep sweep = SweepOf([](double) { return 1.0; }, 1800);
   const double mean = 80.05 * kDegrees;
-  for (size_t i = 0; i < sweep.yaw.size(); ++i) {
-    if (std::abs(sweep.yaw[i] - mean) > 10.0 * kDegrees) sweep.solutions[i].reset();
-  }
-  EXPECT_NEAR(sweep.StandardDeviation(mean), 20.0 * kDegrees / std::sqrt(12.0), 1e-5);
+  const auto leave_out = [&](double from, double to) {
+    for (size_t i = 0; i < sweep.yaw.size(); ++i) {
+      const double distance = (sweep.yaw[i] - mean) / kDegrees;
+      if (distance > from && distance < to) sweep.solutions[i].reset();
+    }
+  };
+  leave_out(-90, -10);
+  leave_out(20, 101);
+  EXPECT_NEAR(sweep.StandardDeviation(mean, 1.0), std::sqrt(9000.0 / 3.0 / 30.0) * kDegrees, 1e-3);
+  leave_out(10, 20);
+  EXPECT_NEAR(sweep.StandardDeviation(mean, 1.0), 20.0 * kDegrees / std::sqrt(12.0), 1e-3);
 }
 
 TEST(WorldAxisInCamera, IsTheWorldsXOrOnWallsThatFaceItY) {
