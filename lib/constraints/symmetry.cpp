@@ -65,6 +65,40 @@ std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Evaluate(
   return pair;
 }
 
+std::optional<std::vector<double>> SymmetryDescriptor::Residuals(
+    const Eigen::Vector2d& pixel, double min_viewing_cosine,
+    const std::vector<double>& offsets) const {
+  const auto point = surface_.FromPixel(pixel);
+  if (!point) return std::nullopt;
+  const VisibleSurface::Point mirrored = surface_.MirrorImage(*point);
+  if (!(surface_.ViewingCosine(*point) >= min_viewing_cosine &&
+        surface_.ViewingCosine(mirrored) >= min_viewing_cosine)) {
+    return std::nullopt;
+  }
+  const bool on_surface =
+      descriptor_ != Descriptor::kGrey && descriptor_ != Descriptor::kDistanceTransform;
+  const auto describe = [&](const Eigen::Vector2d& at, const VisibleSurface::Point& on) {
+    return on_surface ? SurfaceDistance(at, on, false)
+                      : LookUp(at, false, LandmarkJacobian2::Zero());
+  };
+  const auto compare = [&](const VisibleSurface::Point& moved) -> std::optional<double> {
+    const auto mirror = surface_.ToPixel(moved);
+    if (!mirror) return std::nullopt;
+    if (descriptor_ == Descriptor::kBrief) return BriefDistance(pixel, mirror->pixel);
+    const auto value = describe(pixel, *point);
+    const auto mirror_value = describe(mirror->pixel, moved);
+    if (!value || !mirror_value) return std::nullopt;
+    return value->value - mirror_value->value;
+  };
+  std::vector<double> residuals;
+  for (const double offset : offsets) {
+    VisibleSurface::Point moved = mirrored;
+    moved.in_object.y() += 2.0 * offset;
+    residuals.push_back(compare(moved).value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return residuals;
+}
+
 std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
   std::optional<Eigen::Vector2d> edge_pixel;

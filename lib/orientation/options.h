@@ -37,6 +37,8 @@ struct EdgeOptions {
 struct TextureOptions {
   double asymmetry_cost = 2.0;
   double asymmetry_scale = 0.03;
+  double asymmetry_scale_px = 3.0;
+  double mirror_plane_range = 0.0;
 
   void Describe(OptionVisitor& visit) {
     visit.Real("asymmetry_cost", &asymmetry_cost, {0.0, 1e6},
@@ -44,6 +46,11 @@ struct TextureOptions {
     visit.Real("asymmetry_scale", &asymmetry_scale, {1e-6, 1e6},
                "mean descriptor difference that counts as not symmetric, as a fraction of the "
                "object's size (the cubic root of its half axes' product)");
+    visit.Real("asymmetry_scale_px", &asymmetry_scale_px, {1e-3, 1e6},
+               "the same for descriptor = distance_transform");
+    visit.Real("mirror_plane_range", &mirror_plane_range, {0.0, 10.0},
+               "how far to either side of a landmark's centre its mirror plane may lie, as a "
+               "fraction of its size: a box says less about that than the texture");
   }
 };
 

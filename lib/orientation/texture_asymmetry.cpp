@@ -9,8 +9,20 @@
 namespace soslam {
 namespace {
 
-double Scale(const Landmark& landmark, const TextureOptions& options) {
-  return options.asymmetry_scale * std::cbrt(landmark.half_axes.prod());
+// Places of the mirror plane to either side of the centre.
+constexpr int kMirrorPlaneSteps = 8;
+
+double Size(const Landmark& landmark) { return std::cbrt(landmark.half_axes.prod()); }
+
+double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptions& options) {
+  return descriptor == Descriptor::kDistanceTransform ? options.asymmetry_scale_px
+                                                      : options.asymmetry_scale * Size(landmark);
+}
+
+bool AreEnough(size_t pairs, size_t samples, const SymmetryOptions& options) {
+  return static_cast<double>(pairs) >=
+         std::max(static_cast<double>(options.min_pairs),
+                  options.min_pair_fraction * static_cast<double>(samples));
 }
 
 // The samples whose pairs are visible; none when they are too few.
@@ -23,10 +35,19 @@ std::vector<Eigen::Vector2d> VisiblePairs(const SymmetryDescriptor& descriptor,
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(visible), [&](const auto& pixel) {
     return descriptor.Evaluate(pixel, options.min_viewing_cosine, false).has_value();
   });
-  const double required = std::max(static_cast<double>(options.min_pairs),
-                                   options.min_pair_fraction * static_cast<double>(samples.size()));
-  if (static_cast<double>(visible.size()) < required) visible.clear();
+  if (!AreEnough(visible.size(), samples.size(), options)) visible.clear();
   return visible;
+}
+
+// Where the mirror plane may lie, metres to the side of the centre.
+std::vector<double> MirrorPlaneOffsets(const Landmark& landmark, const TextureOptions& options) {
+  const double range = options.mirror_plane_range * Size(landmark);
+  if (!(range > 0.0)) return {0.0};
+  std::vector<double> offsets;
+  for (int i = -kMirrorPlaneSteps; i <= kMirrorPlaneSteps; ++i) {
+    offsets.push_back(range * i / kMirrorPlaneSteps);
+  }
+  return offsets;
 }
 
 }  // namespace
@@ -36,16 +57,29 @@ double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box
                      const SymmetryOptions& symmetry_options) {
   const SymmetryDescriptor descriptor(symmetry_options.descriptor, image, camera,
                                       landmark_in_camera);
-  const auto pixels =
-      VisiblePairs(descriptor, image, camera, box, landmark_in_camera, symmetry_options);
-  if (pixels.empty()) return options.asymmetry_cost;
-  const double squared_scale = std::pow(Scale(landmark_in_camera, options), 2);
-  double sum = 0.0;
-  for (const Eigen::Vector2d& pixel : pixels) {
-    const double squared = std::pow(descriptor.Evaluate(pixel, std::nullopt, false)->residual, 2);
-    sum += squared / (squared + squared_scale);
+  const double squared_scale =
+      std::pow(Scale(landmark_in_camera, symmetry_options.descriptor, options), 2);
+  const auto samples = SamplePixels(image.maps, camera, landmark_in_camera, box, symmetry_options);
+  const std::vector<double> offsets = MirrorPlaneOffsets(landmark_in_camera, options);
+  std::vector<double> sums(offsets.size(), 0.0);
+  std::vector<size_t> pairs(offsets.size(), 0);
+  for (const Eigen::Vector2d& pixel : samples) {
+    const auto residuals =
+        descriptor.Residuals(pixel, symmetry_options.min_viewing_cosine, offsets);
+    if (!residuals) continue;
+    for (size_t i = 0; i < offsets.size(); ++i) {
+      if (std::isnan((*residuals)[i])) continue;
+      const double squared = std::pow((*residuals)[i], 2);
+      sums[i] += squared / (squared + squared_scale);
+      ++pairs[i];
+    }
   }
-  return options.asymmetry_cost * sum / static_cast<double>(pixels.size());
+  double lowest = 1.0;
+  for (size_t i = 0; i < offsets.size(); ++i) {
+    if (!AreEnough(pairs[i], samples.size(), symmetry_options)) continue;
+    lowest = std::min(lowest, sums[i] / static_cast<double>(pairs[i]));
+  }
+  return options.asymmetry_cost * lowest;
 }
 
 AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
@@ -58,7 +92,7 @@ AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
       pixels_(VisiblePairs(SymmetryDescriptor(descriptor_, *image_, camera, start_in_camera),
                            *image_, camera, box, start_in_camera, symmetry_options)),
       shape_exponent_(start_in_camera.shape_exponent),
-      scale_(Scale(start_in_camera, options)),
+      scale_(Scale(start_in_camera, descriptor_, options)),
       amplitude_(std::sqrt(2.0 * weight * options.asymmetry_cost /
                            static_cast<double>(std::max<size_t>(1, pixels_.size())))) {
   set_num_residuals(static_cast<int>(pixels_.size()));

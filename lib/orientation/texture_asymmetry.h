@@ -19,7 +19,8 @@ namespace soslam {
 // likelihood: options.asymmetry_cost times the mean over the mirrored pairs on the landmark's own
 // surface of d^2 / (d^2 + s^2), d the descriptor difference of eq. (16), s what counts as no
 // symmetry; a pair that differs wholly counts no more than one that differs clearly. All of the
-// cost where too few pairs are visible.
+// cost where too few pairs are visible. The lowest over the places of the mirror plane that
+// options.mirror_plane_range allows.
 double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options);

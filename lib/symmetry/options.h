@@ -14,8 +14,9 @@ enum class Sampling {
   kCorners,
   kUniform,
   kCornersAndUniform,  // the best in the paper, section V-D
+  kEdges,
 };
-inline constexpr std::array kSamplingNames = {"corners", "uniform", "corners_and_uniform"};
+inline constexpr std::array kSamplingNames = {"corners", "uniform", "corners_and_uniform", "edges"};
 
 // Which pixels of an observation are compared with their mirror pixels, and how.
 struct SymmetryOptions {
@@ -23,6 +24,7 @@ struct SymmetryOptions {
   Sampling sampling = Sampling::kCornersAndUniform;
   int max_corners = 150;
   int uniform_columns = 8;
+  int max_edge_pixels = 600;
   double min_viewing_cosine = 0.4;
   int min_pairs = 8;
   double min_pair_fraction = 0.25;
@@ -35,6 +37,8 @@ struct SymmetryOptions {
                   "at most so many corners per observation, the strongest first");
     visit.Integer("uniform_columns", &uniform_columns, {1, 1000},
                   "uniform samples: a grid of so many columns and rows over the box");
+    visit.Integer("max_edge_pixels", &max_edge_pixels, {1, 1000000},
+                  "edge samples: of more edge pixels in the box, every second, third, ...");
     visit.Real("min_viewing_cosine", &min_viewing_cosine, {0.0, 1.0},
                "a surface point counts as visible when the cosine between its normal and the "
                "direction to the camera is at least this");

@@ -46,6 +46,24 @@ TEST(SymmetryDescriptor, MirrorOfTheMirrorIsThePixel) {
   }
 }
 
+TEST(SymmetryDescriptor, ResidualsOfAPlaneThroughTheCentreAreThoseOfThePair) {
+  const SymmetryImage image = SparseImage();
+  for (const Descriptor descriptor : kDifferentiable) {
+    for (int i = 0; i < 20; ++i) {
+      const SymmetryDescriptor of(descriptor, image, TestCamera(), FacingView().LandmarkInCamera());
+      const Eigen::Vector2d pixel(RandomUniform(200, 440), RandomUniform(150, 330));
+      const auto pair = of.Evaluate(pixel, 0.3, false);
+      const auto residuals = of.Residuals(pixel, 0.3, {0.0});
+      if (pair) {
+        ASSERT_TRUE(residuals);
+        EXPECT_EQ((*residuals)[0], pair->residual);
+      } else if (residuals) {
+        EXPECT_TRUE(std::isnan((*residuals)[0]));
+      }
+    }
+  }
+}
+
 TEST(SymmetryDescriptor, HasNoPairWhereTheRayMissesOrTheMirrorPointIsHidden) {
   const SymmetryImage image = SparseImage();
   Landmark landmark = FacingView().LandmarkInCamera();

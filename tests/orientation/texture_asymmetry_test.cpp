@@ -17,6 +17,13 @@ SymmetryOptions EverywhereInTheImage() {
   return options;
 }
 
+TextureOptions Texture(double cost, double scale) {
+  TextureOptions options;
+  options.asymmetry_cost = cost;
+  options.asymmetry_scale = scale;
+  return options;
+}
+
 double Cost(const AsymmetryResidual& residual, const RandomView& view) {
   Eigen::VectorXd residuals(residual.num_residuals());
   const std::array<const double*, 2> blocks = {view.camera_block.data(),
@@ -31,7 +38,8 @@ TEST(AsymmetryCost, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   image.maps.grey = cv::Scalar(128);
   SymmetryOptions options = EverywhereInTheImage();
   options.descriptor = Descriptor::kGrey;
-  const TextureOptions texture{4.0, 0.03};
+  TextureOptions texture;
+  texture.asymmetry_cost = 4.0;
   const Landmark landmark = FacingView().LandmarkInCamera();
   const auto cost = [&](const Landmark& of) {
     return AsymmetryCost(image, TestCamera(), kWholeImage, of, texture, options);
@@ -57,9 +65,34 @@ TEST(AsymmetryCost, GrowsToAllOfItWithTheDifference) {
   const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}};
   for (const double scale : {0.1, 1.0, 2.0, 100.0}) {
     const double s = scale * 0.5;  // of half axes 0.5
-    EXPECT_NEAR(AsymmetryCost(image, camera, kWholeImage, landmark, {3.0, scale}, options),
+    EXPECT_NEAR(AsymmetryCost(image, camera, kWholeImage, landmark, Texture(3.0, scale), options),
                 3.0 / (1.0 + s * s), 1e-9);
   }
+}
+
+// Grey values that are symmetric about a column beside the body's centre.
+TEST(AsymmetryCost, FindsTheMirrorPlaneBesideTheCentre) {
+  SymmetryImage image = SparseImage();
+  Camera camera = TestCamera();
+  camera.cx = 319.5;
+  // The front face is 2.5 m away: a plane 0.05 m to the side of the centre.
+  const double column = 319.5 + camera.fx * 0.05 / 2.5;
+  for (int x = 0; x < 640; ++x) {
+    image.maps.grey.col(x) = cv::Scalar(std::min(255.0, 2.0 * std::abs(x - column)));
+  }
+  SymmetryOptions options = EverywhereInTheImage();
+  options.descriptor = Descriptor::kGrey;
+  Eigen::Matrix3d axes;  // x towards the camera, z up
+  axes.col(0) = -Eigen::Vector3d::UnitZ();
+  axes.col(2) = -Eigen::Vector3d::UnitY();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}, kCuboidExponent};
+  TextureOptions texture = Texture(1.0, 0.1);
+  const double centred = AsymmetryCost(image, camera, kWholeImage, landmark, texture, options);
+  texture.mirror_plane_range = 0.2;  // of its size: up to 0.1 m
+  const double beside = AsymmetryCost(image, camera, kWholeImage, landmark, texture, options);
+  EXPECT_GT(centred, 0.3);
+  EXPECT_LT(beside, 0.01);
 }
 
 TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
@@ -67,7 +100,7 @@ TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
   for (const Descriptor descriptor : {Descriptor::kLinearisedDt, Descriptor::kDistanceTransform}) {
     SymmetryOptions options = EverywhereInTheImage();
     options.descriptor = descriptor;
-    const TextureOptions texture{4.0, 0.3};
+    const TextureOptions texture = Texture(4.0, 0.3);
     for (int i = 0; i < 10; ++i) {
       RandomView view = FacingView();
       const Landmark start = view.LandmarkInCamera();
@@ -92,7 +125,7 @@ TEST(AsymmetryResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 10; ++i) {
     const RandomView view = FacingView();
     const AsymmetryResidual residual(image, TestCamera(), {250, 180, 390, 300},
-                                     view.LandmarkInCamera(), {4.0, 0.3}, options, 0.7);
+                                     view.LandmarkInCamera(), Texture(4.0, 0.3), options, 0.7);
     ASSERT_GT(residual.num_residuals(), 50);
     ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
   }
@@ -104,7 +137,7 @@ TEST(AsymmetryResidual, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
   SymmetryOptions options = EverywhereInTheImage();
   options.descriptor = Descriptor::kDistanceTransform;
   const AsymmetryResidual residual(image, TestCamera(), kWholeImage, view.LandmarkInCamera(),
-                                   {4.0, 0.3}, options, 1.0);
+                                   Texture(4.0, 0.3), options, 1.0);
   ASSERT_GT(residual.num_residuals(), 50);
   // Beside the image: no pixel's ray meets it any more.
   view.landmark_in_world.frame_from_object.translation +=
