@@ -6,6 +6,7 @@
 #include <string>
 
 #include "artefact/hdf5_artefact.h"
+#include "base/error.h"
 
 namespace soslam {
 namespace {
@@ -13,6 +14,21 @@ namespace {
 constexpr const char* kKind = "edges";
 
 std::string FrameGroup(int frame_id) { return fmt::format("/frames/{:06d}", frame_id); }
+
+// Values index the maps.
+void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
+  const cv::Rect image(0, 0, nearest_edge.cols, nearest_edge.rows);
+  for (int y = 0; y < nearest_edge.rows; ++y) {
+    for (int x = 0; x < nearest_edge.cols; ++x) {
+      const auto& edge = nearest_edge.at<cv::Vec2s>(y, x);
+      const cv::Point pixel(edge[0], edge[1]);
+      if (image.contains(pixel) || pixel == cv::Point(-1, -1)) continue;
+      throw InputError(
+          fmt::format("{}: found ({}, {}) at ({}, {}); expected a pixel of the image or (-1, -1)",
+                      where, pixel.x, pixel.y, x, y));
+    }
+  }
+}
 
 }  // namespace
 
@@ -49,6 +65,7 @@ EdgeMaps EdgesReader::Read(int frame_id) const {
   maps.edges = read("/edges", CV_8UC1);
   maps.distance = read("/distance", CV_32FC1);
   maps.nearest_edge = read("/nearest_edge", CV_16SC2);
+  CheckNearestEdges(maps.nearest_edge, file_.path().string() + ": " + group + "/nearest_edge");
   maps.corners = ReadPixels(file_, group + "/corners");
   return maps;
 }

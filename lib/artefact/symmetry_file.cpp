@@ -10,6 +10,7 @@
 
 #include "artefact/atomic_file.h"
 #include "artefact/hdf5_artefact.h"
+#include "base/error.h"
 
 namespace soslam {
 namespace {
@@ -36,6 +37,15 @@ void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
   if (record.true_yaw) file->WriteNumber(group, "true_yaw", *record.true_yaw);
 }
 
+int ReadMirrorPlanes(const Hdf5File& file, const std::string& group) {
+  const double value = file.ReadNumber(group, "mirror_planes");
+  for (const int planes : {0, 1, 2}) {
+    if (value == planes) return planes;
+  }
+  throw InputError(fmt::format("{}: {}/mirror_planes: found {}; expected 0, 1 or 2",
+                               file.path().string(), group, value));
+}
+
 SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
   SymmetryRecord record;
   record.frame_id = static_cast<int>(std::lround(file.ReadNumber(group, "frame_id")));
@@ -53,7 +63,7 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
     record.yaw_sigma = file.ReadNumber(group, "yaw_sigma");
   }
   if (file.HasAttribute(group, "mirror_planes")) {
-    record.mirror_planes = static_cast<int>(std::lround(file.ReadNumber(group, "mirror_planes")));
+    record.mirror_planes = ReadMirrorPlanes(file, group);
   }
   if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");
   return record;

@@ -39,8 +39,8 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double 
 double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
 
 // Tangency of one edge of a detection, less a bias of the detector. Residuals: 1, no unit. Blocks:
-// world_from_camera, landmark in the world, bias (px, how far this edge of all boxes lies too far
-// out). The shape exponent and the depth of the tangent point are those of `start_in_camera`.
+// world_from_camera, landmark in the world, bias (px, how far this edge of all boxes has to move
+// outwards). The shape exponent and the depth of the tangent point are those of `start_in_camera`.
 class TangencyResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize, 1> {
  public:
   TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera);

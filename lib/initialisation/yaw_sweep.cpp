@@ -182,18 +182,24 @@ std::vector<double> YawSweep::Costs() const {
   return costs;
 }
 
-double YawSweep::StandardDeviation(double centre, double cost) const {
-  // Nodes by their distance from the centre, which is one itself. The cost is linear in between,
-  // and quadratic next to the optimum, which may be much narrower than the grid.
-  std::vector<std::pair<double, double>> nodes = {{0.0, cost}};
-  double lowest = cost;
-  const double step = std::numbers::pi / static_cast<double>(yaw.size());
+double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
+  // Nodes by their distance from the first optimum, once around. Between them the square root of
+  // the cost above the lowest is linear, which holds for a Gaussian of any width.
+  const double centre = optima.front().yaw;
+  std::vector<std::pair<double, double>> nodes;
+  for (const Optimum& optimum : optima) {
+    nodes.emplace_back(YawDifferenceModuloPi(optimum.yaw, centre), optimum.cost);
+  }
   for (size_t i = 0; i < yaw.size(); ++i) {
     if (!solutions[i]) continue;
     nodes.emplace_back(YawDifferenceModuloPi(yaw[i], centre), solutions[i]->cost);
-    lowest = std::min(lowest, solutions[i]->cost);
   }
   std::sort(nodes.begin(), nodes.end());
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& [at, cost] : nodes) lowest = std::min(lowest, cost);
+  nodes.emplace_back(nodes.front().first + std::numbers::pi, nodes.front().second);
+
+  const double step = std::numbers::pi / static_cast<double>(yaw.size());
   double sum = 0.0;
   double squares = 0.0;
   for (size_t i = 1; i < nodes.size(); ++i) {
@@ -207,10 +213,10 @@ double YawSweep::StandardDeviation(double centre, double cost) const {
       const double height = from_height + share * (to_height - from_height);
       const double mass = (to - from) * std::exp(-height * height);
       sum += mass;
-      squares += mass * std::pow(from + share * (to - from), 2);
+      squares += mass * std::pow(YawDifferenceModuloPi(from + share * (to - from), 0.0), 2);
     }
   }
-  return std::sqrt(squares / sum);
+  return sum > 0.0 ? std::sqrt(squares / sum) : 0.5 * step;  // between two yaws without a landmark
 }
 
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,

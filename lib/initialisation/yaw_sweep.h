@@ -62,8 +62,13 @@ struct YawSweep {
   std::vector<std::optional<UprightSolution>> solutions;
 
   std::vector<double> Costs() const;  // NaN where there is no landmark
-  // The spread of the yaw about an optimum (rad) and its cost, when exp(-cost) is its likelihood.
-  double StandardDeviation(double yaw, double cost) const;
+  // The spread of the yaw (rad) about the first of its optima (yaw and cost; between those of the
+  // grid), when exp(-cost) is its likelihood.
+  struct Optimum {
+    double yaw;
+    double cost;
+  };
+  double StandardDeviation(const std::vector<Optimum>& optima) const;
 };
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
                   double step);

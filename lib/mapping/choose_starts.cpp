@@ -51,6 +51,9 @@ std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
       starts[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
     }
   }
+  for (auto& start : starts) {
+    if (start) start->shape_exponent = kEllipsoidExponent;
+  }
   return starts;
 }
 

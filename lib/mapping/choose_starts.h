@@ -14,7 +14,7 @@ namespace soslam {
 // A start for each object: of all hypotheses of all of its observations, the one that fits all of
 // the object's boxes best (median over its observations of OutlineEdgeRms), seen from the frames'
 // estimated poses: other views tell apart what explains one box equally well. Or the landmark that
-// was estimated from all observations (SVD).
+// was estimated from all observations (SVD). Ellipsoids, whatever shape they were found with.
 std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
                                                   const LandmarkEstimates& estimates);
 

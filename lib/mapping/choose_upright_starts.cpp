@@ -14,6 +14,8 @@ namespace soslam {
 namespace {
 
 constexpr double kDegrees = std::numbers::pi / 180.0;
+// Of a ratio that does not count.
+constexpr double kFreeRatioLogSigma = 1e3;
 // Yaws closer than this lead to the same optimum.
 constexpr double kYawBin = 6.0 * kDegrees;
 constexpr double kYawStep = 3.0 * kDegrees;
@@ -49,6 +51,7 @@ class ObjectFit {
         boxes_(MakeMultiViewObservation(input.sequence, views, input.priors[object_index],
                                         options.detection_sigma_fraction,
                                         options.view_correlation_deg * kDegrees)) {
+    if (boxes_.prior && !options.ratio) boxes_.prior->log_sigma.setConstant(kFreeRatioLogSigma);
     boxes_.axes_weight = options.axes_weight;
     boxes_.huber_delta = options.huber_delta;
   }
@@ -119,7 +122,8 @@ class ObjectFit {
 // The cheapest of each bin of yaw, cheapest first.
 std::vector<Candidate> BestOfEachYaw(const ObjectFit& fit, const std::vector<Landmark>& landmarks) {
   std::map<long, Candidate> best;
-  for (const Landmark& landmark : landmarks) {
+  for (Landmark landmark : landmarks) {
+    landmark.shape_exponent = fit.boxes().ShapeExponent();  // whatever it was found with
     const double yaw = Yaw(fit.boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
     const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
     const Candidate candidate{landmark, fit.Cost(landmark)};

@@ -55,7 +55,7 @@ struct OptimiseOptions {
     visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
     visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
     visit.Flag("symmetry", &symmetry,
-               "use the texture symmetry of each object's first observations, eq. (16)");
+               "use the texture symmetry of some of each object's observations, eq. (16)");
     visit.Integer(
         "symmetry_views", &symmetry_views, {1, 100000},
         "how many observations of each object, evenly over all of them from the first on");
@@ -91,10 +91,12 @@ struct OptimiseOptions {
                "standard deviation of the odometry between two frames");
     visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
                "standard deviation of the odometry between two frames, per axis");
-    visit.Real("symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
-               "standard deviation of a pair's descriptor difference, in the descriptor's unit");
+    visit.Real(
+        "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
+        "quadric: standard deviation of a pair's descriptor difference, in the descriptor's unit");
     visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
-               "weighted residuals beyond this count linearly (Huber loss H of eq. (1))");
+               "weighted residuals beyond this count linearly (Huber loss H of eq. (1)); with "
+               "tangency, those of odometry and boxes");
     symmetry_options.Describe(visit);
     visit.Flag("covariances", &covariances, "compute the covariance of every landmark");
     visit.Integer("max_iterations", &max_iterations, {1, 10000}, "Levenberg-Marquardt iterations");

@@ -15,9 +15,10 @@ constexpr double kSymmetricShare = 0.5;
 
 }  // namespace
 
-int MirrorPlanes(const std::vector<double>& grid, const std::vector<double>& texture_cost,
-                 double yaw, const TextureOptions& options) {
-  const auto is_symmetric = [&](double at) {
+std::optional<int> MirrorPlanes(const std::vector<double>& grid,
+                                const std::vector<double>& texture_cost, double yaw,
+                                const TextureOptions& options) {
+  const auto is_symmetric = [&](double at) -> std::optional<bool> {
     size_t nearest = 0;
     for (size_t i = 1; i < grid.size(); ++i) {
       if (std::abs(YawDifferenceModuloPi(grid[i], at)) <
@@ -31,10 +32,15 @@ int MirrorPlanes(const std::vector<double>& grid, const std::vector<double>& tex
     for (const size_t i : {nearest + n - 1, nearest, nearest + 1}) {
       lowest = std::fmin(lowest, texture_cost[i % n]);
     }
+    if (lowest == options.asymmetry_cost) return std::nullopt;
     return lowest < kSymmetricShare * options.asymmetry_cost;
   };
-  if (!is_symmetric(yaw)) return 0;
-  return is_symmetric(yaw + 0.5 * std::numbers::pi) ? 2 : 1;
+  const auto at_yaw = is_symmetric(yaw);
+  if (!at_yaw) return std::nullopt;
+  if (!*at_yaw) return 0;
+  const auto across = is_symmetric(yaw + 0.5 * std::numbers::pi);
+  if (!across) return std::nullopt;
+  return *across ? 2 : 1;
 }
 
 }  // namespace soslam

@@ -18,7 +18,7 @@
 namespace soslam {
 namespace {
 
-// Hypotheses beyond these are far less likely, and costly to refine.
+// Hypotheses beyond these are far less likely.
 constexpr size_t kMaxHypotheses = 6;
 // Which points of the body's edges are visible depends on the body: fitted twice.
 constexpr int kEdgeRounds = 2;
@@ -124,9 +124,13 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
   const YawObjective objective = profile.Objective();
   const YawSweep sweep = SweepYaw(profile.observation(), objective,
                                   options.upright.yaw_grid_deg * std::numbers::pi / 180.0);
+  std::vector<YawSweep::Optimum> optima;
   for (const UprightSolution& optimum :
        LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
     result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
+    optima.push_back(
+        {Yaw(detection.plane_in_camera.normal, optimum.landmark.frame_from_object.rotation),
+         optimum.cost});
   }
   if (result.estimate.hypotheses.empty()) {
     result.estimate.failure = WhyNoSolution(profile.observation());
@@ -141,8 +145,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
                                                result.record.refined_yaw, options.texture);
   }
-  result.record.yaw_sigma =
-      sweep.StandardDeviation(result.record.refined_yaw, result.estimate.hypotheses.front().cost);
+  result.record.yaw_sigma = sweep.StandardDeviation(optima);
   return result;
 }
 

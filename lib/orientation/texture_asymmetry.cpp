@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image/brief.h"
 #include "symmetry/sampling.h"
 
 namespace soslam {
@@ -14,9 +15,18 @@ constexpr int kMirrorPlaneSteps = 8;
 
 double Size(const Landmark& landmark) { return std::cbrt(landmark.half_axes.prod()); }
 
+// In the descriptor's unit.
 double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptions& options) {
-  return descriptor == Descriptor::kDistanceTransform ? options.asymmetry_scale_px
-                                                      : options.asymmetry_scale * Size(landmark);
+  switch (descriptor) {
+    case Descriptor::kDistanceTransform:
+      return options.asymmetry_scale_px;
+    case Descriptor::kGrey:
+      return options.asymmetry_scale;
+    case Descriptor::kBrief:
+      return options.asymmetry_scale * static_cast<double>(BriefBits().size());
+    default:
+      return options.asymmetry_scale * Size(landmark);
+  }
 }
 
 bool AreEnough(size_t pairs, size_t samples, const SymmetryOptions& options) {

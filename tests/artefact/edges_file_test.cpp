@@ -77,6 +77,16 @@ TEST_F(EdgesFileTest, ImageWithoutEdgesComesBack) {
   ExpectSame(EdgesReader(Write("edges.h5", maps)).Read(12), maps);
 }
 
+TEST_F(EdgesFileTest, NearestEdgesOutsideTheImageAreRefused) {
+  for (const cv::Vec2s& outside : {cv::Vec2s(-1, 3), cv::Vec2s(3, -7), cv::Vec2s(3, 32000)}) {
+    EdgeMaps maps = MapsOfRandomRectangles();
+    maps.nearest_edge.at<cv::Vec2s>(2, 1) = outside;
+    const auto file = Write("edges.h5", maps);
+    ExpectError<InputError>([&] { EdgesReader(file).Read(12); },
+                            {"edges.h5", "nearest_edge", "(1, 2)", "expected a pixel"});
+  }
+}
+
 TEST_F(EdgesFileTest, WrittenTwiceGivesTheSameBytes) {
   const EdgeMaps maps = MapsOfRandomRectangles();
   EXPECT_EQ(FileBytes(Write("a.h5", maps)), FileBytes(Write("b.h5", maps)));

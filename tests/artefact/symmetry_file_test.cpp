@@ -77,6 +77,14 @@ TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
   EXPECT_EQ(records[1].true_yaw, expected.true_yaw);
 }
 
+TEST_F(SymmetryFileTest, RefusesAnImpossibleNumberOfMirrorPlanes) {
+  SymmetryRecord record = FullRecord();
+  record.mirror_planes = 7;
+  WriteSymmetry(folder_ / "symmetry.h5", {record}, {});
+  ExpectError<InputError>([&] { ReadSymmetry(folder_ / "symmetry.h5"); },
+                          {"symmetry.h5", "mirror_planes", "7", "0, 1 or 2"});
+}
+
 TEST_F(SymmetryFileTest, NoRecordsAreNoError) {
   WriteSymmetry(folder_ / "symmetry.h5", {}, {});
   EXPECT_TRUE(ReadSymmetry(folder_ / "symmetry.h5").empty());

@@ -16,13 +16,15 @@ struct Curve {
   explicit Curve(const std::vector<int>& symmetric_deg) {
     for (int i = 0; i < 60; ++i) {
       grid.push_back(3 * i * kDegrees);
-      cost.push_back(options.asymmetry_cost);
+      cost.push_back(0.9 * options.asymmetry_cost);
     }
     for (const int yaw_deg : symmetric_deg) {
       cost[static_cast<size_t>(yaw_deg / 3)] = 0.2 * options.asymmetry_cost;
     }
   }
-  int Planes(double yaw_deg) const { return MirrorPlanes(grid, cost, yaw_deg * kDegrees, options); }
+  std::optional<int> Planes(double yaw_deg) const {
+    return MirrorPlanes(grid, cost, yaw_deg * kDegrees, options);
+  }
 
   TextureOptions options;
   std::vector<double> grid;
@@ -45,9 +47,17 @@ TEST(MirrorPlanes, TwoForDipsAQuarterTurnApart) {
 TEST(MirrorPlanes, NoneWhereTheTextureIsNotSymmetric) {
   EXPECT_EQ(Curve({}).Planes(60), 0);
   EXPECT_EQ(Curve({60}).Planes(90), 0);
-  Curve undefined({});
-  undefined.cost.assign(60, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(undefined.Planes(60), 0);
+}
+
+TEST(MirrorPlanes, UnknownWhereNothingIsSeen) {
+  Curve unseen({60});
+  unseen.cost.assign(60, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(unseen.Planes(60));
+  unseen.cost.assign(60, unseen.options.asymmetry_cost);
+  EXPECT_FALSE(unseen.Planes(60));
+  // Symmetric at the yaw, and a quarter turn from it nobody knows.
+  unseen.cost[20] = 0.1 * unseen.options.asymmetry_cost;
+  EXPECT_FALSE(unseen.Planes(60));
 }
 
 }  // namespace

@@ -64,9 +64,8 @@ TEST(AsymmetryCost, GrowsToAllOfItWithTheDifference) {
   axes.col(1) = axes.col(2).cross(axes.col(0));
   const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}};
   for (const double scale : {0.1, 1.0, 2.0, 100.0}) {
-    const double s = scale * 0.5;  // of half axes 0.5
     EXPECT_NEAR(AsymmetryCost(image, camera, kWholeImage, landmark, Texture(3.0, scale), options),
-                3.0 / (1.0 + s * s), 1e-9);
+                3.0 / (1.0 + scale * scale), 1e-9);
   }
 }
 
