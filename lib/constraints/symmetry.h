@@ -64,8 +64,8 @@ class SymmetryDescriptor {
                                std::optional<double> min_viewing_cosine, bool with_jacobian) const;
 
   // The residuals when the mirror plane is y = offset instead, for several offsets (m); the surface
-  // stays. None where the pixel or its mirror image is not visible, NaN for an offset without a
-  // pair.
+  // stays. None where the pixel or its mirror image in y = 0 is not visible, NaN for an offset
+  // without a pair.
   std::optional<std::vector<double>> Residuals(const Eigen::Vector2d& pixel,
                                                double min_viewing_cosine,
                                                const std::vector<double>& offsets) const;

@@ -246,18 +246,23 @@ void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const Symme
 void BackEndProblem::RenewEdges() {
   for (const ceres::ResidualBlockId id : edges_) problem_.RemoveResidualBlock(id);
   edges_.clear();
+  int without_points = 0;
   for (const auto& [detection_index, image] : input_.edge_images) {
     const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
     if (!input_.starts[static_cast<size_t>(detection.object_index)]) continue;
     auto residual = std::make_unique<EdgeAlignmentResidual>(
         image, input_.sequence.camera, LandmarkInCamera(detection), options_.edges,
         view_weights_[static_cast<size_t>(detection_index)]);
-    if (residual->num_residuals() == 0) continue;
+    if (residual->num_residuals() == 0) {
+      ++without_points;
+      continue;
+    }
     // No further loss: a point's residual is bounded.
     edges_.push_back(problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection).data(),
                                                LandmarkOf(detection).data()));
   }
   if (!input_.edge_images.empty()) summary_.residuals["edges"] = static_cast<int>(edges_.size());
+  if (without_points > 0) summary_.gated["edges_out_of_sight"] = without_points;
 }
 
 std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {

@@ -48,15 +48,15 @@ struct LandmarkEstimates {
   std::vector<ObjectEstimate> objects;
 };
 
-// With symmetry the back end solves twice: initial_cost is the first solve's, without it;
-// final_cost and converged are the second's, with it; the iterations are both.
+// Texture and edges join in when the rest has settled: initial_cost is the first solve's, without
+// them; final_cost and converged are the last one's, with them; the iterations are those of all.
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;
   int iterations = 0;
   bool converged = false;
   std::vector<double> cost_per_iteration;
-  std::map<std::string, int> residuals;  // residual blocks by kind
+  std::map<std::string, int> residuals;  // by kind: boxes, pairs of pixels, or blocks
   std::map<std::string, int> gated;      // what was left out before the solve, by reason
   // How far outwards the left, top, right and bottom edges of all boxes have to move to fit; zero
   // where no bias is estimated.
