@@ -91,7 +91,8 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
           {"score", detection.score},
           {"box", detection.box},
           {"plane_in_camera", detection.plane_in_camera},
-          {"bounds", BoundsToJson(detection.is_bound)}};
+          {"bounds", BoundsToJson(detection.is_bound)},
+          {"nearer_boxes", detection.nearer_boxes}};
 }
 
 Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
@@ -104,6 +105,8 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   json.at("plane_in_camera").get_to(detection.plane_in_camera);
   // Schema version 1.0 had no bounds: every edge counted as the object's own.
   if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
+  // Nor 1.0 and 1.1 nearer boxes: nothing was hidden.
+  detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
   return detection;
 }
 

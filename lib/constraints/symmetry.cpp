@@ -33,70 +33,74 @@ SymmetryDescriptor::SymmetryDescriptor(Descriptor descriptor, const SymmetryImag
 }
 
 std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Evaluate(
+    const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine, bool with_jacobian,
+    double mirror_plane) const {
+  const auto side = FirstSide(pixel, min_viewing_cosine, with_jacobian);
+  return side ? Compare(*side, mirror_plane, with_jacobian) : std::nullopt;
+}
+
+Eigen::RowVectorXd SymmetryDescriptor::Residuals(const Eigen::Vector2d& pixel,
+                                                 double min_viewing_cosine,
+                                                 const std::vector<double>& mirror_planes) const {
+  Eigen::RowVectorXd residuals = Eigen::RowVectorXd::Constant(
+      static_cast<Eigen::Index>(mirror_planes.size()), std::numeric_limits<double>::quiet_NaN());
+  const auto side = FirstSide(pixel, min_viewing_cosine, false);
+  if (!side) return residuals;
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    const auto pair = Compare(*side, mirror_planes[static_cast<size_t>(i)], false);
+    if (pair) residuals[i] = pair->residual;
+  }
+  return residuals;
+}
+
+std::optional<SymmetryDescriptor::Side> SymmetryDescriptor::FirstSide(
     const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine,
     bool with_jacobian) const {
   const auto point = surface_.FromPixel(pixel, with_jacobian);
   if (!point) return std::nullopt;
-  const VisibleSurface::Point mirrored = surface_.MirrorImage(*point);
-  if (min_viewing_cosine && !(surface_.ViewingCosine(*point) >= *min_viewing_cosine &&
-                              surface_.ViewingCosine(mirrored) >= *min_viewing_cosine)) {
+  if (min_viewing_cosine &&
+      !(surface_.ViewingCosine(*point) >= *min_viewing_cosine &&
+        surface_.ViewingCosine(surface_.MirrorImage(*point)) >= *min_viewing_cosine)) {
     return std::nullopt;
   }
+  const auto value = Describe(pixel, *point, LandmarkJacobian2::Zero(), with_jacobian);
+  if (!value) return std::nullopt;
+  return Side{pixel, *point, *value};
+}
+
+std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Compare(const Side& side,
+                                                                    double mirror_plane,
+                                                                    bool with_jacobian) const {
+  const VisibleSurface::Point mirrored = surface_.MirrorImage(side.point, mirror_plane);
   const auto mirror = surface_.ToPixel(mirrored, with_jacobian);
   if (!mirror) return std::nullopt;
-
   Pair pair;
   pair.mirror_pixel = mirror->pixel;
   if (descriptor_ == Descriptor::kBrief) {
-    const auto distance = BriefDistance(pixel, mirror->pixel);
+    const auto distance = BriefDistance(side.pixel, mirror->pixel);
     if (!distance) return std::nullopt;
     pair.residual = *distance;
     return pair;
   }
-  const bool on_surface =
-      descriptor_ != Descriptor::kGrey && descriptor_ != Descriptor::kDistanceTransform;
-  const auto value = on_surface ? SurfaceDistance(pixel, *point, with_jacobian)
-                                : LookUp(pixel, with_jacobian, LandmarkJacobian2::Zero());
-  const auto mirror_value = on_surface ? SurfaceDistance(mirror->pixel, mirrored, with_jacobian)
-                                       : LookUp(mirror->pixel, with_jacobian, mirror->jacobian);
-  if (!value || !mirror_value) return std::nullopt;
-  pair.residual = value->value - mirror_value->value;
-  if (with_jacobian) pair.jacobian = value->jacobian - mirror_value->jacobian;
+  const auto value = Describe(mirror->pixel, mirrored, mirror->jacobian, with_jacobian);
+  if (!value) return std::nullopt;
+  pair.residual = side.value.value - value->value;
+  if (with_jacobian) pair.jacobian = side.value.jacobian - value->jacobian;
   return pair;
 }
 
-std::optional<std::vector<double>> SymmetryDescriptor::Residuals(
-    const Eigen::Vector2d& pixel, double min_viewing_cosine,
-    const std::vector<double>& offsets) const {
-  const auto point = surface_.FromPixel(pixel);
-  if (!point) return std::nullopt;
-  const VisibleSurface::Point mirrored = surface_.MirrorImage(*point);
-  if (!(surface_.ViewingCosine(*point) >= min_viewing_cosine &&
-        surface_.ViewingCosine(mirrored) >= min_viewing_cosine)) {
-    return std::nullopt;
+std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
+    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
+    const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const {
+  switch (descriptor_) {
+    case Descriptor::kBrief:
+      return Value();  // two pixels are compared at once
+    case Descriptor::kGrey:
+    case Descriptor::kDistanceTransform:
+      return LookUp(pixel, with_jacobian, pixel_jacobian);
+    default:
+      return SurfaceDistance(pixel, point, with_jacobian);
   }
-  const bool on_surface =
-      descriptor_ != Descriptor::kGrey && descriptor_ != Descriptor::kDistanceTransform;
-  const auto describe = [&](const Eigen::Vector2d& at, const VisibleSurface::Point& on) {
-    return on_surface ? SurfaceDistance(at, on, false)
-                      : LookUp(at, false, LandmarkJacobian2::Zero());
-  };
-  const auto compare = [&](const VisibleSurface::Point& moved) -> std::optional<double> {
-    const auto mirror = surface_.ToPixel(moved);
-    if (!mirror) return std::nullopt;
-    if (descriptor_ == Descriptor::kBrief) return BriefDistance(pixel, mirror->pixel);
-    const auto value = describe(pixel, *point);
-    const auto mirror_value = describe(mirror->pixel, moved);
-    if (!value || !mirror_value) return std::nullopt;
-    return value->value - mirror_value->value;
-  };
-  std::vector<double> residuals;
-  for (const double offset : offsets) {
-    VisibleSurface::Point moved = mirrored;
-    moved.in_object.y() += 2.0 * offset;
-    residuals.push_back(compare(moved).value_or(std::numeric_limits<double>::quiet_NaN()));
-  }
-  return residuals;
 }
 
 std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(

@@ -59,23 +59,33 @@ class SymmetryDescriptor {
   // The pair of a pixel. None when the pixel's ray misses the surface, the mirror pixel is behind
   // the camera or outside the image, or a nearest edge is not on the surface; with
   // `min_viewing_cosine`, also when the camera sees one of both surface points under a flatter
-  // angle (or not at all).
+  // angle (or not at all). The mirror plane may lie beside the xz plane, see
+  // VisibleSurface::MirrorImage; visible is then what is visible without.
   std::optional<Pair> Evaluate(const Eigen::Vector2d& pixel,
-                               std::optional<double> min_viewing_cosine, bool with_jacobian) const;
+                               std::optional<double> min_viewing_cosine, bool with_jacobian,
+                               double mirror_plane = 0.0) const;
 
-  // The residuals when the mirror plane is y = offset instead, for several offsets (m); the surface
-  // stays. None where the pixel or its mirror image in y = 0 is not visible, NaN for an offset
-  // without a pair.
-  std::optional<std::vector<double>> Residuals(const Eigen::Vector2d& pixel,
-                                               double min_viewing_cosine,
-                                               const std::vector<double>& offsets) const;
+  // The residuals of Evaluate for several mirror planes: NaN where there is no pair.
+  Eigen::RowVectorXd Residuals(const Eigen::Vector2d& pixel, double min_viewing_cosine,
+                               const std::vector<double>& mirror_planes) const;
 
  private:
   struct Value {
-    double value;
-    LandmarkJacobian1 jacobian;
+    double value = 0.0;
+    LandmarkJacobian1 jacobian = LandmarkJacobian1::Zero();
+  };
+  // A pixel, where its ray meets the surface, and its descriptor.
+  struct Side {
+    Eigen::Vector2d pixel;
+    VisibleSurface::Point point;
+    Value value;
   };
 
+  std::optional<Side> FirstSide(const Eigen::Vector2d& pixel,
+                                std::optional<double> min_viewing_cosine, bool with_jacobian) const;
+  std::optional<Pair> Compare(const Side& side, double mirror_plane, bool with_jacobian) const;
+  std::optional<Value> Describe(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
+                                const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const;
   std::optional<Value> SurfaceDistance(const Eigen::Vector2d& pixel,
                                        const VisibleSurface::Point& point,
                                        bool with_jacobian) const;

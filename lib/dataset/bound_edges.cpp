@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "model/occlusion.h"
-
 namespace soslam {
 namespace {
 
@@ -42,12 +40,12 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
 // its feet. Sides and tops tell less: the box of a tall object full of gaps (a chair) covers much
 // that is seen past its back and between its legs, and the edge of the object behind is then
 // measured as well as any.
-void MarkBoundEdges(const ImportOptions& options, const Sequence& in_view, Sequence* sequence) {
+void MarkBoundEdges(const ImportOptions& options, Sequence* sequence) {
   const double right_border = sequence->camera.width - 0.5;
   const double lower_border = sequence->camera.height - 0.5;
   for (Detection& detection : sequence->detections) {
     const Box& box = detection.box;
-    const double hidden_share = CoveredShareOfLowerEdge(box, NearerBoxes(in_view, detection));
+    const double hidden_share = CoveredShareOfLowerEdge(box, detection.nearer_boxes);
     const bool is_hidden = hidden_share >= options.hidden_edge_fraction - kShareTolerance;
     detection.is_bound = {box.x_min + 0.5 <= kCutAtBorderPx,           //
                           box.y_min + 0.5 <= kCutAtBorderPx,           //

@@ -16,6 +16,7 @@
 #include "dataset/gate.h"
 #include "dataset/object_table.h"
 #include "dataset/tum_list.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -107,6 +108,7 @@ Detection MakeDetection(const DetectionRow& row, int frame_index, int object_ind
           row.score,
           row.box,
           Transform(world_from_camera.Inverse(), plane.plane_in_world),
+          {},
           {}};
 }
 
@@ -150,7 +152,10 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   RequireDetections(folder, sequence);
   Sequence in_view = sequence;
   in_view.detections = detections_of(RowsInView(rows, slots, planes_from_truth, options, sequence));
-  MarkBoundEdges(options, in_view, &sequence);
+  for (Detection& detection : sequence.detections) {
+    detection.nearer_boxes = NearerBoxes(in_view, detection);
+  }
+  MarkBoundEdges(options, &sequence);
   return sequence;
 }
 

@@ -14,6 +14,8 @@ struct Box {
   double x_max = 0.0;
   double y_max = 0.0;
 
+  bool operator==(const Box&) const = default;
+
   double Width() const { return x_max - x_min; }
   double Height() const { return y_max - y_min; }
   Eigen::Vector2d Centre() const { return {0.5 * (x_min + x_max), 0.5 * (y_min + y_max)}; }

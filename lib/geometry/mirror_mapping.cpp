@@ -11,7 +11,8 @@ VisibleSurface::VisibleSurface(const Camera& camera, const Landmark& landmark_in
           landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
       centre_in_camera_(landmark_in_camera.Centre()),
       camera_in_object_(-(camera_from_object_rotation_.transpose() * centre_in_camera_)),
-      surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent) {}
+      surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent),
+      size_(std::cbrt(landmark_in_camera.half_axes.prod())) {}
 
 Eigen::Vector3d VisibleSurface::RayInObject(const Eigen::Vector2d& pixel) const {
   return camera_from_object_rotation_.transpose() * camera_.Ray(pixel);
@@ -69,10 +70,12 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
   return point;
 }
 
-VisibleSurface::Point VisibleSurface::MirrorImage(const Point& point) const {
+VisibleSurface::Point VisibleSurface::MirrorImage(const Point& point, double mirror_plane) const {
+  const double shift = 2.0 * mirror_plane * size_;
   Point mirrored = point;
-  mirrored.in_object.y() = -mirrored.in_object.y();
+  mirrored.in_object.y() = shift - mirrored.in_object.y();
   mirrored.jacobian.row(1) = -mirrored.jacobian.row(1);
+  mirrored.jacobian.row(1).tail<3>().array() += shift / 3.0;
   return mirrored;
 }
 

@@ -43,8 +43,9 @@ class VisibleSurface {
   std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel, const Point& contact,
                                                bool with_jacobian = false) const;
 
-  // S, the mirror image in the xz plane; again a surface point.
-  Point MirrorImage(const Point& point) const;
+  // S, the mirror image in the xz plane; again a surface point. Or in the plane y = mirror_plane *
+  // size, size the cubic root of the half axes' product: on the surface if that has a flat front.
+  Point MirrorImage(const Point& point, double mirror_plane = 0.0) const;
 
   // P: the pixel of a point, whether visible or not. None behind the camera.
   std::optional<Pixel> ToPixel(const Point& point, bool with_jacobian = false) const;
@@ -63,6 +64,7 @@ class VisibleSurface {
   Eigen::Vector3d centre_in_camera_;
   Eigen::Vector3d camera_in_object_;
   BodySurface surface_;
+  double size_;
 };
 
 }  // namespace soslam

@@ -20,6 +20,10 @@ constexpr double kMinInformationShare = 1e-9;
 
 using Unknowns = Eigen::Matrix<double, 5, 1>;  // foot x, foot y, a, b, c
 
+bool HasRatio(const MultiViewObservation& observation) {
+  return observation.prior && !observation.ratio_is_free;
+}
+
 // The point nearest to the rays through the middles of all boxes.
 Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
@@ -92,7 +96,7 @@ class LinearViews {
       const Landmark in_camera = Transform(view.camera_from_world, landmark_);
       for (const BoxEdge& edge : view.edges) AddEdge(view, edge, in_camera, is_first, add);
     }
-    if (observation_.prior) AddRatio(add);
+    if (HasRatio(observation_)) AddRatio(add);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(normal_matrix);
     const Unknowns& information = eigen.eigenvalues();  // ascending, 1 / m^2
     if (!(information(0) > kMinInformationShare * information(4))) return false;
@@ -156,7 +160,7 @@ class LinearViews {
         cost += view.weight * (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
       }
     }
-    if (observation_.prior) {
+    if (HasRatio(observation_)) {
       Eigen::VectorXd residuals(2);
       RatioTerm(*observation_.prior).Evaluate(landmark_, residuals, nullptr);
       cost += 0.5 * residuals.squaredNorm();
@@ -199,7 +203,7 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
 LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {
   LandmarkTerms terms;
   const Plane& plane = observation.plane_in_world;
-  if (observation.prior) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
+  if (HasRatio(observation)) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
   terms.push_back(std::make_unique<AxisTerm>(plane, WorldAxis(plane), observation.axes_weight));
   for (const BoxView& view : observation.views) {
     const Landmark in_camera = Transform(view.camera_from_world, start_in_world);

@@ -26,6 +26,7 @@ struct MultiViewObservation {
   std::vector<BoxView> views;
   Plane plane_in_world;
   std::optional<ShapePrior> prior;  // without one the ratio is free, the shape a cuboid's
+  bool ratio_is_free = false;       // also with one
   double axes_weight = 0.0;         // see AxisTerm
   double huber_delta = 1.0;
 

@@ -173,6 +173,16 @@ void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Ve
   jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * normal_.transpose();
 }
 
+double TotalCost(const LandmarkTerms& terms, const Landmark& landmark) {
+  double cost = 0.0;
+  for (const auto& term : terms) {
+    Eigen::VectorXd residuals(term->NumResiduals());
+    term->Evaluate(landmark, residuals, nullptr);
+    cost += 0.5 * residuals.squaredNorm() + term->ConstantCost();
+  }
+  return cost;
+}
+
 std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const Landmark& start,
                                           const LandmarkTerms& terms, bool yaw_is_free) {
   const UprightCost cost(plane_in_camera, start.shape_exponent, terms, yaw_is_free);
@@ -186,8 +196,10 @@ std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const La
   if (!cost(parameters.data(), residuals.data(), nullptr)) return std::nullopt;
   solver.Solve(cost, &parameters);
   if (!std::isfinite(solver.summary.final_cost) || !parameters.allFinite()) return std::nullopt;
+  double constant_cost = 0.0;
+  for (const auto& term : terms) constant_cost += term->ConstantCost();
   return UprightSolution{UprightLandmark(plane_in_camera, parameters, start.shape_exponent),
-                         solver.summary.final_cost};
+                         solver.summary.final_cost + constant_cost};
 }
 
 }  // namespace soslam

@@ -38,6 +38,9 @@ class LandmarkTerm {
   // `jacobian` (NumResiduals() x 9) may be null.
   virtual void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                         Jacobian* jacobian) const = 0;
+  // What is added to half the sum of squares and does not change with the landmark, but may with
+  // what the term was made for.
+  virtual double ConstantCost() const { return 0.0; }
 };
 
 // The tangencies of one detection's four edges, tangent points at the depths of `start_in_camera`.
@@ -65,8 +68,8 @@ class RatioTerm final : public LandmarkTerm {
   ShapePrior prior_;
 };
 
-// A term of one camera, for a landmark in another frame; each residual under a Huber loss, and the
-// cost multiplied by a weight.
+// A term of one camera, for a landmark in another frame; each residual under a Huber loss (none
+// with an infinite delta), and the cost multiplied by a weight.
 class RobustViewTerm final : public LandmarkTerm {
  public:
   RobustViewTerm(std::unique_ptr<const LandmarkTerm> term, const Rigid3d& camera_from_reference,
@@ -78,6 +81,9 @@ class RobustViewTerm final : public LandmarkTerm {
   int NumResiduals() const override { return term_->NumResiduals(); }
   void Evaluate(const Landmark& landmark_in_reference, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
+  double ConstantCost() const override {
+    return root_weight_ * root_weight_ * term_->ConstantCost();
+  }
 
  private:
   std::unique_ptr<const LandmarkTerm> term_;
@@ -104,9 +110,12 @@ class AxisTerm final : public LandmarkTerm {
   double amplitude_;
 };
 
-// Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
-// landmark and its cost, half the sum of squared residuals; none when the solver runs away.
 using LandmarkTerms = std::vector<std::unique_ptr<const LandmarkTerm>>;
+// Half the sum of all squared residuals, and the constant costs.
+double TotalCost(const LandmarkTerms& terms, const Landmark& landmark);
+
+// Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
+// landmark and its cost; none when the solver runs away.
 struct UprightSolution {
   Landmark landmark;
   double cost;

@@ -16,6 +16,8 @@ constexpr int kMaxDepthRounds = 20;
 constexpr double kDepthTolerance = 1e-10;
 // Two optima closer than this are one.
 constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
+// Of a sweep's minima, those that may be the best ones when refined.
+constexpr size_t kRefinedMinima = 12;
 // Of the finer grid around a grid point, either way.
 constexpr int kRefinementSteps = 10;
 // Of the likelihood between two yaws of the grid.
@@ -261,7 +263,9 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
     return Yaw(observation.plane_in_camera.normal, solution.landmark.frame_from_object.rotation);
   };
   std::vector<UprightSolution> optima;
-  for (const size_t i : CircularMinima(sweep.Costs())) {
+  std::vector<size_t> minima = CircularMinima(sweep.Costs());
+  minima.resize(std::min(minima.size(), std::max(max_count, kRefinedMinima)));
+  for (const size_t i : minima) {
     const auto solution = RefineYaw(observation, objective, sweep.solutions[i]->landmark, step);
     if (!solution) continue;
     const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {

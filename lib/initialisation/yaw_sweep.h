@@ -77,7 +77,7 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
 // counts as high.
 std::vector<size_t> CircularMinima(const std::vector<double>& values);
 
-// The best `max_count` local optima over the circle, yaw refined, lowest cost first.
+// The best `max_count` local optima of the sweep, yaw refined, lowest cost first.
 std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
                                          const YawObjective& objective, const YawSweep& sweep,
                                          size_t max_count);

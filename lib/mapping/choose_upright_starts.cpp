@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <limits>
 #include <numbers>
 
 #include "initialisation/multi_view.h"
@@ -14,8 +15,6 @@ namespace soslam {
 namespace {
 
 constexpr double kDegrees = std::numbers::pi / 180.0;
-// Of a ratio that does not count.
-constexpr double kFreeRatioLogSigma = 1e3;
 // Yaws closer than this lead to the same optimum.
 constexpr double kYawBin = 6.0 * kDegrees;
 constexpr double kYawStep = 3.0 * kDegrees;
@@ -23,6 +22,8 @@ constexpr size_t kMinViews = 2;
 // Enough to see an object from all sides that it is seen from.
 constexpr size_t kMaxViews = 16;
 constexpr size_t kMaxCandidates = 12;
+// A point's residual is bounded as it is.
+constexpr double kNoHuberLoss = std::numeric_limits<double>::infinity();
 // Tangent depths and visible edges depend on the landmark: fitted twice.
 constexpr int kRounds = 2;
 
@@ -51,7 +52,7 @@ class ObjectFit {
         boxes_(MakeMultiViewObservation(input.sequence, views, input.priors[object_index],
                                         options.detection_sigma_fraction,
                                         options.view_correlation_deg * kDegrees)) {
-    if (boxes_.prior && !options.ratio) boxes_.prior->log_sigma.setConstant(kFreeRatioLogSigma);
+    boxes_.ratio_is_free = !options.ratio;
     boxes_.axes_weight = options.axes_weight;
     boxes_.huber_delta = options.huber_delta;
   }
@@ -63,13 +64,8 @@ class ObjectFit {
         std::count_if(boxes_.views.begin(), boxes_.views.end(), [&](const BoxView& view) {
           return !IsInFront(Transform(view.camera_from_world, landmark_in_world));
         });
-    double cost = 0.0;
-    for (const auto& term : Terms(landmark_in_world)) {
-      Eigen::VectorXd residuals(term->NumResiduals());
-      term->Evaluate(landmark_in_world, residuals, nullptr);
-      cost += 0.5 * residuals.squaredNorm();
-    }
-    return {static_cast<size_t>(behind), cost + TextureCost(landmark_in_world)};
+    return {static_cast<size_t>(behind), TotalCost(Terms(landmark_in_world), landmark_in_world) +
+                                             TextureCost(landmark_in_world)};
   }
 
   std::optional<Candidate> Fit(const Landmark& start_in_world) const {
@@ -94,7 +90,7 @@ class ObjectFit {
       terms.push_back(std::make_unique<RobustViewTerm>(
           std::make_unique<EdgeTerm>(*image->second, input_.sequence.camera, in_camera,
                                      options_.edges),
-          view.camera_from_world, options_.huber_delta, view.weight));
+          view.camera_from_world, kNoHuberLoss, view.weight));
     }
     return terms;
   }

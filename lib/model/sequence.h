@@ -58,6 +58,9 @@ struct Detection {
   // Left, top, right, bottom: the object may reach farther than this edge of its box, because the
   // image border or a nearer object cuts it off. Decided at import, for all that follows.
   std::array<bool, 4> is_bound{};
+  // Of objects in the same frame that may hide this one, see NearerBoxes: also of those that are
+  // not used. Decided at import.
+  std::vector<Box> nearer_boxes;
 };
 
 // What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then

@@ -21,62 +21,63 @@ cv::Mat EdgeDirections(const cv::Mat& grey) {
 
 }  // namespace
 
-EdgeImage::EdgeImage(const EdgeMaps& edge_maps, const Box& own_box, std::vector<Box> boxes)
-    : box(own_box),
-      maps(edge_maps),
-      edge_direction(EdgeDirections(edge_maps.grey)),
-      nearer_boxes(std::move(boxes)) {}
+FrameEdges::FrameEdges(EdgeMaps edge_maps)
+    : maps(std::move(edge_maps)), direction(EdgeDirections(maps.grey)) {}
 
 EdgeTerm::EdgeTerm(const EdgeImage& image, const Camera& camera, const Landmark& start_in_camera,
                    const EdgeOptions& options)
     : image_(image), camera_(camera), options_(options) {
-  for (const ModelPoint& point :
-       VisibleModelPoints(camera, start_in_camera, options.edge_spacing_px)) {
-    const auto pixel = camera.Project(start_in_camera.frame_from_object *
-                                      start_in_camera.half_axes.cwiseProduct(point.in_unit_body));
-    if (!pixel || !SampleBilinear(image.maps.distance, *pixel)) continue;
-    const bool hidden = std::any_of(image.nearer_boxes.begin(), image.nearer_boxes.end(),
-                                    [&](const Box& box) { return box.Contains(*pixel); });
-    if (!hidden) points_.push_back(point);
-  }
+  const auto all = VisibleModelPoints(camera, start_in_camera, options.edge_spacing_px);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(points_),
+               [&](const ModelPoint& point) { return Counts(point, start_in_camera); });
+  // Of a body that is not in front of the camera no point counts.
+  const auto count = static_cast<double>(std::max<size_t>(1, all.size()));
+  points_that_do_not_count_ = count - static_cast<double>(points_.size());
   const double observations =
       2.0 * (image.box.Width() + image.box.Height()) / options.edge_correlation_px;
-  weight_ = std::sqrt(observations / static_cast<double>(std::max<size_t>(1, points_.size()))) /
-            options.edge_sigma_px;
+  weight_ = std::sqrt(observations / count) / options.edge_sigma_px;
+}
+
+bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) const {
+  const auto pixel = camera_.Project(start_in_camera.frame_from_object *
+                                     start_in_camera.half_axes.cwiseProduct(point.in_unit_body));
+  if (!pixel || !SampleBilinear(image_.frame->maps.distance, *pixel)) return false;
+  const auto nearest = NearestEdge(image_.frame->maps, *pixel);
+  const bool is_hidden = std::any_of(image_.nearer_boxes.begin(), image_.nearer_boxes.end(),
+                                     [&](const Box& box) { return box.Contains(*pixel); });
+  if (!nearest || is_hidden) return false;
+  const double direction = image_.frame->direction.at<float>(static_cast<int>(nearest->y()),
+                                                             static_cast<int>(nearest->x()));
+  const double alignment =
+      std::abs(point.along.dot(Eigen::Vector2d(std::cos(direction), std::sin(direction))));
+  return alignment >= std::cos(options_.edge_direction_tolerance_deg * std::numbers::pi / 180.0);
 }
 
 double EdgeTerm::Support(const Landmark& landmark_in_camera) const {
-  if (points_.empty()) return 0.0;
   Eigen::VectorXd residuals(NumResiduals());
   Evaluate(landmark_in_camera, residuals, nullptr);
-  const double largest = weight_ * options_.edge_truncation_px;
-  return 1.0 - residuals.squaredNorm() / (NumResiduals() * largest * largest);
+  const double largest = (points_that_do_not_count_ + NumResiduals()) * LargestCost();
+  return 1.0 - (0.5 * residuals.squaredNorm() + ConstantCost()) / largest;
 }
 
 void EdgeTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                         Jacobian* jacobian) const {
   const double tau = options_.edge_truncation_px;
-  const double tolerance =
-      std::cos(options_.edge_direction_tolerance_deg * std::numbers::pi / 180.0);
   const Eigen::Matrix3d rotation = landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
   if (jacobian != nullptr) jacobian->setZero();
   for (size_t i = 0; i < points_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    residuals[row] = weight_ * tau;
     const Eigen::Vector3d in_object =
         landmark_in_camera.half_axes.cwiseProduct(points_[i].in_unit_body);
     const Eigen::Vector3d offset = rotation * in_object;
     const Eigen::Vector3d in_camera = offset + landmark_in_camera.Centre();
     const auto pixel = camera_.Project(in_camera);
-    if (!pixel) continue;
-    const auto distance = SampleBilinear(image_.maps.distance, *pixel);
-    const auto nearest = NearestEdge(image_.maps, *pixel);
-    if (!distance || !nearest) continue;
-    const double direction = image_.edge_direction.at<float>(static_cast<int>(nearest->y()),
-                                                             static_cast<int>(nearest->x()));
-    const double alignment = std::abs(points_[i].along.x() * std::cos(direction) +
-                                      points_[i].along.y() * std::sin(direction));
-    if (alignment < tolerance) continue;
+    const auto distance =
+        pixel ? SampleBilinear(image_.frame->maps.distance, *pixel) : std::nullopt;
+    if (!distance) {  // has left the image: the limit of ever larger distances
+      residuals[row] = weight_ * tau;
+      continue;
+    }
     // D / sqrt(1 + D^2 / tau^2)
     const double ratio = distance->value / tau;
     const double root = std::sqrt(1.0 + ratio * ratio);

@@ -18,29 +18,36 @@
 
 namespace soslam {
 
-// What edges are compared with, for one observation.
-struct EdgeImage {
-  EdgeImage(const EdgeMaps& maps, const Box& box, std::vector<Box> nearer_boxes);
+// What edges are compared with in one frame.
+struct FrameEdges {
+  explicit FrameEdges(EdgeMaps edge_maps);
 
-  Box box;  // of the observation
   EdgeMaps maps;
-  cv::Mat edge_direction;         // CV_32FC1, rad modulo pi: of the edge through each edge pixel
+  cv::Mat direction;  // CV_32FC1, rad modulo pi: of the edge through each edge pixel
+};
+
+// The same for one observation.
+struct EdgeImage {
+  std::shared_ptr<const FrameEdges> frame;
+  Box box;                        // of the observation
   std::vector<Box> nearer_boxes;  // of objects that may hide this one
 };
 
 // How far the visible edges of a body lie from edges in the image. Each model point costs its
-// distance to the nearest edge pixel (px / sigma), truncated softly (Geman-McClure), and as much as
-// possible where that edge runs in another direction. Residuals are scaled to count as one for
-// every options.edge_correlation_px of the box's perimeter, since neighbours on an edge say the
-// same.
+// distance to the nearest edge pixel (px / sigma), truncated softly (Geman-McClure). Residuals are
+// scaled to count as one for every options.edge_correlation_px of the box's perimeter, since
+// neighbours on an edge say the same.
+//
+// Which points count is decided where the term is made, on the start: those inside the image,
+// outside nearer boxes, and with an image edge nearest to them that runs their way. The others cost
+// as much as a point far from any edge: an edge that is not seen speaks for no landmark.
 class EdgeTerm final : public LandmarkTerm {
  public:
-  // The points of `start_in_camera` that are inside the image and outside nearer boxes.
   EdgeTerm(const EdgeImage& image, const Camera& camera, const Landmark& start_in_camera,
            const EdgeOptions& options);
 
-  // The share of the largest possible cost that a landmark does not have: 1 when all its points lie
-  // on edges, 0 when none is near one.
+  // The share of the largest possible cost that a landmark near the start does not have: 1 when all
+  // its points lie on edges, 0 when none is near one.
   double Support(const Landmark& landmark_in_camera) const;
   // Scales the cost.
   void Weigh(double factor) { weight_ *= std::sqrt(factor); }
@@ -48,12 +55,18 @@ class EdgeTerm final : public LandmarkTerm {
   int NumResiduals() const override { return static_cast<int>(points_.size()); }
   void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
+  double ConstantCost() const override { return points_that_do_not_count_ * LargestCost(); }
 
  private:
+  bool Counts(const ModelPoint& point, const Landmark& start_in_camera) const;
+  // Of one point.
+  double LargestCost() const { return 0.5 * std::pow(weight_ * options_.edge_truncation_px, 2); }
+
   const EdgeImage& image_;
   Camera camera_;
   EdgeOptions options_;
   std::vector<ModelPoint> points_;
+  double points_that_do_not_count_ = 0.0;
   double weight_;
 };
 

@@ -9,11 +9,8 @@
 #include <vector>
 
 #include "initialisation/yaw_sweep.h"
-#include "model/occlusion.h"
-#include "orientation/edge_alignment.h"
 #include "orientation/mirror_planes.h"
 #include "orientation/texture_asymmetry.h"
-#include "symmetry/sampling.h"
 
 namespace soslam {
 namespace {
@@ -25,15 +22,15 @@ constexpr int kEdgeRounds = 2;
 
 class OrientationProfile {
  public:
-  OrientationProfile(const Sequence& sequence, const Detection& detection, const EdgeMaps& maps,
-                     const ShapePrior& prior, const ProfileOptions& options,
-                     const SymmetryOptions& symmetry_options)
+  OrientationProfile(const Sequence& sequence, const Detection& detection,
+                     const std::shared_ptr<const FrameEdges>& edges, const ShapePrior& prior,
+                     const ProfileOptions& options, const SymmetryOptions& symmetry_options)
       : detection_(detection),
         options_(options),
         symmetry_options_(symmetry_options),
         observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
-        edge_image_(maps, detection.box, NearerBoxes(sequence, detection)),
-        symmetry_image_(maps, detection.box) {}
+        edge_image_{edges, detection.box, detection.nearer_boxes},
+        symmetry_image_(edges->maps, detection.box) {}
 
   const UprightObservation& observation() const { return observation_; }
 
@@ -60,21 +57,22 @@ class OrientationProfile {
   }
 
   double EdgeCost(const Landmark& landmark) const {
-    const EdgeTerm term(edge_image_, observation_.camera, landmark, options_.edges);
-    Eigen::VectorXd residuals(term.NumResiduals());
-    term.Evaluate(landmark, residuals, nullptr);
-    return 0.5 * residuals.squaredNorm();
+    LandmarkTerms terms;
+    terms.push_back(
+        std::make_unique<EdgeTerm>(edge_image_, observation_.camera, landmark, options_.edges));
+    return TotalCost(terms, landmark);
   }
 
   void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
-    const SymmetryDescriptor evaluate(symmetry_options_.descriptor, symmetry_image_,
-                                      observation_.camera, landmark);
-    for (const Eigen::Vector2d& pixel : SamplePixels(symmetry_image_.maps, observation_.camera,
-                                                     landmark, detection_.box, symmetry_options_)) {
-      if (const auto pair = evaluate.Evaluate(pixel, symmetry_options_.min_viewing_cosine, false)) {
-        record->samples.push_back(pixel.cast<float>());
-        record->mirrored.push_back(pair->mirror_pixel.cast<float>());
-      }
+    const auto texture = FindMirroredTexture(symmetry_image_, observation_.camera, detection_.box,
+                                             landmark, options_.texture, symmetry_options_);
+    if (!texture) return;
+    const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_,
+                                        observation_.camera, landmark);
+    for (const Eigen::Vector2d& pixel : texture->pixels) {
+      const auto pair = descriptor.Evaluate(pixel, std::nullopt, false, texture->mirror_plane);
+      record->samples.push_back(pixel.cast<float>());
+      record->mirrored.push_back(pair->mirror_pixel.cast<float>());
     }
   }
 
@@ -107,7 +105,8 @@ void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
 }  // namespace
 
 RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
-                                     const EdgeMaps& maps, const std::optional<ShapePrior>& prior,
+                                     const std::shared_ptr<const FrameEdges>& edges,
+                                     const std::optional<ShapePrior>& prior,
                                      const ProfileOptions& options,
                                      const SymmetryOptions& symmetry_options) {
   const Detection& detection = sequence.detections[static_cast<size_t>(detection_index)];
@@ -120,7 +119,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     result.estimate.failure = "no_ratio_for_label";
     return result;
   }
-  const OrientationProfile profile(sequence, detection, maps, *prior, options, symmetry_options);
+  const OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
   const YawObjective objective = profile.Objective();
   const YawSweep sweep = SweepYaw(profile.observation(), objective,
                                   options.upright.yaw_grid_deg * std::numbers::pi / 180.0);

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "image/edge_maps.h"
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "orientation/edge_alignment.h"
 #include "orientation/options.h"
 #include "symmetry/refine.h"
 
@@ -17,7 +17,8 @@ namespace soslam {
 // costs; the curves of all parts, the yaw and its standard deviation go into the record. Failures:
 // no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
 RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
-                                     const EdgeMaps& maps, const std::optional<ShapePrior>& prior,
+                                     const std::shared_ptr<const FrameEdges>& edges,
+                                     const std::optional<ShapePrior>& prior,
                                      const ProfileOptions& options,
                                      const SymmetryOptions& symmetry_options);
 

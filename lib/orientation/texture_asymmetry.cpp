@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation/texture_asymmetry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "image/brief.h"
 #include "symmetry/sampling.h"
 
@@ -29,67 +32,72 @@ double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptio
   }
 }
 
-bool AreEnough(size_t pairs, size_t samples, const SymmetryOptions& options) {
+bool AreEnough(Eigen::Index pairs, size_t samples, const SymmetryOptions& options) {
   return static_cast<double>(pairs) >=
          std::max(static_cast<double>(options.min_pairs),
                   options.min_pair_fraction * static_cast<double>(samples));
 }
 
-// The samples whose pairs are visible; none when they are too few.
-std::vector<Eigen::Vector2d> VisiblePairs(const SymmetryDescriptor& descriptor,
-                                          const SymmetryImage& image, const Camera& camera,
-                                          const Box& box, const Landmark& landmark_in_camera,
-                                          const SymmetryOptions& options) {
-  const auto samples = SamplePixels(image.maps, camera, landmark_in_camera, box, options);
-  std::vector<Eigen::Vector2d> visible;
-  std::copy_if(samples.begin(), samples.end(), std::back_inserter(visible), [&](const auto& pixel) {
-    return descriptor.Evaluate(pixel, options.min_viewing_cosine, false).has_value();
-  });
-  if (!AreEnough(visible.size(), samples.size(), options)) visible.clear();
-  return visible;
-}
-
-// Where the mirror plane may lie, metres to the side of the centre.
-std::vector<double> MirrorPlaneOffsets(const Landmark& landmark, const TextureOptions& options) {
-  const double range = options.mirror_plane_range * Size(landmark);
+std::vector<double> MirrorPlanePlaces(double range, Descriptor descriptor) {
   if (!(range > 0.0)) return {0.0};
-  std::vector<double> offsets;
-  for (int i = -kMirrorPlaneSteps; i <= kMirrorPlaneSteps; ++i) {
-    offsets.push_back(range * i / kMirrorPlaneSteps);
+  if (descriptor == Descriptor::kLinearisedDt) {
+    throw SettingsError(fmt::format(
+        "mirror_plane_range is {}; expected 0 with descriptor = improved_dt_linearised", range));
   }
-  return offsets;
+  std::vector<double> places;
+  for (int i = -kMirrorPlaneSteps; i <= kMirrorPlaneSteps; ++i) {
+    places.push_back(range * i / kMirrorPlaneSteps);
+  }
+  return places;
 }
 
 }  // namespace
 
-double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
-                     const Landmark& landmark_in_camera, const TextureOptions& options,
-                     const SymmetryOptions& symmetry_options) {
+std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
+                                                   const Box& box,
+                                                   const Landmark& landmark_in_camera,
+                                                   const TextureOptions& options,
+                                                   const SymmetryOptions& symmetry_options) {
   const SymmetryDescriptor descriptor(symmetry_options.descriptor, image, camera,
                                       landmark_in_camera);
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options.descriptor, options), 2);
   const auto samples = SamplePixels(image.maps, camera, landmark_in_camera, box, symmetry_options);
-  const std::vector<double> offsets = MirrorPlaneOffsets(landmark_in_camera, options);
-  std::vector<double> sums(offsets.size(), 0.0);
-  std::vector<size_t> pairs(offsets.size(), 0);
-  for (const Eigen::Vector2d& pixel : samples) {
-    const auto residuals =
-        descriptor.Residuals(pixel, symmetry_options.min_viewing_cosine, offsets);
-    if (!residuals) continue;
-    for (size_t i = 0; i < offsets.size(); ++i) {
-      if (std::isnan((*residuals)[i])) continue;
-      const double squared = std::pow((*residuals)[i], 2);
-      sums[i] += squared / (squared + squared_scale);
-      ++pairs[i];
+  const std::vector<double> places =
+      MirrorPlanePlaces(options.mirror_plane_range, symmetry_options.descriptor);
+  // One row per sample, one column per place; NaN where there is no pair.
+  Eigen::ArrayXXd residuals(samples.size(), places.size());
+  for (size_t i = 0; i < samples.size(); ++i) {
+    residuals.row(static_cast<Eigen::Index>(i)) =
+        descriptor.Residuals(samples[i], symmetry_options.min_viewing_cosine, places);
+  }
+  std::optional<MirroredTexture> best;
+  Eigen::Index best_place = 0;
+  for (Eigen::Index place = 0; place < residuals.cols(); ++place) {
+    const Eigen::ArrayXd squared = residuals.col(place).square();
+    const Eigen::Index pairs = squared.isFinite().count();
+    if (!AreEnough(pairs, samples.size(), symmetry_options)) continue;
+    const double sum = squared.isFinite().select(squared / (squared + squared_scale), 0.0).sum();
+    const double asymmetry = sum / static_cast<double>(pairs);
+    if (best && best->asymmetry <= asymmetry) continue;
+    best = MirroredTexture{asymmetry, places[static_cast<size_t>(place)], {}};
+    best_place = place;
+  }
+  if (!best) return std::nullopt;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (std::isfinite(residuals(static_cast<Eigen::Index>(i), best_place))) {
+      best->pixels.push_back(samples[i]);
     }
   }
-  double lowest = 1.0;
-  for (size_t i = 0; i < offsets.size(); ++i) {
-    if (!AreEnough(pairs[i], samples.size(), symmetry_options)) continue;
-    lowest = std::min(lowest, sums[i] / static_cast<double>(pairs[i]));
-  }
-  return options.asymmetry_cost * lowest;
+  return best;
+}
+
+double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
+                     const Landmark& landmark_in_camera, const TextureOptions& options,
+                     const SymmetryOptions& symmetry_options) {
+  const auto texture =
+      FindMirroredTexture(image, camera, box, landmark_in_camera, options, symmetry_options);
+  return options.asymmetry_cost * (texture ? texture->asymmetry : 1.0);
 }
 
 AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
@@ -99,13 +107,13 @@ AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
     : image_(std::move(image)),
       camera_(camera),
       descriptor_(symmetry_options.descriptor),
-      pixels_(VisiblePairs(SymmetryDescriptor(descriptor_, *image_, camera, start_in_camera),
-                           *image_, camera, box, start_in_camera, symmetry_options)),
+      texture_(FindMirroredTexture(*image_, camera, box, start_in_camera, options, symmetry_options)
+                   .value_or(MirroredTexture())),
       shape_exponent_(start_in_camera.shape_exponent),
       scale_(Scale(start_in_camera, descriptor_, options)),
       amplitude_(std::sqrt(2.0 * weight * options.asymmetry_cost /
-                           static_cast<double>(std::max<size_t>(1, pixels_.size())))) {
-  set_num_residuals(static_cast<int>(pixels_.size()));
+                           static_cast<double>(std::max<size_t>(1, texture_.pixels.size())))) {
+  set_num_residuals(static_cast<int>(texture_.pixels.size()));
   *mutable_parameter_block_sizes() = {kPoseSize, kLandmarkSize};
 }
 
@@ -116,8 +124,9 @@ bool AsymmetryResidual::Evaluate(double const* const* blocks, double* residuals,
                                       observation.landmark_in_camera());
   Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> by_landmark(num_residuals(), kLandmarkDof);
   by_landmark.setZero();
-  for (size_t i = 0; i < pixels_.size(); ++i) {
-    const auto pair = descriptor.Evaluate(pixels_[i], std::nullopt, jacobians != nullptr);
+  for (size_t i = 0; i < texture_.pixels.size(); ++i) {
+    const auto pair = descriptor.Evaluate(texture_.pixels[i], std::nullopt, jacobians != nullptr,
+                                          texture_.mirror_plane);
     residuals[i] = amplitude_;
     if (!pair) continue;
     // d / sqrt(d^2 + s^2)

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "constraints/symmetry.h"
@@ -15,20 +16,35 @@
 
 namespace soslam {
 
-// What the texture in one detection's box costs a landmark, as a negative logarithm of a
-// likelihood: options.asymmetry_cost times the mean over the mirrored pairs on the landmark's own
-// surface of d^2 / (d^2 + s^2), d the descriptor difference of eq. (16), s what counts as no
-// symmetry; a pair that differs wholly counts no more than one that differs clearly. All of the
-// cost where too few pairs are visible. The lowest over the places of the mirror plane that
-// options.mirror_plane_range allows.
+// The visible mirrored pairs of the texture in one detection's box, on the landmark's own surface,
+// at the place of the mirror plane (see VisibleSurface::MirrorImage) within
+// options.mirror_plane_range where they differ least.
+struct MirroredTexture {
+  // The mean over the pairs of d^2 / (d^2 + s^2), d the descriptor difference of eq. (16), s what
+  // counts as no symmetry: 0 to 1; a pair that differs wholly counts no more than one that differs
+  // clearly.
+  double asymmetry = 1.0;
+  double mirror_plane = 0.0;
+  std::vector<Eigen::Vector2d> pixels;  // one of each pair
+};
+// None where too few pairs are visible. Throws SettingsError for a mirror plane that may lie beside
+// the xz plane and kLinearisedDt, whose tangent planes would not touch the surface then.
+std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
+                                                   const Box& box,
+                                                   const Landmark& landmark_in_camera,
+                                                   const TextureOptions& options,
+                                                   const SymmetryOptions& symmetry_options);
+
+// What this costs a landmark, as a negative logarithm of a likelihood: options.asymmetry_cost times
+// the asymmetry; all of it where too few pairs are visible.
 double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options);
 
-// The same for the back end, of the pairs that are visible on the start, the cost multiplied by
-// `weight`. A pair that leaves the surface counts as asymmetric. Residuals: one per pair, none
-// where too few are visible. Blocks: world_from_camera, landmark in the world. Not for kBrief,
-// which has no derivative.
+// The same for the back end, of the pairs and the mirror plane that are the start's, the cost
+// multiplied by `weight`. A pair that leaves the surface counts as asymmetric, the limit of one
+// that differs more and more. Residuals: one per pair, none where too few are visible. Blocks:
+// world_from_camera, landmark in the world. Not for kBrief, which has no derivative.
 class AsymmetryResidual final : public ceres::CostFunction {
  public:
   AsymmetryResidual(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
@@ -41,7 +57,7 @@ class AsymmetryResidual final : public ceres::CostFunction {
   std::shared_ptr<const SymmetryImage> image_;
   Camera camera_;
   Descriptor descriptor_;
-  std::vector<Eigen::Vector2d> pixels_;
+  MirroredTexture texture_;
   double shape_exponent_;
   double scale_;  // s
   double amplitude_;

@@ -81,14 +81,15 @@ void CheckLayer(const json& layer, const std::string& file) {
       stage->resolve(value.is_object() ? without_nulls : value, file + ": " + key);
     } else if (key == "stages") {
       CheckStageList(value, file);
-    } else if (key == "description" || key == "semantic_table") {
+    } else if (key == "description" || key == "semantic_table" || key == "extends") {
       if (!value.is_string()) {
         throw SettingsError(
             fmt::format("{}: '{}' is {}; expected a string", file, key, value.dump()));
       }
     } else {
       throw SettingsError(fmt::format(
-          "{}: unknown key '{}'; known are description, stages, semantic_table and the stages {}",
+          "{}: unknown key '{}'; known are description, extends, stages, semantic_table and the "
+          "stages {}",
           file, key, fmt::join(PipelineStages(), ", ")));
     }
   }
@@ -98,6 +99,23 @@ json ReadLayer(const fs::path& file) {
   json layer = ReadSettingsFile(file);
   CheckLayer(layer, file.string());
   return layer;
+}
+
+// The variant in `file` after those that it extends.
+std::vector<json> ReadVariantLayers(fs::path file) {
+  std::vector<json> layers;
+  std::set<fs::path> seen;
+  for (;;) {
+    if (!seen.insert(file).second) {
+      throw SettingsError(file.string() + ": 'extends' leads back to this file");
+    }
+    layers.push_back(ReadLayer(file));
+    if (!layers.back().contains("extends")) break;
+    const std::string name = layers.back().at("extends").get<std::string>() + ".json";
+    file = (file.parent_path() / name).lexically_normal();
+  }
+  std::reverse(layers.begin(), layers.end());
+  return layers;
 }
 
 void CheckNeeds(const VariantSettings& settings, const std::string& file) {
@@ -153,7 +171,7 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   json merged = ReadLayer(pipelines / "base.json");
   const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
   if (fs::exists(dataset_file)) merged.merge_patch(ReadLayer(dataset_file));
-  merged.merge_patch(ReadLayer(variant_file));
+  for (const json& layer : ReadVariantLayers(variant_file)) merged.merge_patch(layer);
 
   const std::string file = variant_file.string();
   VariantSettings settings;

@@ -25,8 +25,10 @@ std::vector<std::string> PipelineStages();
 std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);
 
 // pipelines/base.json < datasets/<dataset>.json (if any) < variants/<variant>.json, merged as JSON
-// merge patches (RFC 7396). Throws SettingsError, naming the file, for a missing or malformed file,
-// an unknown stage or setting, a value out of range, and stages that lack what they read.
+// merge patches (RFC 7396). A variant with "extends": "<path>" comes after the variant in
+// <path>.json, relative to its own folder. Throws SettingsError, naming the file, for a missing or
+// malformed file, an unknown stage or setting, a value out of range, and stages that lack what they
+// read.
 VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::string& dataset,
                             const std::string& variant);
 

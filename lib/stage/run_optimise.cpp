@@ -13,7 +13,6 @@
 #include "base/error.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
-#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -32,26 +31,26 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
                 BackEndInput* input) {
   EdgesReader edges(edges_file);
   const Sequence& sequence = input->sequence;
-  std::map<int, EdgeMaps> maps_by_frame;
-  const auto maps_of = [&](const Detection& detection) -> const EdgeMaps& {
+  std::map<int, std::shared_ptr<const FrameEdges>> frames;
+  const auto frame_of = [&](const Detection& detection) {
     const int frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
-    const auto found = maps_by_frame.find(frame_id);
-    if (found != maps_by_frame.end()) return found->second;
-    return maps_by_frame.emplace(frame_id, edges.Read(frame_id)).first->second;
+    std::shared_ptr<const FrameEdges>& frame = frames[frame_id];
+    if (!frame) frame = std::make_shared<const FrameEdges>(edges.Read(frame_id));
+    return frame;
   };
   for (const std::vector<int>& detections : DetectionsByObject(sequence)) {
     if (options.symmetry) {
       for (const int index : SpreadOver(detections, static_cast<size_t>(options.symmetry_views))) {
         const Detection& detection = sequence.detections[static_cast<size_t>(index)];
         input->symmetry_images[index] =
-            std::make_shared<const SymmetryImage>(maps_of(detection), detection.box);
+            std::make_shared<const SymmetryImage>(frame_of(detection)->maps, detection.box);
       }
     }
     if (options.edge_alignment) {
       for (const int index : detections) {
         const Detection& detection = sequence.detections[static_cast<size_t>(index)];
         input->edge_images[index] = std::make_shared<const EdgeImage>(
-            maps_of(detection), detection.box, NearerBoxes(sequence, detection));
+            EdgeImage{frame_of(detection), detection.box, detection.nearer_boxes});
       }
     }
   }

@@ -44,35 +44,37 @@ class Refiner {
   std::vector<RefinedObservation> Refine(
       const std::vector<std::vector<const ObservationEstimate*>>& groups, size_t first, size_t last,
       EdgesReader* edges) const {
-    std::vector<std::pair<const ObservationEstimate*, EdgeMaps>> tasks;
+    std::vector<std::pair<const ObservationEstimate*, std::shared_ptr<const FrameEdges>>> tasks;
     for (size_t i = first; i < last; ++i) {
       const auto& detection =
           sequence_.detections[static_cast<size_t>(groups[i].front()->detection_index)];
       const int frame_id = sequence_.frames[static_cast<size_t>(detection.frame_index)].id;
-      const EdgeMaps maps = edges->Read(frame_id);
-      for (const ObservationEstimate* observation : groups[i])
-        tasks.emplace_back(observation, maps);
+      const auto frame = std::make_shared<const FrameEdges>(edges->Read(frame_id));
+      for (const ObservationEstimate* observation : groups[i]) {
+        tasks.emplace_back(observation, frame);
+      }
     }
     std::vector<RefinedObservation> refined(tasks.size());
     ParallelFor(static_cast<int>(tasks.size()), threads_, [&](int i) {
-      const auto& [observation, maps] = tasks[static_cast<size_t>(i)];
+      const auto& [observation, frame] = tasks[static_cast<size_t>(i)];
       const auto& detection =
           sequence_.detections[static_cast<size_t>(observation->detection_index)];
       const auto& prior = priors_[static_cast<size_t>(detection.object_index)];
-      refined[static_cast<size_t>(i)] = Refine(*observation, maps, prior);
+      refined[static_cast<size_t>(i)] = Refine(*observation, frame, prior);
     });
     return refined;
   }
 
  private:
-  RefinedObservation Refine(const ObservationEstimate& initial, const EdgeMaps& maps,
+  RefinedObservation Refine(const ObservationEstimate& initial,
+                            const std::shared_ptr<const FrameEdges>& edges,
                             const std::optional<ShapePrior>& prior) const {
     if (options_.method == RefinementMethod::kProfile) {
-      return RefineOrientation(sequence_, initial.detection_index, maps, prior, options_.profile,
+      return RefineOrientation(sequence_, initial.detection_index, edges, prior, options_.profile,
                                options_.turn.symmetry);
     }
     const auto ratio = prior ? std::optional(prior->ratio) : std::nullopt;
-    return RefineObservation(sequence_, initial, maps, ratio, options_.turn);
+    return RefineObservation(sequence_, initial, edges->maps, ratio, options_.turn);
   }
 
   const Sequence& sequence_;

@@ -145,8 +145,13 @@ Sequence SyntheticSequence(const Scene& scene, bool noise) {
     const int plane_index = scene.objects[detection.object_index].plane_index;
     const Rigid3d& world_from_camera = simulation.true_world_from_camera[detection.frame_index];
     sequence.detections.push_back(
-        {detection.frame_index, detection.object_index, 1.0, detection.box,
-         Transform(world_from_camera.Inverse(), scene.planes[plane_index].plane_in_world)});
+        {detection.frame_index,
+         detection.object_index,
+         1.0,
+         detection.box,
+         Transform(world_from_camera.Inverse(), scene.planes[plane_index].plane_in_world),
+         {},
+         {}});
   }
   return sequence;
 }

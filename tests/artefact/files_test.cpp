@@ -96,6 +96,7 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
               std::tie(b.frame_index, b.object_index, b.score));
     EXPECT_EQ(nlohmann::json(a.box), nlohmann::json(b.box));
     EXPECT_EQ(a.is_bound, b.is_bound);
+    EXPECT_EQ(a.nearer_boxes, b.nearer_boxes);
     ExpectSame(a.plane_in_camera, b.plane_in_camera);
   }
 }
@@ -177,15 +178,17 @@ TEST_F(ArtefactFilesTest, BoundsMayComeInAnyOrder) {
             (std::array<bool, 4>{true, false, false, true}));
 }
 
-TEST_F(ArtefactFilesTest, WithoutShapeExponentsAndBoundsThereAreEllipsoidsAndNone) {
+TEST_F(ArtefactFilesTest, WithoutShapeExponentsBoundsAndNearerBoxesThereAreEllipsoidsAndNone) {
   WriteSequence(file, sequence, {});
   nlohmann::json document = ParseJsonFile(file);
   document["objects"][0]["ground_truth"]["landmark"].erase("shape_exponent");
   document["detections"][1].erase("bounds");
+  document["detections"][1].erase("nearer_boxes");
   std::ofstream(file) << document;
   const Sequence read = ReadSequence(file);
   EXPECT_EQ(read.objects[0].ground_truth->landmark_in_world.shape_exponent, 2.0);
   EXPECT_EQ(read.detections[1].is_bound, (std::array<bool, 4>{}));
+  EXPECT_TRUE(read.detections[1].nearer_boxes.empty());
 }
 
 TEST_F(ArtefactFilesTest, EmptyEstimatesComeBack) {

@@ -46,22 +46,26 @@ TEST(SymmetryDescriptor, MirrorOfTheMirrorIsThePixel) {
   }
 }
 
-TEST(SymmetryDescriptor, ResidualsOfAPlaneThroughTheCentreAreThoseOfThePair) {
+TEST(SymmetryDescriptor, ResidualsOfSeveralMirrorPlanesAreThoseOfEachPair) {
   const SymmetryImage image = SparseImage();
-  for (const Descriptor descriptor : kDifferentiable) {
+  const std::vector<double> planes = {-0.2, 0.0, 0.1};
+  int pairs = 0;
+  for (const Descriptor descriptor : {Descriptor::kDistanceTransform, Descriptor::kImprovedDt}) {
     for (int i = 0; i < 20; ++i) {
       const SymmetryDescriptor of(descriptor, image, TestCamera(), FacingView().LandmarkInCamera());
       const Eigen::Vector2d pixel(RandomUniform(200, 440), RandomUniform(150, 330));
-      const auto pair = of.Evaluate(pixel, 0.3, false);
-      const auto residuals = of.Residuals(pixel, 0.3, {0.0});
-      if (pair) {
-        ASSERT_TRUE(residuals);
-        EXPECT_EQ((*residuals)[0], pair->residual);
-      } else if (residuals) {
-        EXPECT_TRUE(std::isnan((*residuals)[0]));
+      const Eigen::RowVectorXd residuals = of.Residuals(pixel, 0.3, planes);
+      ASSERT_EQ(residuals.size(), 3);
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const auto pair = of.Evaluate(pixel, 0.3, false, planes[static_cast<size_t>(k)]);
+        EXPECT_EQ(std::isnan(residuals[k]), !pair);
+        if (!pair) continue;
+        EXPECT_EQ(residuals[k], pair->residual);
+        ++pairs;
       }
     }
   }
+  EXPECT_GT(pairs, 20);
 }
 
 TEST(SymmetryDescriptor, HasNoPairWhereTheRayMissesOrTheMirrorPointIsHidden) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "model/occlusion.h"
 #include "support/level_sequence.h"
 
 namespace soslam {
@@ -13,13 +14,21 @@ using Bounds = std::array<bool, 4>;  // left, top, right, bottom
 constexpr Bounds kNone = {false, false, false, false};
 constexpr Bounds kBottom = {false, false, false, true};
 
-// Of the first box, with the others in the same frame.
-Bounds BoundsOfFirst(const std::vector<Box>& boxes, double hidden_edge_fraction = 0.7) {
-  Sequence sequence = LevelSequence(boxes);
+// Of each box, with the others in the same frame.
+std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction = 0.7) {
+  for (Detection& detection : sequence.detections) {
+    detection.nearer_boxes = NearerBoxes(sequence, detection);
+  }
   ImportOptions options;
   options.hidden_edge_fraction = hidden_edge_fraction;
-  MarkBoundEdges(options, sequence, &sequence);
-  return sequence.detections[0].is_bound;
+  MarkBoundEdges(options, &sequence);
+  std::vector<Bounds> bounds;
+  for (const Detection& detection : sequence.detections) bounds.push_back(detection.is_bound);
+  return bounds;
+}
+
+Bounds BoundsOfFirst(const std::vector<Box>& boxes, double hidden_edge_fraction = 0.7) {
+  return BoundsOfAll(LevelSequence(boxes), hidden_edge_fraction).front();
 }
 
 const Box kBox = {200, 150, 300, 300};
@@ -67,8 +76,7 @@ TEST(BoundEdgesTest, ObjectsThatAreNotNearerHideNothing) {
   // Farther, though its box ends lower: it stands lower by 3 m.
   Sequence sequence = LevelSequence({kBox, {180, 100, 320, 400}});
   sequence.detections[1].plane_in_camera.offset = 4.0;
-  MarkBoundEdges({}, sequence, &sequence);
-  EXPECT_EQ(sequence.detections[0].is_bound, kNone);
+  EXPECT_EQ(BoundsOfAll(sequence)[0], kNone);
 }
 
 TEST(BoundEdgesTest, SidesAndTopInsideNearerBoxesStayMeasured) {
@@ -77,24 +85,13 @@ TEST(BoundEdgesTest, SidesAndTopInsideNearerBoxesStayMeasured) {
 }
 
 TEST(BoundEdgesTest, TheNearerObjectsOwnEdgesStayMeasured) {
-  Sequence sequence = LevelSequence({kBox, {180, 200, 320, 400}});
-  MarkBoundEdges({}, sequence, &sequence);
-  EXPECT_EQ(sequence.detections[1].is_bound, kNone);
-}
-
-TEST(BoundEdgesTest, WhatIsInViewHidesThoughItIsNotUsed) {
-  const Sequence in_view = LevelSequence({kBox, {180, 200, 320, 479}});
-  Sequence sequence = in_view;
-  sequence.detections.pop_back();
-  MarkBoundEdges({}, in_view, &sequence);
-  EXPECT_EQ(sequence.detections[0].is_bound, kBottom);
+  EXPECT_EQ(BoundsOfAll(LevelSequence({kBox, {180, 200, 320, 400}}))[1], kNone);
 }
 
 TEST(BoundEdgesTest, WhatWasMarkedBeforeIsDecidedAgain) {
   Sequence sequence = LevelSequence({kBox});
   sequence.detections[0].is_bound = {true, true, true, true};
-  MarkBoundEdges({}, sequence, &sequence);
-  EXPECT_EQ(sequence.detections[0].is_bound, kNone);
+  EXPECT_EQ(BoundsOfAll(sequence)[0], kNone);
 }
 
 }  // namespace

@@ -72,6 +72,18 @@ TEST(VisibleSurface, MirrorImageIsTheMirrorOfTheLandmark) {
             1e-12);
 }
 
+TEST(VisibleSurface, AMirrorPlaneBesideTheCentreMovesTheMirrorImageByTwiceItsDistance) {
+  const Landmark landmark = CentralLandmark();
+  const VisibleSurface surface(TestCamera(), landmark);
+  const auto point = surface.FromPixel(RandomPixel());
+  const double distance_m = 0.3 * std::cbrt(landmark.half_axes.prod());
+  const Eigen::Vector3d moved = surface.MirrorImage(*point, 0.3).in_object;
+  EXPECT_LT(
+      (moved - surface.MirrorImage(*point).in_object - Eigen::Vector3d(0.0, 2.0 * distance_m, 0.0))
+          .norm(),
+      1e-12);
+}
+
 TEST(VisibleSurface, TangentPlaneAgreesAtTheContactAndToFirstOrderAround) {
   for (int i = 0; i < 100; ++i) {
     const VisibleSurface surface(TestCamera(), CentralLandmark());
@@ -108,11 +120,13 @@ TEST(VisibleSurface, JacobiansAgreeWithNumbers) {
                      const VisibleSurface at(TestCamera(), moved);
                      return at.FromPixelOnTangentPlane(edge, *at.FromPixel(pixel))->in_object;
                    });
-    ExpectJacobian(surface.ToPixel(surface.MirrorImage(point), true)->jacobian, landmark,
-                   [&](const Landmark& moved) -> Eigen::VectorXd {
-                     const VisibleSurface at(TestCamera(), moved);
-                     return at.ToPixel(at.MirrorImage(*at.FromPixel(pixel)))->pixel;
-                   });
+    for (const double mirror_plane : {0.0, 0.2}) {
+      ExpectJacobian(surface.ToPixel(surface.MirrorImage(point, mirror_plane), true)->jacobian,
+                     landmark, [&](const Landmark& moved) -> Eigen::VectorXd {
+                       const VisibleSurface at(TestCamera(), moved);
+                       return at.ToPixel(at.MirrorImage(*at.FromPixel(pixel), mirror_plane))->pixel;
+                     });
+    }
   }
 }
 

@@ -45,8 +45,8 @@ std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& seque
             .ground_truth->landmark_in_world);
     const EdgeMaps maps =
         ComputeEdgeMaps(DrawCuboids(sequence.camera, {in_camera}), EdgesOptions());
-    images[static_cast<int>(i)] =
-        std::make_shared<const EdgeImage>(maps, detection.box, std::vector<Box>());
+    images[static_cast<int>(i)] = std::make_shared<const EdgeImage>(
+        EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});
   }
   return images;
 }

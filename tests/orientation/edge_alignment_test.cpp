@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "initialisation/upright.h"
 #include "support/drawn_cuboids.h"
 #include "support/jacobians.h"
@@ -18,7 +20,8 @@ Landmark Cuboid(double yaw) {
 }
 
 EdgeImage ImageOf(const Landmark& landmark, const std::vector<Box>& nearer_boxes = {}) {
-  return {ComputeEdgeMaps(DrawCuboids(TestCamera(), {landmark}), EdgesOptions()),
+  return {std::make_shared<const FrameEdges>(
+              ComputeEdgeMaps(DrawCuboids(TestCamera(), {landmark}), EdgesOptions())),
           *OutlineBox(TestCamera(), landmark), nearer_boxes};
 }
 
@@ -26,6 +29,11 @@ double SumOfSquares(const EdgeTerm& term, const Landmark& landmark) {
   Eigen::VectorXd residuals(term.NumResiduals());
   term.Evaluate(landmark, residuals, nullptr);
   return residuals.squaredNorm();
+}
+
+// With the points that do not count.
+double TwiceTheCost(const EdgeTerm& term, const Landmark& landmark) {
+  return SumOfSquares(term, landmark) + 2.0 * term.ConstantCost();
 }
 
 // What all points cost together when none is near an edge.
@@ -54,7 +62,7 @@ TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
     const EdgeImage image = ImageOf(truth);
     const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
     const double largest = LargestCost(image.box, EdgeOptions());
-    const double at_truth = SumOfSquares(term, truth);
+    const double at_truth = TwiceTheCost(term, truth);
     // Edges are found to half a pixel, and none at the corners: (0.5 / 8)^2 and a few points.
     EXPECT_LT(at_truth, 0.05 * largest) << yaw;
     EXPECT_NEAR(term.Support(truth), 1.0 - at_truth / largest, 1e-12);
@@ -67,7 +75,7 @@ TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
           return UprightLandmark(kFloor, at, kCuboidExponent);
         };
         const double step = 4.0 * 1e-4 / MeanMotion(truth, moved(1e-4));  // 4 px on average
-        EXPECT_GT(SumOfSquares(term, moved(step)), at_truth + 0.05 * largest)
+        EXPECT_GT(TwiceTheCost(term, moved(step)), at_truth + 0.05 * largest)
             << "yaw " << yaw << ", parameter " << i << ", direction " << direction;
       }
     }
@@ -82,14 +90,19 @@ TEST(EdgeTerm, IsBounded) {
   for (int i = 0; i < 100; ++i) {
     Landmark landmark = RandomLandmarkInCamera();
     landmark.frame_from_object.translation += RandomVector(-3.0, 3.0);  // also out of the image
-    const double cost = SumOfSquares(term, landmark);
+    const double cost = TwiceTheCost(term, landmark);
     EXPECT_LE(cost, largest * (1.0 + 1e-12));
     EXPECT_NEAR(term.Support(landmark), 1.0 - cost / largest, 1e-12);
   }
   Landmark behind = truth;
   behind.frame_from_object.translation.z() = -3.0;
-  EXPECT_NEAR(SumOfSquares(term, behind), largest, 1e-9);
+  EXPECT_NEAR(TwiceTheCost(term, behind), largest, 1e-9);
   EXPECT_NEAR(term.Support(behind), 0.0, 1e-12);
+  // A body that no point of is in front of the camera has no edge in the image.
+  const EdgeTerm of_none(image, TestCamera(), behind, EdgeOptions());
+  EXPECT_EQ(of_none.NumResiduals(), 0);
+  EXPECT_NEAR(2.0 * of_none.ConstantCost(), largest, 1e-9);
+  EXPECT_NEAR(of_none.Support(behind), 0.0, 1e-12);
 }
 
 TEST(EdgeAlignmentResidual, IsScaledByItsWeightAndTheSquaredSupport) {
@@ -109,36 +122,45 @@ TEST(EdgeAlignmentResidual, IsScaledByItsWeightAndTheSquaredSupport) {
               0.25 * std::pow(term.Support(start), 2) * SumOfSquares(term, start), 1e-9);
 }
 
-TEST(EdgeTerm, LeavesOutPointsInNearerBoxesAndOutsideTheImage) {
+EdgeOptions AnyDirection() {
+  EdgeOptions options;
+  options.edge_direction_tolerance_deg = 90.0;
+  return options;
+}
+
+TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
   const Camera camera = TestCamera();
   const Box half{0, 0, 310, 480};
+  const EdgeOptions options = AnyDirection();
   for (const double right : {0.0, 1.0}) {
     Landmark truth = Cuboid(0.3);
     truth.frame_from_object.translation.x() += right;
     const EdgeImage image = ImageOf(truth, {half});
-    int expected = 0;
-    for (const ModelPoint& point :
-         VisibleModelPoints(camera, truth, EdgeOptions().edge_spacing_px)) {
+    const auto points = VisibleModelPoints(camera, truth, options.edge_spacing_px);
+    const auto visible = std::count_if(points.begin(), points.end(), [&](const ModelPoint& point) {
       const Eigen::Vector2d pixel = *camera.Project(
           truth.frame_from_object * truth.half_axes.cwiseProduct(point.in_unit_body));
-      if (pixel.x() > 310.0 && pixel.x() <= camera.width - 1.0) ++expected;
-    }
-    const EdgeTerm term(image, camera, truth, EdgeOptions());
-    EXPECT_EQ(term.NumResiduals(), expected);
-    EXPECT_GT(expected, 0);
+      return pixel.x() > 310.0 && pixel.x() <= camera.width - 1.0;
+    });
+    ASSERT_GT(visible, 0);
+    const EdgeTerm term(image, camera, truth, options);
+    EXPECT_EQ(term.NumResiduals(), visible);
+    const double share = 1.0 - static_cast<double>(visible) / static_cast<double>(points.size());
+    EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image.box, options), 1e-9);
   }
   const Landmark truth = Cuboid(0.3);
   const EdgeImage hidden = ImageOf(truth, {{0, 0, 640, 480}});
-  const EdgeTerm term(hidden, camera, truth, EdgeOptions());
+  const EdgeTerm term(hidden, camera, truth, options);
   EXPECT_EQ(term.NumResiduals(), 0);
-  EXPECT_EQ(term.Support(truth), 0.0);
+  EXPECT_NEAR(2.0 * term.ConstantCost(), LargestCost(hidden.box, options), 1e-9);
+  EXPECT_NEAR(term.Support(truth), 0.0, 1e-12);
 }
 
 // A distance that is linear in the pixel, in steps that single precision holds exactly, so that
 // bilinear interpolation reproduces it; every pixel's nearest edge is the same, a vertical one.
-EdgeMaps LinearMaps(const Camera& camera) {
+EdgeMaps LinearMaps() {
   EdgeMaps maps;
-  const cv::Size size(camera.width, camera.height);
+  const cv::Size size(TestCamera().width, TestCamera().height);
   maps.grey = cv::Mat(size, CV_8UC1);
   maps.edges = cv::Mat::zeros(size, CV_8UC1);
   maps.nearest_edge = cv::Mat(size, CV_16SC2, cv::Scalar(110, 200));
@@ -152,10 +174,8 @@ EdgeMaps LinearMaps(const Camera& camera) {
   return maps;
 }
 
-EdgeOptions AnyDirection() {
-  EdgeOptions options;
-  options.edge_direction_tolerance_deg = 90.0;
-  return options;
+EdgeImage LinearImage() {
+  return {std::make_shared<const FrameEdges>(LinearMaps()), {200, 150, 400, 330}, {}};
 }
 
 // A cuboid in front of a camera anywhere, all of it in the image.
@@ -169,8 +189,7 @@ RandomView CuboidView() {
 }
 
 TEST(EdgeAlignmentResidual, JacobiansAgreeWithNumbers) {
-  const auto image = std::make_shared<const EdgeImage>(LinearMaps(TestCamera()),
-                                                       Box{200, 150, 400, 330}, std::vector<Box>());
+  const auto image = std::make_shared<const EdgeImage>(LinearImage());
   for (int i = 0; i < 10; ++i) {
     const RandomView view = CuboidView();
     const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
@@ -181,8 +200,7 @@ TEST(EdgeAlignmentResidual, JacobiansAgreeWithNumbers) {
 }
 
 TEST(EdgeAlignmentResidual, IsTheSameWhereverTheWorldIs) {
-  const auto image = std::make_shared<const EdgeImage>(LinearMaps(TestCamera()),
-                                                       Box{200, 150, 400, 330}, std::vector<Box>());
+  const auto image = std::make_shared<const EdgeImage>(LinearImage());
   for (int i = 0; i < 10; ++i) {
     RandomView view = CuboidView();
     const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
@@ -203,21 +221,19 @@ TEST(EdgeAlignmentResidual, IsTheSameWhereverTheWorldIs) {
 // Seen from right in front, all edges of a cuboid are vertical or horizontal in the image: of a
 // vertical image edge everywhere, the latter are as far away as can be.
 TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
-  EdgeMaps maps = LinearMaps(TestCamera());
+  EdgeMaps maps = LinearMaps();
   maps.distance = cv::Scalar(0.0);
-  const EdgeImage image(maps, {200, 150, 400, 330}, {});
+  const EdgeImage image = {std::make_shared<const FrameEdges>(maps), {200, 150, 400, 330}, {}};
   const Landmark landmark{{{1, 0, 0, 0}, {0, 0, 3}}, {0.5, 0.4, 0.3}, kCuboidExponent};
   const EdgeTerm term(image, TestCamera(), landmark, EdgeOptions());
-  Eigen::VectorXd residuals(term.NumResiduals());
-  term.Evaluate(landmark, residuals, nullptr);
   const auto points = VisibleModelPoints(TestCamera(), landmark, EdgeOptions().edge_spacing_px);
-  ASSERT_EQ(static_cast<int>(points.size()), term.NumResiduals());
-  const double largest =
-      std::sqrt(LargestCost(image.box, EdgeOptions()) / static_cast<double>(points.size()));
-  for (size_t i = 0; i < points.size(); ++i) {
-    const bool vertical = std::abs(points[i].along.y()) > 0.5;
-    EXPECT_NEAR(residuals[static_cast<Eigen::Index>(i)], vertical ? 0.0 : largest, 1e-9);
-  }
+  const auto vertical = std::count_if(points.begin(), points.end(), [](const ModelPoint& point) {
+    return std::abs(point.along.y()) > 0.5;
+  });
+  EXPECT_EQ(term.NumResiduals(), vertical);
+  EXPECT_NEAR(SumOfSquares(term, landmark), 0.0, 1e-12);
+  const double share = 1.0 - static_cast<double>(vertical) / static_cast<double>(points.size());
+  EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image.box, EdgeOptions()), 1e-9);
 }
 
 }  // namespace

@@ -39,12 +39,12 @@ class RefineBoxes : public testing::Test {
     for (const Frame& frame : sequence_->frames) {
       cv::Mat grey;
       cv::cvtColor(RenderFrame(scene, frame.world_from_camera), grey, cv::COLOR_BGR2GRAY);
-      maps_->push_back(ComputeEdgeMaps(grey, EdgesOptions()));
+      edges_->push_back(std::make_shared<const FrameEdges>(ComputeEdgeMaps(grey, EdgesOptions())));
     }
   }
   static void TearDownTestSuite() {
     delete sequence_;
-    delete maps_;
+    delete edges_;
   }
 
   static const Detection& DetectionAt(int index) {
@@ -60,12 +60,13 @@ class RefineBoxes : public testing::Test {
     const Eigen::Vector3d half_axes = TrueLandmark(DetectionAt(index)).half_axes;
     const ShapePrior prior{half_axes.head<2>() / half_axes.z(), {0.02, 0.02}, kCuboidExponent};
     return RefineOrientation(*sequence_, index,
-                             (*maps_)[static_cast<size_t>(DetectionAt(index).frame_index)], prior,
+                             (*edges_)[static_cast<size_t>(DetectionAt(index).frame_index)], prior,
                              options, SymmetryOptions());
   }
 
   static inline Sequence* sequence_ = nullptr;
-  static inline std::vector<EdgeMaps>* maps_ = new std::vector<EdgeMaps>;
+  static inline std::vector<std::shared_ptr<const FrameEdges>>* edges_ =
+      new std::vector<std::shared_ptr<const FrameEdges>>;
 };
 
 TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxes) {
@@ -139,7 +140,7 @@ TEST_F(RefineBoxes, LeavesOutPartsThatAreSwitchedOff) {
 }
 
 TEST_F(RefineBoxes, NeedsAPrior) {
-  const RefinedObservation refined = RefineOrientation(*sequence_, 0, maps_->front(), std::nullopt,
+  const RefinedObservation refined = RefineOrientation(*sequence_, 0, edges_->front(), std::nullopt,
                                                        ProfileOptions(), SymmetryOptions());
   EXPECT_EQ(refined.estimate.failure, "no_ratio_for_label");
   EXPECT_TRUE(refined.estimate.hypotheses.empty());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "support/facing_view.h"
 #include "support/jacobians.h"
 
@@ -49,6 +50,15 @@ TEST(AsymmetryCost, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   EXPECT_EQ(cost(Turned(landmark, std::numbers::pi / 2)), 4.0);
 }
 
+// The body's front face towards the camera, 2.5 m away.
+Landmark FacingCube(double shape_exponent) {
+  Eigen::Matrix3d axes;  // x towards the camera, z up
+  axes.col(0) = -Eigen::Vector3d::UnitZ();
+  axes.col(2) = -Eigen::Vector3d::UnitY();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return {{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}, shape_exponent};
+}
+
 // Two grey halves that meet in the middle of the image: every pair differs by all of the range.
 TEST(AsymmetryCost, GrowsToAllOfItWithTheDifference) {
   SymmetryImage image = SparseImage();
@@ -58,11 +68,7 @@ TEST(AsymmetryCost, GrowsToAllOfItWithTheDifference) {
   options.descriptor = Descriptor::kGrey;
   Camera camera = TestCamera();
   camera.cx = 319.5;
-  Eigen::Matrix3d axes;  // x towards the camera, z up
-  axes.col(0) = -Eigen::Vector3d::UnitZ();
-  axes.col(2) = -Eigen::Vector3d::UnitY();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}};
+  const Landmark landmark = FacingCube(kEllipsoidExponent);
   for (const double scale : {0.1, 1.0, 2.0, 100.0}) {
     EXPECT_NEAR(AsymmetryCost(image, camera, kWholeImage, landmark, Texture(3.0, scale), options),
                 3.0 / (1.0 + scale * scale), 1e-9);
@@ -74,24 +80,36 @@ TEST(AsymmetryCost, FindsTheMirrorPlaneBesideTheCentre) {
   SymmetryImage image = SparseImage();
   Camera camera = TestCamera();
   camera.cx = 319.5;
-  // The front face is 2.5 m away: a plane 0.05 m to the side of the centre.
+  // A plane 0.05 m to the right of the centre: y points to the left.
   const double column = 319.5 + camera.fx * 0.05 / 2.5;
   for (int x = 0; x < 640; ++x) {
     image.maps.grey.col(x) = cv::Scalar(std::min(255.0, 2.0 * std::abs(x - column)));
   }
   SymmetryOptions options = EverywhereInTheImage();
   options.descriptor = Descriptor::kGrey;
-  Eigen::Matrix3d axes;  // x towards the camera, z up
-  axes.col(0) = -Eigen::Vector3d::UnitZ();
-  axes.col(2) = -Eigen::Vector3d::UnitY();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}, kCuboidExponent};
+  const Landmark landmark = FacingCube(kCuboidExponent);
   TextureOptions texture = Texture(1.0, 0.1);
-  const double centred = AsymmetryCost(image, camera, kWholeImage, landmark, texture, options);
-  texture.mirror_plane_range = 0.2;  // of its size: up to 0.1 m
-  const double beside = AsymmetryCost(image, camera, kWholeImage, landmark, texture, options);
-  EXPECT_GT(centred, 0.3);
-  EXPECT_LT(beside, 0.01);
+  const auto centred = FindMirroredTexture(image, camera, kWholeImage, landmark, texture, options);
+  texture.mirror_plane_range = 0.2;  // of its size, either way: up to 0.1 m in steps of 0.0125 m
+  const auto beside = FindMirroredTexture(image, camera, kWholeImage, landmark, texture, options);
+  ASSERT_TRUE(centred && beside);
+  EXPECT_GT(centred->asymmetry, 0.3);
+  EXPECT_EQ(centred->mirror_plane, 0.0);
+  EXPECT_LT(beside->asymmetry, 0.01);
+  const double size_m = 0.5;
+  EXPECT_NEAR(std::abs(beside->mirror_plane) * size_m, 0.05, 1e-12);
+  EXPECT_NEAR(AsymmetryCost(image, camera, kWholeImage, landmark, texture, options),
+              beside->asymmetry, 1e-12);
+}
+
+TEST(AsymmetryCost, RefusesALooseMirrorPlaneOnTangentPlanes) {
+  SymmetryOptions options = EverywhereInTheImage();
+  options.descriptor = Descriptor::kLinearisedDt;
+  TextureOptions texture;
+  texture.mirror_plane_range = 0.1;
+  EXPECT_THROW(AsymmetryCost(SparseImage(), TestCamera(), kWholeImage,
+                             FacingView().LandmarkInCamera(), texture, options),
+               SettingsError);
 }
 
 TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
@@ -99,7 +117,9 @@ TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
   for (const Descriptor descriptor : {Descriptor::kLinearisedDt, Descriptor::kDistanceTransform}) {
     SymmetryOptions options = EverywhereInTheImage();
     options.descriptor = descriptor;
-    const TextureOptions texture = Texture(4.0, 0.3);
+    TextureOptions texture = Texture(4.0, 0.3);
+    // The cost's own mirror plane, wherever it is best.
+    texture.mirror_plane_range = descriptor == Descriptor::kDistanceTransform ? 0.3 : 0.0;
     for (int i = 0; i < 10; ++i) {
       RandomView view = FacingView();
       const Landmark start = view.LandmarkInCamera();
@@ -116,18 +136,37 @@ TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
   }
 }
 
-TEST(AsymmetryResidual, JacobiansAgreeWithNumbers) {
-  const auto image = std::make_shared<const SymmetryImage>(SparseImage());
+void ExpectCorrectJacobians(std::shared_ptr<const SymmetryImage> image,
+                            const TextureOptions& texture, Descriptor descriptor) {
   SymmetryOptions options = EverywhereInTheImage();
   options.uniform_columns = 12;
-  options.descriptor = Descriptor::kLinearisedDt;
+  options.descriptor = descriptor;
   for (int i = 0; i < 10; ++i) {
     const RandomView view = FacingView();
     const AsymmetryResidual residual(image, TestCamera(), {250, 180, 390, 300},
-                                     view.LandmarkInCamera(), Texture(4.0, 0.3), options, 0.7);
+                                     view.LandmarkInCamera(), texture, options, 0.7);
     ASSERT_GT(residual.num_residuals(), 50);
     ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
   }
+}
+
+TEST(AsymmetryResidual, JacobiansAgreeWithNumbers) {
+  ExpectCorrectJacobians(std::make_shared<const SymmetryImage>(SparseImage()), Texture(4.0, 0.3),
+                         Descriptor::kLinearisedDt);
+}
+
+// Distances that are linear in the pixel, which bilinear interpolation reproduces.
+TEST(AsymmetryResidual, JacobiansAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) {
+  SymmetryImage image = SparseImage();
+  for (int y = 0; y < image.maps.distance.rows; ++y) {
+    for (int x = 0; x < image.maps.distance.cols; ++x) {
+      image.maps.distance.at<float>(y, x) = 4.0F + static_cast<float>(2 * x + y) / 128.0F;
+    }
+  }
+  TextureOptions texture = Texture(4.0, 0.3);
+  texture.mirror_plane_range = 0.4;
+  ExpectCorrectJacobians(std::make_shared<const SymmetryImage>(std::move(image)), texture,
+                         Descriptor::kDistanceTransform);
 }
 
 TEST(AsymmetryResidual, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "dataset/import_options.h"
 #include "stage/pipeline_settings.h"
 #include "stage/run_plan.h"
 #include "support/expect_error.h"
@@ -162,6 +163,23 @@ TEST_F(PlanTest, NullTakesASettingBackToItsDefault) {
             1);
 }
 
+TEST_F(PlanTest, AVariantComesAfterTheOneThatItExtends) {
+  Write("pipelines/datasets/room.json", R"({"import": {"frame_stride": 2, "border_px": 2}})");
+  Write("pipelines/variants/Plain.json",
+        R"({"import": {"frame_stride": 3, "border_px": 3, "min_observations": 3}})");
+  Write("pipelines/variants/More.json",
+        R"({"extends": "Plain", "import": {"border_px": 4, "min_observations": null}})");
+  Write("others/variants/Most.json",
+        R"({"extends": "../../pipelines/variants/More", "import": {"max_time_difference_s": 5}})");
+  Write("others/base.json", kBase);
+  const nlohmann::json import =
+      ReadVariant(folder_ / "others", "room", "Most").options.at("import");
+  EXPECT_EQ(import["frame_stride"], 3);
+  EXPECT_EQ(import["border_px"], 4);
+  EXPECT_EQ(import["min_observations"], ImportOptions().min_observations);
+  EXPECT_EQ(import["max_time_difference_s"], 5);
+}
+
 TEST_F(PlanTest, RefusalsNameTheFile) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {R"({"initialise": {"unheard_of": 1}})", "unheard_of"},
@@ -177,6 +195,8 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"symmetry": true}})",
        "need stage 'edges'"},
       {R"({"semantic_table": 3})", "semantic_table"},
+      {R"({"extends": 3})", "extends"},
+      {R"({"extends": "Bad"})", "leads back"},
       {"[]", "object"},
       {"{", ""}};
   for (const auto& [text, part] : cases) {
@@ -184,6 +204,8 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
     ExpectRefused("Bad", {"variants/Bad.json", part});
   }
   ExpectRefused("Missing", {"variants/Missing.json", "known are Bad, Full, Mapped, Plain"});
+  Write("pipelines/variants/Bad.json", R"({"extends": "Nowhere"})");
+  ExpectRefused("Bad", {"variants/Nowhere.json"});
   Write("pipelines/datasets/room.json", R"({"import": {"unheard_of": 1}})");
   ExpectRefused("Plain", {"datasets/room.json: import", "unheard_of"});
 }

@@ -18,7 +18,7 @@ inline Sequence LevelSequence(const std::vector<Box>& boxes) {
   for (const Box& box : boxes) {
     const int object_index = static_cast<int>(sequence.objects.size());
     sequence.objects.push_back({object_index, "label", 0, {}});
-    sequence.detections.push_back({0, object_index, 1.0, box, floor_in_camera, {}});
+    sequence.detections.push_back({0, object_index, 1.0, box, floor_in_camera, {}, {}});
   }
   return sequence;
 }

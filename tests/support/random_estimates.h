@@ -41,7 +41,8 @@ inline Sequence RandomSequence() {
                                      RandomUniform(0, 1),
                                      box,
                                      RandomPlane(),
-                                     {(i & 1) != 0, (i & 2) != 0, (i & 4) != 0, (i & 8) != 0}});
+                                     {(i & 1) != 0, (i & 2) != 0, (i & 4) != 0, (i & 8) != 0},
+                                     std::vector<Box>(i % 3, box)});
     }
   }
   sequence.rejected_detections = {{"duplicate", 2}, {"near_border", 17}};

@@ -156,7 +156,8 @@ TEST(YawProfile, IsUndefinedWithoutEdgesAndSaysSo) {
   sequence.camera = TestCamera();
   sequence.frames.resize(1);
   sequence.objects.resize(1);
-  sequence.detections = {{0, 0, 1.0, *OutlineBox(TestCamera(), landmark), {{0, -1, 0}, 0.6}}};
+  sequence.detections = {
+      {0, 0, 1.0, *OutlineBox(TestCamera(), landmark), {{0, -1, 0}, 0.6}, {}, {}}};
   const RefinedObservation refined = RefineObservation(sequence, {0, {{landmark, 0.0}}, ""}, maps,
                                                        Eigen::Vector2d(0.8, 0.7), RefineOptions());
   EXPECT_EQ(refined.estimate.failure, "no_edges");
