@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -37,6 +38,24 @@ inline Eigen::Vector3d ResidualsOf(const ceres::CostFunction& residual, const La
   Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
   return values;
+}
+
+// What such residuals have in common, as functions of plane and landmark in the world.
+using PlaneResiduals = std::function<Eigen::Vector3d(const Plane&, const Landmark&)>;
+
+inline void ExpectZeroForStandingLandmarks(const PlaneResiduals& residuals) {
+  for (int i = 0; i < 100; ++i) {
+    const Plane plane = RandomPlane();
+    EXPECT_LT(residuals(plane, RandomStanding(plane)).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+inline void ExpectNoChangeWithTheWorld(const PlaneResiduals& residuals) {
+  const Plane plane = RandomPlane();
+  const Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0)};
+  const Rigid3d motion = RandomRigid(10.0);
+  const Eigen::Vector3d moved = residuals(Transform(motion, plane), Transform(motion, landmark));
+  EXPECT_LT((moved - residuals(plane, landmark)).norm(), 1e-9);
 }
 
 }  // namespace soslam
