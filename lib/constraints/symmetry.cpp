@@ -8,8 +8,8 @@
 
 namespace soslam {
 
-SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& box)
-    : maps(std::move(edge_maps)), smoothed_grey(SmoothForBrief(maps.grey)) {
+SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
+    : box(own_box), maps(std::move(edge_maps)), smoothed_grey(SmoothForBrief(maps.grey)) {
   for (int y = 0; y < maps.edges.rows; ++y) {
     for (int x = 0; x < maps.edges.cols; ++x) {
       const Eigen::Vector2d pixel(x, y);

@@ -36,12 +36,13 @@ inline constexpr std::array kDescriptorNames = {"grey",
 
 // What the descriptors look up, for one observation.
 struct SymmetryImage {
-  // Takes the maps of the whole frame; edges outside `box` do not count for kNearestEdge3d.
-  SymmetryImage(EdgeMaps edge_maps, const Box& box);
+  // Takes the maps of the whole frame.
+  SymmetryImage(EdgeMaps edge_maps, const Box& own_box);
 
+  Box box;  // of the observation
   EdgeMaps maps;
   cv::Mat smoothed_grey;                     // for BRIEF
-  std::vector<Eigen::Vector2d> edge_pixels;  // in the box
+  std::vector<Eigen::Vector2d> edge_pixels;  // in the box, row by row
 };
 
 // One descriptor of one image on the surface of one landmark.

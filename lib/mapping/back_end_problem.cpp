@@ -209,9 +209,9 @@ void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const Symme
   if (!input_.starts[static_cast<size_t>(detection.object_index)]) return;
   const Landmark in_camera = LandmarkInCamera(detection);
   if (options_.detection_model == DetectionModel::kTangency) {
-    auto residual = std::make_unique<AsymmetryResidual>(
-        image, input_.sequence.camera, detection.box, in_camera, options_.texture,
-        options_.symmetry_options, view_weights_[index]);
+    auto residual = std::make_unique<AsymmetryResidual>(image, input_.sequence.camera, in_camera,
+                                                        options_.texture, options_.symmetry_options,
+                                                        view_weights_[index]);
     if (residual->num_residuals() == 0) {
       ++summary_.gated["symmetry_with_too_few_visible_pairs"];
       return;
@@ -226,8 +226,7 @@ void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const Symme
   const SymmetryOptions& symmetry = options_.symmetry_options;
   const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
   std::vector<Eigen::Vector2d> visible;
-  for (const Eigen::Vector2d& pixel :
-       SamplePixels(image->maps, camera, in_camera, detection.box, symmetry)) {
+  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, in_camera, symmetry)) {
     if (at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
   }
   if (visible.size() < static_cast<size_t>(symmetry.min_pairs)) {

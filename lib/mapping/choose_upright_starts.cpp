@@ -101,8 +101,7 @@ class ObjectFit {
       const auto image = input_.symmetry_images.find(detections_[i]);
       if (image == input_.symmetry_images.end()) continue;
       const BoxView& view = boxes_.views[i];
-      const Box& box = input_.sequence.detections[static_cast<size_t>(detections_[i])].box;
-      cost += view.weight * AsymmetryCost(*image->second, input_.sequence.camera, box,
+      cost += view.weight * AsymmetryCost(*image->second, input_.sequence.camera,
                                           Transform(view.camera_from_world, landmark_in_world),
                                           options_.texture, options_.symmetry_options);
     }

@@ -52,8 +52,8 @@ class OrientationProfile {
   }
 
   double TextureCost(const Landmark& landmark) const {
-    return AsymmetryCost(symmetry_image_, observation_.camera, detection_.box, landmark,
-                         options_.texture, symmetry_options_);
+    return AsymmetryCost(symmetry_image_, observation_.camera, landmark, options_.texture,
+                         symmetry_options_);
   }
 
   double EdgeCost(const Landmark& landmark) const {
@@ -64,8 +64,8 @@ class OrientationProfile {
   }
 
   void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
-    const auto texture = FindMirroredTexture(symmetry_image_, observation_.camera, detection_.box,
-                                             landmark, options_.texture, symmetry_options_);
+    const auto texture = FindMirroredTexture(symmetry_image_, observation_.camera, landmark,
+                                             options_.texture, symmetry_options_);
     if (!texture) return;
     const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_,
                                         observation_.camera, landmark);

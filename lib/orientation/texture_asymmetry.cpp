@@ -54,7 +54,6 @@ std::vector<double> MirrorPlanePlaces(double range, Descriptor descriptor) {
 }  // namespace
 
 std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
-                                                   const Box& box,
                                                    const Landmark& landmark_in_camera,
                                                    const TextureOptions& options,
                                                    const SymmetryOptions& symmetry_options) {
@@ -62,7 +61,7 @@ std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, c
                                       landmark_in_camera);
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options.descriptor, options), 2);
-  const auto samples = SamplePixels(image.maps, camera, landmark_in_camera, box, symmetry_options);
+  const auto samples = SamplePixels(image, camera, landmark_in_camera, symmetry_options);
   const std::vector<double> places =
       MirrorPlanePlaces(options.mirror_plane_range, symmetry_options.descriptor);
   // One row per sample, one column per place; NaN where there is no pair.
@@ -92,22 +91,22 @@ std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, c
   return best;
 }
 
-double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
+double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options) {
   const auto texture =
-      FindMirroredTexture(image, camera, box, landmark_in_camera, options, symmetry_options);
+      FindMirroredTexture(image, camera, landmark_in_camera, options, symmetry_options);
   return options.asymmetry_cost * (texture ? texture->asymmetry : 1.0);
 }
 
 AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
-                                     const Camera& camera, const Box& box,
-                                     const Landmark& start_in_camera, const TextureOptions& options,
+                                     const Camera& camera, const Landmark& start_in_camera,
+                                     const TextureOptions& options,
                                      const SymmetryOptions& symmetry_options, double weight)
     : image_(std::move(image)),
       camera_(camera),
       descriptor_(symmetry_options.descriptor),
-      texture_(FindMirroredTexture(*image_, camera, box, start_in_camera, options, symmetry_options)
+      texture_(FindMirroredTexture(*image_, camera, start_in_camera, options, symmetry_options)
                    .value_or(MirroredTexture())),
       shape_exponent_(start_in_camera.shape_exponent),
       scale_(Scale(start_in_camera, descriptor_, options)),

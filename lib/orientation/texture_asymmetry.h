@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "constraints/symmetry.h"
-#include "geometry/box.h"
 #include "geometry/camera.h"
 #include "orientation/options.h"
 #include "symmetry/options.h"
@@ -30,14 +29,13 @@ struct MirroredTexture {
 // None where too few pairs are visible. Throws SettingsError for a mirror plane that may lie beside
 // the xz plane and kLinearisedDt, whose tangent planes would not touch the surface then.
 std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
-                                                   const Box& box,
                                                    const Landmark& landmark_in_camera,
                                                    const TextureOptions& options,
                                                    const SymmetryOptions& symmetry_options);
 
 // What this costs a landmark, as a negative logarithm of a likelihood: options.asymmetry_cost times
 // the asymmetry; all of it where too few pairs are visible.
-double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box& box,
+double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options);
 
@@ -48,7 +46,7 @@ double AsymmetryCost(const SymmetryImage& image, const Camera& camera, const Box
 class AsymmetryResidual final : public ceres::CostFunction {
  public:
   AsymmetryResidual(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
-                    const Box& box, const Landmark& start_in_camera, const TextureOptions& options,
+                    const Landmark& start_in_camera, const TextureOptions& options,
                     const SymmetryOptions& symmetry_options, double weight);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;

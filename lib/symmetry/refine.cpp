@@ -101,15 +101,14 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
   for (const Hypothesis& hypothesis : hypotheses) {
     if (chosen && !(edge_rms(hypothesis) <= tied_rms)) continue;
     const Landmark& start = hypothesis.landmark_in_camera;
-    Refinement refinement{
-        sequence,
-        detection,
-        options,
-        {sequence.camera, detection.box, detection.plane_in_camera, ratio},
-        image,
-        start,
-        SamplePixels(maps, sequence.camera, start, detection.box, options.symmetry),
-        std::nullopt};
+    Refinement refinement{sequence,
+                          detection,
+                          options,
+                          {sequence.camera, detection.box, detection.plane_in_camera, ratio},
+                          image,
+                          start,
+                          SamplePixels(*image, sequence.camera, start, options.symmetry),
+                          std::nullopt};
     refinement.best_turn =
         FindBestTurn(*image, sequence.camera, start, refinement.samples, options.symmetry,
                      options.yaw_range_deg * kRadPerDeg, options.yaw_step_deg * kRadPerDeg,

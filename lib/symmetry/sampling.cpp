@@ -8,40 +8,24 @@
 
 namespace soslam {
 
-namespace {
-
-// The edge pixels of a box row by row, thinned evenly to at most `max_count`.
-std::vector<Eigen::Vector2d> EdgePixels(const EdgeMaps& maps, const Box& box, int max_count) {
-  std::vector<Eigen::Vector2d> pixels;
-  const int y_end = std::min(maps.edges.rows, static_cast<int>(std::floor(box.y_max)) + 1);
-  const int x_end = std::min(maps.edges.cols, static_cast<int>(std::floor(box.x_max)) + 1);
-  for (int y = std::max(0, static_cast<int>(std::ceil(box.y_min))); y < y_end; ++y) {
-    for (int x = std::max(0, static_cast<int>(std::ceil(box.x_min))); x < x_end; ++x) {
-      if (maps.edges.at<unsigned char>(y, x) != 0) pixels.emplace_back(x, y);
-    }
-  }
-  const size_t stride = (pixels.size() + max_count - 1) / static_cast<size_t>(max_count);
-  if (stride <= 1) return pixels;
-  std::vector<Eigen::Vector2d> thinned;
-  for (size_t i = 0; i < pixels.size(); i += stride) thinned.push_back(pixels[i]);
-  return thinned;
-}
-
-}  // namespace
-
-std::vector<Eigen::Vector2d> SamplePixels(const EdgeMaps& maps, const Camera& camera,
-                                          const Landmark& landmark_in_camera, const Box& box,
+std::vector<Eigen::Vector2d> SamplePixels(const SymmetryImage& image, const Camera& camera,
+                                          const Landmark& landmark_in_camera,
                                           const SymmetryOptions& options) {
   const VisibleSurface surface(camera, landmark_in_camera);
+  const Box& box = image.box;
   std::vector<Eigen::Vector2d> samples;
   if (options.sampling == Sampling::kEdges) {
-    for (const Eigen::Vector2d& pixel : EdgePixels(maps, box, options.max_edge_pixels)) {
-      if (surface.FromPixel(pixel)) samples.push_back(pixel);
+    // Thinned evenly.
+    const auto max_count = static_cast<size_t>(options.max_edge_pixels);
+    const size_t stride =
+        std::max<size_t>(1, (image.edge_pixels.size() + max_count - 1) / max_count);
+    for (size_t i = 0; i < image.edge_pixels.size(); i += stride) {
+      if (surface.FromPixel(image.edge_pixels[i])) samples.push_back(image.edge_pixels[i]);
     }
     return samples;
   }
   if (options.sampling != Sampling::kUniform) {
-    for (const Eigen::Vector2f& corner : maps.corners) {
+    for (const Eigen::Vector2f& corner : image.maps.corners) {
       if (samples.size() >= static_cast<size_t>(options.max_corners)) break;
       const Eigen::Vector2d pixel = corner.cast<double>();
       if (box.Contains(pixel) && surface.FromPixel(pixel)) samples.push_back(pixel);

@@ -4,18 +4,17 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "geometry/box.h"
+#include "constraints/symmetry.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
-#include "image/edge_maps.h"
 #include "symmetry/options.h"
 
 namespace soslam {
 
-// The pixels to compare, section V-D: corners in the box and/or a uniform grid over it, as far as
-// their rays meet the landmark. Corners first, strongest first.
-std::vector<Eigen::Vector2d> SamplePixels(const EdgeMaps& maps, const Camera& camera,
-                                          const Landmark& landmark_in_camera, const Box& box,
+// The pixels to compare, section V-D: corners in the box and/or a uniform grid over it, or its edge
+// pixels, as far as their rays meet the landmark. Corners first, strongest first.
+std::vector<Eigen::Vector2d> SamplePixels(const SymmetryImage& image, const Camera& camera,
+                                          const Landmark& landmark_in_camera,
                                           const SymmetryOptions& options);
 
 }  // namespace soslam

@@ -7,6 +7,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
+#include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
@@ -35,6 +36,8 @@ inline Eigen::Quaterniond RandomRotation() {
 inline Rigid3d RandomRigid(double extent = 3.0) {
   return {RandomRotation(), RandomVector(-extent, extent)};
 }
+
+inline Plane RandomPlane() { return {RandomVector(-1, 1).normalized(), RandomUniform(-3, 3)}; }
 
 inline Camera TestCamera() { return {640, 480, 520.0, 530.0, 318.0, 242.0}; }
 

@@ -11,8 +11,6 @@ inline Landmark RandomLandmark() {
   return {RandomRigid(), RandomVector(0.05, 1.0), RandomUniform(1.0, 2.0)};
 }
 
-inline Plane RandomPlane() { return {RandomVector(-1, 1).normalized(), RandomUniform(-3, 3)}; }
-
 // A sequence whose ids are not its indices, with every other optional value absent. The bounds of
 // detection i are the binary digits of i. Its numbers are valid one by one, but have no geometric
 // sense together.

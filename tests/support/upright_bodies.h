@@ -16,6 +16,19 @@ namespace soslam {
 
 inline constexpr double kDetectionSigmaFraction = 0.02;
 
+inline double RandomYaw() { return RandomUniform(-3.1, 3.1); }
+
+inline UprightVector RandomUprightParameters() {
+  UprightVector parameters;
+  parameters << RandomYaw(), RandomUniform(-3, 3), RandomUniform(-3, 3), RandomVector(-2.0, 0.5);
+  return parameters;
+}
+
+// On any plane, not necessarily in view.
+inline Landmark RandomUprightLandmark(const Plane& plane) {
+  return UprightLandmark(plane, RandomUprightParameters(), RandomUniform(1, 2));
+}
+
 // A floor as a camera sees it that looks level or down.
 inline Plane RandomFloor() {
   const Eigen::Vector3d up(RandomUniform(-0.15, 0.15), -1.0, RandomUniform(-0.7, 0.05));
@@ -29,7 +42,7 @@ inline Landmark RandomUprightBody(const Plane& floor, double shape_exponent) {
   for (;;) {
     Landmark landmark =
         StandingCuboid(TestCamera(), floor, {RandomUniform(150, 490), RandomUniform(250, 440)},
-                       RandomUniform(-3.1, 3.1), RandomVector(0.15, 0.6));
+                       RandomYaw(), RandomVector(0.15, 0.6));
     landmark.shape_exponent = shape_exponent;
     const auto box = OutlineBox(TestCamera(), landmark);
     if (landmark.Centre().z() > 0.0 && box && box->Width() > kMinBoxSidePx &&
@@ -52,7 +65,7 @@ inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4
   observation.plane_in_camera = floor;
   observation.prior = prior;
   observation.world_axis_in_camera =
-      UprightRotation(floor.normal, RandomUniform(-3.1, 3.1)) * Eigen::Vector3d::UnitX();
+      UprightRotation(floor.normal, RandomYaw()) * Eigen::Vector3d::UnitX();
   return observation;
 }
 

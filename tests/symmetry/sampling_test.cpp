@@ -11,6 +11,7 @@ namespace {
 
 TEST(SamplePixels, EdgesAreTheEdgePixelsInTheBoxThatShowTheBody) {
   EdgeMaps maps;
+  maps.grey = cv::Mat::zeros(480, 640, CV_8UC1);
   maps.edges = cv::Mat::zeros(480, 640, CV_8UC1);
   for (int i = 0; i < 5000; ++i) {
     maps.edges.at<unsigned char>(static_cast<int>(RandomUniform(0, 480)),
@@ -21,7 +22,7 @@ TEST(SamplePixels, EdgesAreTheEdgePixelsInTheBoxThatShowTheBody) {
   SymmetryOptions options;
   options.sampling = Sampling::kEdges;
   options.max_edge_pixels = 1000000;
-  const auto all = SamplePixels(maps, TestCamera(), landmark, box, options);
+  const auto all = SamplePixels(SymmetryImage(maps, box), TestCamera(), landmark, options);
   const VisibleSurface surface(TestCamera(), landmark);
   size_t expected = 0;
   for (int y = 200; y <= 300; ++y) {
@@ -38,21 +39,24 @@ TEST(SamplePixels, EdgesAreTheEdgePixelsInTheBoxThatShowTheBody) {
         maps.edges.at<unsigned char>(static_cast<int>(pixel.y()), static_cast<int>(pixel.x())), 0);
   }
   options.max_edge_pixels = 60;
-  const auto thinned = SamplePixels(maps, TestCamera(), landmark, box, options);
+  const auto thinned = SamplePixels(SymmetryImage(maps, box), TestCamera(), landmark, options);
   EXPECT_LE(thinned.size(), 60u);
   EXPECT_GT(thinned.size(), 20u);
 }
 
 TEST(SamplePixels, EdgesOfABoxOutsideTheImageAreThoseInside) {
   EdgeMaps maps;
+  maps.grey = cv::Mat::zeros(480, 640, CV_8UC1);
   maps.edges = cv::Mat(480, 640, CV_8UC1, cv::Scalar(255));
   const Landmark landmark{{Eigen::Quaterniond::Identity(), {0, 0, 3}}, {9, 9, 1}};
   SymmetryOptions options;
   options.sampling = Sampling::kEdges;
   options.max_edge_pixels = 1000000;
-  const auto samples = SamplePixels(maps, TestCamera(), landmark, {-50, -50, 9.5, 4.5}, options);
-  EXPECT_EQ(samples.size(), 50u);
-  EXPECT_TRUE(SamplePixels(maps, TestCamera(), landmark, {-50, -50, -10, -5}, options).empty());
+  const auto sample = [&](const Box& box) {
+    return SamplePixels(SymmetryImage(maps, box), TestCamera(), landmark, options);
+  };
+  EXPECT_EQ(sample({-50, -50, 9.5, 4.5}).size(), 50u);
+  EXPECT_TRUE(sample({-50, -50, -10, -5}).empty());
 }
 
 }  // namespace

@@ -60,8 +60,7 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
     if (maps == maps_->end()) continue;
     const SymmetryImage image(maps->second, detection.box);
     const Landmark truth = TrueLandmark(detection);
-    const auto samples =
-        SamplePixels(maps->second, sequence_->camera, truth, detection.box, options);
+    const auto samples = SamplePixels(image, sequence_->camera, truth, options);
     const YawProfile profile = ComputeYawProfile(image, sequence_->camera, truth, samples,
                                                  Descriptor::kImprovedDt, options, 1.0 * kDegrees);
     double best = 1e9;
@@ -128,13 +127,13 @@ TEST_F(SyntheticTexture, AllParametersCanBeRefinedTogether) {
 TEST_F(SyntheticTexture, SamplesLieInTheBoxOnTheLandmark) {
   const Detection& detection = sequence_->detections.front();
   const Landmark truth = TrueLandmark(detection);
+  const SymmetryImage image(maps_->at(0), detection.box);
   SymmetryOptions options;
   options.max_corners = 10;
   options.uniform_columns = 4;
   const auto count = [&](Sampling sampling) {
     options.sampling = sampling;
-    const auto samples =
-        SamplePixels(maps_->at(0), sequence_->camera, truth, detection.box, options);
+    const auto samples = SamplePixels(image, sequence_->camera, truth, options);
     for (const auto& pixel : samples) {
       EXPECT_TRUE(detection.box.Contains(pixel));
       EXPECT_TRUE(VisibleSurface(sequence_->camera, truth).FromPixel(pixel));

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "initialisation/upright.h"
+#include "support/landmark_terms.h"
+#include "support/shape_exponents.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+LandmarkTerms BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior& prior,
+                          const Landmark& start) {
+  LandmarkTerms terms;
+  terms.push_back(std::make_unique<BoxTerm>(edges, start));
+  terms.push_back(std::make_unique<RatioTerm>(prior));
+  return terms;
+}
+
+Landmark DisturbedFootAndSize(const Landmark& landmark, const Plane& plane) {
+  UprightVector parameters = UprightParameters(plane, landmark);
+  parameters.segment<2>(1) += 0.2 * RandomVector(-1, 1).head<2>();
+  parameters.tail<3>() += RandomVector(-0.2, 0.2);
+  return UprightLandmark(plane, parameters, landmark.shape_exponent);
+}
+
+// The solver stops where a step would gain less than a millionth of a squared standard deviation.
+constexpr double kCostTolerance = 1e-6;
+
+TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const StandingBody body(p);
+      const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
+      const auto terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
+      const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/false);
+      ASSERT_TRUE(solution);
+      EXPECT_LT(solution->cost, kCostTolerance) << p;
+      EXPECT_TRUE(IsSameBody(solution->landmark, body.truth, 2e-3)) << p;
+    }
+  }
+}
+
+TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
+  for (int i = 0; i < 100; ++i) {
+    const StandingBody body(RandomUniform(1, 2));
+    const auto edges = body.Observe(Disturbed(body.box, 0.05)).edges;
+    const Landmark start =
+        Turned(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.5, 0.5));
+    const auto terms = BoxAndRatio(edges, body.observation.prior, start);
+    for (const bool yaw_is_free : {false, true}) {
+      const auto solution = FitUpright(body.plane, start, terms, yaw_is_free);
+      ASSERT_TRUE(solution);
+      const Landmark& landmark = solution->landmark;
+      EXPECT_NEAR(solution->cost, Cost(terms, landmark), 1e-9 * (1.0 + solution->cost));
+      EXPECT_LE(solution->cost, Cost(terms, start));
+      EXPECT_EQ(landmark.shape_exponent, start.shape_exponent);
+      EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
+      if (yaw_is_free) continue;
+      EXPECT_LT(AngleBetweenFronts(landmark, start), 1e-9);
+    }
+  }
+}
+
+// From starts as the sweep over yaw has them, one run of the solver is enough.
+TEST(FitUpright, GainsNothingWhenItIsRunAgain) {
+  constexpr int kBodies = 300;
+  int unfinished = 0;
+  double largest_gain = 0.0;
+  for (int i = 0; i < kBodies; ++i) {
+    const StandingBody body(RandomUniform(1, 2));
+    const UprightObservation observation = body.Observe(Disturbed(body.box, 0.02));
+    const auto start = SolveAtYaw(observation, body.Yaw() + RandomUniform(-0.05, 0.05));
+    ASSERT_TRUE(start);
+    const auto terms = BoxAndRatio(observation.edges, observation.prior, *start);
+    const auto once = FitUpright(body.plane, *start, terms, /*yaw_is_free=*/true);
+    ASSERT_TRUE(once);
+    auto again = once;
+    for (int run = 0; run < 20 && again; ++run) {
+      again = FitUpright(body.plane, again->landmark, terms, /*yaw_is_free=*/true);
+    }
+    ASSERT_TRUE(again);
+    EXPECT_LE(again->cost, once->cost + 1e-9);
+    unfinished += again->cost < once->cost - 1e-3 ? 1 : 0;
+    largest_gain = std::max(largest_gain, once->cost - again->cost);
+  }
+  EXPECT_LE(unfinished, kBodies / 100) << "largest gain " << largest_gain;
+}
+
+// Four views of a body from around it hold all of its parameters without any prior.
+TEST(FitUpright, FindsTheBodyThatSeveralViewsSee) {
+  for (const double p : {1.1, 1.5, 2.0}) {
+    for (int i = 0; i < 5; ++i) {
+      const StandingBody body(p);
+      const Landmark start =
+          Turned(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.1, 0.1));
+      LandmarkTerms terms;
+      for (const double turn : {0.0, 0.6, 1.3, 2.2}) {
+        // The camera goes round the body.
+        const Rigid3d round = {ExpRotation(turn * body.plane.normal), {0, 0, 0}};
+        const Rigid3d to_centre = {Eigen::Quaterniond::Identity(), -body.truth.Centre()};
+        const Rigid3d camera_from_reference = to_centre.Inverse() * round * to_centre;
+        const Landmark in_camera = Transform(camera_from_reference, body.truth);
+        const Box box = *OutlineBox(TestCamera(), in_camera);
+        const auto edges = BoxEdges(TestCamera(), box, {}, kDetectionSigmaFraction);
+        terms.push_back(std::make_unique<RobustViewTerm>(
+            std::make_unique<BoxTerm>(edges, Transform(camera_from_reference, start)),
+            camera_from_reference, /*huber_delta=*/10.0, /*weight=*/1.0));
+      }
+      const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
+      ASSERT_TRUE(solution);
+      EXPECT_LT(solution->cost, 10.0 * kCostTolerance);
+      const Landmark& found = solution->landmark;
+      EXPECT_TRUE(IsSameBody(found, body.truth, 1e-2) ||
+                  IsSameBody(WithAxesExchanged(found), body.truth, 1e-2))
+          << p;
+    }
+  }
+}
+
+// No number at some landmarks, where `is_undefined` says.
+class UndefinedTerm final : public LandmarkTerm {
+ public:
+  explicit UndefinedTerm(std::function<bool(const Landmark&)> is_undefined)
+      : is_undefined_(std::move(is_undefined)) {}
+  int NumResiduals() const override { return 1; }
+  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override {
+    residuals[0] = is_undefined_(landmark) ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+    if (jacobian != nullptr) jacobian->setZero();
+  }
+
+ private:
+  std::function<bool(const Landmark&)> is_undefined_;
+};
+
+TEST(FitUpright, HasNoSolutionWhereTheCostIsNoNumberAtTheStart) {
+  const StandingBody body(1.5);
+  LandmarkTerms terms = BoxAndRatio(body.observation.edges, body.observation.prior, body.truth);
+  terms.push_back(std::make_unique<UndefinedTerm>([](const Landmark&) { return true; }));
+  EXPECT_FALSE(FitUpright(body.plane, body.truth, terms, /*yaw_is_free=*/true));
+}
+
+TEST(FitUpright, StaysWhereTheCostIsANumber) {
+  for (int i = 0; i < 20; ++i) {
+    const StandingBody body(1.5);
+    const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
+    LandmarkTerms terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
+    const double between = 0.5 * (start.half_axes.z() + body.truth.half_axes.z());
+    const bool is_beyond_below = body.truth.half_axes.z() < between;
+    terms.push_back(std::make_unique<UndefinedTerm>([=](const Landmark& landmark) {
+      return (landmark.half_axes.z() < between) == is_beyond_below;
+    }));
+    const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
+    if (!solution) continue;
+    EXPECT_TRUE(std::isfinite(Cost(terms, solution->landmark)));
+    EXPECT_LE(solution->cost, Cost(terms, start));
+  }
+}
+
+}  // namespace
+}  // namespace soslam

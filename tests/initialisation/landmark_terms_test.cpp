@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/landmark_terms.h"
+
+#include <ceres/loss_function.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "initialisation/upright.h"
+#include "support/jacobians.h"
+#include "support/shape_exponents.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// A term as a residual of one landmark block, whose shape exponent is fixed.
+class TermResidual final : public ceres::CostFunction {
+ public:
+  TermResidual(const LandmarkTerm& term, double shape_exponent)
+      : term_(term), shape_exponent_(shape_exponent) {
+    set_num_residuals(term.NumResiduals());
+    mutable_parameter_block_sizes()->push_back(kLandmarkSize);
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const Landmark landmark = WithShape(UnpackLandmark(blocks[0]), shape_exponent_);
+    const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
+    LandmarkTerm::Jacobian jacobian(num_residuals(), kLandmarkDof);
+    // What a term leaves unwritten shows.
+    jacobian.setConstant(std::numeric_limits<double>::quiet_NaN());
+    term_.Evaluate(landmark, Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()),
+                   wanted ? &jacobian : nullptr);
+    if (wanted) WriteLandmarkJacobian<Eigen::Dynamic>(blocks[0], jacobian, jacobians[0]);
+    return true;
+  }
+
+ private:
+  const LandmarkTerm& term_;
+  double shape_exponent_;
+};
+
+void ExpectCorrectTermJacobian(const LandmarkTerm& term, const Landmark& landmark) {
+  const LandmarkBlock block = Pack(landmark);
+  ExpectCorrectJacobians(TermResidual(term, landmark.shape_exponent), {block.data()});
+}
+
+// A landmark's own box, with errors of up to 10 % of its sides; any of its edges may be a bound.
+std::array<BoxEdge, 4> EdgesNear(const Landmark& landmark) {
+  const Box box = Disturbed(*OutlineBox(TestCamera(), landmark), 0.1);
+  const auto bits = TestRandom()();
+  return BoxEdges(TestCamera(), box,
+                  {(bits & 1U) != 0, (bits & 2U) != 0, (bits & 4U) != 0, (bits & 8U) != 0},
+                  kDetectionSigmaFraction);
+}
+
+// Whether no edge is where its residual bends within the steps of numeric differences: its plane
+// along a face of the body, or the body just at a bound.
+bool AreOffTheKinks(const std::array<BoxEdge, 4>& edges, const Landmark& landmark) {
+  return std::all_of(edges.begin(), edges.end(), [&](const BoxEdge& edge) {
+    BoxEdge measured = edge;
+    measured.is_bound = false;
+    const double outside = Tangency(measured, landmark, TangentDepth(edge, landmark), 0.0, nullptr);
+    if (edge.is_bound && std::abs(outside) < 0.1) return false;
+    const Eigen::Vector3d in_object =
+        landmark.frame_from_object.rotation.conjugate() * edge.plane.normalized();
+    return landmark.shape_exponent == kEllipsoidExponent || in_object.cwiseAbs().minCoeff() > 0.1;
+  });
+}
+
+TEST(BoxTerm, JacobianAgreesWithNumbers) {
+  for (const double p : kShapeExponents) {
+    SCOPED_TRACE(p);
+    int checked = 0;
+    while (checked < 20) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      const auto edges = EdgesNear(landmark);
+      if (!AreOffTheKinks(edges, landmark)) continue;
+      ExpectCorrectTermJacobian(BoxTerm(edges, landmark), landmark);
+      ++checked;
+    }
+  }
+}
+
+TEST(BoxTerm, IsZeroForTheOutlineBoxAndCountsStandardDeviations) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      const Box box = *OutlineBox(TestCamera(), landmark);
+      const auto edges = BoxEdges(TestCamera(), box, {}, kDetectionSigmaFraction);
+      EXPECT_LT(Residuals(BoxTerm(edges, landmark), landmark).cwiseAbs().maxCoeff(), 1e-9);
+      // A thousandth of a standard deviation narrower on every side, and the body reaches out that
+      // much on each.
+      const double dx = 1e-3 * edges[0].sigma_px;
+      const double dy = 1e-3 * edges[1].sigma_px;
+      auto narrower =
+          BoxEdges(TestCamera(), {box.x_min + dx, box.y_min + dy, box.x_max - dx, box.y_max - dy},
+                   {}, kDetectionSigmaFraction);
+      for (size_t k = 0; k < 4; ++k) narrower[k].sigma_px = edges[k].sigma_px;
+      const Eigen::VectorXd outside = Residuals(BoxTerm(narrower, landmark), landmark);
+      EXPECT_LT((outside.array() - 1e-3).abs().maxCoeff(), 1e-5) << outside.transpose();
+    }
+  }
+}
+
+TEST(RatioTerm, JacobianAgreesWithNumbers) {
+  for (int i = 0; i < 20; ++i) {
+    const ShapePrior prior{RandomVector(0.3, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>(),
+                           kCuboidExponent};
+    ExpectCorrectTermJacobian(RatioTerm(prior), RandomLandmarkInCamera());
+  }
+}
+
+TEST(RatioTerm, CountsStandardDeviationsOfTheLogarithms) {
+  for (int i = 0; i < 20; ++i) {
+    const ShapePrior prior{RandomVector(0.3, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>(),
+                           kCuboidExponent};
+    const Eigen::Vector2d deviations = RandomVector(-3, 3).head<2>();
+    Landmark landmark = RandomLandmarkInCamera();
+    for (int k = 0; k < 2; ++k) {
+      landmark.half_axes[k] =
+          landmark.half_axes.z() * prior.ratio[k] * std::exp(deviations[k] * prior.log_sigma[k]);
+    }
+    EXPECT_LT((Residuals(RatioTerm(prior), landmark) - deviations).norm(), 1e-10);
+  }
+}
+
+// The axis of the world at an angle from an upright landmark's front.
+Eigen::Vector3d AxisAt(const Plane& plane, const Landmark& landmark, double angle) {
+  const double yaw = Yaw(plane.normal, landmark.frame_from_object.rotation) + angle;
+  return UprightRotation(plane.normal, yaw) * Eigen::Vector3d::UnitX();
+}
+
+TEST(AxisTerm, JacobianAgreesWithNumbersForUprightLandmarks) {
+  for (int i = 0; i < 50; ++i) {
+    const Plane plane = RandomPlane();
+    const Landmark landmark = RandomUprightLandmark(plane);
+    const AxisTerm term(plane, AxisAt(plane, landmark, RandomUniform(-3.1, 3.1)),
+                        RandomUniform(0.1, 10.0));
+    ExpectCorrectTermJacobian(term, landmark);
+  }
+}
+
+TEST(AxisTerm, CostsNothingAlongAndAcrossTheAxisAndItsWeightHalfWayBetween) {
+  for (int i = 0; i < 50; ++i) {
+    const Plane plane = RandomPlane();
+    const Landmark landmark = RandomUprightLandmark(plane);
+    const double weight = RandomUniform(0.1, 10.0);
+    for (int eighth = 0; eighth < 8; ++eighth) {
+      const AxisTerm term(plane, AxisAt(plane, landmark, eighth * kPi / 4.0), weight);
+      EXPECT_NEAR(Cost(term, landmark), eighth % 2 == 0 ? 0.0 : weight, 1e-9) << eighth;
+    }
+    const double angle = RandomUniform(-3.1, 3.1);
+    EXPECT_NEAR(Cost(AxisTerm(plane, AxisAt(plane, landmark, angle), weight), landmark),
+                weight * std::pow(std::sin(2.0 * angle), 2), 1e-9);
+  }
+}
+
+// A landmark in a reference frame, another frame from which a camera sees it, and its box there.
+struct ReferenceView {
+  Rigid3d camera_from_reference = RandomRigid();
+  Landmark in_camera = WithShape(RandomLandmarkInCamera(), RandomUniform(1.3, 2.0));
+  std::array<BoxEdge, 4> edges = EdgesNear(in_camera);
+  Landmark in_reference = Transform(camera_from_reference.Inverse(), in_camera);
+  double delta = RandomUniform(0.5, 4.0);
+  double weight = RandomUniform(0.1, 2.0);
+  RobustViewTerm term{std::make_unique<BoxTerm>(edges, in_camera), camera_from_reference, delta,
+                      weight};
+
+  // Of the box in its own camera's frame, neither robust nor weighted.
+  Eigen::VectorXd PlainResiduals() const { return Residuals(BoxTerm(edges, in_camera), in_camera); }
+};
+
+TEST(RobustViewTerm, HalfOfItsSquareIsTheWeightedHuberLoss) {
+  int within = 0;
+  int beyond = 0;
+  for (int i = 0; i < 100; ++i) {
+    const ReferenceView view;
+    const Eigen::VectorXd plain = view.PlainResiduals();
+    const Eigen::VectorXd robust = Residuals(view.term, view.in_reference);
+    ASSERT_EQ(robust.size(), plain.size());
+    const ceres::HuberLoss huber(view.delta);
+    for (Eigen::Index k = 0; k < plain.size(); ++k) {
+      double loss[3];
+      huber.Evaluate(plain[k] * plain[k], loss);
+      EXPECT_NEAR(robust[k] * robust[k], view.weight * loss[0], 1e-8 * (1.0 + loss[0]));
+      EXPECT_GE(robust[k] * plain[k], 0.0);
+      within += plain[k] != 0.0 && std::abs(plain[k]) < view.delta ? 1 : 0;
+      beyond += std::abs(plain[k]) > view.delta ? 1 : 0;
+    }
+  }
+  EXPECT_GT(within, 50);
+  EXPECT_GT(beyond, 50);
+}
+
+TEST(RobustViewTerm, JacobianAgreesWithNumbers) {
+  int checked = 0;
+  while (checked < 50) {
+    const ReferenceView view;
+    // Where the loss turns from square to linear, its slope bends.
+    const bool at_delta = ((view.PlainResiduals().array().abs() - view.delta).abs() < 0.1).any();
+    if (at_delta || !AreOffTheKinks(view.edges, view.in_camera)) continue;
+    ExpectCorrectTermJacobian(view.term, view.in_reference);
+    ++checked;
+  }
+}
+
+}  // namespace
+}  // namespace soslam

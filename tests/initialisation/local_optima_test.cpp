@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "initialisation/yaw_sweep.h"
+#include "support/landmark_terms.h"
+#include "support/shape_exponents.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegrees = std::numbers::pi / 180.0;
+constexpr double kStep = 3.0 * kDegrees;
+constexpr size_t kAll = 1000;
+
+std::vector<UprightSolution> Optima(const UprightObservation& observation, size_t max_count = kAll,
+                                    double step = kStep) {
+  const YawObjective objective = BoxObjective(observation);
+  return LocalOptima(observation, objective, SweepYaw(observation, objective, step), max_count);
+}
+
+// Yaws that all explain a box and are a few steps of the grid apart may be found as one, with next
+// to no cost between them.
+TEST(LocalOptima, HaveTheTrueBodyAmongThem) {
+  int bodies = 0;
+  int found = 0;
+  int found_nearby = 0;
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const StandingBody body(p);
+      const auto optima = Optima(body.observation);
+      ASSERT_FALSE(optima.empty());
+      EXPECT_LT(optima.front().cost, 1e-3) << "body " << i << ", p " << p;
+      bool is_found = false;
+      double nearest = kPi;
+      for (const UprightSolution& optimum : optima) {
+        if (optimum.cost > 0.02) continue;  // a tenth of a standard deviation of each edge
+        const Landmark& landmark = optimum.landmark;
+        is_found = is_found || IsSameBody(landmark, body.truth, 0.02);
+        nearest = std::min(nearest, AngleBetweenFronts(landmark, body.truth));
+      }
+      ++bodies;
+      found += is_found ? 1 : 0;
+      found_nearby += nearest < 3.0 * kStep ? 1 : 0;
+    }
+  }
+  EXPECT_GE(found, bodies * 9 / 10);
+  EXPECT_GE(found_nearby, bodies * 98 / 100);
+}
+
+UprightObservation NoisyObservation(double axes_weight) {
+  const StandingBody body(RandomUniform(1, 2));
+  UprightObservation observation = body.Observe(Disturbed(body.box, 0.03));
+  observation.axes_weight = axes_weight;
+  return observation;
+}
+
+Landmark RandomStart(const UprightObservation& observation) {
+  std::optional<Landmark> solution;
+  while (!solution) solution = SolveAtYaw(observation, RandomYaw());
+  const Landmark& at_yaw = *solution;
+  UprightVector parameters = UprightParameters(observation.plane_in_camera, at_yaw);
+  parameters.segment<2>(1) += 0.5 * at_yaw.half_axes.maxCoeff() * RandomVector(-1, 1).head<2>();
+  parameters.tail<3>() += RandomVector(-0.3, 0.3);
+  return UprightLandmark(observation.plane_in_camera, parameters, at_yaw.shape_exponent);
+}
+
+TEST(LocalOptima, NoneOfManyRandomStartsIsBetter) {
+  for (const double axes_weight : {0.0, 1.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const UprightObservation observation = NoisyObservation(axes_weight);
+      const YawObjective objective = BoxObjective(observation);
+      const auto optima = Optima(observation);
+      ASSERT_FALSE(optima.empty());
+      double lowest = std::numeric_limits<double>::infinity();
+      for (int start = 0; start < 100; ++start) {
+        std::optional<UprightSolution> solution = UprightSolution{RandomStart(observation), 0.0};
+        // Until the tangent points' depths are those of the solution.
+        for (int round = 0; round < 5 && solution; ++round) {
+          const Landmark& landmark = solution->landmark;
+          solution = FitUpright(observation.plane_in_camera, landmark, objective.terms(landmark),
+                                /*yaw_is_free=*/true);
+          if (solution && !IsInFront(solution->landmark)) solution.reset();
+        }
+        if (solution) {
+          lowest = std::min(lowest, CostAtOwnDepths(objective, solution->landmark));
+        }
+      }
+      const double found = CostAtOwnDepths(objective, optima.front().landmark);
+      EXPECT_LE(found, lowest + 0.01 + 0.02 * lowest) << "body " << i << ", " << axes_weight;
+    }
+  }
+}
+
+TEST(LocalOptima, AreSortedDistinctLandmarksInFrontOfTheCamera) {
+  for (int i = 0; i < 50; ++i) {
+    const UprightObservation observation = NoisyObservation(i % 2);
+    const auto optima = Optima(observation);
+    ASSERT_FALSE(optima.empty());
+    for (size_t one = 0; one < optima.size(); ++one) {
+      EXPECT_TRUE(IsInFront(optima[one].landmark));
+      EXPECT_LE(optima[one == 0 ? 0 : one - 1].cost, optima[one].cost);
+      for (size_t other = 0; other < one; ++other) {
+        EXPECT_GT(AngleBetweenFronts(optima[one].landmark, optima[other].landmark), 0.5 * kDegrees);
+      }
+    }
+  }
+}
+
+// With foot and size at their best for each yaw, no yaw nearby is better, where all tangent points
+// are at the optimum's depths: several rounds settle them.
+TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
+  int optima_seen = 0;
+  for (int i = 0; i < 50; ++i) {
+    const UprightObservation observation = NoisyObservation(i % 2);
+    YawObjective objective = BoxObjective(observation);
+    objective.rounds = 5;
+    const YawSweep sweep = SweepYaw(observation, objective, kStep);
+    for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
+      const auto terms = objective.terms(optimum.landmark);
+      for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
+        const auto nearby =
+            FitUpright(observation.plane_in_camera, Turned(optimum.landmark, offset_deg * kDegrees),
+                       terms, /*yaw_is_free=*/false);
+        ASSERT_TRUE(nearby);
+        EXPECT_GT(nearby->cost, 0.99 * optimum.cost - 1e-2)
+            << "body " << i << ", turned by " << offset_deg << " degrees";
+      }
+      ++optima_seen;
+    }
+  }
+  EXPECT_GT(optima_seen, 50);
+}
+
+TEST(LocalOptima, FewAreTheBestOfAll) {
+  for (int i = 0; i < 200; ++i) {
+    const UprightObservation observation = NoisyObservation(i % 2);
+    const auto all = Optima(observation);
+    for (const size_t count : {1u, 2u}) {
+      const auto few = Optima(observation, count);
+      ASSERT_EQ(few.size(), std::min<size_t>(count, all.size()));
+      for (size_t k = 0; k < few.size(); ++k) {
+        EXPECT_NEAR(few[k].cost, all[k].cost, 1e-3) << "body " << i << ": " << k << " of " << count;
+      }
+    }
+  }
+}
+
+TEST(LocalOptima, OfAFootprintWithEqualSidesAreEquallyGoodAfterAQuarterTurn) {
+  for (const double p : {1.0, 1.1, 1.5}) {
+    for (int i = 0; i < 10; ++i) {
+      StandingBody body(p);
+      body.truth.half_axes.y() = body.truth.half_axes.x();
+      UprightObservation observation = body.Observe(*OutlineBox(TestCamera(), body.truth));
+      observation.prior = PriorOf(body.truth, 0.05);
+      observation.axes_weight = 1.0;
+      const auto optima = Optima(observation);
+      ASSERT_FALSE(optima.empty());
+      const UprightSolution& best = optima.front();
+      const Landmark turned = WithAxesExchanged(best.landmark);
+      const auto other = std::find_if(optima.begin(), optima.end(), [&](const auto& optimum) {
+        return IsSameBody(optimum.landmark, turned, 0.02);
+      });
+      ASSERT_NE(other, optima.end()) << "body " << i << ", p " << p;
+      EXPECT_NEAR(other->cost, best.cost, 1e-3);
+    }
+  }
+}
+
+// A cost on top that only one yaw is spared, between the points of the grid.
+TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
+  for (int i = 0; i < 20; ++i) {
+    const StandingBody body(RandomUniform(1, 2), /*ratio_log_sigma=*/0.5);
+    const double yaw = RandomYaw();
+    YawObjective objective = BoxObjective(body.observation);
+    objective.extra_cost = [&](const Landmark& landmark) {
+      const double turn = Yaw(body.plane.normal, landmark.frame_from_object.rotation) - yaw;
+      return 1e4 * std::pow(std::sin(turn), 2);
+    };
+    const YawSweep sweep = SweepYaw(body.observation, objective, kStep);
+    const auto optima = LocalOptima(body.observation, objective, sweep, kAll);
+    ASSERT_FALSE(optima.empty());
+    const Landmark& best = optima.front().landmark;
+    EXPECT_LT(std::abs(YawDifferenceModuloPi(
+                  Yaw(body.plane.normal, best.frame_from_object.rotation), yaw)),
+              0.1 * kStep);
+    EXPECT_GE(optima.front().cost, objective.extra_cost(best));
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "initialisation/upright.h"
+#include "support/shape_exponents.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+TEST(UprightLandmark, StandsUprightOnItsPlane) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const Plane plane = RandomPlane();
+      const Landmark landmark = UprightLandmark(plane, RandomUprightParameters(), p);
+      EXPECT_LT(
+          (landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(),
+          1e-12);
+      EXPECT_EQ(landmark.shape_exponent, p);
+      const FarthestPoint lowest = Farthest(landmark, -plane.normal);
+      // Rounded edges reach beyond the body itself by a thousandth of its size.
+      const double rounding = kEdgeRounding * (2.0 - p) * landmark.half_axes.sum();
+      EXPECT_NEAR(-lowest.distance + plane.offset, 0.0, 1e-12 + rounding) << p;
+      for (int k = 0; k < 20; ++k) {
+        EXPECT_GE(plane.SignedDistance(RandomSurfacePoint(landmark)), -1e-12) << p;
+      }
+    }
+  }
+}
+
+TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxes) {
+  for (int i = 0; i < 100; ++i) {
+    const Plane plane = RandomPlane();
+    const UprightVector parameters = RandomUprightParameters();
+    const Landmark landmark = UprightLandmark(plane, parameters, 1.5);
+    EXPECT_NEAR(Yaw(plane.normal, landmark.frame_from_object.rotation), parameters(0), 1e-12);
+    EXPECT_LT((landmark.half_axes.array() - parameters.tail<3>().array().exp()).matrix().norm(),
+              1e-12);
+    // The foot, from the point of the plane that is nearest to the origin.
+    const Eigen::Vector3d foot =
+        landmark.Centre() - plane.SignedDistance(landmark.Centre()) * plane.normal;
+    const Eigen::Vector3d from_nearest = foot + plane.offset * plane.normal;
+    const Eigen::Vector3d along_axes =
+        UprightRotation(plane.normal, 0.0).conjugate() * from_nearest;
+    EXPECT_LT((along_axes - Eigen::Vector3d(parameters(1), parameters(2), 0.0)).norm(), 1e-12);
+  }
+}
+
+TEST(UprightParameters, AreThoseThatTheLandmarkWasMadeOf) {
+  for (int i = 0; i < 100; ++i) {
+    const Plane plane = RandomPlane();
+    const UprightVector parameters = RandomUprightParameters();
+    const Landmark landmark = UprightLandmark(plane, parameters, 1.5);
+    EXPECT_LT((UprightParameters(plane, landmark) - parameters).norm(), 1e-12);
+  }
+}
+
+TEST(UprightParameters, OfATiltedLandmarkOffThePlaneSetItUprightOnThePlane) {
+  constexpr double kTilt = 1e-3;
+  for (int i = 0; i < 100; ++i) {
+    const Plane plane = RandomPlane();
+    const Landmark upright = RandomUprightLandmark(plane);
+    const Eigen::Vector3d tilt_axis =
+        UprightRotation(plane.normal, RandomUniform(-3, 3)) * Eigen::Vector3d::UnitX();
+    Landmark tilted = upright;
+    tilted.frame_from_object.rotation =
+        ExpRotation(kTilt * tilt_axis) * upright.frame_from_object.rotation;
+    tilted.frame_from_object.translation += RandomUniform(-0.3, 0.3) * plane.normal;
+    const Landmark found = UprightLandmark(plane, UprightParameters(plane, tilted), 1.5);
+    EXPECT_LT((found.Centre() - upright.Centre()).norm(), 1e-12);
+    EXPECT_LT((found.half_axes - upright.half_axes).norm(), 1e-12);
+    EXPECT_LT(found.frame_from_object.rotation.angularDistance(upright.frame_from_object.rotation),
+              kTilt * kTilt);
+  }
+}
+
+TEST(UprightByParameters, AgreesWithNumbers) {
+  constexpr double kStep = 1e-3;
+  for (int i = 0; i < 50; ++i) {
+    const Plane plane = RandomPlane();
+    const UprightVector parameters = RandomUprightParameters();
+    const Landmark landmark = UprightLandmark(plane, parameters, 1.5);
+    // The nine parameters of kLandmarkDof, from those of the landmark.
+    const auto moved = [&](int k, double step) {
+      UprightVector at = parameters;
+      at(k) += step;
+      const Landmark other = UprightLandmark(plane, at, 1.5);
+      Eigen::Matrix<double, kLandmarkDof, 1> tangent;
+      tangent << LogRotation(other.frame_from_object.rotation *
+                             landmark.frame_from_object.rotation.conjugate()),
+          other.Centre() - landmark.Centre(),
+          (other.half_axes.array() / landmark.half_axes.array()).log().matrix();
+      return tangent;
+    };
+    const UprightJacobian jacobian = UprightByParameters(plane, landmark);
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Matrix<double, kLandmarkDof, 1> numeric =
+          (8.0 * (moved(k, kStep) - moved(k, -kStep)) -
+           (moved(k, 2.0 * kStep) - moved(k, -2.0 * kStep))) /
+          (12.0 * kStep);
+      EXPECT_LT((jacobian.col(k) - numeric).norm(), 1e-9)
+          << "parameter " << k << ": analytic " << jacobian.col(k).transpose() << ", numeric "
+          << numeric.transpose();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam

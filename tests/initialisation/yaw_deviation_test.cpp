@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "initialisation/yaw_sweep.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegrees = std::numbers::pi / 180.0;
+
+// A sweep whose costs are a function of the yaw.
+template <typename Cost>
+YawSweep SweepOf(Cost cost, int points) {
+  YawSweep sweep;
+  for (int i = 0; i < points; ++i) {
+    sweep.yaw.push_back(i * kPi / points);
+    sweep.solutions.push_back(UprightSolution{Landmark(), cost(sweep.yaw.back())});
+  }
+  return sweep;
+}
+
+TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
+  for (int i = 0; i < 50; ++i) {
+    const double sigma = RandomUniform(2.0, 10.0) * kDegrees;
+    const double mean = RandomYaw();  // also where the grid goes round
+    const double offset = RandomUniform(-1e4, 1e4);
+    const auto cost = [&](double yaw) {
+      return offset + 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2);
+    };
+    const YawSweep sweep = SweepOf(cost, 360);
+    EXPECT_NEAR(sweep.StandardDeviation({{mean, offset}}), sigma, 0.02 * sigma);
+    EXPECT_NEAR(sweep.StandardDeviation({{mean + kPi, offset}}), sigma, 0.02 * sigma);
+    // About another yaw, the way there counts too.
+    const double away = mean + RandomUniform(-0.3, 0.3);
+    EXPECT_NEAR(sweep.StandardDeviation({{away, cost(away)}}),
+                std::hypot(sigma, YawDifferenceModuloPi(away, mean)), 0.01);
+  }
+}
+
+// However narrow: it is not the distance to the nearest yaw of the grid.
+TEST(YawSweep, StandardDeviationOfAPeakBetweenTwoYawsOfTheGrid) {
+  for (int i = 0; i < 50; ++i) {
+    const double sigma = RandomUniform(0.1, 0.5) * kDegrees;
+    const double mean = RandomYaw();
+    const YawSweep sweep = SweepOf(
+        [&](double yaw) { return 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2); },
+        60);
+    EXPECT_NEAR(sweep.StandardDeviation({{mean, 0.0}}), sigma, 0.05 * sigma);
+  }
+}
+
+// The same body called by its other horizontal axis: two equal peaks a quarter turn apart.
+TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
+  for (int i = 0; i < 50; ++i) {
+    const double sigma = RandomUniform(0.3, 3.0) * kDegrees;
+    const double mean = RandomYaw();
+    const double other = mean + 0.5 * kPi;
+    const YawSweep sweep = SweepOf(
+        [&](double yaw) {
+          const auto squared = [&](double peak) {
+            return 0.5 * std::pow(YawDifferenceModuloPi(yaw, peak) / sigma, 2);
+          };
+          return std::min(squared(mean), squared(other));
+        },
+        60);
+    const double expected = 0.5 * kPi / std::sqrt(2.0);
+    EXPECT_NEAR(sweep.StandardDeviation({{mean, 0.0}, {other, 0.0}}), expected, 0.06 * expected);
+  }
+}
+
+TEST(YawSweep, StandardDeviationOfAnyYawIsThatOfAUniformDistribution) {
+  const YawSweep sweep = SweepOf([](double) { return 3.0; }, 1800);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_NEAR(sweep.StandardDeviation({{RandomYaw(), 3.0}}), kPi / std::sqrt(12.0), 2e-3);
+  }
+}
+
+TEST(YawSweep, StandardDeviationLeavesOutYawsWithoutALandmark) {
+  // Nothing but 20 degrees around the mean, and 10 degrees further on.
+  YawSweep sweep = SweepOf([](double) { return 1.0; }, 1800);
+  const double mean = 80.05 * kDegrees;
+  const auto leave_out = [&](double from, double to) {
+    for (size_t i = 0; i < sweep.yaw.size(); ++i) {
+      const double distance = (sweep.yaw[i] - mean) / kDegrees;
+      if (distance > from && distance < to) sweep.solutions[i].reset();
+    }
+  };
+  leave_out(-90, -10);
+  leave_out(20, 101);
+  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), std::sqrt(9000.0 / 3.0 / 30.0) * kDegrees,
+              1e-3);
+  leave_out(10, 20);
+  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), 20.0 * kDegrees / std::sqrt(12.0), 1e-3);
+}
+
+}  // namespace
+}  // namespace soslam

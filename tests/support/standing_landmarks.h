@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "constraints/parameters.h"
+#include "support/random.h"
+
+namespace soslam {
+
+// A landmark of any yaw that stands upright on a plane.
+inline Landmark RandomStanding(const Plane& plane) {
+  Landmark landmark;
+  landmark.half_axes = RandomVector(0.01, 1.0);
+  landmark.frame_from_object.rotation = UprightRotation(plane.normal, RandomUniform(-3, 3));
+  const Eigen::Vector3d anywhere = RandomVector(-3, 3);
+  landmark.frame_from_object.translation =
+      anywhere + (landmark.half_axes.z() - plane.SignedDistance(anywhere)) * plane.normal;
+  return landmark;
+}
+
+// Half axes 1, 2, 3, lying with the x axis up, its centre 5 m over the floor z = 0.
+inline Landmark LyingLandmark() {
+  return {{Eigen::Quaterniond(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitY())),
+           {7, 8, 5}},
+          {1, 2, 3}};
+}
+
+// The three residuals of a landmark in the world.
+inline Eigen::Vector3d ResidualsOf(const ceres::CostFunction& residual, const Landmark& landmark) {
+  const LandmarkBlock block = Pack(landmark);
+  const double* blocks[] = {block.data()};
+  Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
+  return values;
+}
+
+// What such residuals have in common, as functions of plane and landmark in the world.
+using PlaneResiduals = std::function<Eigen::Vector3d(const Plane&, const Landmark&)>;
+
+inline void ExpectZeroForStandingLandmarks(const PlaneResiduals& residuals) {
+  for (int i = 0; i < 100; ++i) {
+    const Plane plane = RandomPlane();
+    EXPECT_LT(residuals(plane, RandomStanding(plane)).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+inline void ExpectNoChangeWithTheWorld(const PlaneResiduals& residuals) {
+  const Plane plane = RandomPlane();
+  const Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0)};
+  const Rigid3d motion = RandomRigid(10.0);
+  const Eigen::Vector3d moved = residuals(Transform(motion, plane), Transform(motion, landmark));
+  EXPECT_LT((moved - residuals(plane, landmark)).norm(), 1e-9);
+}
+
+}  // namespace soslam
