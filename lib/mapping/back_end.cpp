@@ -1,14 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/back_end.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "mapping/back_end_problem.h"
 #include "mapping/covariance.h"
 
 namespace soslam {
 namespace {
 
-// Which edges are visible settles with the landmarks.
-constexpr int kEdgeRounds = 3;
+// What of texture and edges is visible, and where the mirror planes are, settles with the
+// landmarks: renewed until none changes by more than this (m per m of size, rad).
+constexpr int kMaxImageRounds = 12;
+constexpr double kSettled = 1e-3;
+
+double Change(const Landmark& from, const Landmark& to) {
+  const double size = std::cbrt(from.half_axes.prod());
+  return std::max({(to.Centre() - from.Centre()).norm() / size,
+                   (to.half_axes - from.half_axes).norm() / size,
+                   to.frame_from_object.rotation.angularDistance(from.frame_from_object.rotation)});
+}
+
+void SettleWithImages(BackEndProblem* problem) {
+  for (int round = 0; round < kMaxImageRounds; ++round) {
+    const std::vector<std::optional<Landmark>> before = problem->Landmarks();
+    problem->RenewImageTerms();
+    problem->Solve();
+    const std::vector<std::optional<Landmark>> after = problem->Landmarks();
+    double change = 0.0;
+    for (size_t i = 0; i < before.size(); ++i) {
+      if (before[i]) change = std::max(change, Change(*before[i], *after[i]));
+    }
+    if (change < kSettled) return;
+  }
+}
 
 void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
   std::vector<const double*> blocks;
@@ -32,28 +58,26 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   BackEndProblem problem(input, options);
   MapEstimate map;
   problem.Solve();
-  if (!input.symmetry_images.empty()) {
-    problem.AddSymmetry();
-    problem.Solve();
-  }
-  for (int round = 0; round < kEdgeRounds && !input.edge_images.empty(); ++round) {
-    problem.RenewEdges();
-    problem.Solve();
+  if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
+    if (options.detection_model == DetectionModel::kTangency) {
+      SettleWithImages(&problem);
+    } else {
+      problem.RenewImageTerms();  // the paper's pairs are those of the start
+      problem.Solve();
+    }
   }
   map.solver = problem.summary();
   for (const PoseBlock& pose : problem.poses()) {
     map.world_from_camera.push_back(UnpackPose(pose.data()));
   }
   const auto detections = DetectionsByObject(input.sequence);
-  for (size_t i = 0; i < input.starts.size(); ++i) {
+  const std::vector<std::optional<Landmark>> landmarks = problem.Landmarks();
+  for (size_t i = 0; i < landmarks.size(); ++i) {
     ObjectEstimate object;
     object.object_index = static_cast<int>(i);
     object.observations = static_cast<int>(detections[i].size());
-    if (input.starts[i]) {
-      object.landmark_in_world = problem.LandmarkInWorld(i);
-    } else {
-      object.failure = "no_start";
-    }
+    object.landmark_in_world = landmarks[i];
+    if (!landmarks[i]) object.failure = "no_start";
     map.objects.push_back(object);
   }
   if (options.covariances) AddCovariances(&problem, &map);

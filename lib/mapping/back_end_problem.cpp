@@ -20,6 +20,10 @@
 namespace soslam {
 namespace {
 
+// Reasons for leaving something out.
+constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
+constexpr const char* kEdgesOutOfSight = "edges_out_of_sight";
+
 // Residual blocks share one loss, which outlives the problem.
 ceres::Problem::Options BorrowLoss() {
   ceres::Problem::Options options;
@@ -63,6 +67,14 @@ Landmark BackEndProblem::LandmarkInWorld(size_t object_index) const {
   Landmark landmark = UnpackLandmark(landmarks_[object_index].data());
   landmark.shape_exponent = input_.starts[object_index]->shape_exponent;
   return landmark;
+}
+
+std::vector<std::optional<Landmark>> BackEndProblem::Landmarks() const {
+  std::vector<std::optional<Landmark>> landmarks(landmarks_.size());
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    if (input_.starts[i]) landmarks[i] = LandmarkInWorld(i);
+  }
+  return landmarks;
 }
 
 Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
@@ -198,70 +210,84 @@ void BackEndProblem::HoldBias() {
   }
 }
 
-void BackEndProblem::AddSymmetry() {
-  for (const auto& [detection_index, image] : input_.symmetry_images) {
-    AddSymmetry(static_cast<size_t>(detection_index), image);
+void BackEndProblem::RenewImageTerms() {
+  for (const ceres::ResidualBlockId id : image_terms_) problem_.RemoveResidualBlock(id);
+  image_terms_.clear();
+  for (const char* kind : {"symmetry", "edges"}) summary_.residuals.erase(kind);
+  for (const char* reason : {kTooFewPairs, kEdgesOutOfSight}) summary_.gated.erase(reason);
+  const auto has_start = [&](int detection_index) {
+    const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
+    return input_.starts[static_cast<size_t>(detection.object_index)].has_value();
+  };
+  for (const auto& [index, image] : input_.symmetry_images) {
+    if (has_start(index)) AddSymmetry(static_cast<size_t>(index), image);
+  }
+  for (const auto& [index, image] : input_.edge_images) {
+    if (has_start(index)) AddEdges(static_cast<size_t>(index), image);
   }
 }
 
 void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image) {
-  const Detection& detection = input_.sequence.detections[index];
-  if (!input_.starts[static_cast<size_t>(detection.object_index)]) return;
-  const Landmark in_camera = LandmarkInCamera(detection);
+  const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[index]);
   if (options_.detection_model == DetectionModel::kTangency) {
-    auto residual = std::make_unique<AsymmetryResidual>(image, input_.sequence.camera, in_camera,
-                                                        options_.texture, options_.symmetry_options,
-                                                        view_weights_[index]);
-    if (residual->num_residuals() == 0) {
-      ++summary_.gated["symmetry_with_too_few_visible_pairs"];
-      return;
-    }
-    summary_.residuals["symmetry"] += residual->num_residuals();
-    // No further loss: a pair's residual is bounded.
-    problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection).data(),
-                              LandmarkOf(detection).data());
+    AddAsymmetry(index, image, in_camera);
+  } else {
+    AddPairs(index, image, in_camera);
+  }
+}
+
+void BackEndProblem::AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
+                                  const Landmark& landmark_in_camera) {
+  const Detection& detection = input_.sequence.detections[index];
+  auto residual = std::make_unique<AsymmetryResidual>(
+      image, input_.sequence.camera, landmark_in_camera, options_.texture,
+      options_.symmetry_options, view_weights_[index]);
+  if (residual->num_residuals() == 0) {
+    ++summary_.gated[kTooFewPairs];
     return;
   }
+  summary_.residuals["symmetry"] += residual->num_residuals();
+  // No further loss: a pair's residual is bounded.
+  image_terms_.push_back(problem_.AddResidualBlock(
+      residual.release(), nullptr, Pose(detection).data(), LandmarkOf(detection).data()));
+}
+
+void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
+                              const Landmark& landmark_in_camera) {
+  const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.camera;
   const SymmetryOptions& symmetry = options_.symmetry_options;
-  const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
+  const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, landmark_in_camera);
   std::vector<Eigen::Vector2d> visible;
-  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, in_camera, symmetry)) {
+  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, landmark_in_camera, symmetry)) {
     if (at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
   }
   if (visible.size() < static_cast<size_t>(symmetry.min_pairs)) {
-    ++summary_.gated["symmetry_with_too_few_visible_pairs"];
+    ++summary_.gated[kTooFewPairs];
     return;
   }
   for (const Eigen::Vector2d& pixel : visible) {
-    problem_.AddResidualBlock(
-        new SymmetryResidual(symmetry.descriptor, image, camera, pixel, in_camera.shape_exponent,
-                             options_.symmetry_sigma),
-        &loss_, Pose(detection).data(), LandmarkOf(detection).data());
+    image_terms_.push_back(problem_.AddResidualBlock(
+        new SymmetryResidual(symmetry.descriptor, image, camera, pixel,
+                             landmark_in_camera.shape_exponent, options_.symmetry_sigma),
+        &loss_, Pose(detection).data(), LandmarkOf(detection).data()));
   }
   summary_.residuals["symmetry"] += static_cast<int>(visible.size());
 }
 
-void BackEndProblem::RenewEdges() {
-  for (const ceres::ResidualBlockId id : edges_) problem_.RemoveResidualBlock(id);
-  edges_.clear();
-  int without_points = 0;
-  for (const auto& [detection_index, image] : input_.edge_images) {
-    const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
-    if (!input_.starts[static_cast<size_t>(detection.object_index)]) continue;
-    auto residual = std::make_unique<EdgeAlignmentResidual>(
-        image, input_.sequence.camera, LandmarkInCamera(detection), options_.edges,
-        view_weights_[static_cast<size_t>(detection_index)]);
-    if (residual->num_residuals() == 0) {
-      ++without_points;
-      continue;
-    }
-    // No further loss: a point's residual is bounded.
-    edges_.push_back(problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection).data(),
-                                               LandmarkOf(detection).data()));
+void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image) {
+  const Detection& detection = input_.sequence.detections[index];
+  auto residual = std::make_unique<EdgeAlignmentResidual>(image, input_.sequence.camera,
+                                                          LandmarkInCamera(detection),
+                                                          options_.edges, view_weights_[index]);
+  if (residual->num_residuals() == 0) {
+    ++summary_.gated[kEdgesOutOfSight];
+    return;
   }
-  if (!input_.edge_images.empty()) summary_.residuals["edges"] = static_cast<int>(edges_.size());
-  if (without_points > 0) summary_.gated["edges_out_of_sight"] = without_points;
+  ++summary_.residuals["edges"];
+  // No further loss: a point's residual is bounded.
+  image_terms_.push_back(problem_.AddResidualBlock(
+      residual.release(), nullptr, Pose(detection).data(), LandmarkOf(detection).data()));
 }
 
 std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {

@@ -22,10 +22,9 @@ class BackEndProblem {
   BackEndProblem(const BackEndInput& input, const OptimiseOptions& options);
 
   // Which surface points see each other in the mirror, and which edges of a body are visible,
-  // depends on the landmarks: texture and edges join in when boxes and planes have settled. The
-  // edges of an earlier call are replaced.
-  void AddSymmetry();
-  void RenewEdges();
+  // depends on the landmarks: texture and edges join in when boxes and planes have settled. Those
+  // of an earlier call are replaced.
+  void RenewImageTerms();
 
   // Minimises from where the variables are. Throws NumericalError when there is no usable solution.
   void Solve();
@@ -33,7 +32,8 @@ class BackEndProblem {
   const SolverSummary& summary() const { return summary_; }
   ceres::Problem& problem() { return problem_; }
   const double* LandmarkData(size_t object_index) const { return landmarks_[object_index].data(); }
-  Landmark LandmarkInWorld(size_t object_index) const;
+  // In the world, where the variables are; none for objects without a start.
+  std::vector<std::optional<Landmark>> Landmarks() const;
   const std::vector<PoseBlock>& poses() const { return poses_; }
 
  private:
@@ -44,7 +44,13 @@ class BackEndProblem {
   void AddDetections();
   void AddDetection(size_t index, const Landmark& landmark_in_camera);
   void AddSymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image);
+  void AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
+                const Landmark& landmark_in_camera);
+  void AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
+                    const Landmark& landmark_in_camera);
+  void AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image);
   void HoldBias();
+  Landmark LandmarkInWorld(size_t object_index) const;
   // A detection's landmark as its camera sees it, where the variables are.
   Landmark LandmarkInCamera(const Detection& detection) const;
   PoseBlock& Pose(const Detection& detection) {
@@ -64,7 +70,7 @@ class BackEndProblem {
   std::vector<PoseBlock> poses_;
   std::vector<LandmarkBlock> landmarks_;
   std::array<double, 4> detector_bias_px_{};  // left, top, right, bottom
-  std::vector<ceres::ResidualBlockId> edges_;
+  std::vector<ceres::ResidualBlockId> image_terms_;
   SolverSummary summary_;
 };
 
