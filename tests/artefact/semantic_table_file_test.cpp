@@ -169,6 +169,20 @@ TEST(SemanticTableTest, TheProjectsTableKnowsWhatIsIndoorsAndOnRoads) {
   }
 }
 
+TEST(SemanticTableTest, TheProjectsTableIsWhatWasStatedAndMore) {
+  const std::filesystem::path folder = SOSLAM_SOURCE_DIR "/pipelines/priors";
+  const SemanticTable table = ReadSemanticTable(folder / "semantic_table.json");
+  for (const SemanticRow& row : ReadSemanticRows(folder / "base_table.json").rows) {
+    const ShapePrior prior = table.Find(row.label).value();
+    EXPECT_EQ(prior.ratio, row.prior.ratio) << row.label;
+    EXPECT_EQ(prior.log_sigma, row.prior.log_sigma) << row.label;
+    EXPECT_EQ(prior.shape_exponent, row.prior.shape_exponent) << row.label;
+    if (row.prior.height_m) {
+      EXPECT_EQ(prior.height_m->median, row.prior.height_m->median) << row.label;
+    }
+  }
+}
+
 TEST(SemanticTableTest, TheProjectsTableServesAnyLabel) {
   const SemanticTable table =
       ReadSemanticTable(SOSLAM_SOURCE_DIR "/pipelines/priors/semantic_table.json");
