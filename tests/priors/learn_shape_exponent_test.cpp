@@ -24,8 +24,13 @@ Sequence ViewsOfABody(double shape_exponent, int views, double disturbance) {
     if (!box) continue;
     Frame frame;
     frame.true_world_from_camera = in_camera.frame_from_object.Inverse();
-    sequence.detections.push_back(
-        {static_cast<int>(sequence.frames.size()), 0, 1.0, Disturbed(*box, disturbance), {}, {}});
+    sequence.detections.push_back({static_cast<int>(sequence.frames.size()),
+                                   0,
+                                   1.0,
+                                   Disturbed(*box, disturbance),
+                                   {},
+                                   {},
+                                   {}});
     sequence.frames.push_back(frame);
   }
   return sequence;
