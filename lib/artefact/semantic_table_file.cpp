@@ -1,32 +1,91 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/semantic_table_file.h"
 
-#include "artefact/json_file.h"
+#include <string>
+
 #include "artefact/schema.h"
 
 namespace soslam {
 namespace {
 
+using nlohmann::json;
+
+constexpr const char* kKind = "semantic_table";
+
 // Of entries that state a ratio only; the schema says the same.
 constexpr double kDefaultLogSigma = 0.3;
 constexpr double kDefaultShapeExponent = 1.1;
 
-ShapePrior Prior(const nlohmann::json& entry) {
-  return {{entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()},
-          {entry.value("a_by_c_log_sigma", kDefaultLogSigma),
-           entry.value("b_by_c_log_sigma", kDefaultLogSigma)},
-          entry.value("shape_exponent", kDefaultShapeExponent)};
+ShapePrior Prior(const json& entry) {
+  ShapePrior prior = {{entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()},
+                      {entry.value("a_by_c_log_sigma", kDefaultLogSigma),
+                       entry.value("b_by_c_log_sigma", kDefaultLogSigma)},
+                      entry.value("shape_exponent", kDefaultShapeExponent),
+                      entry.value("log_correlation", 0.0),
+                      {}};
+  if (entry.contains("height_m")) {
+    prior.height_m = {entry.at("height_m").get<double>(),
+                      entry.value("height_log_sigma", kDefaultLogSigma)};
+  }
+  return prior;
+}
+
+SemanticRow Row(const std::string& label, const json& entry) {
+  return {label, entry.value("aliases", std::vector<std::string>()), Prior(entry),
+          entry.value("samples", 0), entry.at("source").get<std::string>()};
+}
+
+json Entry(const SemanticRow& row) {
+  const ShapePrior& prior = row.prior;
+  json entry = {{"a_by_c", prior.ratio.x()},
+                {"b_by_c", prior.ratio.y()},
+                {"a_by_c_log_sigma", prior.log_sigma.x()},
+                {"b_by_c_log_sigma", prior.log_sigma.y()},
+                {"log_correlation", prior.log_correlation},
+                {"shape_exponent", prior.shape_exponent},
+                {"samples", row.samples},
+                {"source", row.source}};
+  if (!row.aliases.empty()) entry["aliases"] = row.aliases;
+  if (prior.height_m) {
+    entry["height_m"] = prior.height_m->median;
+    entry["height_log_sigma"] = prior.height_m->log_sigma;
+  }
+  return entry;
 }
 
 }  // namespace
 
+SemanticRows ReadSemanticRows(const std::filesystem::path& path) {
+  const json document = ParseJsonFile(path);
+  // People's tables have no header.
+  if (document.is_object() && document.contains("artefact")) {
+    CheckArtefactHeader(document.at("artefact"), kKind, path.string());
+  }
+  ValidateAgainstSchema(document, kKind, path.string());
+  SemanticRows rows;
+  rows.description = document.value("description", "");
+  if (document.contains("default")) rows.default_row = Row("default", document.at("default"));
+  for (const auto& item : document.at("labels").items()) {
+    rows.rows.push_back(Row(item.key(), item.value()));
+  }
+  return rows;
+}
+
 SemanticTable ReadSemanticTable(const std::filesystem::path& path) {
-  const nlohmann::json json = ParseJsonFile(path);
-  ValidateAgainstSchema(json, "semantic_table", path.string());
-  SemanticTable table;
-  for (const auto& item : json.at("labels").items()) table.priors[item.key()] = Prior(item.value());
-  if (json.contains("default")) table.default_prior = Prior(json.at("default"));
-  return table;
+  const SemanticRows rows = ReadSemanticRows(path);
+  try {
+    return LookUpTable(rows);
+  } catch (const InputError& error) {
+    throw InputError(path.string() + ": " + error.what());
+  }
+}
+
+void WriteSemanticRows(const std::filesystem::path& path, const SemanticRows& rows,
+                       const ArtefactInfo& info) {
+  json body = {{"description", rows.description}, {"labels", json::object()}};
+  if (rows.default_row) body["default"] = Entry(*rows.default_row);
+  for (const SemanticRow& row : rows.rows) body["labels"][row.label] = Entry(row);
+  WriteArtefact(path, kKind, info, body);
 }
 
 }  // namespace soslam

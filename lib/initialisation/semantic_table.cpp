@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/semantic_table.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 #include <set>
+
+#include "base/error.h"
 
 namespace soslam {
 namespace {
@@ -19,14 +25,50 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
   const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
   shape.ratio = half_axes.head<2>() / half_axes.z();
   shape.log_sigma.setConstant(kTrueRatioLogSigma);
+  shape.log_correlation = 0.0;
   return shape;
 }
 
 }  // namespace
 
+std::string NormalisedLabel(const std::string& label) {
+  std::string normalised;
+  for (const char character : label) {
+    const auto byte = static_cast<unsigned char>(character);
+    if (std::isspace(byte) != 0 || character == '_' || character == '-') continue;
+    normalised += static_cast<char>(std::tolower(byte));
+  }
+  return normalised;
+}
+
+bool SemanticTable::Contains(const std::string& label) const {
+  return priors.count(NormalisedLabel(label)) > 0;
+}
+
 std::optional<ShapePrior> SemanticTable::Find(const std::string& label) const {
-  const auto found = priors.find(label);
+  const auto found = priors.find(NormalisedLabel(label));
   return found == priors.end() ? default_prior : found->second;
+}
+
+SemanticTable LookUpTable(const SemanticRows& rows) {
+  SemanticTable table;
+  if (rows.default_row) table.default_prior = rows.default_row->prior;
+  std::map<std::string, std::string> label_of_name;
+  for (const SemanticRow& row : rows.rows) {
+    std::vector<std::string> names = row.aliases;
+    names.insert(names.begin(), row.label);
+    for (const std::string& name : names) {
+      const auto [earlier, is_new] = label_of_name.emplace(NormalisedLabel(name), row.label);
+      if (!is_new) {
+        throw InputError(fmt::format(
+            "/labels/{}: name '{}' is that of label '{}' as well (case, blanks, underscores and "
+            "hyphens do not count); expected each name once",
+            row.label, name, earlier->second));
+      }
+      table.priors[earlier->first] = row.prior;
+    }
+  }
+  return table;
 }
 
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
@@ -55,7 +97,7 @@ std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequenc
 std::vector<std::string> LabelsWithoutEntry(const Sequence& sequence, const SemanticTable& table) {
   std::set<std::string> labels;
   for (const Object& object : sequence.objects) {
-    if (table.priors.count(object.label) == 0) labels.insert(object.label);
+    if (!table.Contains(object.label)) labels.insert(object.label);
   }
   return {labels.begin(), labels.end()};
 }

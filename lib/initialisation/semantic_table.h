@@ -13,21 +13,54 @@
 
 namespace soslam {
 
+// A positive quantity whose logarithm is normal.
+struct LogNormal {
+  double median;
+  double log_sigma;  // standard deviation of the logarithm
+};
+
 // What is known of an object's size and shape before it is seen. Ratios are log-normal.
 struct ShapePrior {
   Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
   Eigen::Vector2d log_sigma = Eigen::Vector2d::Ones();  // standard deviations of their logarithms
   double shape_exponent = kEllipsoidExponent;
+  double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
+  std::optional<LogNormal> height_m = {};  // 2 c; none where the size is anybody's guess
 };
+
+// Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the
+// same label.
+std::string NormalisedLabel(const std::string& label);
 
 // SemTable of eq. (11), and how far it is to be trusted: what is known of an object by its label.
 struct SemanticTable {
-  std::map<std::string, ShapePrior> priors;
-  std::optional<ShapePrior> default_prior;  // for labels that are not in the table
+  std::map<std::string, ShapePrior> priors;  // by NormalisedLabel of labels and their aliases
+  std::optional<ShapePrior> default_prior;   // for labels that are not in the table
 
+  bool Contains(const std::string& label) const;
   // None when neither the label nor a default is there.
   std::optional<ShapePrior> Find(const std::string& label) const;
 };
+
+// A row of a semantic table as people write it.
+struct SemanticRow {
+  std::string label;
+  std::vector<std::string> aliases;  // other names of the same things
+  ShapePrior prior;
+  int samples = 0;  // objects that the ratios were learned from; 0: general knowledge
+  std::string source;
+};
+
+// A semantic table with where it comes from.
+struct SemanticRows {
+  std::string description;
+  std::optional<SemanticRow> default_row;  // its label is "default"
+  std::vector<SemanticRow> rows;           // sorted by label
+};
+
+// The table of all labels and aliases. Throws InputError when two of them are the same after
+// NormalisedLabel.
+SemanticTable LookUpTable(const SemanticRows& rows);
 
 // Where an object's ratio comes from.
 enum class RatioPrior {

@@ -128,6 +128,11 @@ void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::V
     (*jacobian)(i, 6 + i) = weight;
     (*jacobian)(i, 8) = -weight;
   }
+  const double correlation = prior_.log_correlation;
+  const double unexplained = std::sqrt(1.0 - correlation * correlation);
+  residuals[1] = (residuals[1] - correlation * residuals[0]) / unexplained;
+  if (jacobian == nullptr) return;
+  jacobian->row(1) = (jacobian->row(1) - correlation * jacobian->row(0)) / unexplained;
 }
 
 void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,

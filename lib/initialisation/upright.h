@@ -56,7 +56,8 @@ class BoxTerm final : public LandmarkTerm {
   std::array<double, 4> depths_m_;
 };
 
-// The logarithms of a / c and b / c against the prior's.
+// The logarithms of a / c and b / c against the prior's: what is left of the second once the first
+// is known (the inverse Cholesky factor of their covariance).
 class RatioTerm final : public LandmarkTerm {
  public:
   explicit RatioTerm(const ShapePrior& prior) : prior_(prior) {}

@@ -36,13 +36,17 @@ struct ParsedArguments {
 
 void AddFiles(const StageInfo& info, CLI::App* app, ParsedArguments* parsed) {
   for (const FileArgument& file : info.files) {
-    app->add_option_function<std::string>(
-           "--" + file.name,
-           [parsed, name = file.name](const std::string& path) { parsed->files[name] = path; },
-           file.doc)
-        ->group("Files")
+    const std::string paths = file.repeatable ? "PATH ..." : "PATH";
+    CLI::Option* option = app->add_option_function<std::vector<std::string>>(
+        "--" + file.name,
+        [parsed, name = file.name](const std::vector<std::string>& paths) {
+          for (size_t i = 0; i < paths.size(); ++i) parsed->files[RepeatedName(name, i)] = paths[i];
+        },
+        file.doc);
+    option->group("Files")
         ->required(file.required)
-        ->option_text(file.required ? "PATH (required)" : "PATH");
+        ->option_text(file.required ? paths + " (required)" : paths);
+    if (!file.repeatable) option->expected(1);
   }
 }
 

@@ -16,6 +16,7 @@ struct FileArgument {
   std::string name;
   std::string doc;
   bool required = true;
+  bool repeatable = false;  // may be given several times, or with several paths
 };
 
 // What --help says about a stage.

@@ -5,6 +5,7 @@
 #include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
+#include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 
 namespace soslam {
@@ -83,6 +84,18 @@ TEST(GoldenTest, Metrics11) {
   const auto metrics = ReadArtefact(kGolden / "metrics-1.1.json", "metrics");
   EXPECT_EQ(metrics.at("summary").at("iou_median"), 1.0 / 3.0);
   EXPECT_TRUE(metrics.at("objects").at(2).at("centre_m").is_null());
+}
+
+TEST(GoldenTest, SemanticTableOfPeople) {
+  const SemanticTable table = ReadSemanticTable(kGolden / "semantic_table-1.0.json");
+  const ShapePrior dining_table = table.Find("dining table").value();
+  EXPECT_EQ(dining_table.ratio, Eigen::Vector2d(1.16, 2.1));
+  EXPECT_EQ(dining_table.log_sigma, Eigen::Vector2d(0.17, 0.14));
+  EXPECT_EQ(dining_table.shape_exponent, 1.0);
+  EXPECT_EQ(table.Find("cup")->shape_exponent, 1.1);
+  // What this version did not have yet.
+  EXPECT_EQ(dining_table.log_correlation, 0.0);
+  EXPECT_FALSE(dining_table.height_m);
 }
 
 }  // namespace

@@ -32,7 +32,6 @@ class SemanticTableFileTest : public testing::Test {
         {"table.json: /labels/cup/" + field + " is " + value.dump()});
   }
 
- private:
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "table.json";
 };
@@ -63,6 +62,125 @@ TEST_F(SemanticTableFileTest, WhatIsNoSpreadOrShapeIsRefused) {
   ExpectRefused("b_by_c_log_sigma", 0);
   ExpectRefused("shape_exponent", 3);
   ExpectRefused("shape_exponent", 0.9);
+}
+
+TEST_F(SemanticTableFileTest, ReadsSizeAndCorrelation) {
+  json entry = kRatioOnly;
+  EXPECT_FALSE(Read({{"labels", {{"cup", entry}}}}).Find("cup")->height_m);
+  entry["height_m"] = 0.1;
+  entry["height_log_sigma"] = 0.2;
+  entry["log_correlation"] = -0.4;
+  const ShapePrior cup = Read({{"labels", {{"cup", entry}}}}).Find("cup").value();
+  EXPECT_EQ(cup.height_m.value().median, 0.1);
+  EXPECT_EQ(cup.height_m->log_sigma, 0.2);
+  EXPECT_EQ(cup.log_correlation, -0.4);
+}
+
+TEST_F(SemanticTableFileTest, FindsLabelsByAliasHoweverTheyAreWritten) {
+  json entry = kRatioOnly;
+  entry["aliases"] = {"television set", "TV"};
+  const SemanticTable table = Read({{"labels", {{"tv monitor", entry}}}});
+  for (const char* label : {"tv monitor", "tvmonitor", "TV_Monitor", "Tv-Monitor", "tv",
+                            "Television Set", " television_set"}) {
+    EXPECT_TRUE(table.Contains(label)) << label;
+    EXPECT_TRUE(table.Find(label)) << label;
+  }
+  EXPECT_FALSE(table.Contains("television"));
+}
+
+TEST_F(SemanticTableFileTest, TheSameNameTwiceIsRefused) {
+  json entry = kRatioOnly;
+  entry["aliases"] = {"Coffee_Cup"};
+  ExpectError<InputError>(
+      [&] {
+        Read({{"labels", {{"mug", entry}, {"coffee cup", kRatioOnly}}}});
+      },
+      {"table.json: /labels/mug", "Coffee_Cup", "'coffee cup'", "expected each name once"});
+  ExpectError<InputError>(
+      [&] {
+        Read({{"labels", {{"mug", kRatioOnly}, {"Mug", kRatioOnly}}}});
+      },
+      {"table.json", "ug'"});
+}
+
+TEST_F(SemanticTableFileTest, WhatIsNoSizeOrCorrelationIsRefused) {
+  ExpectRefused("height_m", 0);
+  ExpectRefused("height_log_sigma", 0);
+  ExpectRefused("log_correlation", 1);
+  ExpectRefused("samples", -1);
+}
+
+TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
+  const SemanticRow cup = {
+      "cup", {"mug"}, {{1.2, 0.9}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}}, 7, "the test"};
+  const SemanticRow any = {"default", {}, {{1.0, 1.0}, {0.5, 0.5}, 1.1}, 0, "no preference"};
+  WriteSemanticRows(file_, {"about cups", any, {cup}}, {});
+  const SemanticRows rows = ReadSemanticRows(file_);
+  EXPECT_EQ(rows.description, "about cups");
+  ASSERT_EQ(rows.rows.size(), 1u);
+  EXPECT_EQ(rows.rows[0].label, "cup");
+  EXPECT_EQ(rows.rows[0].aliases, cup.aliases);
+  EXPECT_EQ(rows.rows[0].prior.ratio, cup.prior.ratio);
+  EXPECT_EQ(rows.rows[0].prior.log_sigma, cup.prior.log_sigma);
+  EXPECT_EQ(rows.rows[0].prior.log_correlation, 0.5);
+  EXPECT_EQ(rows.rows[0].prior.height_m.value().log_sigma, 0.3);
+  EXPECT_EQ(rows.rows[0].samples, 7);
+  EXPECT_EQ(rows.rows[0].source, "the test");
+  EXPECT_EQ(rows.default_row.value().prior.shape_exponent, 1.1);
+}
+
+TEST_F(SemanticTableFileTest, ArtefactsOfAnotherKindAreRefused) {
+  WriteBytes(file_, R"({"artefact": {"kind": "map", "schema_version": [1, 0]}, "labels": {}})");
+  ExpectError<InputError>([&] { ReadSemanticTable(file_); }, {"table.json", "\"map\""});
+}
+
+// COCO's labels of what stands or lies about indoors, and the furniture of other data sets.
+const std::vector<std::string> kIndoorLabels = {
+    "backpack",     "umbrella",     "handbag",      "suitcase",
+    "sports ball",  "bottle",       "wine glass",   "cup",
+    "fork",         "knife",        "spoon",        "bowl",
+    "banana",       "apple",        "sandwich",     "orange",
+    "broccoli",     "carrot",       "hot dog",      "pizza",
+    "donut",        "cake",         "chair",        "couch",
+    "potted plant", "bed",          "dining table", "toilet",
+    "tv",           "laptop",       "mouse",        "remote",
+    "keyboard",     "cell phone",   "microwave",    "oven",
+    "toaster",      "sink",         "refrigerator", "book",
+    "clock",        "vase",         "scissors",     "teddy bear",
+    "hair drier",   "toothbrush",   "tvmonitor",    "diningtable",
+    "sofa",         "armchair",     "office chair", "stool",
+    "desk",         "coffee table", "nightstand",   "bookshelf",
+    "wardrobe",     "dresser",      "cabinet",      "lamp",
+    "monitor",      "printer",      "bathtub",      "washing_machine",
+    "dishwasher",   "trash can",    "box",          "pillow",
+    "speaker",      "piano",        "whiteboard",   "kettle"};
+
+TEST(SemanticTableTest, TheProjectsTableKnowsWhatIsIndoorsAndOnRoads) {
+  const std::filesystem::path file = SOSLAM_SOURCE_DIR "/pipelines/priors/semantic_table.json";
+  const SemanticTable table = ReadSemanticTable(file);
+  ASSERT_GE(kIndoorLabels.size(), 60u);
+  for (const std::string& label : kIndoorLabels) EXPECT_TRUE(table.Contains(label)) << label;
+  for (const char* label : {"Car", "Van", "Truck", "Pedestrian", "Cyclist", "person"}) {
+    EXPECT_TRUE(table.Contains(label)) << label;
+  }
+  for (const SemanticRow& row : ReadSemanticRows(file).rows) {
+    EXPECT_GE(row.source.size(), 10u) << row.label;
+    EXPECT_TRUE(row.prior.height_m) << row.label;
+  }
+}
+
+TEST(SemanticTableTest, TheProjectsTableIsWhatWasStatedAndMore) {
+  const std::filesystem::path folder = SOSLAM_SOURCE_DIR "/pipelines/priors";
+  const SemanticTable table = ReadSemanticTable(folder / "semantic_table.json");
+  for (const SemanticRow& row : ReadSemanticRows(folder / "base_table.json").rows) {
+    const ShapePrior prior = table.Find(row.label).value();
+    EXPECT_EQ(prior.ratio, row.prior.ratio) << row.label;
+    EXPECT_EQ(prior.log_sigma, row.prior.log_sigma) << row.label;
+    EXPECT_EQ(prior.shape_exponent, row.prior.shape_exponent) << row.label;
+    if (row.prior.height_m) {
+      EXPECT_EQ(prior.height_m->median, row.prior.height_m->median) << row.label;
+    }
+  }
 }
 
 TEST(SemanticTableTest, TheProjectsTableServesAnyLabel) {

@@ -112,7 +112,7 @@ TEST(BoxTerm, IsZeroForTheOutlineBoxAndCountsStandardDeviations) {
 TEST(RatioTerm, JacobianAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const ShapePrior prior{RandomVector(0.3, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>(),
-                           kCuboidExponent};
+                           kCuboidExponent, i % 2 == 0 ? 0.0 : RandomUniform(-0.95, 0.95)};
     ExpectCorrectTermJacobian(RatioTerm(prior), RandomLandmarkInCamera());
   }
 }
@@ -128,6 +128,23 @@ TEST(RatioTerm, CountsStandardDeviationsOfTheLogarithms) {
           landmark.half_axes.z() * prior.ratio[k] * std::exp(deviations[k] * prior.log_sigma[k]);
     }
     EXPECT_LT((Residuals(RatioTerm(prior), landmark) - deviations).norm(), 1e-10);
+  }
+}
+
+TEST(RatioTerm, CostIsThatOfTheCovariance) {
+  for (int i = 0; i < 20; ++i) {
+    const ShapePrior prior{RandomVector(0.3, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>(),
+                           kCuboidExponent, RandomUniform(-0.95, 0.95)};
+    const Landmark landmark = RandomLandmarkInCamera();
+    const Eigen::Vector2d error =
+        (landmark.half_axes.head<2>().array() / landmark.half_axes.z() / prior.ratio.array())
+            .log()
+            .matrix();
+    Eigen::Matrix2d covariance = prior.log_sigma.cwiseAbs2().asDiagonal();
+    covariance(0, 1) = covariance(1, 0) =
+        prior.log_correlation * prior.log_sigma.x() * prior.log_sigma.y();
+    const double expected = error.dot(covariance.inverse() * error);
+    EXPECT_NEAR(Residuals(RatioTerm(prior), landmark).squaredNorm() / expected, 1.0, 1e-9);
   }
 }
 

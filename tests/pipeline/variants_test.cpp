@@ -132,7 +132,7 @@ TEST_F(BodiesOfAnyShapeTest, ImagesKeepThem) {
   ASSERT_EQ(map.objects.size(), sequence.objects.size());
   for (const ObjectEstimate& estimate : map.objects) {
     const std::string& label = sequence.objects[static_cast<size_t>(estimate.object_index)].label;
-    ASSERT_EQ(table.priors.count(label), 1) << label;
+    ASSERT_TRUE(table.Contains(label)) << label;
     ASSERT_TRUE(estimate.landmark_in_world) << label << ": " << estimate.failure;
     EXPECT_EQ(estimate.landmark_in_world->shape_exponent, table.Find(label)->shape_exponent)
         << label;

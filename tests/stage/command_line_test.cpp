@@ -71,11 +71,13 @@ class CommandLineTest : public testing::Test {
   int RunBare(const std::vector<std::string>& arguments) {
     std::vector<const char*> argv = {"soslam-test"};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-    const StageInfo info = {
-        .name = "soslam-test",
-        .purpose = "Tests the command line.",
-        .files = {{"input", "The input"}, {"output", "The output"}, {"extra", "More input", false}},
-        .example = "soslam-test --input a --output b"};
+    const StageInfo info = {.name = "soslam-test",
+                            .purpose = "Tests the command line.",
+                            .files = {{"input", "The input"},
+                                      {"output", "The output"},
+                                      {"extra", "More input", false},
+                                      {"many", "As many inputs as you like", false, true}},
+                            .example = "soslam-test --input a --output b"};
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
     const int exit_code =
@@ -109,6 +111,19 @@ TEST_F(CommandLineTest, DefaultsFilesAndThreads) {
   EXPECT_EQ(Run({"--extra", "more.json", "--threads", "7"}), 0);
   EXPECT_EQ(recorded.files.at("extra"), "more.json");
   EXPECT_EQ(recorded.threads, 7);
+}
+
+TEST_F(CommandLineTest, RepeatableFilesKeepTheirOrder) {
+  EXPECT_EQ(Run({}), 0);
+  EXPECT_TRUE(FilesOf(recorded.files, "many").empty());
+  EXPECT_EQ(Run({"--many", "b.json", "a.json", "--count", "1", "--many", "c.json"}), 0);
+  EXPECT_EQ(FilesOf(recorded.files, "many"), (std::vector<fs::path>{"b.json", "a.json", "c.json"}));
+}
+
+TEST_F(CommandLineTest, OtherFilesAreGivenOnce) {
+  EXPECT_EQ(Run({"--extra", "a.json", "--extra", "b.json"}), 2);
+  ExpectOneLineOfError("extra");
+  EXPECT_EQ(recorded.calls, 0);
 }
 
 TEST_F(CommandLineTest, CommandLineWinsOverSettingsFileOverDefault) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// A model of a furniture catalogue. Half axes along x (front), y and z (up), metres.
+struct CatalogueModel {
+  std::string name;
+  std::string category;
+  Eigen::Vector3d half_axes;
+};
+
+// The models in a CSV file with a header that has columns name, category, depth_m, width_m and
+// height_m (others are ignored); fields with commas in double quotes. Throws InputError, naming
+// file, line and field.
+std::vector<CatalogueModel> ReadFurnitureCatalogue(const std::filesystem::path& path);
+
+// Which models count as which label: a name, in one category or in any.
+struct CatalogueName {
+  std::string name;
+  std::string category;  // empty: any
+};
+using CatalogueNames = std::map<std::string, std::vector<CatalogueName>>;  // by label
+
+// Reads schemas/furniture_labels.schema.json. Throws InputError.
+CatalogueNames ReadCatalogueNames(const std::filesystem::path& path);
+
+// Whether a model goes by one of the names, whatever their case.
+bool GoesBy(const CatalogueModel& model, const std::vector<CatalogueName>& names);
+
+}  // namespace soslam

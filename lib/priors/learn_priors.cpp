@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "priors/learn_priors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "priors/learn_shape_exponent.h"
+#include "priors/statistics.h"
+
+namespace soslam {
+namespace {
+
+// The logarithms that a label's objects are described by.
+enum Quantity { kDepthRatio, kWidthRatio, kHeight, kNumQuantities };
+using Logs = std::array<std::vector<double>, kNumQuantities>;
+
+// All that is known of a row's objects.
+struct RowData {
+  Logs logs;
+  std::vector<double> shape_exponents;
+  std::vector<std::string> cited;  // "3 of room_a"
+
+  size_t Count() const { return logs[kHeight].size(); }
+};
+
+// What the labels have in common.
+struct Pooled {
+  std::array<double, kNumQuantities> log_sigma{};
+  double correlation = 0.0;
+};
+
+constexpr double kTypicalLogSigma = 0.3;  // where no label has enough objects
+constexpr size_t kMinPooled = 5;          // objects of a label that counts in what is common
+constexpr double kMaxCorrelation = 0.95;
+
+double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
+std::string NameOf(const std::string& label, const std::map<std::string, std::string>& label_of) {
+  const auto found = label_of.find(NormalisedLabel(label));
+  return found == label_of.end() ? label : found->second;
+}
+
+void Add(const std::string& source, const LabelFacts& facts, RowData* data) {
+  for (const Eigen::Vector3d& half_axes : facts.half_axes) {
+    data->logs[kDepthRatio].push_back(std::log(half_axes.x() / half_axes.z()));
+    data->logs[kWidthRatio].push_back(std::log(half_axes.y() / half_axes.z()));
+    data->logs[kHeight].push_back(std::log(2.0 * half_axes.z()));
+  }
+  data->shape_exponents.insert(data->shape_exponents.end(), facts.shape_exponents.begin(),
+                               facts.shape_exponents.end());
+  data->cited.push_back(fmt::format("{} of {}", facts.half_axes.size(), source));
+}
+
+// By label of the row; labels that are aliases count for their row.
+std::map<std::string, RowData> DataByRow(const SemanticRows& base,
+                                         const std::vector<PriorSource>& sources) {
+  std::map<std::string, std::string> label_of;  // by normalised name
+  for (const SemanticRow& row : base.rows) {
+    label_of[NormalisedLabel(row.label)] = row.label;
+    for (const std::string& alias : row.aliases) label_of[NormalisedLabel(alias)] = row.label;
+  }
+  std::map<std::string, RowData> data;
+  for (const PriorSource& source : sources) {
+    for (const auto& [label, facts] : source.facts) {
+      if (facts.half_axes.empty()) continue;
+      const std::string row = NameOf(label, label_of);
+      label_of.emplace(NormalisedLabel(label), row);
+      Add(source.name, facts, &data[row]);
+    }
+  }
+  return data;
+}
+
+std::optional<double> Correlation(const Logs& logs) {
+  std::vector<std::pair<double, double>> pairs;
+  for (size_t i = 0; i < logs[kHeight].size(); ++i) {
+    pairs.emplace_back(logs[kDepthRatio][i], logs[kWidthRatio][i]);
+  }
+  return RobustCorrelation(pairs);
+}
+
+// Means over the labels with enough objects, weighted with their degrees of freedom.
+Pooled Pool(const std::map<std::string, RowData>& data, double min_sigma) {
+  std::array<double, kNumQuantities> squares{};
+  double freedom = 0.0;
+  double correlation = 0.0;
+  double correlated = 0.0;
+  for (const auto& [label, row] : data) {
+    if (row.Count() < kMinPooled) continue;
+    const auto weight = static_cast<double>(row.Count() - 1);
+    freedom += weight;
+    for (size_t k = 0; k < kNumQuantities; ++k) {
+      const double sigma = std::max(min_sigma, RobustSigma(row.logs[k]));
+      squares[k] += weight * sigma * sigma;
+    }
+    if (const auto of_label = Correlation(row.logs)) {
+      correlation += weight * *of_label;
+      correlated += weight;
+    }
+  }
+  Pooled pooled;
+  for (size_t k = 0; k < kNumQuantities; ++k) {
+    pooled.log_sigma[k] = freedom > 0.0 ? std::sqrt(squares[k] / freedom) : kTypicalLogSigma;
+  }
+  if (correlated > 0.0) pooled.correlation = correlation / correlated;
+  return pooled;
+}
+
+// Learns the rows of one table.
+class Learner {
+ public:
+  Learner(const Pooled& pooled, const LearnPriorsOptions& options)
+      : pooled_(pooled), options_(options) {}
+
+  // A row that the base table has.
+  SemanticRow Improved(const SemanticRow& base, const RowData& data) const {
+    const bool update = options_.base_rows == BaseRows::kUpdate;
+    SemanticRow row = base;
+    const double objects = std::max(1, base.samples);
+    if (update) {
+      for (int k = 0; k < 2; ++k) {
+        Learn(data.logs[static_cast<size_t>(k)],
+              {std::log(base.prior.ratio[k]), objects, base.prior.log_sigma[k],
+               options_.spread_weight},
+              &row.prior.ratio[k], &row.prior.log_sigma[k]);
+      }
+      row.samples += static_cast<int>(data.Count());
+      LearnShape(data, &row.prior);
+    }
+    if (!base.prior.height_m) {
+      LearnHeight(data, Unknown(kHeight), &row.prior);
+    } else if (update) {
+      const LogNormal& height = *base.prior.height_m;
+      LearnHeight(data,
+                  {std::log(height.median), objects, height.log_sigma, options_.spread_weight},
+                  &row.prior);
+    }
+    LearnCorrelation(data, &row.prior);
+    if (data.Count() > 0) {
+      row.source += fmt::format("; {}: {}", update ? "updated by" : "size, correlation",
+                                fmt::join(data.cited, ", "));
+    }
+    return row;
+  }
+
+  // A row of a label that the base table lacks.
+  SemanticRow New(const std::string& label, double shape_exponent, const RowData& data) const {
+    SemanticRow row;
+    row.label = label;
+    row.prior.shape_exponent = shape_exponent;
+    for (size_t k = 0; k < 2; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      Learn(data.logs[k], Unknown(k), &row.prior.ratio[axis], &row.prior.log_sigma[axis]);
+    }
+    LearnHeight(data, Unknown(kHeight), &row.prior);
+    LearnShape(data, &row.prior);
+    LearnCorrelation(data, &row.prior);
+    row.samples = static_cast<int>(data.Count());
+    row.source = fmt::format("learned from {}", fmt::join(data.cited, ", "));
+    return row;
+  }
+
+  void LearnCorrelation(const RowData& data, ShapePrior* prior) const {
+    if (prior->log_correlation != 0.0 && options_.base_rows == BaseRows::kKeep) return;
+    double correlation =
+        prior->log_correlation != 0.0 ? prior->log_correlation : pooled_.correlation;
+    if (const auto of_label = Correlation(data.logs)) {
+      const auto objects = static_cast<double>(data.Count());
+      correlation = (options_.correlation_weight * correlation + objects * *of_label) /
+                    (options_.correlation_weight + objects);
+    }
+    prior->log_correlation = Rounded(std::clamp(correlation, -kMaxCorrelation, kMaxCorrelation));
+  }
+
+ private:
+  NormalBelief Unknown(size_t quantity) const {
+    return {0.0, 0.0, pooled_.log_sigma[quantity], options_.spread_weight};
+  }
+
+  void Learn(const std::vector<double>& logs, const NormalBelief& prior, double* median,
+             double* log_sigma) const {
+    if (logs.empty()) return;
+    const NormalBelief belief = Update(prior, logs, options_.min_log_sigma);
+    *median = Rounded(std::exp(belief.mean));
+    *log_sigma = Rounded(PredictiveSigma(belief));
+  }
+
+  void LearnHeight(const RowData& data, const NormalBelief& belief, ShapePrior* prior) const {
+    if (data.Count() == 0) return;
+    LogNormal height{};
+    Learn(data.logs[kHeight], belief, &height.median, &height.log_sigma);
+    prior->height_m = height;
+  }
+
+  static void LearnShape(const RowData& data, ShapePrior* prior) {
+    const std::vector<double>& exponents = data.shape_exponents;
+    if (exponents.empty()) return;
+    prior->shape_exponent = Rounded(std::accumulate(exponents.begin(), exponents.end(), 0.0) /
+                                    static_cast<double>(exponents.size()));
+  }
+
+  Pooled pooled_;
+  LearnPriorsOptions options_;
+};
+
+}  // namespace
+
+PriorSource SourceOfSequence(const Sequence& sequence, int min_views) {
+  PriorSource source{sequence.name, {}};
+  const std::map<int, double> exponents = LearnShapeExponents(sequence, min_views);
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    const Object& object = sequence.objects[i];
+    if (!object.ground_truth) continue;
+    LabelFacts& facts = source.facts[object.label];
+    facts.half_axes.push_back(object.ground_truth->landmark_in_world.half_axes);
+    const auto exponent = exponents.find(static_cast<int>(i));
+    if (exponent != exponents.end()) facts.shape_exponents.push_back(exponent->second);
+  }
+  return source;
+}
+
+PriorSource SourceOfCatalogue(const std::string& name, const std::vector<CatalogueModel>& models,
+                              const CatalogueNames& names) {
+  PriorSource source{name, {}};
+  for (const auto& [label, names_of_label] : names) {
+    for (const CatalogueModel& model : models) {
+      if (GoesBy(model, names_of_label)) source.facts[label].half_axes.push_back(model.half_axes);
+    }
+  }
+  return source;
+}
+
+std::vector<CatalogueModel> WithoutObjectsOf(const Sequence& sequence,
+                                             std::vector<CatalogueModel> models) {
+  constexpr double kSameHalfAxisM = 0.5e-3 + 1e-9;
+  const auto is_object = [&](const CatalogueModel& model) {
+    return std::any_of(sequence.objects.begin(), sequence.objects.end(), [&](const Object& object) {
+      return object.ground_truth &&
+             (object.ground_truth->landmark_in_world.half_axes - model.half_axes)
+                     .cwiseAbs()
+                     .maxCoeff() <= kSameHalfAxisM;
+    });
+  };
+  std::erase_if(models, is_object);
+  return models;
+}
+
+SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource>& sources,
+                         const LearnPriorsOptions& options) {
+  std::map<std::string, RowData> data = DataByRow(base, sources);
+  const Learner learner(Pool(data, options.min_log_sigma), options);
+  SemanticRows learned{base.description, base.default_row, {}};
+  if (learned.default_row) learner.LearnCorrelation({}, &learned.default_row->prior);
+  for (const SemanticRow& row : base.rows) {
+    learned.rows.push_back(learner.Improved(row, data[row.label]));
+    data.erase(row.label);
+  }
+  const double shape_exponent =
+      (base.default_row ? base.default_row->prior : ShapePrior()).shape_exponent;
+  for (const auto& [label, of_label] : data) {
+    learned.rows.push_back(learner.New(label, shape_exponent, of_label));
+  }
+  std::sort(
+      learned.rows.begin(), learned.rows.end(),
+      [](const SemanticRow& one, const SemanticRow& other) { return one.label < other.label; });
+  LookUpTable(learned);  // refuses names that are not unique
+  return learned;
+}
+
+std::vector<PriorError> PriorErrors(const Sequence& sequence, const SemanticTable& table) {
+  std::vector<PriorError> errors;
+  for (const Object& object : sequence.objects) {
+    const std::optional<ShapePrior> prior = table.Find(object.label);
+    if (!object.ground_truth || !prior) continue;
+    const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
+    PriorError error{object.label, {}, {}};
+    error.log_error =
+        (half_axes.head<2>().array() / half_axes.z() / prior->ratio.array()).log().matrix();
+    error.normalised = error.log_error.cwiseQuotient(prior->log_sigma);
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+}  // namespace soslam

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The exponent in [1, 2] with which the true body of an object agrees best with its boxes: least
+// Huber loss of the tangency residuals, poses true where known.
+double BestShapeExponent(const Sequence& sequence, int object_index,
+                         const std::vector<int>& detections);
+
+// That of each object that has ground truth and at least `min_views` boxes, by object index.
+std::map<int, double> LearnShapeExponents(const Sequence& sequence, int min_views);
+
+}  // namespace soslam

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "priors/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace soslam {
+namespace {
+
+// 1 / (0.75 quantile of the standard normal distribution).
+constexpr double kSigmaByMad = 1.4826;
+// Beyond it, a value counts as this far out (in robust sigmas).
+constexpr double kFarthest = 2.5;
+
+std::vector<double> Standardised(const std::vector<double>& values, double sigma) {
+  const double median = Median(values);
+  std::vector<double> standardised;
+  for (const double value : values) {
+    standardised.push_back(std::clamp((value - median) / sigma, -kFarthest, kFarthest));
+  }
+  return standardised;
+}
+
+}  // namespace
+
+double Median(std::vector<double> values) {
+  if (values.empty()) throw std::logic_error("median of no values");
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double RobustSigma(const std::vector<double>& values) {
+  const double median = Median(values);
+  std::vector<double> deviations;
+  for (const double value : values) deviations.push_back(std::abs(value - median));
+  return kSigmaByMad * Median(deviations);
+}
+
+NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values,
+                    double min_sigma) {
+  if (values.empty()) return prior;
+  const auto n = static_cast<double>(values.size());
+  const double median = Median(values);
+  const double sigma = std::max(min_sigma, RobustSigma(values));
+  const double shift = median - prior.mean;
+  NormalBelief belief;
+  belief.mean_weight = prior.mean_weight + n;
+  belief.mean = prior.mean + n / belief.mean_weight * shift;
+  belief.sigma_weight = prior.sigma_weight + n;
+  const double squares = prior.sigma_weight * prior.sigma * prior.sigma +
+                         (n - 1.0) * sigma * sigma +
+                         prior.mean_weight * n / belief.mean_weight * shift * shift;
+  // Without a prior mean, one of the values is spent on the mean.
+  if (prior.mean_weight == 0.0) belief.sigma_weight -= 1.0;
+  belief.sigma = std::sqrt(squares / belief.sigma_weight);
+  return belief;
+}
+
+double PredictiveSigma(const NormalBelief& belief) {
+  return belief.sigma * std::sqrt(1.0 + 1.0 / belief.mean_weight);
+}
+
+std::optional<double> RobustCorrelation(const std::vector<std::pair<double, double>>& pairs) {
+  if (pairs.size() < 3) return std::nullopt;
+  std::vector<double> firsts;
+  std::vector<double> seconds;
+  for (const auto& [first, second] : pairs) {
+    firsts.push_back(first);
+    seconds.push_back(second);
+  }
+  const double first_sigma = RobustSigma(firsts);
+  const double second_sigma = RobustSigma(seconds);
+  if (first_sigma <= 0.0 || second_sigma <= 0.0) return std::nullopt;
+  const std::vector<double> x = Standardised(firsts, first_sigma);
+  const std::vector<double> y = Standardised(seconds, second_sigma);
+  double xx = 0.0;
+  double yy = 0.0;
+  double xy = 0.0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    xx += x[i] * x[i];
+    yy += y[i] * y[i];
+    xy += x[i] * y[i];
+  }
+  return xy / std::sqrt(xx * yy);
+}
+
+}  // namespace soslam

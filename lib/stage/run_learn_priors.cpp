@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_learn_priors.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "artefact/semantic_table_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "priors/furniture_catalogue.h"
+#include "priors/learn_priors.h"
+
+namespace soslam {
+namespace {
+
+std::vector<Sequence> ReadSequences(const std::vector<std::filesystem::path>& paths) {
+  std::vector<Sequence> sequences;
+  for (const std::filesystem::path& path : paths) sequences.push_back(ReadSequence(path));
+  return sequences;
+}
+
+void RefuseLearningFromHeldOut(const std::vector<Sequence>& learned,
+                               const std::vector<Sequence>& held_out) {
+  std::set<std::string> names;
+  for (const Sequence& sequence : learned) names.insert(sequence.name);
+  for (const Sequence& sequence : held_out) {
+    if (names.count(sequence.name) > 0) {
+      throw SettingsError(fmt::format(
+          "sequence '{}' is given as --sequence and as --held_out; expected one of them",
+          sequence.name));
+    }
+  }
+}
+
+PriorSource ReadCatalogueSource(const StageFiles& files, const std::vector<Sequence>& held_out) {
+  std::vector<CatalogueModel> models = ReadFurnitureCatalogue(files.at("furniture"));
+  const size_t all = models.size();
+  for (const Sequence& sequence : held_out) models = WithoutObjectsOf(sequence, std::move(models));
+  fmt::print("{}: {} models, {} left out as objects of sequences that are held out\n",
+             files.at("furniture").filename().string(), all, all - models.size());
+  return SourceOfCatalogue(files.at("furniture").filename().string(), models,
+                           ReadCatalogueNames(files.at("furniture_labels")));
+}
+
+void PrintErrors(const Sequence& sequence, const SemanticTable& table) {
+  double absolute = 0.0;
+  double squared = 0.0;
+  const std::vector<PriorError> errors = PriorErrors(sequence, table);
+  for (const PriorError& error : errors) {
+    fmt::print("{}: {}: log error {:.2f} {:.2f}, in sigmas {:.2f} {:.2f}{}\n", sequence.name,
+               error.label, error.log_error.x(), error.log_error.y(), error.normalised.x(),
+               error.normalised.y(), table.Contains(error.label) ? "" : " (default)");
+    absolute += error.log_error.cwiseAbs().mean();
+    squared += error.normalised.squaredNorm() / 2.0;
+  }
+  const auto count = static_cast<double>(errors.size());
+  fmt::print("{}: {} of {} objects predicted", sequence.name, errors.size(),
+             sequence.objects.size());
+  if (!errors.empty()) {
+    fmt::print(", mean absolute log error {:.3f}, root mean square {:.2f} sigmas", absolute / count,
+               std::sqrt(squared / count));
+  }
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, int /*threads*/) {
+  if (files.count("furniture") != files.count("furniture_labels")) {
+    throw SettingsError("found one of --furniture and --furniture_labels; expected both or none");
+  }
+  const std::vector<std::filesystem::path> sequence_files = FilesOf(files, "sequence");
+  const std::vector<std::filesystem::path> held_out_files = FilesOf(files, "held_out");
+  const std::vector<Sequence> sequences = ReadSequences(sequence_files);
+  const std::vector<Sequence> held_out = ReadSequences(held_out_files);
+  RefuseLearningFromHeldOut(sequences, held_out);
+
+  SemanticRows base;
+  if (files.count("base") > 0) base = ReadSemanticRows(files.at("base"));
+  std::vector<PriorSource> sources;
+  if (files.count("furniture") > 0) sources.push_back(ReadCatalogueSource(files, held_out));
+  for (const Sequence& sequence : sequences) {
+    sources.push_back(SourceOfSequence(sequence, options.min_views));
+  }
+  const SemanticRows learned = LearnPriors(base, sources, options);
+  if (learned.rows.empty()) {
+    throw NothingUsableError("no label: neither base table nor ground truth nor furniture has one");
+  }
+
+  ArtefactInfo info = {OptionsToJson(options), sequence_files};
+  for (const char* name : {"base", "furniture", "furniture_labels"}) {
+    if (files.count(name) > 0) info.inputs.push_back(files.at(name));
+  }
+  info.inputs.insert(info.inputs.end(), held_out_files.begin(), held_out_files.end());
+  WriteSemanticRows(files.at("output"), learned, info);
+  for (const Sequence& sequence : held_out) PrintErrors(sequence, LookUpTable(learned));
+  fmt::print("{} labels\n", learned.rows.size());
+}
+
+}  // namespace soslam

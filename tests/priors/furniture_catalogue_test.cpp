@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "priors/furniture_catalogue.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+constexpr const char* kHeader = "name,category,depth_m,width_m,height_m,collection\n";
+
+class FurnitureCatalogueTest : public testing::Test {
+ protected:
+  std::vector<CatalogueModel> Read(const std::string& text) const {
+    WriteBytes(folder_ / "models.csv", text);
+    return ReadFurnitureCatalogue(folder_ / "models.csv");
+  }
+  void ExpectRefused(const std::string& text, const std::vector<std::string>& words) const {
+    ExpectError<InputError>([&] { Read(text); }, words);
+  }
+  CatalogueNames ReadNames(const std::string& text) const {
+    WriteBytes(folder_ / "names.json", text);
+    return ReadCatalogueNames(folder_ / "names.json");
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FurnitureCatalogueTest, ReadsHalfAxesFrontFirst) {
+  const auto models = Read(kHeader + std::string("Wing chair,Hall,0.8,0.6,1.0,Ours\n"));
+  ASSERT_EQ(models.size(), 1u);
+  EXPECT_EQ(models[0].name, "Wing chair");
+  EXPECT_EQ(models[0].category, "Hall");
+  EXPECT_EQ(models[0].half_axes, Eigen::Vector3d(0.4, 0.3, 0.5));
+}
+
+TEST_F(FurnitureCatalogueTest, QuotedFieldsMayHoldCommasAndQuotes) {
+  const auto models = Read(kHeader + std::string("\"Cup, \"\"big\"\"\",Hall,1,1,1,Ours\n"));
+  EXPECT_EQ(models.at(0).name, "Cup, \"big\"");
+}
+
+TEST_F(FurnitureCatalogueTest, BadFilesAreRefusedByLineAndField) {
+  const std::string header = kHeader;
+  ExpectRefused("", {"models.csv", "empty"});
+  ExpectRefused("name,category,depth_m,width_m\n", {"models.csv:1", "height_m"});
+  ExpectRefused(header + "Cup,Hall,1,1\n", {"models.csv:2", "4 fields", "expected 6"});
+  ExpectRefused(header + "Cup,Hall,1,wide,1,Ours\n", {"models.csv:2", "width_m", "wide"});
+  ExpectRefused(header + "Cup,Hall,1,1,0,Ours\n", {"models.csv:2", "height_m is 0"});
+  ExpectRefused(header + "\"Cup,Hall,1,1,1,Ours\n", {"models.csv:2", "quote"});
+}
+
+TEST_F(FurnitureCatalogueTest, NamesHoldInAnyCategoryOrInOne) {
+  const CatalogueNames names =
+      ReadNames(R"({"labels": {"chair": ["Stool", {"name": "Chair", "category": "Hall"}]}})");
+  const auto is_chair = [&](const char* name, const char* category) {
+    return GoesBy({name, category, {}}, names.at("chair"));
+  };
+  EXPECT_TRUE(is_chair("stool", "Garden"));
+  EXPECT_TRUE(is_chair("CHAIR", "hall"));
+  EXPECT_FALSE(is_chair("Chair", "Garden"));
+  EXPECT_FALSE(is_chair("Chair with cushion", "Hall"));
+}
+
+TEST_F(FurnitureCatalogueTest, NamesOfAnotherFormAreRefused) {
+  ExpectError<InputError>([&] { ReadNames(R"({"labels": {"chair": "Stool"}})"); },
+                          {"names.json", "/labels/chair"});
+  ExpectError<InputError>([&] { ReadNames(R"({"chair": []})"); }, {"names.json"});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_learn_priors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "artefact/semantic_table_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class RunLearnPriorsTest : public testing::Test {
+ protected:
+  RunLearnPriorsTest() {
+    WriteBytes(folder_ / "models.csv",
+               "name,category,depth_m,width_m,height_m\nPot,Hall,0.2,0.2,0.1\n"
+               "Pot,Hall,0.4,0.4,0.1\n");
+    WriteBytes(folder_ / "names.json", R"({"labels": {"pot": ["pot"]}})");
+    files_["output"] = folder_ / "table.json";
+  }
+  // A sequence whose only object is a pot.
+  std::filesystem::path WritePot(const std::string& name, const Eigen::Vector3d& half_axes) const {
+    Sequence sequence;
+    sequence.name = name;
+    sequence.camera = {640, 480, 500.0, 500.0, 320.0, 240.0};
+    sequence.frames.resize(1);
+    sequence.frames[0].image = "0.png";
+    sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
+    GroundTruth truth;
+    truth.landmark_in_world.half_axes = half_axes;
+    sequence.objects = {{0, "pot", 0, truth}};
+    WriteSequence(folder_ / (name + ".json"), sequence, {});
+    return folder_ / (name + ".json");
+  }
+  void UseFurniture() {
+    files_["furniture"] = folder_ / "models.csv";
+    files_["furniture_labels"] = folder_ / "names.json";
+  }
+  std::string Run() const {
+    testing::internal::CaptureStdout();
+    RunLearnPriors({}, files_, 1);
+    std::fflush(stdout);
+    return testing::internal::GetCapturedStdout();
+  }
+  ShapePrior Pot() const { return ReadSemanticTable(files_.at("output")).Find("pot").value(); }
+
+  TemporaryFolder folder_;
+  StageFiles files_;
+};
+
+TEST_F(RunLearnPriorsTest, LearnsFromCatalogueAndSequences) {
+  UseFurniture();
+  files_["sequence"] = WritePot("one", {0.3, 0.3, 0.1});
+  files_[RepeatedName("sequence", 1)] = WritePot("two", {0.3, 0.3, 0.1});
+  EXPECT_THAT(Run(), HasSubstr("1 labels"));
+  const SemanticRows rows = ReadSemanticRows(files_.at("output"));
+  ASSERT_EQ(rows.rows.size(), 1u);
+  EXPECT_EQ(rows.rows[0].samples, 4);
+  EXPECT_NEAR(Pot().ratio.x(), 3.0, 1e-3);  // of 2, 4, 3, 3
+  for (const char* source : {"2 of models.csv", "1 of one", "1 of two"}) {
+    EXPECT_THAT(rows.rows[0].source, HasSubstr(source));
+  }
+}
+
+TEST_F(RunLearnPriorsTest, WhatIsHeldOutIsPredictedAndNotLearned) {
+  UseFurniture();
+  files_["held_out"] = WritePot("answer", {0.2, 0.2, 0.05});  // the second model
+  const std::string printed = Run();
+  EXPECT_THAT(printed, HasSubstr("2 models, 1 left out"));
+  EXPECT_THAT(printed, HasSubstr("answer: pot: log error 0.69 0.69"));  // log(4 / 2)
+  EXPECT_NEAR(Pot().ratio.x(), 2.0, 1e-3);
+}
+
+TEST_F(RunLearnPriorsTest, TheTableItWritesIsABaseThatStaysAsItIs) {
+  UseFurniture();
+  Run();
+  const std::string first = FileBytes(files_.at("output"));
+  files_["base"] = folder_ / "base.json";
+  std::filesystem::rename(files_.at("output"), files_.at("base"));
+  LearnPriorsOptions keep;
+  keep.base_rows = BaseRows::kKeep;
+  files_.erase("furniture");
+  files_.erase("furniture_labels");
+  RunLearnPriors(keep, files_, 1);
+  const auto labels = [](const std::string& text) {
+    return nlohmann::json::parse(text).at("labels");
+  };
+  EXPECT_EQ(labels(FileBytes(files_.at("output"))), labels(first));
+}
+
+TEST_F(RunLearnPriorsTest, WhatCannotBeIsRefused) {
+  ExpectError<NothingUsableError>([&] { RunLearnPriors({}, files_, 1); }, {"no label"});
+  files_["furniture"] = folder_ / "models.csv";
+  ExpectError<SettingsError>([&] { RunLearnPriors({}, files_, 1); }, {"--furniture_labels"});
+  UseFurniture();
+  files_["sequence"] = files_["held_out"] = WritePot("one", {0.3, 0.3, 0.1});
+  ExpectError<SettingsError>([&] { RunLearnPriors({}, files_, 1); }, {"one", "--held_out"});
+  files_["held_out"] = folder_ / "models.csv";
+  ExpectError<InputError>([&] { RunLearnPriors({}, files_, 1); }, {"models.csv"});
+  EXPECT_FALSE(std::filesystem::exists(files_.at("output")));
+}
+
+}  // namespace
+}  // namespace soslam
