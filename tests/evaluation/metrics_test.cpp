@@ -5,6 +5,7 @@
 
 #include "evaluation/trajectory_error.h"
 #include "support/random.h"
+#include "support/true_landmark.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 
@@ -12,12 +13,6 @@ namespace soslam {
 namespace {
 
 Sequence TestSequence() { return SyntheticSequence(RandomScene(7, 4, 12), false); }
-
-Landmark TrueLandmarkInCamera(const Sequence& sequence, const Detection& detection) {
-  const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-  const auto& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-  return Transform(frame.true_world_from_camera->Inverse(), object.ground_truth->landmark_in_world);
-}
 
 LandmarkEstimates TrueEstimates(const Sequence& sequence) {
   LandmarkEstimates estimates;

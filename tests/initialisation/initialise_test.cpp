@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/level_sequence.h"
+#include "support/true_landmark.h"
 #include "support/upright_bodies.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
@@ -37,13 +38,6 @@ UprightOptions WithoutAxes() {
   UprightOptions options;
   options.axes_weight = 0.0;
   return options;
-}
-
-Landmark TrueLandmark(const Sequence& sequence, const Detection& detection) {
-  return Transform(
-      sequence.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
-      sequence.objects[static_cast<size_t>(detection.object_index)]
-          .ground_truth->landmark_in_world);
 }
 
 void ExpectEqual(const LandmarkEstimates& one, const LandmarkEstimates& other) {
@@ -99,8 +93,8 @@ TEST(InitialiseUpright, HasTheTrueBodyAmongItsHypotheses) {
       InitialiseUpright(sequence, TruePriors(sequence), WithoutAxes(), 2);
   size_t found = 0;
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const Landmark truth =
-        TrueLandmark(sequence, sequence.detections[static_cast<size_t>(estimate.detection_index)]);
+    const Landmark truth = TrueLandmarkInCamera(
+        sequence, sequence.detections[static_cast<size_t>(estimate.detection_index)]);
     EXPECT_LT(estimate.hypotheses.front().cost, 1e-3);
     found += std::any_of(estimate.hypotheses.begin(), estimate.hypotheses.end(),
                          [&](const Hypothesis& hypothesis) {

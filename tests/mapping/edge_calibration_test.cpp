@@ -52,7 +52,8 @@ EdgeImages DisplacedEdgesOfAllViews(const Truth& truth) {
   return images;
 }
 
-// The perimeter of a box for each piece of the edges in it, on average.
+// The edge_correlation_px with which each piece counts as one: the perimeter of a box for each
+// piece of the edges in it, on average.
 double PerimeterPerPiece() {
   double perimeters = 0.0;
   double pieces = 0.0;

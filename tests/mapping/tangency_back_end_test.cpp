@@ -9,6 +9,7 @@
 #include "support/cuboid_sequence.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
+#include "support/true_landmark.h"
 
 namespace soslam {
 namespace {
@@ -29,12 +30,8 @@ std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& seque
   std::map<int, std::shared_ptr<const EdgeImage>> images;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
-    const Landmark in_camera = Transform(
-        sequence.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
-        sequence.objects[static_cast<size_t>(detection.object_index)]
-            .ground_truth->landmark_in_world);
-    const EdgeMaps maps =
-        ComputeEdgeMaps(DrawCuboids(sequence.camera, {in_camera}), EdgesOptions());
+    const cv::Mat image = DrawCuboids(sequence.camera, {TrueLandmarkInCamera(sequence, detection)});
+    const EdgeMaps maps = ComputeEdgeMaps(image, EdgesOptions());
     images[static_cast<int>(i)] = std::make_shared<const EdgeImage>(
         EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});
   }
@@ -218,10 +215,7 @@ class UprightStarts : public testing::Test {
     // observation to observation.
     for (size_t i = 0; i < sequence_.detections.size(); ++i) {
       const Detection& detection = sequence_.detections[i];
-      const Landmark truth = Transform(
-          sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
-          sequence_.objects[static_cast<size_t>(detection.object_index)]
-              .ground_truth->landmark_in_world);
+      const Landmark truth = TrueLandmarkInCamera(sequence_, detection);
       const double turn = RandomUniform(0.5, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
       estimates_.observations.push_back(
           {static_cast<int>(i), {{Turned(truth, turn), 0.0}, {truth, 1.0}}, ""});

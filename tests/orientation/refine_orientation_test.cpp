@@ -10,6 +10,7 @@
 
 #include "evaluation/iou.h"
 #include "support/drawn_cuboids.h"
+#include "support/true_landmark.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
 
@@ -56,10 +57,7 @@ class RefineBoxes : public testing::Test {
     return sequence_->detections[static_cast<size_t>(index)];
   }
   static Landmark TrueLandmark(const Detection& detection) {
-    return Transform(
-        sequence_->frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
-        sequence_->objects[static_cast<size_t>(detection.object_index)]
-            .ground_truth->landmark_in_world);
+    return TrueLandmarkInCamera(*sequence_, detection);
   }
   static int Observations() { return static_cast<int>(sequence_->detections.size()); }
   // In images of all frames.

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/random.h"
+#include "support/true_landmark.h"
 #include "symmetry/refine.h"
 #include "symmetry/sampling.h"
 #include "synthesis/render.h"
@@ -38,10 +39,7 @@ class SyntheticTexture : public testing::Test {
   }
 
   static Landmark TrueLandmark(const Detection& detection) {
-    return Transform(
-        sequence_->frames[static_cast<size_t>(detection.frame_index)].world_from_camera.Inverse(),
-        sequence_->objects[static_cast<size_t>(detection.object_index)]
-            .ground_truth->landmark_in_world);
+    return TrueLandmarkInCamera(*sequence_, detection);
   }
 
   static inline Scene* scene_ = nullptr;

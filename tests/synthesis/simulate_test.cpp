@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/true_landmark.h"
 #include "synthesis/random_scene.h"
 
 namespace soslam {
@@ -33,10 +34,7 @@ TEST(SyntheticSequence, EllipsoidBoxEdgesAreTangentToTheDualQuadric) {
     const Sequence sequence = SyntheticSequence(RandomScene(seed, 6, 20), false);
     ASSERT_GE(sequence.detections.size(), 18u);
     for (const Detection& detection : sequence.detections) {
-      const Frame& frame = sequence.frames[detection.frame_index];
-      const Landmark landmark_in_camera =
-          Transform(frame.true_world_from_camera->Inverse(),
-                    sequence.objects[detection.object_index].ground_truth->landmark_in_world);
+      const Landmark landmark_in_camera = TrueLandmarkInCamera(sequence, detection);
       const Eigen::Matrix4d dual_quadric = DualQuadric(landmark_in_camera);
       for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
         const Eigen::Vector4d pi = sequence.camera.BackProject(line).Homogeneous();
