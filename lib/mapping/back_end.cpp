@@ -52,7 +52,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
     if (input.starts[i]) {
       object.landmark_in_world = problem.LandmarkInWorld(i);
     } else {
-      object.failure = "no_start";
+      object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
     }
     map.objects.push_back(object);
   }

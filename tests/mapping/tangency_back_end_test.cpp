@@ -86,6 +86,70 @@ TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   }
 }
 
+// Two recordings in one sequence. The second one is elsewhere, and its objects and odometry are
+// others.
+Sequence Joined(const Sequence& one, const Sequence& other) {
+  Sequence joined = one;
+  const auto frames = static_cast<int>(one.frames.size());
+  const auto objects = static_cast<int>(one.objects.size());
+  const auto planes = static_cast<int>(one.planes.size());
+  for (Frame frame : other.frames) {
+    frame.segment = 1;
+    joined.frames.push_back(frame);
+  }
+  joined.planes.insert(joined.planes.end(), other.planes.begin(), other.planes.end());
+  for (Object object : other.objects) {
+    object.plane_index += planes;
+    joined.objects.push_back(object);
+  }
+  for (Detection detection : other.detections) {
+    detection.frame_index += frames;
+    detection.object_index += objects;
+    joined.detections.push_back(detection);
+  }
+  return joined;
+}
+
+TEST(TangencyBackEnd, SegmentsDoNotPullOnEachOther) {
+  const Sequence one = Cuboids(3, 10);
+  // Wrong odometry, so that there is something to pull.
+  Sequence other = SyntheticSequence(RandomScene(8, 3, 10, {Shape::kBox}), true);
+  const Sequence joined = Joined(one, other);
+  const auto optimise = [](const Sequence& sequence) {
+    return OptimiseMap(TruthInput(sequence), TangencyOptions());
+  };
+  const MapEstimate together = optimise(joined);
+  const std::array<MapEstimate, 2> alone = {optimise(one), optimise(other)};
+  // Each stops within the solver's tolerance of its optimum, on a way of its own.
+  constexpr double kTolerance = 1e-4;
+  for (size_t i = 0; i < together.world_from_camera.size(); ++i) {
+    const auto& poses = alone[i < one.frames.size() ? 0 : 1].world_from_camera;
+    const Rigid3d& expected = poses[i < one.frames.size() ? i : i - one.frames.size()];
+    EXPECT_LT((together.world_from_camera[i].translation - expected.translation).norm(), kTolerance)
+        << "frame " << i;
+  }
+  EXPECT_EQ(together.solver.residuals.at("odometry"), 18);
+  for (const size_t first : {size_t{0}, one.frames.size()}) {
+    EXPECT_EQ(together.world_from_camera[first].translation,
+              joined.frames[first].world_from_camera.translation);
+  }
+}
+
+TEST(TangencyBackEnd, WhatMovesIsNoLandmark) {
+  Sequence sequence = Cuboids(3, 10);
+  sequence.objects[1].is_static = false;
+  BackEndInput input = TruthInput(sequence);
+  LandmarkEstimates estimates;
+  input.starts = ChooseUprightStarts(input, estimates, TangencyOptions());
+  EXPECT_TRUE(input.starts[0]);
+  EXPECT_FALSE(input.starts[1]);
+  const MapEstimate map = OptimiseMap(input, TangencyOptions());
+  EXPECT_EQ(map.objects[1].failure, "moving");
+  EXPECT_EQ(map.solver.gated.at("detection_of_moving_object"),
+            static_cast<int>(DetectionsByObject(sequence)[1].size()));
+  EXPECT_EQ(map.solver.residuals.at("support"), 2);
+}
+
 TEST(TangencyBackEnd, ComesBackFromADisturbedStart) {
   const Sequence sequence = CuboidSequence(5, 20);
   BackEndInput input = TruthInput(sequence);
