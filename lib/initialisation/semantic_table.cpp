@@ -54,8 +54,9 @@ std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequenc
 
 std::vector<std::string> LabelsWithoutEntry(const Sequence& sequence, const SemanticTable& table) {
   std::set<std::string> labels;
-  for (const Object& object : sequence.objects) {
-    if (table.priors.count(object.label) == 0) labels.insert(object.label);
+  for (const Detection& detection : sequence.detections) {
+    const std::string& label = sequence.ObjectOf(detection).label;
+    if (table.priors.count(label) == 0) labels.insert(label);
   }
   return {labels.begin(), labels.end()};
 }
