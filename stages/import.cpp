@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-import",
        .purpose = "Reads a dataset folder, checks it and keeps the usable detections.",
-       .files = {{"dataset", "dataset folder: rgb.txt, camera.json, detections.csv and so on"},
+       .files = {{"dataset", "dataset folder, in the format that the settings name"},
                  {"output", "sequence.json to write"}},
        .example = "soslam-import --dataset data/room_a --output sequence.json"},
       &soslam::RunImport);

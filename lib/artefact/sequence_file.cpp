@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <tuple>
 
 #include "artefact/ids.h"
@@ -21,21 +22,27 @@ constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
 
 json FrameToJson(const Frame& frame) {
   const auto& truth = frame.true_world_from_camera;
-  return {{"frame", frame.id},
-          {"timestamp", frame.timestamp},
-          {"image", frame.image},
-          {"world_from_camera", frame.world_from_camera},
-          {"true_world_from_camera", truth ? json(*truth) : json()}};
+  json fields = {{"frame", frame.id},
+                 {"timestamp", frame.timestamp},
+                 {"image", frame.image.empty() ? json() : json(frame.image)},
+                 {"world_from_camera", frame.world_from_camera},
+                 {"true_world_from_camera", truth ? json(*truth) : json()},
+                 {"segment", frame.segment}};
+  if (frame.camera) fields["camera"] = *frame.camera;
+  return fields;
 }
 
 Frame FrameFromJson(const json& json) {
   Frame frame;
   json.at("frame").get_to(frame.id);
   json.at("timestamp").get_to(frame.timestamp);
-  json.at("image").get_to(frame.image);
+  if (!json.at("image").is_null()) json["image"].get_to(frame.image);
   json.at("world_from_camera").get_to(frame.world_from_camera);
   const auto& truth = json.at("true_world_from_camera");
   if (!truth.is_null()) frame.true_world_from_camera = truth.get<Rigid3d>();
+  // Before version 1.2 all frames were of one segment and one camera.
+  if (json.contains("segment")) json["segment"].get_to(frame.segment);
+  if (json.contains("camera")) frame.camera = json["camera"].get<Camera>();
   return frame;
 }
 
@@ -56,7 +63,8 @@ json ObjectToJson(const Object& object, const Sequence& sequence) {
   return {{"object", object.id},
           {"label", object.label},
           {"plane", sequence.planes.at(static_cast<size_t>(object.plane_index)).id},
-          {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()}};
+          {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
+          {"is_static", object.is_static}};
 }
 
 Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
@@ -66,6 +74,7 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   object.plane_index = planes.IndexOf(json.at("plane").get<int>());
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
+  if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
   return object;
 }
 
@@ -86,13 +95,17 @@ std::array<bool, 4> BoundsFromJson(const json& names) {
 }
 
 json DetectionToJson(const Detection& detection, const Sequence& sequence) {
-  return {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
-          {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
-          {"score", detection.score},
-          {"box", detection.box},
-          {"plane_in_camera", detection.plane_in_camera},
-          {"bounds", BoundsToJson(detection.is_bound)},
-          {"nearer_boxes", detection.nearer_boxes}};
+  json fields = {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
+                 {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
+                 {"score", detection.score},
+                 {"box", detection.box},
+                 {"plane_in_camera", detection.plane_in_camera},
+                 {"bounds", BoundsToJson(detection.is_bound)},
+                 {"nearer_boxes", detection.nearer_boxes}};
+  if (detection.true_landmark_in_camera) {
+    fields["true_landmark"] = LandmarkToJson(*detection.true_landmark_in_camera, "camera");
+  }
+  return fields;
 }
 
 Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
@@ -107,6 +120,9 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
   // Nor 1.0 and 1.1 nearer boxes: nothing was hidden.
   detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
+  if (json.contains("true_landmark")) {  // since version 1.2
+    detection.true_landmark_in_camera = LandmarkFromJson(json["true_landmark"], "camera");
+  }
   return detection;
 }
 
@@ -122,11 +138,25 @@ void CheckOrder(const std::vector<Detection>& detections) {
   }
 }
 
+// Odometry and trajectories are those of neighbours.
+void CheckSegments(const std::vector<Frame>& frames) {
+  std::set<int> seen;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (i > 0 && frames[i].segment == frames[i - 1].segment) continue;
+    if (!seen.insert(frames[i].segment).second) {
+      throw InputError(fmt::format(
+          "/frames/{} is of segment {} again; expected the frames of a segment without a gap", i,
+          frames[i].segment));
+    }
+  }
+}
+
 Sequence SequenceFromJson(const json& json) {
   Sequence sequence;
   json.at("name").get_to(sequence.name);
   json.at("camera").get_to(sequence.camera);
   for (const auto& frame : json.at("frames")) sequence.frames.push_back(FrameFromJson(frame));
+  CheckSegments(sequence.frames);
   for (const auto& plane : json.at("planes")) {
     sequence.planes.push_back(
         {plane.at("plane").get<int>(), plane.at("plane_in_world").get<Plane>()});

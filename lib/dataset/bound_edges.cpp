@@ -41,9 +41,10 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
 // that is seen past its back and between its legs, and the edge of the object behind is then
 // measured as well as any.
 void MarkBoundEdges(const ImportOptions& options, Sequence* sequence) {
-  const double right_border = sequence->camera.width - 0.5;
-  const double lower_border = sequence->camera.height - 0.5;
   for (Detection& detection : sequence->detections) {
+    const Camera& camera = sequence->CameraOf(detection);
+    const double right_border = camera.width - 0.5;
+    const double lower_border = camera.height - 0.5;
     const Box& box = detection.box;
     const double hidden_share = CoveredShareOfLowerEdge(box, detection.nearer_boxes);
     const bool is_hidden = hidden_share >= options.hidden_edge_fraction - kShareTolerance;

@@ -7,14 +7,36 @@
 #include <array>
 #include <tuple>
 
+#include "dataset/text_file.h"
 #include "geometry/box.h"
 
 namespace soslam {
+namespace {
+
+// Whether a list with commas between its labels has this one, or is empty.
+bool IsListed(std::string_view label, const std::string& labels) {
+  if (Trimmed(labels).empty()) return true;
+  const auto listed = SplitFields(labels);
+  return std::find(listed.begin(), listed.end(), label) != listed.end();
+}
+
+}  // namespace
 
 const char* RejectReasonName(RejectReason reason) {
-  constexpr std::array kNames = {"frame_not_used", "frame_without_pose",  "low_score",
-                                 "empty_box",      "outside_image",       "near_border",
-                                 "duplicate",      "too_few_observations"};
+  constexpr std::array kNames = {"frame_not_used",
+                                 "frame_without_image",
+                                 "frame_without_pose",
+                                 "other_label",
+                                 "truncated",
+                                 "occluded",
+                                 "low_score",
+                                 "empty_box",
+                                 "outside_image",
+                                 "low_box",
+                                 "near_border",
+                                 "duplicate",
+                                 "too_few_observations",
+                                 "matches_no_label"};
   return kNames.at(static_cast<size_t>(reason));
 }
 
@@ -29,17 +51,34 @@ std::string DescribeRejections(const RejectionCounts& rejected) {
                      fmt::join(parts, ", "));
 }
 
-std::optional<RejectReason> GateBox(const DetectionRow& row, const Camera& camera,
+bool IsInView(RejectReason reason) {
+  switch (reason) {
+    case RejectReason::kOtherLabel:
+    case RejectReason::kTruncated:
+    case RejectReason::kOccluded:
+    case RejectReason::kLowBox:
+    case RejectReason::kNearBorder:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camera,
                                     const ImportOptions& options) {
   // A box exactly border_px from the border is kept, whatever the rounding of its edges.
   constexpr double kTolerancePx = 1e-9;
   const Box& box = row.box;
+  if (!IsListed(row.label, options.labels)) return RejectReason::kOtherLabel;
   if (row.score < options.min_score) return RejectReason::kLowScore;
   if (box.Width() <= 0.0 || box.Height() <= 0.0) return RejectReason::kEmptyBox;
   if (box.x_max <= -0.5 || box.y_max <= -0.5 || box.x_min >= camera.width - 0.5 ||
       box.y_min >= camera.height - 0.5) {
     return RejectReason::kOutsideImage;
   }
+  if (row.truncation > options.max_truncation) return RejectReason::kTruncated;
+  if (row.occlusion > options.max_occlusion) return RejectReason::kOccluded;
+  if (box.Height() < options.min_box_height_px) return RejectReason::kLowBox;
   if (DistanceToBorder(box, camera.width, camera.height) < options.border_px - kTolerancePx) {
     return RejectReason::kNearBorder;
   }

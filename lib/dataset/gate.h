@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/detections_csv.h"
+#include "dataset/detection_row.h"
 #include "dataset/import_options.h"
 #include "geometry/camera.h"
 
@@ -15,13 +15,19 @@ namespace soslam {
 // Why a detection is not used. Sequence::rejected_detections counts them by name.
 enum class RejectReason {
   kFrameNotUsed,        // its image is skipped by the frame stride
+  kFrameWithoutImage,   // the dataset does not have its image, and images_only asks for it
   kFrameWithoutPose,    // no pose close in time for its image, or for its plane
+  kOtherLabel,          // not one of `labels`
+  kTruncated,           // more than max_truncation
+  kOccluded,            // more than max_occlusion
   kLowScore,            // score below min_score
   kEmptyBox,            // no width or no height
   kOutsideImage,        // no part of the box is in the image
+  kLowBox,              // lower than min_box_height_px
   kNearBorder,          // an edge is closer to the image border than border_px, or beyond it
   kDuplicate,           // another box of the object in the frame has a higher score
   kTooFewObservations,  // the object has fewer than min_observations usable detections
+  kMatchesNoLabel,      // no labelled box of its kind is where a detector found this one
 };
 const char* RejectReasonName(RejectReason reason);
 
@@ -29,8 +35,11 @@ using RejectionCounts = std::map<std::string, int>;
 // "12 detections rejected: duplicate 2, near_border 10".
 std::string DescribeRejections(const RejectionCounts& rejected);
 
+// Whether what a rejected row shows is there all the same, and may hide other objects.
+bool IsInView(RejectReason reason);
+
 // What is wrong with the row by itself, apart from its frame; none when it is usable.
-std::optional<RejectReason> GateBox(const DetectionRow& row, const Camera& camera,
+std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camera,
                                     const ImportOptions& options);
 
 // Keeps one row of each object in each frame, the one with the highest score (the first of equals),

@@ -3,114 +3,139 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <map>
 #include <utility>
 #include <variant>
 
 #include "artefact/ids.h"
 #include "base/error.h"
 #include "dataset/bound_edges.h"
-#include "dataset/dataset_files.h"
-#include "dataset/dataset_json.h"
-#include "dataset/detections_csv.h"
+#include "dataset/dataset_content.h"
 #include "dataset/gate.h"
-#include "dataset/object_table.h"
-#include "dataset/tum_list.h"
+#include "dataset/kitti_object.h"
+#include "dataset/kitti_tracking.h"
+#include "dataset/soslam_folder.h"
 #include "model/occlusion.h"
 
 namespace soslam {
 namespace {
 
-// Per row of rgb.txt: its position in Sequence::frames, or why it is not there.
+DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOptions& options) {
+  switch (options.format) {
+    case DatasetFormat::kSoslam:
+      return ReadSoslamFolder(folder, options);
+    case DatasetFormat::kKittiTracking:
+      return ReadKittiTracking(folder, options);
+    case DatasetFormat::kKittiObject:
+      return ReadKittiObject(folder, options);
+  }
+  throw std::logic_error("format without a reader");
+}
+
+// Of a frame of the dataset: its position in Sequence::frames, or why it is not there.
 using FrameSlot = std::variant<int, RejectReason>;
 
-std::vector<FrameSlot> ReadFrames(const DatasetFiles& files, const ImportOptions& options,
-                                  Sequence* sequence) {
-  const auto images = ReadImageList(files.images);
-  const auto trajectory = ReadTrajectory(files.trajectory);
-  const auto truth =
-      files.groundtruth ? ReadTrajectory(*files.groundtruth) : std::vector<TimedPose>();
-  std::vector<FrameSlot> slots;
-  for (int id = 0; id < static_cast<int>(images.size()); ++id) {
-    const ListedImage& image = images[static_cast<size_t>(id)];
-    const auto pose = NearestPose(trajectory, image.timestamp, options.max_time_difference_s);
-    if (id % options.frame_stride != 0) {
-      slots.push_back(RejectReason::kFrameNotUsed);
-    } else if (!pose) {
-      slots.push_back(RejectReason::kFrameWithoutPose);
+// The frames that are used, and the slots of all by id.
+std::map<int, FrameSlot> ChooseFrames(const std::vector<ListedFrame>& listed,
+                                      const ImportOptions& options, std::vector<Frame>* frames) {
+  std::map<int, FrameSlot> slots;
+  int in_segment = 0;
+  for (size_t i = 0; i < listed.size(); ++i) {
+    const Frame& frame = listed[i].frame;
+    in_segment = i > 0 && frame.segment == listed[i - 1].frame.segment ? in_segment + 1 : 0;
+    if (in_segment % options.frame_stride != 0) {
+      slots[frame.id] = RejectReason::kFrameNotUsed;
+    } else if (options.images_only && frame.image.empty()) {
+      slots[frame.id] = RejectReason::kFrameWithoutImage;
+    } else if (!listed[i].has_pose) {
+      slots[frame.id] = RejectReason::kFrameWithoutPose;
     } else {
-      slots.push_back(static_cast<int>(sequence->frames.size()));
-      sequence->frames.push_back(
-          {id, image.timestamp, image.image, *pose,
-           NearestPose(truth, image.timestamp, options.max_time_difference_s)});
+      slots[frame.id] = static_cast<int>(frames->size());
+      frames->push_back(frame);
     }
   }
   return slots;
 }
 
-// The pose that carries world planes into a frame. Never a mixture of the two trajectories.
-std::optional<Rigid3d> PlanePose(const Frame& frame, bool from_truth) {
-  return from_truth ? frame.true_world_from_camera : std::optional(frame.world_from_camera);
-}
+// Makes the detections of a sequence whose frames, planes and objects are known.
+class Importer {
+ public:
+  Importer(const DatasetContent& content, const ImportOptions& options, Sequence* sequence)
+      : content_(content),
+        options_(options),
+        sequence_(sequence),
+        slots_(ChooseFrames(content.frames, options, &sequence->frames)),
+        object_ids_("object", content.objects),
+        planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
+                           content.has_true_poses) {}
 
-std::optional<RejectReason> Gate(const DetectionRow& row, const std::vector<FrameSlot>& slots,
-                                 const Sequence& sequence, bool planes_from_truth,
-                                 const ImportOptions& options) {
-  if (row.frame_id < 0 || row.frame_id >= static_cast<int>(slots.size())) {
-    throw InputError(fmt::format("{}: frame is {}; expected a row of rgb.txt, 0 to {}", row.place,
-                                 row.frame_id, slots.size() - 1));
-  }
-  const FrameSlot& slot = slots[static_cast<size_t>(row.frame_id)];
-  if (const auto* reason = std::get_if<RejectReason>(&slot)) return *reason;
-  const Frame& frame = sequence.frames[static_cast<size_t>(std::get<int>(slot))];
-  if (!PlanePose(frame, planes_from_truth)) return RejectReason::kFrameWithoutPose;
-  return GateBox(row, sequence.camera, options);
-}
-
-std::vector<DetectionRow> UsableRows(const std::vector<DetectionRow>& rows,
-                                     const std::vector<FrameSlot>& slots, bool planes_from_truth,
-                                     const ImportOptions& options, Sequence* sequence) {
-  RejectionCounts* rejected = &sequence->rejected_detections;
-  std::vector<DetectionRow> usable;
-  for (const DetectionRow& row : rows) {
-    if (const auto reason = Gate(row, slots, *sequence, planes_from_truth, options)) {
-      ++(*rejected)[RejectReasonName(*reason)];
-    } else {
-      usable.push_back(row);
+  void Import() {
+    RejectionCounts* rejected = &sequence_->rejected_detections;
+    std::vector<DetectionRow> usable, in_view;
+    for (const DetectionRow& row : content_.rows) {
+      const auto reason = Gate(row);
+      if (!reason) usable.push_back(row);
+      if (!reason || IsInView(*reason)) in_view.push_back(row);
+      if (reason) ++(*rejected)[RejectReasonName(*reason)];
     }
-  }
-  usable = WithoutDuplicates(std::move(usable), rejected);
-  return WithEnoughObservations(usable, options.min_observations, rejected);
-}
+    usable = WithoutDuplicates(std::move(usable), rejected);
+    usable = WithEnoughObservations(usable, options_.min_observations, rejected);
+    sequence_->detections = Detections(usable);
 
-// The rows of what the camera sees: also of objects that are not used because they are close to the
-// border or seen too rarely.
-std::vector<DetectionRow> RowsInView(const std::vector<DetectionRow>& rows,
-                                     const std::vector<FrameSlot>& slots, bool planes_from_truth,
-                                     const ImportOptions& options, const Sequence& sequence) {
-  std::vector<DetectionRow> in_view;
-  for (const DetectionRow& row : rows) {
-    const auto reason = Gate(row, slots, sequence, planes_from_truth, options);
-    if (!reason || *reason == RejectReason::kNearBorder) in_view.push_back(row);
+    RejectionCounts not_reported;
+    Sequence all_in_view = *sequence_;
+    all_in_view.detections = Detections(WithoutDuplicates(std::move(in_view), &not_reported));
+    for (Detection& detection : sequence_->detections) {
+      detection.nearer_boxes = NearerBoxes(all_in_view, detection);
+    }
+    MarkBoundEdges(options_, sequence_);
   }
-  RejectionCounts not_reported;
-  return WithoutDuplicates(std::move(in_view), &not_reported);
-}
 
-Detection MakeDetection(const DetectionRow& row, int frame_index, int object_index,
-                        bool planes_from_truth, const Sequence& sequence) {
-  const Object& object = sequence.objects[static_cast<size_t>(object_index)];
-  const SupportPlane& plane = sequence.planes[static_cast<size_t>(object.plane_index)];
-  const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
-  const Rigid3d world_from_camera = *PlanePose(frame, planes_from_truth);
-  return {frame_index,
-          object_index,
-          row.score,
-          row.box,
-          Transform(world_from_camera.Inverse(), plane.plane_in_world),
-          {},
-          {}};
-}
+ private:
+  // The pose that carries world planes into a frame. Never a mixture of the two trajectories.
+  std::optional<Rigid3d> PlanePose(const Frame& frame) const {
+    return planes_from_truth_ ? frame.true_world_from_camera
+                              : std::optional(frame.world_from_camera);
+  }
+
+  std::optional<RejectReason> Gate(const DetectionRow& row) const {
+    const FrameSlot& slot = slots_.at(row.frame_id);
+    if (const auto* reason = std::get_if<RejectReason>(&slot)) return *reason;
+    const Frame& frame = sequence_->frames[static_cast<size_t>(std::get<int>(slot))];
+    if (!row.plane_in_camera && !PlanePose(frame)) return RejectReason::kFrameWithoutPose;
+    return GateRow(row, sequence_->CameraOf(frame), options_);
+  }
+
+  std::vector<Detection> Detections(const std::vector<DetectionRow>& rows) const {
+    std::vector<Detection> detections;
+    for (const DetectionRow& row : rows) {
+      Detection detection;
+      detection.frame_index = std::get<int>(slots_.at(row.frame_id));
+      detection.object_index = object_ids_.IndexOf(row.object_id);
+      detection.score = row.score;
+      detection.box = row.box;
+      detection.plane_in_camera =
+          row.plane_in_camera ? *row.plane_in_camera : WorldPlane(detection);
+      detection.true_landmark_in_camera = row.true_landmark_in_camera;
+      detections.push_back(detection);
+    }
+    return detections;
+  }
+
+  // The plane of a detection's object as its camera sees it.
+  Plane WorldPlane(const Detection& detection) const {
+    const Object& object = sequence_->ObjectOf(detection);
+    const SupportPlane& plane = sequence_->planes[static_cast<size_t>(object.plane_index)];
+    return Transform(PlanePose(sequence_->FrameOf(detection))->Inverse(), plane.plane_in_world);
+  }
+
+  const DatasetContent& content_;
+  const ImportOptions& options_;
+  Sequence* sequence_;
+  std::map<int, FrameSlot> slots_;
+  IdTable<Object> object_ids_;
+  bool planes_from_truth_;
+};
 
 void RequireDetections(const std::filesystem::path& folder, const Sequence& sequence) {
   if (!sequence.detections.empty()) return;
@@ -120,42 +145,21 @@ void RequireDetections(const std::filesystem::path& folder, const Sequence& sequ
 
 }  // namespace
 
-Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options) {
-  const DatasetFiles files = FindDatasetFiles(folder, options.trajectory);
-  if (files.trajectory_is_fallback) {
-    fmt::print(stderr, "warning: {}: no {}.txt; using {} as the trajectory\n", folder.string(),
-               kTrajectorySourceNames[static_cast<int>(options.trajectory)],
-               files.trajectory.filename().string());
+Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options,
+                       std::vector<std::filesystem::path>* files_read) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(folder.string() + ": is not a folder; expected a dataset folder");
   }
+  const DatasetContent content = ReadContent(folder, options);
   Sequence sequence;
   sequence.name = std::filesystem::canonical(folder).filename().string();
-  sequence.camera = ReadCamera(files.camera);
-  sequence.planes = ReadPlanes(files.planes);
-  const std::vector<FrameSlot> slots = ReadFrames(files, options, &sequence);
-  const std::vector<DetectionRow> rows = ReadDetections(files.detections);
-  sequence.objects = ListObjects(files, rows, sequence.planes);
-  const IdTable<Object> object_ids("object", sequence.objects);
-
-  const bool planes_from_truth =
-      options.camera_planes == PlanePoses::kGroundTruth && files.groundtruth.has_value();
-  const auto detections_of = [&](const std::vector<DetectionRow>& some_rows) {
-    std::vector<Detection> detections;
-    for (const DetectionRow& row : some_rows) {
-      const int frame_index = std::get<int>(slots[static_cast<size_t>(row.frame_id)]);
-      detections.push_back(MakeDetection(row, frame_index, object_ids.IndexOf(row.object_id),
-                                         planes_from_truth, sequence));
-    }
-    return detections;
-  };
-  sequence.detections =
-      detections_of(UsableRows(rows, slots, planes_from_truth, options, &sequence));
+  sequence.camera = content.camera;
+  sequence.planes = content.planes;
+  sequence.objects = content.objects;
+  sequence.rejected_detections = content.rejected;
+  Importer(content, options, &sequence).Import();
   RequireDetections(folder, sequence);
-  Sequence in_view = sequence;
-  in_view.detections = detections_of(RowsInView(rows, slots, planes_from_truth, options, sequence));
-  for (Detection& detection : sequence.detections) {
-    detection.nearer_boxes = NearerBoxes(in_view, detection);
-  }
-  MarkBoundEdges(options, &sequence);
+  if (files_read != nullptr) *files_read = content.files;
   return sequence;
 }
 

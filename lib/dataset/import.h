@@ -2,22 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "dataset/import_options.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
-// Reads a dataset folder, checks everything in it and drops the detections that the protocol of the
-// paper's experiments does not use, each with a counted reason.
+// Reads a dataset folder in the format that the options name, checks everything in it and drops
+// the detections that the options leave out, each with a counted reason. By default these are those
+// that the protocol of the paper's experiments does not use. Frames without a pose estimate are
+// left out.
 //
-// The folder holds rgb.txt, odometry.txt and groundtruth.txt (at least one of the two; TUM RGB-D
-// format), camera.json, planes.json, detections.csv and, optionally, objects.json. Ground truth,
-// when present, fills what the sequence has for evaluation. Frames without a pose estimate are left
-// out.
+// Formats: soslam (ReadSoslamFolder), kitti_tracking (ReadKittiTracking), kitti_object
+// (ReadKittiObject).
 //
-// Throws InputError, naming file and line or field, for whatever is missing, malformed or
-// contradictory; NothingUsableError when no detection is left.
-Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options);
+// `files_read`, when not null, becomes the list of the files that were read. Throws InputError,
+// naming file and line or field, for whatever is missing, malformed or contradictory; SettingsError
+// for options that cannot be; NothingUsableError when no detection is left.
+Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options,
+                       std::vector<std::filesystem::path>* files_read = nullptr);
 
 }  // namespace soslam

@@ -64,10 +64,16 @@ std::optional<Rigid3d> NearestPose(const std::vector<TimedPose>& trajectory, dou
   const auto difference = [&](const TimedPose& pose) {
     return std::abs(pose.timestamp - timestamp);
   };
-  const auto nearest = std::min_element(
-      trajectory.begin(), trajectory.end(),
-      [&](const TimedPose& a, const TimedPose& b) { return difference(a) < difference(b); });
-  if (nearest == trajectory.end() || difference(*nearest) > max_difference_s) return std::nullopt;
+  const auto after =
+      std::lower_bound(trajectory.begin(), trajectory.end(), timestamp,
+                       [](const TimedPose& pose, double time) { return pose.timestamp < time; });
+  auto nearest = after;
+  if (after == trajectory.end() ||
+      (after != trajectory.begin() && difference(*std::prev(after)) <= difference(*after))) {
+    if (after == trajectory.begin()) return std::nullopt;
+    nearest = std::prev(after);
+  }
+  if (difference(*nearest) > max_difference_s) return std::nullopt;
   return nearest->world_from_camera;
 }
 

@@ -79,28 +79,23 @@ MetricsSummary Summarise(const std::vector<ObjectMetrics>& objects) {
   return summary;
 }
 
-// The errors of every observation of an object that gave a landmark, in frame order, and whether it
-// did.
-std::vector<std::optional<LandmarkErrors>> ObservationErrors(const Sequence& sequence,
-                                                             const LandmarkEstimates& estimates,
-                                                             int object_index) {
-  std::vector<std::optional<LandmarkErrors>> errors;
-  const Object& object = sequence.objects[static_cast<size_t>(object_index)];
+// By object: the errors of each of its observations that gave a landmark, in frame order; none for
+// one that did not.
+using ErrorsByObject = std::vector<std::vector<std::optional<LandmarkErrors>>>;
+ErrorsByObject ObservationErrors(const Sequence& sequence, const LandmarkEstimates& estimates) {
+  ErrorsByObject errors(sequence.objects.size());
   for (const ObservationEstimate& observation : estimates.observations) {
     const Detection& detection =
         sequence.detections[static_cast<size_t>(observation.detection_index)];
-    if (detection.object_index != object_index) continue;
+    const auto& truth = sequence.ObjectOf(detection).ground_truth;
+    if (!truth) continue;
+    auto& of_object = errors[static_cast<size_t>(detection.object_index)];
     if (observation.hypotheses.empty()) {
-      errors.emplace_back();
+      of_object.emplace_back();
       continue;
     }
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-    const Rigid3d world_from_camera =
-        frame.true_world_from_camera.value_or(frame.world_from_camera);
-    const Landmark truth_in_camera =
-        Transform(world_from_camera.Inverse(), object.ground_truth->landmark_in_world);
-    errors.push_back(CompareLandmarks(observation.hypotheses.front().landmark_in_camera,
-                                      *object.ground_truth, truth_in_camera));
+    of_object.push_back(CompareLandmarks(observation.hypotheses.front().landmark_in_camera, *truth,
+                                         *TrueLandmarkInCamera(sequence, detection)));
   }
   return errors;
 }
@@ -111,7 +106,7 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
   std::vector<ObjectMetrics> objects;
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     const auto& truth = sequence.objects[i].ground_truth;
-    if (!truth) continue;
+    if (!truth || !sequence.objects[i].is_static) continue;
     std::vector<std::optional<LandmarkErrors>> errors;
     for (const ObjectEstimate& estimate : estimates) {
       if (estimate.object_index == static_cast<int>(i) && estimate.landmark_in_world) {
@@ -148,10 +143,11 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
     metrics.objects = EvaluateObjects(sequence, estimates.objects);
   } else {
     std::vector<ObjectMetrics> first_only;
+    ErrorsByObject errors_by_object = ObservationErrors(sequence, estimates);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       if (!sequence.objects[i].ground_truth) continue;
       const int object_index = static_cast<int>(i);
-      auto errors = ObservationErrors(sequence, estimates, object_index);
+      auto& errors = errors_by_object[i];
       metrics.objects.push_back(Average(object_index, static_cast<int>(errors.size()), errors));
       if (!errors.empty()) errors.resize(1);
       first_only.push_back(Average(object_index, static_cast<int>(errors.size()), errors));
@@ -167,6 +163,11 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map) {
   metrics.objects = EvaluateObjects(sequence, map.objects);
   metrics.summary = Summarise(metrics.objects);
 
+  // Segments have worlds of their own.
+  if (!sequence.frames.empty() &&
+      sequence.frames.front().segment != sequence.frames.back().segment) {
+    return metrics;
+  }
   std::vector<Rigid3d> odometry;
   std::vector<std::optional<Rigid3d>> truth;
   for (const Frame& frame : sequence.frames) {

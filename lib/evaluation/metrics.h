@@ -55,8 +55,9 @@ LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& tru
                                 const Landmark& truth_in_frame);
 
 // Single-frame estimates are compared in the frame of their camera, so that the trajectory's error
-// does not count; estimates over several frames in the world. Objects without ground truth, or with
-// fewer detections than one, do not count.
+// does not count, with the truth of that frame where there is one; estimates over several frames in
+// the world, where objects that move do not count. Neither do objects without ground truth, or with
+// fewer detections than one. The trajectory error is that of sequences in one segment.
 Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates);
 Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map);
 

@@ -19,6 +19,8 @@ struct Camera {
   double cx = 0.0;
   double cy = 0.0;
 
+  bool operator==(const Camera&) const = default;
+
   // The pixel of a point; none when the point is not in front of the camera (z <= 0).
   std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& point_in_camera) const {
     if (!(point_in_camera.z() > 0.0)) return std::nullopt;

@@ -13,6 +13,8 @@ namespace soslam {
 namespace {
 
 constexpr size_t kMinViews = 3;
+// The failure of an object whose views show it in different places.
+constexpr const char* kMoving = "moving";
 
 std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
                                         const std::vector<int>& detections) {
@@ -21,7 +23,8 @@ std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
     for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
-      planes.push_back(Transform(frame.world_from_camera, sequence.camera.BackProject(line)));
+      planes.push_back(
+          Transform(frame.world_from_camera, sequence.CameraOf(frame).BackProject(line)));
     }
   }
   return planes;
@@ -43,10 +46,10 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
       estimate.failure = "no_ratio_for_label";
       return;
     }
-    SingleFrameSolution solution =
-        InitialiseFromSingleFrame({sequence.camera, detection.box, detection.plane_in_camera,
-                                   *ratio, WorldAxisInCamera(sequence, detection)},
-                                  options);
+    SingleFrameSolution solution = InitialiseFromSingleFrame(
+        {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, *ratio,
+         WorldAxisInCamera(sequence, detection)},
+        options);
     estimate.hypotheses = std::move(solution.hypotheses);
     estimate.failure = std::move(solution.failure);
   });
@@ -55,7 +58,8 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
 
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const std::vector<std::optional<ShapePrior>>& priors,
-                                    const UprightOptions& options, int threads) {
+                                    const UprightOptions& options, int threads,
+                                    const std::vector<std::optional<YawPrior>>& yaw_priors) {
   LandmarkEstimates estimates;
   estimates.observations.resize(sequence.detections.size());
   ParallelFor(static_cast<int>(sequence.detections.size()), threads, [&](int i) {
@@ -67,8 +71,8 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
       estimate.failure = "no_ratio_for_label";
       return;
     }
-    const UprightObservation observation =
-        MakeUprightObservation(sequence, detection, *prior, options);
+    UprightObservation observation = MakeUprightObservation(sequence, detection, *prior, options);
+    if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[static_cast<size_t>(i)];
     const YawObjective objective = BoxObjective(observation);
     const YawSweep sweep =
         SweepYaw(observation, objective, options.yaw_grid_deg * std::numbers::pi / 180.0);
@@ -97,6 +101,10 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
   ParallelFor(static_cast<int>(estimates.objects.size()), threads, [&](int i) {
     ObjectEstimate& object = estimates.objects[static_cast<size_t>(i)];
     const auto index = static_cast<size_t>(object.object_index);
+    if (!sequence.objects[index].is_static) {
+      object.failure = kMoving;
+      return;
+    }
     MultiViewObservation observation = MakeMultiViewObservation(
         sequence, detections[index], priors[index], options.upright.detection_sigma_fraction,
         options.view_correlation_deg * kRadians);
@@ -118,7 +126,9 @@ LandmarkEstimates InitialiseSvd(const Sequence& sequence) {
     ObjectEstimate object;
     object.object_index = static_cast<int>(i);
     object.observations = static_cast<int>(detections[i].size());
-    if (detections[i].size() < kMinViews) {
+    if (!sequence.objects[i].is_static) {
+      object.failure = kMoving;
+    } else if (detections[i].size() < kMinViews) {
       object.failure = "fewer_than_three_views";
     } else if (const auto found =
                    LandmarkFromTangentPlanes(TangentPlanesInWorld(sequence, detections[i]))) {

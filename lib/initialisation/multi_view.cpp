@@ -190,9 +190,9 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
     const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
     observation.plane_in_world =
         sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-    observation.views.push_back(
-        {BoxEdges(sequence.camera, detection.box, detection.is_bound, detection_sigma_fraction),
-         frame.world_from_camera.Inverse()});
+    observation.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
+                                          detection.is_bound, detection_sigma_fraction),
+                                 frame.world_from_camera.Inverse()});
   }
   const auto weights =
       ViewWeights(sequence, detections, NearestToAllRays(observation), view_correlation_rad);

@@ -7,6 +7,7 @@
 #include "constraints/variances.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_options.h"
+#include "initialisation/yaw_prior.h"
 
 namespace soslam {
 
@@ -39,6 +40,7 @@ struct InitialiseOptions {
   double tie_edge_px = 1.0;
   TieBreak tie_break = TieBreak::kWorldAxes;
   UprightOptions upright;
+  YawPriorOptions yaw_prior;
   double view_correlation_deg = 20.0;
 
   void Describe(OptionVisitor& visit) {
@@ -63,8 +65,10 @@ struct InitialiseOptions {
                  "which yaw is chosen where several explain the box: nearest to the world's axes "
                  "(modulo quarter turns), or with the front facing the camera most");
     upright.Describe(visit);
+    yaw_prior.Describe(visit);
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "multi_view: boxes from viewpoints closer than this angle at the object share what "
+               "multi_view, yaw_prior motion: boxes from viewpoints closer than this angle at the "
+               "object share what "
                "the label's shape cannot explain, so that they count as one; 0: all boxes are "
                "independent");
   }

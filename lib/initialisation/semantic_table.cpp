@@ -96,8 +96,9 @@ std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequenc
 
 std::vector<std::string> LabelsWithoutEntry(const Sequence& sequence, const SemanticTable& table) {
   std::set<std::string> labels;
-  for (const Object& object : sequence.objects) {
-    if (!table.Contains(object.label)) labels.insert(object.label);
+  for (const Detection& detection : sequence.detections) {
+    const std::string& label = sequence.ObjectOf(detection).label;
+    if (!table.Contains(label)) labels.insert(label);
   }
   return {labels.begin(), labels.end()};
 }

@@ -93,7 +93,7 @@ std::vector<std::optional<Eigen::Vector2d>> ObjectRatios(const Sequence& sequenc
                                                          const SemanticTable& table,
                                                          RatioPrior prior);
 
-// Labels of the sequence's objects that are not in the table, sorted.
+// Labels of the sequence's detected objects that are not in the table, sorted.
 std::vector<std::string> LabelsWithoutEntry(const Sequence& sequence, const SemanticTable& table);
 
 }  // namespace soslam

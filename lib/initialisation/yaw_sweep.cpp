@@ -147,8 +147,8 @@ std::string WhyNoSolution(const UprightObservation& observation) {
 
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
                                           const ShapePrior& prior, const UprightOptions& options) {
-  return {sequence.camera,
-          BoxEdges(sequence.camera, detection.box, detection.is_bound,
+  return {sequence.CameraOf(detection),
+          BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_bound,
                    options.detection_sigma_fraction),
           detection.plane_in_camera,
           prior,
@@ -171,6 +171,10 @@ YawObjective BoxObjective(const UprightObservation& observation) {
     terms.push_back(std::make_unique<RatioTerm>(observation.prior));
     terms.push_back(std::make_unique<AxisTerm>(
         observation.plane_in_camera, observation.world_axis_in_camera, observation.axes_weight));
+    if (observation.yaw_prior) {
+      terms.push_back(
+          std::make_unique<YawTerm>(observation.plane_in_camera, *observation.yaw_prior));
+    }
     return terms;
   };
   return objective;

@@ -13,6 +13,7 @@
 #include "geometry/plane.h"
 #include "initialisation/upright.h"
 #include "initialisation/upright_options.h"
+#include "initialisation/yaw_term.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -25,6 +26,7 @@ struct UprightObservation {
   ShapePrior prior;
   Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();  // horizontal
   double axes_weight = 0.0;
+  std::optional<YawPrior> yaw_prior = std::nullopt;
 };
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
                                           const ShapePrior& prior, const UprightOptions& options);
@@ -52,7 +54,7 @@ struct YawObjective {
   std::function<double(const Landmark& landmark_in_camera)> extra_cost;
 };
 
-// Box, ratio prior and world axes.
+// Box, ratio prior, world axes and yaw prior.
 YawObjective BoxObjective(const UprightObservation& observation);
 
 // The landmark that is best at each yaw of a grid over half a turn, and its cost. Entries without a

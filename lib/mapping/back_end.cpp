@@ -77,7 +77,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
     object.object_index = static_cast<int>(i);
     object.observations = static_cast<int>(detections[i].size());
     object.landmark_in_world = landmarks[i];
-    if (!landmarks[i]) object.failure = "no_start";
+    if (!landmarks[i]) object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
     map.objects.push_back(object);
   }
   if (options.covariances) AddCovariances(&problem, &map);

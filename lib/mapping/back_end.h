@@ -33,8 +33,9 @@ struct BackEndInput {
 // Eq. (1): the camera poses and landmarks that minimise detection, odometry, support, ratio,
 // symmetry and edge costs, from the odometry's poses and the given starts. Under a Huber loss all
 // of them with detection_model quadric; with tangency those of odometry and boxes, as texture and
-// edges are bounded by themselves and the rest is no outlier. The first pose is fixed: it defines
-// the world. Objects without a start come back with the failure no_start. Throws NumericalError
+// edges are bounded by themselves and the rest is no outlier. The first pose of each segment is
+// fixed: it defines the segment's world. Objects without a start come back with the failure
+// no_start, moving ones with moving. Throws NumericalError
 // when the solver has no usable solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options);
 

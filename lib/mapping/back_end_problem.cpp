@@ -54,7 +54,7 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   for (PoseBlock& pose : poses_) {
     problem_.AddParameterBlock(pose.data(), kPoseSize, NewPoseManifold());
   }
-  problem_.SetParameterBlockConstant(poses_.front().data());
+  HoldFirstPoses();
   WeighViews();
   AddOdometry();
   for (size_t i = 0; i < landmarks_.size(); ++i) {
@@ -96,9 +96,20 @@ void BackEndProblem::WeighViews() {
   }
 }
 
+// The first pose of each segment defines its world.
+void BackEndProblem::HoldFirstPoses() {
+  const auto& frames = input_.sequence.frames;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (i == 0 || frames[i].segment != frames[i - 1].segment) {
+      problem_.SetParameterBlockConstant(poses_[i].data());
+    }
+  }
+}
+
 void BackEndProblem::AddOdometry() {
   const auto& frames = input_.sequence.frames;
   for (size_t i = 1; i < frames.size(); ++i) {
+    if (frames[i].segment != frames[i - 1].segment) continue;
     const Rigid3d first_from_second =
         frames[i - 1].world_from_camera.Inverse() * frames[i].world_from_camera;
     problem_.AddResidualBlock(
@@ -160,7 +171,9 @@ void BackEndProblem::AddDetections() {
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
     if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
-      ++summary_.gated["detection_of_object_without_start"];
+      ++summary_.gated[input_.sequence.ObjectOf(detection).is_static
+                           ? "detection_of_object_without_start"
+                           : "detection_of_moving_object"];
       continue;
     }
     const Landmark landmark_in_camera = LandmarkInCamera(detection);
@@ -176,7 +189,7 @@ void BackEndProblem::AddDetections() {
 
 void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
-  const Camera& camera = input_.sequence.camera;
+  const Camera& camera = input_.sequence.CameraOf(detection);
   double* pose = Pose(detection).data();
   double* landmark = LandmarkOf(detection).data();
   if (options_.detection_model == DetectionModel::kQuadric) {
@@ -240,7 +253,7 @@ void BackEndProblem::AddAsymmetry(size_t index, const std::shared_ptr<const Symm
                                   const Landmark& landmark_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
   auto residual = std::make_unique<AsymmetryResidual>(
-      image, input_.sequence.camera, landmark_in_camera, options_.texture,
+      image, input_.sequence.CameraOf(detection), landmark_in_camera, options_.texture,
       options_.symmetry_options, view_weights_[index]);
   if (residual->num_residuals() == 0) {
     ++summary_.gated[kTooFewPairs];
@@ -255,7 +268,7 @@ void BackEndProblem::AddAsymmetry(size_t index, const std::shared_ptr<const Symm
 void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
                               const Landmark& landmark_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
-  const Camera& camera = input_.sequence.camera;
+  const Camera& camera = input_.sequence.CameraOf(detection);
   const SymmetryOptions& symmetry = options_.symmetry_options;
   const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, landmark_in_camera);
   std::vector<Eigen::Vector2d> visible;
@@ -277,7 +290,7 @@ void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const Symmetry
 
 void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image) {
   const Detection& detection = input_.sequence.detections[index];
-  auto residual = std::make_unique<EdgeAlignmentResidual>(image, input_.sequence.camera,
+  auto residual = std::make_unique<EdgeAlignmentResidual>(image, input_.sequence.CameraOf(detection),
                                                           LandmarkInCamera(detection),
                                                           options_.edges, view_weights_[index]);
   if (residual->num_residuals() == 0) {

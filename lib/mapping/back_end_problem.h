@@ -37,6 +37,7 @@ class BackEndProblem {
   const std::vector<PoseBlock>& poses() const { return poses_; }
 
  private:
+  void HoldFirstPoses();
   void WeighViews();
   void AddOdometry();
   void AddLandmark(size_t object_index);

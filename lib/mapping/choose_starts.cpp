@@ -16,7 +16,7 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
     distances.push_back(OutlineEdgeRms(
-        sequence.camera, Transform(frame.world_from_camera.Inverse(), landmark_in_world),
+        sequence.CameraOf(frame), Transform(frame.world_from_camera.Inverse(), landmark_in_world),
         detection.box));
   }
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -35,6 +35,7 @@ std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
     if (observation.hypotheses.empty()) continue;
     const Detection& detection =
         sequence.detections[static_cast<size_t>(observation.detection_index)];
+    if (!sequence.ObjectOf(detection).is_static) continue;
     const auto object_index = static_cast<size_t>(detection.object_index);
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
     for (const Hypothesis& hypothesis : observation.hypotheses) {

@@ -80,6 +80,10 @@ class ObjectFit {
   }
 
  private:
+  const Detection& Of(size_t view) const {
+    return input_.sequence.detections[static_cast<size_t>(detections_[view])];
+  }
+
   LandmarkTerms Terms(const Landmark& landmark_in_world) const {
     LandmarkTerms terms = ViewTerms(boxes_, landmark_in_world);
     for (size_t i = 0; i < detections_.size(); ++i) {
@@ -88,7 +92,7 @@ class ObjectFit {
       const auto image = input_.edge_images.find(detections_[i]);
       if (image == input_.edge_images.end() || !IsInFront(in_camera)) continue;
       terms.push_back(std::make_unique<RobustViewTerm>(
-          std::make_unique<EdgeTerm>(*image->second, input_.sequence.camera, in_camera,
+          std::make_unique<EdgeTerm>(*image->second, input_.sequence.CameraOf(Of(i)), in_camera,
                                      options_.edges),
           view.camera_from_world, kNoHuberLoss, view.weight));
     }
@@ -101,7 +105,7 @@ class ObjectFit {
       const auto image = input_.symmetry_images.find(detections_[i]);
       if (image == input_.symmetry_images.end()) continue;
       const BoxView& view = boxes_.views[i];
-      cost += view.weight * AsymmetryCost(*image->second, input_.sequence.camera,
+      cost += view.weight * AsymmetryCost(*image->second, input_.sequence.CameraOf(Of(i)),
                                           Transform(view.camera_from_world, landmark_in_world),
                                           options_.texture, options_.symmetry_options);
     }
@@ -156,7 +160,7 @@ std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& inp
   const auto detections = DetectionsByObject(sequence);
   std::vector<std::optional<Landmark>> starts(sequence.objects.size());
   for (size_t i = 0; i < starts.size(); ++i) {
-    if (detections[i].empty()) continue;
+    if (detections[i].empty() || !sequence.objects[i].is_static) continue;
     const ObjectFit fit(input, i, SpreadOver(detections[i], kMaxViews), options);
     if (detections[i].size() >= kMinViews) {
       for (const UprightSolution& solution : SweepViews(fit.boxes(), kYawStep)) {

@@ -20,12 +20,12 @@ double FootDepth(const Camera& camera, const Detection& detection) {
 }  // namespace
 
 std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detection) {
-  const double own_depth = FootDepth(sequence.camera, detection);
+  const double own_depth = FootDepth(sequence.CameraOf(detection), detection);
   std::vector<Box> nearer;
   for (const Detection& other : std::ranges::equal_range(sequence.detections, detection.frame_index,
                                                          {}, &Detection::frame_index)) {
     if (other.object_index != detection.object_index &&
-        FootDepth(sequence.camera, other) < own_depth) {
+        FootDepth(sequence.CameraOf(other), other) < own_depth) {
       nearer.push_back(other.box);
     }
   }

@@ -18,13 +18,17 @@ namespace soslam {
 
 // One image with its pose. `id` is the 0-based row in the dataset's image list and is what files
 // say; the position in Sequence::frames (frame_index) is contiguous and is what code uses.
+// Frames of one recording, taken one after the other, form a segment; each segment has a world of
+// its own.
 struct Frame {
   int id = 0;
-  double timestamp = 0.0;     // seconds
-  std::string image;          // path relative to the dataset folder
+  double timestamp = 0.0;     // seconds, within its segment
+  std::string image;          // path relative to the dataset folder; empty: there is no image
   Rigid3d world_from_camera;  // the pose estimate: odometry
   std::optional<Rigid3d>
       true_world_from_camera;  // ground truth; see ImportOptions for what else uses it
+  int segment = 0;             // frames of a segment follow each other
+  std::optional<Camera> camera = std::nullopt;  // where it is not Sequence::camera
 };
 
 struct SupportPlane {
@@ -32,7 +36,8 @@ struct SupportPlane {
   Plane plane_in_world;
 };
 
-// Exact values of an object: for evaluation, and as a prior where a setting asks for it.
+// Exact values of an object: for evaluation, and as a prior where a setting asks for it. Of an
+// object that moves, the landmark is where it was seen first.
 struct GroundTruth {
   Landmark landmark_in_world;
   bool mirror_symmetric = true;
@@ -45,6 +50,9 @@ struct Object {
   std::string label;
   int plane_index = 0;  // into Sequence::planes: the plane it stands on
   std::optional<GroundTruth> ground_truth;
+  // Otherwise it moves, or is not known to stand still: single frames can estimate it, but it has
+  // no place in the map.
+  bool is_static = true;
 };
 
 // A 2D box of one object in one frame. `plane_in_camera` is the object's support plane as that
@@ -60,11 +68,13 @@ struct Detection {
   std::array<bool, 4> is_bound{};
   // Of objects in the same frame that may hide this one, see NearerBoxes: also of those that are
   // not used. Decided at import.
-  std::vector<Box> nearer_boxes;
+  std::vector<Box> nearer_boxes = {};
+  // Where the dataset says for each frame where the object is: exact, also while it moves.
+  std::optional<Landmark> true_landmark_in_camera = std::nullopt;
 };
 
 // What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then
-// by object; objects and planes by id.
+// by object; frames, objects and planes by id.
 struct Sequence {
   std::string name;
   Camera camera;
@@ -73,7 +83,29 @@ struct Sequence {
   std::vector<Object> objects;
   std::vector<Detection> detections;
   std::map<std::string, int> rejected_detections;  // reason -> how many
+
+  const Frame& FrameOf(const Detection& detection) const {
+    return frames[static_cast<size_t>(detection.frame_index)];
+  }
+  const Object& ObjectOf(const Detection& detection) const {
+    return objects[static_cast<size_t>(detection.object_index)];
+  }
+  const Camera& CameraOf(const Frame& frame) const { return frame.camera ? *frame.camera : camera; }
+  const Camera& CameraOf(const Detection& detection) const { return CameraOf(FrameOf(detection)); }
 };
+
+// The exact landmark of a detection's object as its camera sees it: as its frame's labels say, or
+// else the object's, seen from the true pose (or the estimated one, where there is no true pose).
+// None without ground truth.
+inline std::optional<Landmark> TrueLandmarkInCamera(const Sequence& sequence,
+                                                    const Detection& detection) {
+  if (detection.true_landmark_in_camera) return detection.true_landmark_in_camera;
+  const auto& truth = sequence.ObjectOf(detection).ground_truth;
+  if (!truth) return std::nullopt;
+  const Frame& frame = sequence.FrameOf(detection);
+  const Rigid3d world_from_camera = frame.true_world_from_camera.value_or(frame.world_from_camera);
+  return Transform(world_from_camera.Inverse(), truth->landmark_in_world);
+}
 
 // Indices into sequence.detections of each object's detections, in frame order.
 inline std::vector<std::vector<int>> DetectionsByObject(const Sequence& sequence) {

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 fs::path ImagePath(const fs::path& dataset, const Frame& frame, const fs::path& sequence_file) {
   const fs::path relative = fs::path(frame.image).lexically_normal();
-  if (frame.image.empty() || relative.is_absolute() || *relative.begin() == "..") {
+  if (relative.is_absolute() || *relative.begin() == "..") {
     throw InputError(
         fmt::format("{}: frame {}: image is '{}'; expected a path inside the dataset folder",
                     sequence_file.string(), frame.id, frame.image));
@@ -31,10 +31,22 @@ fs::path ImagePath(const fs::path& dataset, const Frame& frame, const fs::path& 
   return dataset / relative;
 }
 
-std::vector<fs::path> ImagePaths(const Sequence& sequence, const StageFiles& files) {
-  std::vector<fs::path> images;
+struct FrameImage {
+  const Frame* frame;
+  fs::path path;
+};
+
+// Of the frames that have one.
+std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& files) {
+  std::vector<FrameImage> images;
   for (const Frame& frame : sequence.frames) {
-    images.push_back(ImagePath(files.at("dataset"), frame, files.at("sequence")));
+    if (frame.image.empty()) continue;
+    images.push_back({&frame, ImagePath(files.at("dataset"), frame, files.at("sequence"))});
+  }
+  if (images.empty()) {
+    throw NothingUsableError(
+        fmt::format("{}: none of its {} frames has an image; expected at least one",
+                    files.at("sequence").string(), sequence.frames.size()));
   }
   return images;
 }
@@ -54,13 +66,12 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   options.Check();
   const fs::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file);
-  CheckCamera(sequence.camera, sequence_file);
-  const std::vector<fs::path> images = ImagePaths(sequence, files);
-  if (images.empty()) {
-    throw NothingUsableError(sequence_file.string() + ": has no frames; expected at least one");
+  const std::vector<FrameImage> images = FrameImages(sequence, files);
+  std::vector<fs::path> inputs = {sequence_file};
+  for (const FrameImage& image : images) {
+    CheckCamera(sequence.CameraOf(*image.frame), sequence_file);
+    inputs.push_back(image.path);
   }
-  std::vector<fs::path> inputs = images;
-  inputs.push_back(sequence_file);
   EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});
 
   cv::setNumThreads(1);  // frames run in parallel; OpenCV's own threads would exceed `threads`
@@ -69,15 +80,19 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
-      const cv::Mat grey = ReadGreyImage(images[static_cast<size_t>(begin + i)],
-                                         sequence.camera.width, sequence.camera.height);
+      const FrameImage& image = images[static_cast<size_t>(begin + i)];
+      const Camera& camera = sequence.CameraOf(*image.frame);
+      const cv::Mat grey = ReadGreyImage(image.path, camera.width, camera.height);
       maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
     });
     for (size_t i = 0; i < maps.size(); ++i) {
-      writer.Write(sequence.frames[static_cast<size_t>(begin) + i].id, maps[i]);
+      writer.Write(images[static_cast<size_t>(begin) + i].frame->id, maps[i]);
     }
   }
   writer.Commit();
+  if (images.size() < sequence.frames.size()) {
+    fmt::print("{} of {} frames have an image\n", images.size(), sequence.frames.size());
+  }
 }
 
 }  // namespace soslam

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "artefact/sequence_file.h"
-#include "dataset/dataset_files.h"
 #include "dataset/gate.h"
 #include "dataset/import.h"
 
@@ -12,8 +11,8 @@ namespace soslam {
 
 void RunImport(const ImportOptions& options, const StageFiles& files, int /*threads*/) {
   const auto& folder = files.at("dataset");
-  const Sequence sequence = ImportDataset(folder, options);
-  const auto inputs = FindDatasetFiles(folder, options.trajectory).All();
+  std::vector<std::filesystem::path> inputs;
+  const Sequence sequence = ImportDataset(folder, options, &inputs);
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
              sequence.frames.size(), sequence.objects.size(), sequence.detections.size(),

@@ -27,6 +27,16 @@ std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
   return failures;
 }
 
+std::vector<std::optional<YawPrior>> YawPriorsOf(
+    const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& shapes,
+    const InitialiseOptions& options, int threads) {
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  const StandingOptions standing = {options.upright.detection_sigma_fraction,
+                                    options.view_correlation_deg * kRadians,
+                                    options.upright.yaw_grid_deg * kRadians};
+  return YawPriors(sequence, shapes, options.yaw_prior, standing, threads);
+}
+
 }  // namespace
 
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads) {
@@ -48,7 +58,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
     if (options.method == InitialisationMethod::kMultiView) {
       estimates = InitialiseMultiView(sequence, priors, options, threads);
     } else if (options.method == InitialisationMethod::kYawSweep) {
-      estimates = InitialiseUpright(sequence, priors, options.upright, threads);
+      estimates = InitialiseUpright(sequence, priors, options.upright, threads,
+                                    YawPriorsOf(sequence, priors, options, threads));
     } else {
       estimates = InitialiseSingleFrame(
           sequence, ObjectRatios(sequence, table, options.ratio_prior), options, threads);

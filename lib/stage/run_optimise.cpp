@@ -38,7 +38,11 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
     if (!frame) frame = std::make_shared<const FrameEdges>(edges.Read(frame_id));
     return frame;
   };
-  for (const std::vector<int>& detections : DetectionsByObject(sequence)) {
+  for (std::vector<int> detections : DetectionsByObject(sequence)) {
+    std::erase_if(detections, [&](int index) {
+      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+      return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
+    });
     if (options.symmetry) {
       for (const int index : SpreadOver(detections, static_cast<size_t>(options.symmetry_views))) {
         const Detection& detection = sequence.detections[static_cast<size_t>(index)];

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -69,27 +68,29 @@ std::string Fingerprint(const fs::path& folder, const std::set<std::string>& nam
   return text;
 }
 
-// The tables and lists that lie in a dataset folder.
-std::set<std::string> DataFiles(const fs::path& dataset) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(dataset)) {
+// The files below a dataset folder, whatever its format is: tables and lists, and all others, which
+// are images mostly.
+struct FoundFiles {
+  std::set<std::string> tables;
+  std::set<std::string> others;
+};
+
+FoundFiles FindFiles(const fs::path& dataset) {
+  FoundFiles found;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(dataset, fs::directory_options::follow_directory_symlink)) {
+    if (!entry.is_regular_file()) continue;
     const fs::path extension = entry.path().extension();
-    if (extension == ".txt" || extension == ".csv" || extension == ".json") {
-      names.insert(entry.path().filename().string());
-    }
+    const bool is_table = extension == ".txt" || extension == ".csv" || extension == ".json";
+    (is_table ? found.tables : found.others)
+        .insert(entry.path().lexically_relative(dataset).string());
   }
-  return names;
+  return found;
 }
 
-// The images that rgb.txt lists: lines "timestamp filename". Checking it is the import's business.
-std::set<std::string> ImageFiles(const fs::path& dataset) {
-  std::set<std::string> names;
-  std::ifstream list(dataset / "rgb.txt");
-  for (std::string line; std::getline(list, line);) {
-    const std::vector<std::string> words = SplitAtSpaces(line);
-    if (words.size() >= 2 && words.front().front() != '#') names.insert(words[1]);
-  }
-  return names;
+// Imports read tables, and some look which images there are.
+std::string DatasetFingerprint(const fs::path& dataset, const FoundFiles& files) {
+  return Fingerprint(dataset, files.tables) + fmt::format("{}\n", fmt::join(files.others, "\n"));
 }
 
 void WriteFile(const fs::path& path, const std::string& text) {
@@ -131,8 +132,9 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
     WriteFile(folders.results / variant.name / "stages.txt",
               fmt::format("{}\n", fmt::join(variant.instances, "\n")));
   }
-  WriteFile(folders.results / "shared" / "dataset.txt", Fingerprint(dataset, DataFiles(dataset)));
-  WriteFile(folders.results / "shared" / "images.txt", Fingerprint(dataset, ImageFiles(dataset)));
+  const FoundFiles found = FindFiles(dataset);
+  WriteFile(folders.results / "shared" / "dataset.txt", DatasetFingerprint(dataset, found));
+  WriteFile(folders.results / "shared" / "images.txt", Fingerprint(dataset, found.others));
   WriteFile(folders.results / "plan.mk", PlanMakefile(plan, name, folders));
 }
 

@@ -21,13 +21,15 @@ namespace {
 
 constexpr size_t kFramesAtOnce = 8;  // bounds the edge maps held in memory
 
-// Observations by frame: all of one frame share its edge maps.
+// Observations by frame: all of one frame share its edge maps. Those of frames without an image are
+// left out.
 std::vector<std::vector<const ObservationEstimate*>> GroupByFrame(
     const Sequence& sequence, const LandmarkEstimates& initial) {
   std::vector<std::vector<const ObservationEstimate*>> groups(sequence.frames.size());
   for (const ObservationEstimate& observation : initial.observations) {
     if (observation.hypotheses.empty()) continue;
     const auto& detection = sequence.detections[static_cast<size_t>(observation.detection_index)];
+    if (sequence.FrameOf(detection).image.empty()) continue;
     groups[static_cast<size_t>(detection.frame_index)].push_back(&observation);
   }
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
@@ -98,7 +100,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   const auto groups = GroupByFrame(sequence, estimates);
   if (groups.empty()) {
     throw NothingUsableError(files.at("initial").string() +
-                             ": no single-frame landmarks to refine");
+                             ": no single-frame landmark to refine in a frame that has an image");
   }
   const ArtefactInfo info = {
       OptionsToJson(options),
@@ -117,14 +119,20 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
       refined_by_detection[refined.estimate.detection_index] = std::move(refined.estimate);
     }
   }
+  size_t without_image = 0;
   for (ObservationEstimate& observation : estimates.observations) {
     const auto found = refined_by_detection.find(observation.detection_index);
-    if (found != refined_by_detection.end()) observation = found->second;
+    if (found != refined_by_detection.end()) {
+      observation = found->second;
+    } else if (!observation.hypotheses.empty()) {
+      observation.failure = "frame_without_image";
+      ++without_image;
+    }
   }
   WriteSymmetry(files.at("curves"), curves, info);
   WriteLandmarks(files.at("output"), estimates, sequence, info);
   fmt::print("{} landmarks refined, {} left as they were\n", refined_count,
-             curves.size() - static_cast<size_t>(refined_count));
+             curves.size() - static_cast<size_t>(refined_count) + without_image);
 }
 
 }  // namespace soslam

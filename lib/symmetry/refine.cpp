@@ -36,7 +36,7 @@ double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
 // solver fails.
 std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& start) {
   const RefineOptions& options = refinement.options;
-  const Camera& camera = refinement.sequence.camera;
+  const Camera& camera = refinement.observation.camera;
   LandmarkBlock landmark = Pack(start);
   PoseBlock camera_pose = Pack(Rigid3d());
   ceres::Problem problem;
@@ -67,7 +67,7 @@ void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
   const double initial_yaw = YawInCamera(refinement, refinement.start);
   for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
     const YawProfile profile = ComputeYawProfile(
-        *refinement.image, refinement.sequence.camera, refinement.start, refinement.samples,
+        *refinement.image, refinement.observation.camera, refinement.start, refinement.samples,
         static_cast<Descriptor>(i), options.symmetry, options.yaw_step_deg * kRadPerDeg);
     record->cost[kDescriptorNames[i]] = profile.costs;
     record->yaw.clear();
@@ -78,7 +78,7 @@ void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
 void RecordPairs(const Refinement& refinement, const Landmark& landmark, SymmetryRecord* record) {
   const SymmetryOptions& options = refinement.options.symmetry;
   const SymmetryDescriptor evaluate(options.descriptor, *refinement.image,
-                                    refinement.sequence.camera, landmark);
+                                    refinement.observation.camera, landmark);
   for (const Eigen::Vector2d& pixel : refinement.samples) {
     if (const auto pair = evaluate.Evaluate(pixel, options.min_viewing_cosine, false)) {
       record->samples.push_back(pixel.cast<float>());
@@ -93,8 +93,9 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
                             const std::vector<Hypothesis>& hypotheses, const EdgeMaps& maps,
                             const Eigen::Vector2d& ratio, const RefineOptions& options) {
   const auto image = std::make_shared<const SymmetryImage>(maps, detection.box);
+  const Camera& camera = sequence.CameraOf(detection);
   const auto edge_rms = [&](const Hypothesis& hypothesis) {
-    return OutlineEdgeRms(sequence.camera, hypothesis.landmark_in_camera, detection.box);
+    return OutlineEdgeRms(camera, hypothesis.landmark_in_camera, detection.box);
   };
   const double tied_rms = edge_rms(hypotheses.front()) + options.tie_edge_px;
   std::optional<Refinement> chosen;
@@ -104,13 +105,13 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
     Refinement refinement{sequence,
                           detection,
                           options,
-                          {sequence.camera, detection.box, detection.plane_in_camera, ratio},
+                          {camera, detection.box, detection.plane_in_camera, ratio},
                           image,
                           start,
-                          SamplePixels(*image, sequence.camera, start, options.symmetry),
+                          SamplePixels(*image, camera, start, options.symmetry),
                           std::nullopt};
     refinement.best_turn =
-        FindBestTurn(*image, sequence.camera, start, refinement.samples, options.symmetry,
+        FindBestTurn(*image, camera, start, refinement.samples, options.symmetry,
                      options.yaw_range_deg * kRadPerDeg, options.yaw_step_deg * kRadPerDeg,
                      options.yaw_resolution_deg * kRadPerDeg);
     if (!chosen || (refinement.best_turn &&
@@ -136,12 +137,9 @@ std::string Refine(const Refinement& refinement, Landmark* refined) {
 }  // namespace
 
 std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection) {
-  const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-  if (!object.ground_truth || !frame.true_world_from_camera) return std::nullopt;
-  const Landmark in_camera =
-      Transform(frame.true_world_from_camera->Inverse(), object.ground_truth->landmark_in_world);
-  return Yaw(detection.plane_in_camera.normal, in_camera.frame_from_object.rotation);
+  const auto truth = TrueLandmarkInCamera(sequence, detection);
+  if (!truth) return std::nullopt;
+  return Yaw(detection.plane_in_camera.normal, truth->frame_from_object.rotation);
 }
 
 RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,

@@ -69,7 +69,8 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
   for (size_t i = 0; i < read.frames.size(); ++i) {
     const Frame& a = read.frames[i];
     const Frame& b = sequence.frames[i];
-    EXPECT_EQ(std::tie(a.id, a.timestamp, a.image), std::tie(b.id, b.timestamp, b.image));
+    EXPECT_EQ(std::tie(a.id, a.timestamp, a.image, a.segment, a.camera),
+              std::tie(b.id, b.timestamp, b.image, b.segment, b.camera));
     ExpectSame(a.world_from_camera, b.world_from_camera);
     ASSERT_EQ(a.true_world_from_camera.has_value(), b.true_world_from_camera.has_value());
     if (a.true_world_from_camera) ExpectSame(*a.true_world_from_camera, *b.true_world_from_camera);
@@ -81,7 +82,8 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
   for (size_t i = 0; i < read.objects.size(); ++i) {
     const Object& a = read.objects[i];
     const Object& b = sequence.objects[i];
-    EXPECT_EQ(std::tie(a.id, a.label, a.plane_index), std::tie(b.id, b.label, b.plane_index));
+    EXPECT_EQ(std::tie(a.id, a.label, a.plane_index, a.is_static),
+              std::tie(b.id, b.label, b.plane_index, b.is_static));
     ASSERT_EQ(a.ground_truth.has_value(), b.ground_truth.has_value());
     if (!a.ground_truth) continue;
     ExpectSame(a.ground_truth->landmark_in_world, b.ground_truth->landmark_in_world);
@@ -98,6 +100,10 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
     EXPECT_EQ(a.is_bound, b.is_bound);
     EXPECT_EQ(a.nearer_boxes, b.nearer_boxes);
     ExpectSame(a.plane_in_camera, b.plane_in_camera);
+    ASSERT_EQ(a.true_landmark_in_camera.has_value(), b.true_landmark_in_camera.has_value());
+    if (a.true_landmark_in_camera) {
+      ExpectSame(*a.true_landmark_in_camera, *b.true_landmark_in_camera);
+    }
   }
 }
 

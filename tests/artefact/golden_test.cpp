@@ -24,7 +24,13 @@ TEST(GoldenTest, Sequence10) {
   EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponent, 2.0);
   for (const Detection& detection : sequence.detections) {
     EXPECT_EQ(detection.is_bound, (std::array<bool, 4>{}));
+    EXPECT_FALSE(detection.true_landmark_in_camera);
   }
+  for (const Frame& frame : sequence.frames) {
+    EXPECT_EQ(frame.segment, 0);
+    EXPECT_FALSE(frame.camera);
+  }
+  for (const Object& object : sequence.objects) EXPECT_TRUE(object.is_static);
 }
 
 TEST(GoldenTest, Landmarks10) {
@@ -96,6 +102,23 @@ TEST(GoldenTest, SemanticTableOfPeople) {
   // What this version did not have yet.
   EXPECT_EQ(dining_table.log_correlation, 0.0);
   EXPECT_FALSE(dining_table.height_m);
+}
+
+// Several recordings, moving objects, frames without images.
+TEST(GoldenTest, Sequence12Segments) {
+  const Sequence sequence = ReadSequence(kGolden / "sequence-1.2-segments.json");
+  ASSERT_EQ(sequence.frames.size(), 4u);
+  EXPECT_EQ(sequence.frames[1].segment, 3);
+  EXPECT_EQ(sequence.frames[2].segment, 7);
+  EXPECT_EQ(sequence.frames[0].image, "");
+  EXPECT_EQ(sequence.frames[2].image, "image_02/0007/000000.png");
+  EXPECT_EQ(sequence.CameraOf(sequence.frames[1]).width, 1242);
+  EXPECT_EQ(sequence.CameraOf(sequence.frames[2]).width, 1200);
+  ASSERT_EQ(sequence.objects.size(), 3u);
+  EXPECT_TRUE(sequence.objects[0].is_static);
+  EXPECT_FALSE(sequence.objects[1].is_static);
+  ASSERT_EQ(sequence.detections.size(), 6u);
+  EXPECT_EQ(sequence.detections[3].true_landmark_in_camera->Centre().z(), 12.01);
 }
 
 }  // namespace

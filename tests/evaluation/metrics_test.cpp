@@ -5,7 +5,6 @@
 
 #include "evaluation/trajectory_error.h"
 #include "support/random.h"
-#include "support/true_landmark.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 
@@ -18,7 +17,7 @@ LandmarkEstimates TrueEstimates(const Sequence& sequence) {
   LandmarkEstimates estimates;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     estimates.observations.push_back(
-        {static_cast<int>(i), {{TrueLandmarkInCamera(sequence, sequence.detections[i]), 0.0}}, ""});
+        {static_cast<int>(i), {{*TrueLandmarkInCamera(sequence, sequence.detections[i]), 0.0}}, ""});
   }
   return estimates;
 }
@@ -68,6 +67,54 @@ TEST(Metrics, ARoundObjectTakesTheEstimatesYawAndHasNoRotation) {
   EXPECT_FALSE(errors.yaw_deg);
   truth.rotationally_symmetric = false;
   EXPECT_LT(CompareLandmarks(estimate, truth, truth.landmark_in_world).iou, 0.9);
+}
+
+// Of an object that moves, each frame has a truth of its own.
+TEST(Metrics, TheTruthOfADetectionGoesBeforeThatOfItsObject) {
+  Sequence sequence = TestSequence();
+  LandmarkEstimates estimates = TrueEstimates(sequence);
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    if (sequence.detections[i].object_index != 1) continue;
+    Landmark& estimate = estimates.observations[i].hypotheses[0].landmark_in_camera;
+    estimate.frame_from_object.translation += Eigen::Vector3d(0.0, 0.0, 10.0 + 0.1 * i);
+    sequence.detections[i].true_landmark_in_camera = estimate;
+  }
+  sequence.objects[1].is_static = false;
+  const Metrics metrics = EvaluateLandmarks(sequence, estimates);
+  EXPECT_EQ(metrics.summary.objects, 4);
+  EXPECT_NEAR(*metrics.summary.iou_mean, 1.0, 1e-6);
+  for (Detection& detection : sequence.detections) detection.true_landmark_in_camera.reset();
+  EXPECT_NEAR(*EvaluateLandmarks(sequence, estimates).summary.iou_mean, 0.75, 1e-6);
+}
+
+MapEstimate TrueMap(const Sequence& sequence) {
+  MapEstimate map;
+  for (const Frame& frame : sequence.frames)
+    map.world_from_camera.push_back(frame.world_from_camera);
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    ObjectEstimate object;
+    object.object_index = static_cast<int>(i);
+    object.landmark_in_world = sequence.objects[i].ground_truth->landmark_in_world;
+    map.objects.push_back(object);
+  }
+  return map;
+}
+
+TEST(Metrics, AnObjectThatMovesHasNoPlaceInAMap) {
+  Sequence sequence = TestSequence();
+  sequence.objects[2].is_static = false;
+  MapEstimate map = TrueMap(sequence);
+  map.objects[2].landmark_in_world.reset();
+  const Metrics metrics = EvaluateMap(sequence, map);
+  EXPECT_EQ(metrics.summary.objects, 3);
+  EXPECT_NEAR(*metrics.summary.iou_mean, 1.0, 1e-6);
+}
+
+TEST(Metrics, TrajectoriesOfSeveralWorldsAreNotCompared) {
+  Sequence sequence = TestSequence();
+  EXPECT_TRUE(EvaluateMap(sequence, TrueMap(sequence)).trajectory);
+  sequence.frames.back().segment = 1;
+  EXPECT_FALSE(EvaluateMap(sequence, TrueMap(sequence)).trajectory);
 }
 
 TEST(Metrics, AnObjectThatWasNotObservedDoesNotCount) {

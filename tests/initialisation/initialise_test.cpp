@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "support/level_sequence.h"
-#include "support/true_landmark.h"
 #include "support/upright_bodies.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
@@ -93,7 +92,7 @@ TEST(InitialiseUpright, HasTheTrueBodyAmongItsHypotheses) {
       InitialiseUpright(sequence, TruePriors(sequence), WithoutAxes(), 2);
   size_t found = 0;
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const Landmark truth = TrueLandmarkInCamera(
+    const Landmark truth = *TrueLandmarkInCamera(
         sequence, sequence.detections[static_cast<size_t>(estimate.detection_index)]);
     EXPECT_LT(estimate.hypotheses.front().cost, 1e-3);
     found += std::any_of(estimate.hypotheses.begin(), estimate.hypotheses.end(),

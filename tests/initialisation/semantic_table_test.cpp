@@ -79,7 +79,11 @@ TEST(ObjectRatios, AreThoseOfThePriors) {
 }
 
 TEST(LabelsWithoutEntry, NamesThemWhateverTheDefault) {
-  EXPECT_THAT(LabelsWithoutEntry(CupCupWhisk(), kCupsAndDefault), ElementsAre("whisk"));
+  Sequence sequence = CupCupWhisk();
+  EXPECT_TRUE(LabelsWithoutEntry(sequence, kCupsAndDefault).empty());  // nothing is detected
+  sequence.frames.resize(1);
+  for (int i = 0; i < 3; ++i) sequence.detections.push_back({0, i, 1.0, {}, {}, {}});
+  EXPECT_THAT(LabelsWithoutEntry(sequence, kCupsAndDefault), ElementsAre("whisk"));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "support/cuboid_sequence.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
-#include "support/true_landmark.h"
 
 namespace soslam {
 namespace {
@@ -30,7 +29,7 @@ std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& seque
   std::map<int, std::shared_ptr<const EdgeImage>> images;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
-    const cv::Mat image = DrawCuboids(sequence.camera, {TrueLandmarkInCamera(sequence, detection)});
+    const cv::Mat image = DrawCuboids(sequence.camera, {*TrueLandmarkInCamera(sequence, detection)});
     const EdgeMaps maps = ComputeEdgeMaps(image, EdgesOptions());
     images[static_cast<int>(i)] = std::make_shared<const EdgeImage>(
         EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});
@@ -81,6 +80,70 @@ TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   for (const ObjectEstimate& object : map.objects) {
     EXPECT_EQ(object.landmark_in_world->shape_exponent, kCuboidExponent);
   }
+}
+
+// Two recordings in one sequence. The second one is elsewhere, and its objects and odometry are
+// others.
+Sequence Joined(const Sequence& one, const Sequence& other) {
+  Sequence joined = one;
+  const auto frames = static_cast<int>(one.frames.size());
+  const auto objects = static_cast<int>(one.objects.size());
+  const auto planes = static_cast<int>(one.planes.size());
+  for (Frame frame : other.frames) {
+    frame.segment = 1;
+    joined.frames.push_back(frame);
+  }
+  joined.planes.insert(joined.planes.end(), other.planes.begin(), other.planes.end());
+  for (Object object : other.objects) {
+    object.plane_index += planes;
+    joined.objects.push_back(object);
+  }
+  for (Detection detection : other.detections) {
+    detection.frame_index += frames;
+    detection.object_index += objects;
+    joined.detections.push_back(detection);
+  }
+  return joined;
+}
+
+TEST(TangencyBackEnd, SegmentsDoNotPullOnEachOther) {
+  const Sequence one = Cuboids(3, 10);
+  // Wrong odometry, so that there is something to pull.
+  Sequence other = SyntheticSequence(RandomScene(8, 3, 10, {Shape::kBox}), true);
+  const Sequence joined = Joined(one, other);
+  const auto optimise = [](const Sequence& sequence) {
+    return OptimiseMap(TruthInput(sequence), TangencyOptions());
+  };
+  const MapEstimate together = optimise(joined);
+  const std::array<MapEstimate, 2> alone = {optimise(one), optimise(other)};
+  // Each stops within the solver's tolerance of its optimum, on a way of its own.
+  constexpr double kTolerance = 1e-4;
+  for (size_t i = 0; i < together.world_from_camera.size(); ++i) {
+    const auto& poses = alone[i < one.frames.size() ? 0 : 1].world_from_camera;
+    const Rigid3d& expected = poses[i < one.frames.size() ? i : i - one.frames.size()];
+    EXPECT_LT((together.world_from_camera[i].translation - expected.translation).norm(), kTolerance)
+        << "frame " << i;
+  }
+  EXPECT_EQ(together.solver.residuals.at("odometry"), 18);
+  for (const size_t first : {size_t{0}, one.frames.size()}) {
+    EXPECT_EQ(together.world_from_camera[first].translation,
+              joined.frames[first].world_from_camera.translation);
+  }
+}
+
+TEST(TangencyBackEnd, WhatMovesIsNoLandmark) {
+  Sequence sequence = Cuboids(3, 10);
+  sequence.objects[1].is_static = false;
+  BackEndInput input = TruthInput(sequence);
+  LandmarkEstimates estimates;
+  input.starts = ChooseUprightStarts(input, estimates, TangencyOptions());
+  EXPECT_TRUE(input.starts[0]);
+  EXPECT_FALSE(input.starts[1]);
+  const MapEstimate map = OptimiseMap(input, TangencyOptions());
+  EXPECT_EQ(map.objects[1].failure, "moving");
+  EXPECT_EQ(map.solver.gated.at("detection_of_moving_object"),
+            static_cast<int>(DetectionsByObject(sequence)[1].size()));
+  EXPECT_EQ(map.solver.residuals.at("support"), 2);
 }
 
 TEST(TangencyBackEnd, ComesBackFromADisturbedStart) {
@@ -215,7 +278,7 @@ class UprightStarts : public testing::Test {
     // observation to observation.
     for (size_t i = 0; i < sequence_.detections.size(); ++i) {
       const Detection& detection = sequence_.detections[i];
-      const Landmark truth = TrueLandmarkInCamera(sequence_, detection);
+      const Landmark truth = *TrueLandmarkInCamera(sequence_, detection);
       const double turn = RandomUniform(0.5, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
       estimates_.observations.push_back(
           {static_cast<int>(i), {{Turned(truth, turn), 0.0}, {truth, 1.0}}, ""});

@@ -10,7 +10,6 @@
 
 #include "evaluation/iou.h"
 #include "support/drawn_cuboids.h"
-#include "support/true_landmark.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
 
@@ -57,7 +56,7 @@ class RefineBoxes : public testing::Test {
     return sequence_->detections[static_cast<size_t>(index)];
   }
   static Landmark TrueLandmark(const Detection& detection) {
-    return TrueLandmarkInCamera(*sequence_, detection);
+    return *TrueLandmarkInCamera(*sequence_, detection);
   }
   static int Observations() { return static_cast<int>(sequence_->detections.size()); }
   // In images of all frames.

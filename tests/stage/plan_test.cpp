@@ -214,9 +214,11 @@ TEST_F(PlanTest, EveryShippedVariantIsValid) {
   const fs::path pipelines = fs::path(SOSLAM_SOURCE_DIR) / "pipelines";
   const std::vector<std::string> names = VariantNames(pipelines);
   EXPECT_GE(names.size(), 7u);
-  for (const StageInstance& instance : MakePlan(pipelines, "room_a", names).instances) {
-    if (!instance.semantic_table.empty()) {
-      EXPECT_TRUE(fs::exists(pipelines / instance.semantic_table)) << instance.Id();
+  for (const char* dataset : {"room_a", "kitti_tracking", "kitti_object"}) {
+    for (const StageInstance& instance : MakePlan(pipelines, dataset, names).instances) {
+      if (!instance.semantic_table.empty()) {
+        EXPECT_TRUE(fs::exists(pipelines / instance.semantic_table)) << instance.Id();
+      }
     }
   }
 }
@@ -264,6 +266,22 @@ TEST_F(RunPlanTest, FingerprintsFollowTheFiles) {
   EXPECT_EQ(Read("results/room/shared/dataset.txt"), dataset);
   EXPECT_NE(Read("results/room/shared/images.txt"), images);
   fs::remove(folder_ / "room/camera.json");
+  Run("", "");
+  EXPECT_NE(Read("results/room/shared/dataset.txt"), dataset);
+}
+
+// Formats of others keep their files in folders of their own. Which images there are, an import may
+// want to know; what is in them, it does not.
+TEST_F(RunPlanTest, FingerprintsFollowFilesInFolders) {
+  fs::create_directories(folder_ / "room/label_02");
+  Write("room/label_02/0001.txt", "one");
+  Run("", "");
+  const std::string dataset = Read("results/room/shared/dataset.txt");
+  EXPECT_THAT(dataset, AllOf(HasSubstr("label_02/0001.txt 3"), HasSubstr("rgb/0.jpg\n")));
+  Write("room/rgb/0.jpg", "another image");
+  Run("", "");
+  EXPECT_EQ(Read("results/room/shared/dataset.txt"), dataset);
+  Write("room/rgb/1.jpg", "one more image");
   Run("", "");
   EXPECT_NE(Read("results/room/shared/dataset.txt"), dataset);
 }

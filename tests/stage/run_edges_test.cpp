@@ -102,6 +102,30 @@ TEST_F(RunEdgesTest, BadImagesAreNamedAndNothingIsWritten) {
   ExpectRefused({"rgb/7.png", "48 x 64", "64 x 48"});
 }
 
+TEST_F(RunEdgesTest, FramesWithoutAnImageAreLeftOutAndCounted) {
+  for (const size_t i : {0u, 4u, 5u}) sequence_.frames[i].image.clear();
+  testing::internal::CaptureStdout();
+  RunEdges({}, Files(), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "8 of 11 frames have an image\n");
+  const EdgesReader reader(folder_ / "edges.h5");
+  EXPECT_FALSE(reader.Has(0));
+  EXPECT_TRUE(reader.Has(5));
+  EXPECT_FALSE(reader.Has(20));
+  const EdgeMaps expected = ComputeEdgeMaps(ReadGreyImage(folder_ / "rgb/6.png"), {});
+  EXPECT_EQ(cv::norm(reader.Read(30).grey, expected.grey, cv::NORM_INF), 0.0);
+  for (Frame& frame : sequence_.frames) frame.image.clear();
+  ExpectError<NothingUsableError>([&] { RunEdges({}, Files("none.h5"), 2); },
+                                  {"sequence.json", "none of its 11 frames"});
+}
+
+TEST_F(RunEdgesTest, AnImageHasTheSizeOfItsFramesCamera) {
+  cv::imwrite((folder_ / "rgb/3.png").string(), cv::Mat(40, 60, CV_8UC1, cv::Scalar(7)));
+  ExpectRefused({"rgb/3.png", "60 x 40", "64 x 48"});
+  sequence_.frames[3].camera = Camera{60, 40, 60.0, 60.0, 29.5, 19.5};
+  RunEdges({}, Files(), 2);
+  EXPECT_EQ(EdgesReader(folder_ / "edges.h5").Read(15).grey.cols, 60);
+}
+
 TEST_F(RunEdgesTest, FailureLeavesTheOldResult) {
   WriteBytes(folder_ / "edges.h5", "old");
   std::filesystem::remove(folder_ / "rgb/10.png");

@@ -22,11 +22,15 @@ inline Sequence RandomSequence() {
   for (int i = 0; i < 5; ++i) {
     Frame frame{10 + 5 * i, RandomUniform(1e9, 2e9), "rgb/a b.jpg", RandomRigid(), {}};
     if (i % 2 == 0) frame.true_world_from_camera = RandomRigid();
+    frame.segment = i / 3;
+    if (i == 3) frame.camera = Camera{320, 200, 250.5, 251.5, 160.25, 99.75};
+    if (i == 4) frame.image.clear();
     sequence.frames.push_back(frame);
   }
   for (int i = 0; i < 4; ++i) {
     Object object{7 * i - 3, "label", i % 2, {}};
     if (i % 2 == 0) object.ground_truth = {RandomLandmark(), i == 0, i == 2, i == 2};
+    object.is_static = i % 2 == 1;
     sequence.objects.push_back(object);
   }
   for (int frame = 0; frame < 5; ++frame) {
@@ -41,6 +45,7 @@ inline Sequence RandomSequence() {
                                      RandomPlane(),
                                      {(i & 1) != 0, (i & 2) != 0, (i & 4) != 0, (i & 8) != 0},
                                      std::vector<Box>(i % 3, box)});
+      if (i % 3 == 0) sequence.detections.back().true_landmark_in_camera = RandomLandmark();
     }
   }
   sequence.rejected_detections = {{"duplicate", 2}, {"near_border", 17}};

@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/random.h"
-#include "support/true_landmark.h"
 #include "symmetry/refine.h"
 #include "symmetry/sampling.h"
 #include "synthesis/render.h"
@@ -39,7 +38,7 @@ class SyntheticTexture : public testing::Test {
   }
 
   static Landmark TrueLandmark(const Detection& detection) {
-    return TrueLandmarkInCamera(*sequence_, detection);
+    return *TrueLandmarkInCamera(*sequence_, detection);
   }
 
   static inline Scene* scene_ = nullptr;

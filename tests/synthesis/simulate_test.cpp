@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "support/true_landmark.h"
 #include "synthesis/random_scene.h"
 
 namespace soslam {
@@ -34,7 +33,7 @@ TEST(SyntheticSequence, EllipsoidBoxEdgesAreTangentToTheDualQuadric) {
     const Sequence sequence = SyntheticSequence(RandomScene(seed, 6, 20), false);
     ASSERT_GE(sequence.detections.size(), 18u);
     for (const Detection& detection : sequence.detections) {
-      const Landmark landmark_in_camera = TrueLandmarkInCamera(sequence, detection);
+      const Landmark landmark_in_camera = *TrueLandmarkInCamera(sequence, detection);
       const Eigen::Matrix4d dual_quadric = DualQuadric(landmark_in_camera);
       for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
         const Eigen::Vector4d pi = sequence.camera.BackProject(line).Homogeneous();

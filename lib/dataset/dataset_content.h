@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "dataset/detection_row.h"
+#include "dataset/gate.h"
+#include "geometry/camera.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+struct ListedFrame {
+  Frame frame;
+  bool has_pose = true;  // false: frame.world_from_camera means nothing
+};
+
+// What the reader of a dataset's format finds there, before anything of it is left out.
+struct DatasetContent {
+  Camera camera;                    // of the frames that do not have one of their own
+  std::vector<ListedFrame> frames;  // by ascending id, segment after segment
+  std::vector<SupportPlane> planes;
+  std::vector<Object> objects;
+  std::vector<DetectionRow> rows;            // of these frames and objects
+  RejectionCounts rejected;                  // detections of which there is no row
+  bool has_true_poses = false;               // of some frames at least
+  std::vector<std::filesystem::path> files;  // that were read
+};
+
+}  // namespace soslam

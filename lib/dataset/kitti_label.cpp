@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_label.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <span>
+
+#include "base/error.h"
+#include "dataset/text_file.h"
+#include "image/read_image.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kUnlabelledType = "DontCare";
+
+// The columns that both benchmarks have, from the type on.
+constexpr std::array kColumns = {"type",   "truncated", "occluded", "alpha",  "left",
+                                 "top",    "right",     "bottom",   "height", "width",
+                                 "length", "x",         "y",        "z",      "rotation_y"};
+
+// `words`: the kColumns of one line.
+KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string& place) {
+  const auto real = [&](size_t i) { return ParseReal(words[i], place, kColumns[i]); };
+  KittiLabel label;
+  label.place = place;
+  label.type = words[0];
+  label.truncated = real(1);
+  label.occluded = ParseInteger(words[2], place, kColumns[2]);
+  label.box = {real(4), real(5), real(6), real(7)};
+  label.size = {real(8), real(9), real(10)};
+  label.bottom_centre = {real(11), real(12), real(13)};
+  label.rotation_y = real(14);
+  if (label.type != kUnlabelledType && !(label.size.minCoeff() > 0.0)) {
+    throw InputError(fmt::format("{}: size is {} {} {}; expected height, width and length above 0",
+                                 place, words[8], words[9], words[10]));
+  }
+  return label;
+}
+
+std::vector<std::string_view> SplitColumns(const TextLine& line, size_t leading) {
+  auto words = SplitWords(line.text);
+  if (words.size() != leading + kColumns.size()) {
+    throw InputError(fmt::format("{}: has {} values; expected {}{}", line.place, words.size(),
+                                 leading > 0 ? "frame track " : "", fmt::join(kColumns, " ")));
+  }
+  return words;
+}
+
+Eigen::Matrix<double, 3, 4> ParseMatrix(std::span<const std::string_view> words,
+                                        const std::string& place) {
+  if (words.size() != 12) {
+    throw InputError(fmt::format("{}: has {} numbers; expected 12, a 3 x 4 matrix by rows", place,
+                                 words.size()));
+  }
+  Eigen::Matrix<double, 3, 4> matrix;
+  for (size_t i = 0; i < words.size(); ++i) {
+    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) =
+        ParseReal(words[i], place, fmt::format("number {}", i + 1));
+  }
+  return matrix;
+}
+
+KittiCalibration FromProjection(const Eigen::Matrix<double, 3, 4>& p, const std::string& place) {
+  const bool is_rectified = p(0, 1) == 0.0 && p(1, 0) == 0.0 &&
+                            p.row(2).head<3>() == Eigen::RowVector3d(0.0, 0.0, 1.0) &&
+                            p(0, 0) > 0.0 && p(1, 1) > 0.0;
+  if (!is_rectified) {
+    throw InputError(place +
+                     ": P2 is not fx 0 cx tx  0 fy cy ty  0 0 1 tz; expected a rectified camera");
+  }
+  KittiCalibration calibration;
+  calibration.camera = {0, 0, p(0, 0), p(1, 1), p(0, 2), p(1, 2)};
+  calibration.camera2_from_camera0 = p.leftCols<3>().inverse() * p.col(3);
+  return calibration;
+}
+
+}  // namespace
+
+KittiCalibration ReadKittiCalibration(const fs::path& path) {
+  for (const TextLine& line : ReadTextLines(path)) {
+    const auto words = SplitWords(line.text);
+    if (words.front() != "P2:") continue;
+    return FromProjection(ParseMatrix(std::span(words).subspan(1), line.place), line.place);
+  }
+  throw InputError(path.string() + ": has no line P2:; expected the projection of camera 2");
+}
+
+std::vector<KittiLabel> ReadKittiTrackingLabels(const fs::path& path) {
+  std::vector<KittiLabel> labels;
+  for (const TextLine& line : ReadTextLines(path)) {
+    const auto words = SplitColumns(line, 2);
+    KittiLabel label = ParseLabel(std::span(words).subspan(2), line.place);
+    label.frame = ParseInteger(words[0], line.place, "frame");
+    label.track = ParseInteger(words[1], line.place, "track");
+    if (label.type != kUnlabelledType) labels.push_back(std::move(label));
+  }
+  return labels;
+}
+
+std::vector<KittiLabel> ReadKittiObjectLabels(const fs::path& path) {
+  std::vector<KittiLabel> labels;
+  for (const TextLine& line : ReadTextLines(path)) {
+    KittiLabel label = ParseLabel(SplitColumns(line, 0), line.place);
+    if (label.type == kUnlabelledType) continue;
+    label.track = static_cast<int>(labels.size());
+    labels.push_back(std::move(label));
+  }
+  return labels;
+}
+
+std::vector<NumberedPath> NumberedFiles(const fs::path& folder, const std::string& extension) {
+  std::vector<NumberedPath> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() != extension) continue;
+    const std::string place = entry.path().string();
+    files.push_back({ParseInteger(entry.path().stem().string(), place, "file name"), entry.path()});
+  }
+  if (files.empty()) {
+    throw InputError(
+        fmt::format("{}: has no files; expected <number>{}", folder.string(), extension));
+  }
+  std::sort(files.begin(), files.end(),
+            [](const NumberedPath& a, const NumberedPath& b) { return a.number < b.number; });
+  return files;
+}
+
+fs::path RequiredFile(const fs::path& path) {
+  if (!fs::is_regular_file(path)) throw InputError(path.string() + ": is missing");
+  return path;
+}
+
+Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
+                     const RecordingValues& image_size, int recording) {
+  if (image) {
+    const cv::Mat pixels = ReadGreyImage(*image);
+    camera.width = pixels.cols;
+    camera.height = pixels.rows;
+    return camera;
+  }
+  const std::string& text = image_size.Of(recording);
+  const size_t times = text.find('x');
+  try {
+    camera.width = ParseInteger(std::string_view(text).substr(0, times), "", "width");
+    camera.height = times == std::string::npos
+                        ? 0
+                        : ParseInteger(std::string_view(text).substr(times + 1), "", "height");
+  } catch (const InputError&) {
+    camera.width = 0;
+  }
+  if (camera.width <= 0 || camera.height <= 0) {
+    throw SettingsError(
+        fmt::format("image_size: found '{}'; expected width and height, as in 1242x375", text));
+  }
+  return camera;
+}
+
+std::string LabelOfType(const std::string& type) {
+  std::string label = type;
+  std::transform(label.begin(), label.end(), label.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return label;
+}
+
+Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration) {
+  const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d front(std::cos(label.rotation_y), 0.0, -std::sin(label.rotation_y));
+  Eigen::Matrix3d rotation;
+  rotation << front, up.cross(front), up;
+  Landmark landmark;
+  landmark.half_axes = 0.5 * Eigen::Vector3d(label.size[2], label.size[1], label.size[0]);
+  landmark.frame_from_object = {
+      Eigen::Quaterniond(rotation).normalized(),
+      label.bottom_centre + calibration.camera2_from_camera0 + landmark.half_axes.z() * up};
+  landmark.shape_exponent = kCuboidExponent;
+  return landmark;
+}
+
+DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,
+                        const KittiCalibration& calibration, const Camera& camera) {
+  const Landmark landmark = LandmarkInCamera(label, calibration);
+  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+  DetectionRow row{label.place, 0, 0, LabelOfType(label.type), score, box};
+  const double right = camera.width - 0.5;
+  const double bottom = camera.height - 0.5;
+  row.box = {std::clamp(box.x_min, -0.5, right), std::clamp(box.y_min, -0.5, bottom),
+             std::clamp(box.x_max, -0.5, right), std::clamp(box.y_max, -0.5, bottom)};
+  row.truncation = label.truncated;
+  row.occlusion = label.occluded;
+  row.plane_in_camera = Plane{up, landmark.half_axes.z() - up.dot(landmark.Centre())};
+  row.true_landmark_in_camera = landmark;
+  return row;
+}
+
+}  // namespace soslam

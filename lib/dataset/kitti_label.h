@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/detection_row.h"
+#include "dataset/recordings.h"
+#include "geometry/camera.h"
+
+namespace soslam {
+
+// What the tracking and the object benchmark of KITTI have in common. Everything is in the frame of
+// camera 2 (left colour), which takes the images, except what a KittiLabel holds.
+
+// P2 of a calibration file: pixel = P2 [x; 1], x in the rectified frame of camera 0.
+struct KittiCalibration {
+  Camera camera;                                                   // without its size
+  Eigen::Vector3d camera2_from_camera0 = Eigen::Vector3d::Zero();  // translation, m; no rotation
+};
+// Throws InputError naming the file and line.
+KittiCalibration ReadKittiCalibration(const std::filesystem::path& path);
+
+// One labelled object in one frame, as the file has it: rectified frame of camera 0.
+struct KittiLabel {
+  std::string place;  // "<file>:<line>"
+  int frame = 0;
+  int track = 0;
+  std::string type;        // "Car"
+  double truncated = 0.0;  // tracking: 0, 1, 2; object: share
+  int occluded = 0;        // 0 visible, 1 partly, 2 largely hidden, 3 unknown
+  Box box;
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();  // height, width, length, m
+  Eigen::Vector3d bottom_centre = Eigen::Vector3d::Zero();
+  double rotation_y = 0.0;  // rad; 0: the length along the camera's x axis
+};
+
+// 17 values a line, frame and track first (tracking), or 15 without these (object: frame 0, track
+// counted from 0). Regions that are not labelled (DontCare) are left out. Throw InputError naming
+// the line.
+std::vector<KittiLabel> ReadKittiTrackingLabels(const std::filesystem::path& path);
+std::vector<KittiLabel> ReadKittiObjectLabels(const std::filesystem::path& path);
+
+// Files and folders that KITTI names by a number: "0013.txt".
+struct NumberedPath {
+  int number;
+  std::filesystem::path path;
+};
+// Those in a folder that have this extension, by number. Throws InputError for a name that is not a
+// number, and when there is none.
+std::vector<NumberedPath> NumberedFiles(const std::filesystem::path& folder,
+                                        const std::string& extension);
+
+// The file, when it is there. Throws InputError otherwise.
+std::filesystem::path RequiredFile(const std::filesystem::path& path);
+
+// The camera with the size (px) of an image, or without one with the size that the setting gives.
+Camera WithImageSize(Camera camera, const std::optional<std::filesystem::path>& image,
+                     const RecordingValues& image_size, int recording);
+
+// In lower case: KITTI's Car is the label car.
+std::string LabelOfType(const std::string& type);
+
+// The labelled cuboid in the frame of camera 2: x along the length, z up.
+Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration);
+
+// The label as a detection: `box` cut to the image; plane and landmark those of the label, the
+// plane that of its bottom face.
+DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,
+                        const KittiCalibration& calibration, const Camera& camera);
+
+}  // namespace soslam

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_object.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "base/error.h"
+#include "dataset/kitti_label.h"
+#include "dataset/recordings.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kIdsPerFrame = 1000;
+constexpr int kMaxFrame = 1000000;
+
+Frame ReadFrame(const fs::path& folder, const NumberedPath& labels) {
+  if (labels.number < 0 || labels.number > kMaxFrame) {
+    throw InputError(fmt::format("{}: file name is {}; expected a number from 0 to {}",
+                                 labels.path.string(), labels.number, kMaxFrame));
+  }
+  Frame frame;
+  frame.id = labels.number;
+  frame.segment = labels.number;
+  const fs::path image = fs::path("image_2") / (labels.path.stem().string() + ".png");
+  if (fs::exists(folder / image)) frame.image = image.string();
+  return frame;
+}
+
+void AddObject(const KittiLabel& label, const DetectionRow& row, DatasetContent* content) {
+  Object object;
+  object.id = row.object_id;
+  object.label = LabelOfType(label.type);
+  object.plane_index = static_cast<int>(content->planes.size());
+  object.ground_truth.emplace().landmark_in_world = *row.true_landmark_in_camera;
+  content->planes.push_back({object.id, *row.plane_in_camera});
+  content->objects.push_back(object);
+}
+
+void AddFrame(const fs::path& folder, const NumberedPath& label_file,
+              const RecordingValues& image_size, DatasetContent* content) {
+  const fs::path calibration_file = RequiredFile(folder / "calib" / label_file.path.filename());
+  content->files.insert(content->files.end(), {label_file.path, calibration_file});
+  const KittiCalibration calibration = ReadKittiCalibration(calibration_file);
+  const std::vector<KittiLabel> labels = ReadKittiObjectLabels(label_file.path);
+  if (labels.size() > kIdsPerFrame) {
+    throw InputError(fmt::format("{}: has {} labels; expected at most {}", label_file.path.string(),
+                                 labels.size(), kIdsPerFrame));
+  }
+  Frame frame = ReadFrame(folder, label_file);
+  const auto image = frame.image.empty() ? std::nullopt : std::optional(folder / frame.image);
+  const Camera camera = WithImageSize(calibration.camera, image, image_size, frame.id);
+  if (content->frames.empty()) content->camera = camera;
+  if (camera != content->camera) frame.camera = camera;
+  for (const KittiLabel& label : labels) {
+    DetectionRow row = RowOfLabel(label, label.box, 1.0, calibration, camera);
+    row.frame_id = frame.id;
+    row.object_id = frame.id * kIdsPerFrame + label.track;
+    AddObject(label, row, content);
+    content->rows.push_back(std::move(row));
+  }
+  content->frames.push_back({std::move(frame), true});
+}
+
+}  // namespace
+
+DatasetContent ReadKittiObject(const fs::path& folder, const ImportOptions& options) {
+  const RecordingValues image_size("image_size", options.kitti.image_size);
+  DatasetContent content;
+  for (const NumberedPath& labels : NumberedFiles(folder / "label_2", ".txt")) {
+    AddFrame(folder, labels, image_size, &content);
+  }
+  return content;
+}
+
+}  // namespace soslam

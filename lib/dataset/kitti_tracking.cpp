@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_tracking.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+#include "dataset/kitti_label.h"
+#include "dataset/kitti_trajectory.h"
+#include "dataset/match_boxes.h"
+#include "dataset/recordings.h"
+#include "dataset/text_file.h"
+#include "dataset/track_truth.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kIdsPerRecording = 10000;
+constexpr double kFrameInterval = 0.1;  // seconds
+
+// A box of a detector, in one frame of a recording.
+struct FoundBox {
+  std::string place;
+  int frame;
+  ScoredBox box;
+};
+
+std::vector<FoundBox> ReadFoundBoxes(const fs::path& path) {
+  std::vector<FoundBox> boxes;
+  for (const TextLine& line : ReadTextLines(path)) {
+    const auto fields = SplitFields(line.text);
+    if (fields.size() != 6) {
+      throw InputError(fmt::format("{}: has {} fields; expected frame,x1,y1,x2,y2,score",
+                                   line.place, fields.size()));
+    }
+    const auto real = [&](size_t i, const char* name) {
+      return ParseReal(fields[i], line.place, name);
+    };
+    boxes.push_back(
+        {line.place,
+         ParseInteger(fields[0], line.place, "frame"),
+         {{real(1, "x1"), real(2, "y1"), real(3, "x2"), real(4, "y2")}, real(5, "score")}});
+  }
+  return boxes;
+}
+
+// Reads one recording into the content.
+class Recording {
+ public:
+  Recording(const fs::path& folder, const NumberedPath& labels, const KittiOptions& options,
+            DatasetContent* content)
+      : folder_(folder),
+        number_(labels.number),
+        file_(labels.path.filename()),
+        options_(options),
+        content_(content) {
+    calibration_ = ReadKittiCalibration(Read(folder / "calib" / file_));
+    labels_ = ReadKittiTrackingLabels(Read(labels.path));
+    poses_ = ReadKittiTrajectory(Read(folder / options.poses / file_));
+    const double scale =
+        RecordingValues("translation_scale", options.translation_scale).PositiveOf(number_);
+    for (Rigid3d& pose : poses_) pose.translation *= scale;
+    CheckIds();
+  }
+
+  void Add() {
+    AddFrames();
+    AddObjects();
+    if (options_.detections == "labels") {
+      for (const KittiLabel& label : labels_) AddRow(label, label.box, 1.0);
+    } else {
+      AddFoundBoxes();
+    }
+  }
+
+ private:
+  fs::path Read(const fs::path& path) {
+    content_->files.push_back(RequiredFile(path));
+    return path;
+  }
+
+  int Id(int number_in_recording) const { return number_ * kIdsPerRecording + number_in_recording; }
+
+  void CheckIds() const {
+    const int frames = static_cast<int>(poses_.size());
+    for (const KittiLabel& label : labels_) {
+      if (label.frame < 0 || label.frame >= frames) {
+        throw InputError(fmt::format("{}: frame is {}; expected 0 to {}, as there are {} poses",
+                                     label.place, label.frame, frames - 1, frames));
+      }
+      if (label.track < 0 || label.track >= kIdsPerRecording) {
+        throw InputError(fmt::format("{}: track is {}; expected 0 to {}", label.place, label.track,
+                                     kIdsPerRecording - 1));
+      }
+    }
+    if (frames > kIdsPerRecording || number_ < 0 || number_ >= kIdsPerRecording) {
+      throw InputError(fmt::format("{}: has {} frames; expected recordings and frames below {}",
+                                   file_.string(), frames, kIdsPerRecording));
+    }
+  }
+
+  void AddFrames() {
+    const fs::path images = fs::path("image_02") / file_.stem();
+    std::vector<Frame> frames(poses_.size());
+    std::optional<fs::path> any_image;
+    for (size_t i = 0; i < frames.size(); ++i) {
+      Frame& frame = frames[i];
+      frame.id = Id(static_cast<int>(i));
+      frame.timestamp = kFrameInterval * static_cast<double>(i);
+      frame.world_from_camera = poses_[i];
+      frame.segment = number_;
+      const fs::path image = images / fmt::format("{:06d}.png", i);
+      if (!fs::exists(folder_ / image)) continue;
+      frame.image = image.string();
+      if (!any_image) any_image = folder_ / image;
+    }
+    camera_ = WithImageSize(calibration_.camera, any_image,
+                            RecordingValues("image_size", options_.image_size), number_);
+    if (content_->frames.empty()) content_->camera = camera_;
+    for (Frame& frame : frames) {
+      if (camera_ != content_->camera) frame.camera = camera_;
+      content_->frames.push_back({std::move(frame), true});
+    }
+  }
+
+  void AddObjects() {
+    std::map<int, std::vector<const KittiLabel*>> tracks;
+    for (const KittiLabel& label : labels_) tracks[label.track].push_back(&label);
+    for (auto& [track, labels] : tracks) {
+      std::stable_sort(labels.begin(), labels.end(), [](const KittiLabel* a, const KittiLabel* b) {
+        return a->frame < b->frame;
+      });
+      std::vector<LabelledView> views;
+      for (const KittiLabel* label : labels) {
+        if (label->type != labels.front()->type) {
+          throw InputError(fmt::format("{}: type of track {} is '{}'; expected '{}', as before",
+                                       label->place, track, label->type, labels.front()->type));
+        }
+        views.push_back(
+            {poses_[static_cast<size_t>(label->frame)], LandmarkInCamera(*label, calibration_)});
+      }
+      const TrackTruth truth = SummariseTrack(views, options_);
+      Object object;
+      object.id = Id(track);
+      object.label = LabelOfType(labels.front()->type);
+      object.plane_index = static_cast<int>(content_->planes.size());
+      object.ground_truth.emplace().landmark_in_world = truth.landmark_in_world;
+      object.is_static = truth.is_static;
+      content_->planes.push_back({object.id, truth.plane_in_world});
+      content_->objects.push_back(object);
+    }
+  }
+
+  void AddRow(const KittiLabel& label, const Box& box, double score) {
+    DetectionRow row = RowOfLabel(label, box, score, calibration_, camera_);
+    row.frame_id = Id(label.frame);
+    row.object_id = Id(label.track);
+    content_->rows.push_back(std::move(row));
+  }
+
+  // A detector has a folder for each type of object that it finds.
+  void AddFoundBoxes() {
+    std::vector<fs::path> types;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder_ / options_.detections, error)) {
+      if (entry.is_directory()) types.push_back(entry.path());
+    }
+    if (types.empty()) {
+      throw InputError(fmt::format("{}: has no folders; expected one for each type of object",
+                                   (folder_ / options_.detections).string()));
+    }
+    std::sort(types.begin(), types.end());
+    for (const fs::path& type : types) AddFoundBoxes(type);
+  }
+
+  void AddFoundBoxes(const fs::path& folder_of_type) {
+    const std::string type = folder_of_type.filename().string();
+    std::map<int, std::vector<FoundBox>> found_by_frame;
+    for (FoundBox& found : ReadFoundBoxes(Read(folder_of_type / file_))) {
+      found_by_frame[found.frame].push_back(std::move(found));
+    }
+    std::map<int, std::vector<const KittiLabel*>> labels_by_frame;
+    for (const KittiLabel& label : labels_) {
+      if (label.type == type) labels_by_frame[label.frame].push_back(&label);
+    }
+    for (const auto& [frame, found] : found_by_frame) AddMatches(found, labels_by_frame[frame]);
+  }
+
+  void AddMatches(const std::vector<FoundBox>& found,
+                  const std::vector<const KittiLabel*>& labels) {
+    std::vector<ScoredBox> boxes;
+    for (const FoundBox& box : found) boxes.push_back(box.box);
+    std::vector<Box> given;
+    for (const KittiLabel* label : labels) given.push_back(label->box);
+    const auto matches = MatchBoxes(boxes, given, options_.match_min_iou);
+    for (size_t i = 0; i < matches.size(); ++i) {
+      if (matches[i]) {
+        AddRow(*labels[*matches[i]], boxes[i].box, boxes[i].score);
+      } else {
+        ++content_->rejected[RejectReasonName(RejectReason::kMatchesNoLabel)];
+      }
+    }
+  }
+
+  fs::path folder_;
+  int number_;
+  fs::path file_;  // SSSS.txt
+  const KittiOptions& options_;
+  DatasetContent* content_;
+  KittiCalibration calibration_;
+  Camera camera_;
+  std::vector<KittiLabel> labels_;
+  std::vector<Rigid3d> poses_;
+};
+
+// Those of the option `sequences`.
+std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::string& sequences) {
+  const std::vector<NumberedPath> all = NumberedFiles(labels, ".txt");
+  const auto ranges = ParseRecordings("sequences", sequences);
+  if (ranges.empty()) return all;
+  std::vector<NumberedPath> chosen;
+  for (const RecordingRange& range : ranges) {
+    const auto before = chosen.size();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
+                 [&](const NumberedPath& file) { return range.Contains(file.number); });
+    if (chosen.size() == before) {
+      throw SettingsError(fmt::format("sequences: {:04d} to {:04d}: no such recording in {}",
+                                      range.first, range.last, labels.string()));
+    }
+  }
+  const auto by_number = [](const auto& a, const auto& b) { return a.number < b.number; };
+  std::stable_sort(chosen.begin(), chosen.end(), by_number);
+  chosen.erase(std::unique(chosen.begin(), chosen.end(),
+                           [](const auto& a, const auto& b) { return a.path == b.path; }),
+               chosen.end());
+  return chosen;
+}
+
+}  // namespace
+
+DatasetContent ReadKittiTracking(const fs::path& folder, const ImportOptions& options) {
+  DatasetContent content;
+  for (const NumberedPath& labels :
+       ChooseRecordings(folder / "label_02", options.kitti.sequences)) {
+    Recording(folder, labels, options.kitti, &content).Add();
+  }
+  return content;
+}
+
+}  // namespace soslam

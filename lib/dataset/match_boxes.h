@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/box.h"
+
+namespace soslam {
+
+// Intersection over union, in [0, 1].
+double OverlapOfBoxes(const Box& one, const Box& other);
+
+struct ScoredBox {
+  Box box;
+  double score = 0.0;
+};
+
+// For each found box the index of the given one that it is, if any: one to one, the found box with
+// the highest score chooses first, and takes the free given box with the largest overlap of at
+// least `min_overlap`.
+std::vector<std::optional<size_t>> MatchBoxes(const std::vector<ScoredBox>& found,
+                                              const std::vector<Box>& given, double min_overlap);
+
+}  // namespace soslam

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/yaw_prior.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "initialisation/multi_view.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+// Of a yaw that is exact, but for the labels' own error.
+constexpr double kTrueYawSigma = 0.1 * kDegrees;
+constexpr size_t kMinViews = 2;
+
+// In the world. None when the lower edge is not the object's own, or ends above the horizon.
+std::optional<Eigen::Vector3d> Foot(const Sequence& sequence, const Detection& detection) {
+  if (detection.is_bound[3]) return std::nullopt;
+  const Box& box = detection.box;
+  const Plane& plane = detection.plane_in_camera;
+  const Eigen::Vector3d ray = sequence.CameraOf(detection).Ray({box.Centre().x(), box.y_max});
+  const double depth = -plane.offset / plane.normal.dot(ray);
+  if (!(depth > 0.0) || !std::isfinite(depth)) return std::nullopt;
+  return sequence.FrameOf(detection).world_from_camera * Eigen::Vector3d(depth * ray);
+}
+
+// The way from the first to the last of some detections' feet, along the straight line through all.
+std::optional<Eigen::Vector3d> Motion(const Sequence& sequence,
+                                      const std::vector<int>& detections) {
+  std::vector<double> times;
+  std::vector<Eigen::Vector3d> feet;
+  double mean_time = 0.0;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const auto foot = Foot(sequence, detection);
+    if (!foot) continue;
+    feet.push_back(*foot);
+    times.push_back(sequence.FrameOf(detection).timestamp);
+    mean_time += times.back();
+  }
+  if (feet.size() < kMinViews) return std::nullopt;
+  mean_time /= static_cast<double>(times.size());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  for (size_t i = 0; i < feet.size(); ++i) {
+    sum += (times[i] - mean_time) * feet[i];
+    squares += std::pow(times[i] - mean_time, 2);
+  }
+  if (!(squares > 0.0)) return std::nullopt;
+  return sum / squares * (times.back() - times.front());
+}
+
+YawPrior AlongDirection(const Sequence& sequence, const Detection& detection,
+                        const Eigen::Vector3d& direction_in_world, double sigma) {
+  const Eigen::Vector3d direction =
+      sequence.FrameOf(detection).world_from_camera.rotation.conjugate() * direction_in_world;
+  return {Yaw(detection.plane_in_camera.normal,
+              Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction)),
+          sigma};
+}
+
+class MotionPriors {
+ public:
+  MotionPriors(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& shapes,
+               const YawPriorOptions& options, const StandingOptions& standing)
+      : sequence_(sequence), shapes_(shapes), options_(options), standing_(standing) {}
+
+  // `around`: a detection and those of the same object in the frames before and after.
+  std::optional<YawPrior> Find(int index, const std::vector<int>& around) const {
+    const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
+    const auto motion = Motion(sequence_, around);
+    if (motion && motion->norm() >= options_.motion_min_m) {
+      return AlongDirection(sequence_, detection, *motion,
+                            std::atan2(options_.motion_foot_sigma_m, motion->norm()));
+    }
+    if (around.size() < kMinViews) return std::nullopt;
+    const MultiViewObservation views = MakeMultiViewObservation(
+        sequence_, around, shapes_[static_cast<size_t>(detection.object_index)],
+        standing_.detection_sigma_fraction, standing_.view_correlation_rad);
+    const auto optima = SweepViews(views, standing_.yaw_step_rad);
+    if (optima.empty()) return std::nullopt;
+    const Eigen::Quaterniond& rotation = optima.front().landmark.frame_from_object.rotation;
+    return AlongDirection(sequence_, detection, rotation * Eigen::Vector3d::UnitX(),
+                          options_.standing_sigma_deg * kDegrees);
+  }
+
+ private:
+  const Sequence& sequence_;
+  const std::vector<std::optional<ShapePrior>>& shapes_;
+  const YawPriorOptions& options_;
+  const StandingOptions& standing_;
+};
+
+std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& detection) {
+  const auto truth = TrueLandmarkInCamera(sequence, detection);
+  if (!truth) return std::nullopt;
+  return YawPrior{Yaw(detection.plane_in_camera.normal, truth->frame_from_object.rotation),
+                  kTrueYawSigma};
+}
+
+// For each detection, itself and those of its object at most `frames` before or after.
+std::vector<std::vector<int>> Neighbours(const Sequence& sequence, int frames) {
+  std::vector<std::vector<int>> neighbours(sequence.detections.size());
+  const auto frame_of = [&](int index) {
+    return sequence.detections[static_cast<size_t>(index)].frame_index;
+  };
+  for (const std::vector<int>& track : DetectionsByObject(sequence)) {
+    size_t first = 0;
+    for (const int index : track) {
+      while (frame_of(track[first]) < frame_of(index) - frames) ++first;
+      for (size_t i = first; i < track.size() && frame_of(track[i]) <= frame_of(index) + frames;
+           ++i) {
+        neighbours[static_cast<size_t>(index)].push_back(track[i]);
+      }
+    }
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
+                                               const std::vector<std::optional<ShapePrior>>& shapes,
+                                               const YawPriorOptions& options,
+                                               const StandingOptions& standing, int threads) {
+  std::vector<std::optional<YawPrior>> priors(sequence.detections.size());
+  if (options.source == YawPriorSource::kGroundTruth) {
+    for (size_t i = 0; i < priors.size(); ++i) {
+      priors[i] = TruePrior(sequence, sequence.detections[i]);
+    }
+  }
+  if (options.source == YawPriorSource::kMotion) {
+    const MotionPriors motion(sequence, shapes, options, standing);
+    const auto neighbours = Neighbours(sequence, options.motion_frames);
+    ParallelFor(static_cast<int>(priors.size()), threads, [&](int i) {
+      priors[static_cast<size_t>(i)] = motion.Find(i, neighbours[static_cast<size_t>(i)]);
+    });
+  }
+  return priors;
+}
+
+}  // namespace soslam

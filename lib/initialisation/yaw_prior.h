@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "base/options.h"
+#include "initialisation/semantic_table.h"
+#include "initialisation/yaw_term.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+enum class YawPriorSource {
+  kNone,
+  kMotion,       // the object's other detections shortly before and after
+  kGroundTruth,  // for ablations: separates errors of yaw from all others
+};
+inline constexpr std::array kYawPriorSourceNames = {"none", "motion", "groundtruth"};
+
+struct YawPriorOptions {
+  YawPriorSource source = YawPriorSource::kNone;
+  int motion_frames = 5;
+  double motion_min_m = 2.0;
+  double motion_foot_sigma_m = 0.3;
+  double standing_sigma_deg = 5.0;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Choice("yaw_prior", &source, kYawPriorSourceNames,
+                 "yaw_sweep: what is known of the yaw besides the box: nothing; what the object's "
+                 "boxes in the frames before and after say: along its motion, or, when it stands, "
+                 "what suits them all; or, for ablations, the truth");
+    visit.Integer("motion_frames", &motion_frames, {1, 100000},
+                  "yaw_prior motion: how many frames before and as many after");
+    visit.Real("motion_min_m", &motion_min_m, {0.0, 1e6},
+               "yaw_prior motion: what moves less over these frames stands (m)");
+    visit.Real("motion_foot_sigma_m", &motion_foot_sigma_m, {1e-6, 1e6},
+               "yaw_prior motion: standard deviation, across the motion, of how far the middle of "
+               "a box's lower edge seems to move on the support plane (m)");
+    visit.Real("standing_sigma_deg", &standing_sigma_deg, {1e-3, 180.0},
+               "yaw_prior motion: standard deviation of the yaw of what stands");
+  }
+};
+
+// How the boxes of a standing object are weighed; as for multi-view landmarks.
+struct StandingOptions {
+  double detection_sigma_fraction = 0.02;
+  double view_correlation_rad = 0.0;
+  double yaw_step_rad = 0.05;
+};
+
+// The prior of each detection, from the frames' estimated poses; none where the source has nothing
+// to say. kMotion: the straight line through the feet of the object's boxes, where the rays through
+// the middles of their lower edges meet their support planes; when it is shorter than motion_min_m,
+// the best yaw of SweepViews.
+std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
+                                               const std::vector<std::optional<ShapePrior>>& shapes,
+                                               const YawPriorOptions& options,
+                                               const StandingOptions& standing, int threads);
+
+}  // namespace soslam

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_label.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/kitti_fixture.h"
+#include "support/random.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class KittiLabelTest : public testing::Test {
+ protected:
+  KittiLabel Read(const std::string& columns) {
+    WriteBytes(folder_ / "000000.txt", columns);
+    return ReadKittiObjectLabels(folder_ / "000000.txt").at(0);
+  }
+  KittiCalibration ReadCalibration(const std::string& text = KittiCalibrationText()) {
+    WriteBytes(folder_ / "calib.txt", text);
+    return ReadKittiCalibration(folder_ / "calib.txt");
+  }
+  void ExpectRefused(const std::string& columns, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { Read(columns); }, words);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(KittiLabelTest, CalibrationIsThatOfCamera2) {
+  const KittiCalibration calibration = ReadCalibration();
+  EXPECT_EQ(calibration.camera.fx, kKittiFocal);
+  EXPECT_EQ(calibration.camera.cy, kKittiCy);
+  EXPECT_LT((calibration.camera2_from_camera0 - kCamera2FromCamera0).norm(), 1e-9);
+}
+
+TEST_F(KittiLabelTest, BadCalibrationsAreRefused) {
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { ReadCalibration(text); }, words);
+  };
+  refused("P0: 1 0 0 0 0 1 0 0 0 0 1 0\n", {"calib.txt", "no line P2"});
+  refused("P2: 1 0 0 0 0 1 0 0 0 0 1\n", {"calib.txt:1", "11 numbers", "12"});
+  refused("P2: 1 0 0 0 0 1 0 0 0 0 x 0\n", {"calib.txt:1", "number 11", "x"});
+  refused("P2: 1 0.1 0 0 0 1 0 0 0 0 1 0\n", {"calib.txt:1", "rectified"});
+  refused("P2: -1 0 0 0 0 1 0 0 0 0 1 0\n", {"calib.txt:1", "rectified"});
+}
+
+// The corners of the landmark, projected with the camera, are those of KITTI's own formulas with
+// P2.
+TEST_F(KittiLabelTest, LandmarksProjectAsKittiSays) {
+  const KittiCalibration calibration = ReadCalibration();
+  for (int trial = 0; trial < 50; ++trial) {
+    const KittiBox box{RandomUniform(-8, 8),     RandomUniform(1, 2), RandomUniform(8, 40),
+                       RandomUniform(-3.1, 3.1), RandomUniform(1, 2), RandomUniform(1, 2),
+                       RandomUniform(2, 5)};
+    const Landmark landmark = LandmarkInCamera(Read(box.Columns()), calibration);
+    for (const Eigen::Vector3d& corner : box.Corners()) {
+      const Eigen::Vector2d expected = (KittiP2() * corner.homogeneous()).hnormalized();
+      double nearest = 1e9;
+      for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d in_object(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        const auto pixel = calibration.camera.Project(landmark.frame_from_object *
+                                                      in_object.cwiseProduct(landmark.half_axes));
+        nearest = std::min(nearest, (*pixel - expected).norm());
+      }
+      EXPECT_LT(nearest, 1e-2);  // what six digits of a label leave
+    }
+    EXPECT_EQ(landmark.half_axes, 0.5 * Eigen::Vector3d(box.length, box.width, box.height));
+    const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_LT((up + Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  }
+}
+
+TEST_F(KittiLabelTest, ARowStandsOnItsOwnBottomFace) {
+  const KittiCalibration calibration = ReadCalibration();
+  Camera camera = calibration.camera;
+  camera.width = 1242;
+  camera.height = 375;
+  const KittiBox box{1.0, 1.65, 12.0, 0.4};
+  const KittiLabel label = Read(box.Columns("Cyclist", "0.25", 2));
+  const DetectionRow row = RowOfLabel(label, label.box, 0.5, calibration, camera);
+  EXPECT_EQ(row.label, "cyclist");
+  EXPECT_EQ(row.truncation, 0.25);
+  EXPECT_EQ(row.occlusion, 2);
+  EXPECT_EQ(row.score, 0.5);
+  const Eigen::Vector3d bottom = Eigen::Vector3d(box.x, box.y, box.z) + kCamera2FromCamera0;
+  EXPECT_NEAR(row.plane_in_camera->SignedDistance(bottom), 0.0, 1e-12);
+  EXPECT_NEAR(row.plane_in_camera->SignedDistance(row.true_landmark_in_camera->Centre()),
+              0.5 * box.height, 1e-12);
+}
+
+TEST_F(KittiLabelTest, ABoxIsCutToTheImage) {
+  Camera camera = ReadCalibration().camera;
+  camera.width = 1224;
+  camera.height = 370;
+  const KittiLabel label = Read(KittiBox().Columns());
+  const DetectionRow row = RowOfLabel(label, {-3.0, 100.0, 1241.0, 374.0}, 1.0, {}, camera);
+  EXPECT_EQ(row.box.x_min, -0.5);
+  EXPECT_EQ(row.box.y_min, 100.0);
+  EXPECT_EQ(row.box.x_max, 1223.5);
+  EXPECT_EQ(row.box.y_max, 369.5);
+}
+
+TEST_F(KittiLabelTest, RegionsWithoutLabelsAreLeftOut) {
+  WriteBytes(folder_ / "1.txt", kKittiDontCare + KittiBox().Columns("Van"));
+  const auto labels = ReadKittiObjectLabels(folder_ / "1.txt");
+  ASSERT_EQ(labels.size(), 1u);
+  EXPECT_EQ(labels[0].type, "Van");
+  EXPECT_EQ(labels[0].track, 0);
+}
+
+TEST_F(KittiLabelTest, BadLabelsAreRefused) {
+  ExpectRefused("Car 0 0\n", {"000000.txt:1", "3 values", "rotation_y"});
+  ExpectRefused("Car 0 0.5 0 1 2 3 4 1 1 1 1 1 1 0\n", {"occluded", "0.5", "integer"});
+  ExpectRefused("Car 0 0 0 1 2 nan 4 1 1 1 1 1 1 0\n", {"right", "nan"});
+  ExpectRefused("Car 0 0 0 1 2 3 4 1 0 1 1 1 1 0\n", {"size is 1 0 1", "above 0"});
+  ExpectRefused("0 0 Car 0 0 0 1 2 3 4 1 1 1 1 1 1 0\n", {"17 values"});
+}
+
+TEST_F(KittiLabelTest, FilesAreNumbered) {
+  WriteBytes(folder_ / "0010.txt", "");
+  WriteBytes(folder_ / "0002.txt", "");
+  WriteBytes(folder_ / "notes.md", "");
+  const auto files = NumberedFiles(folder_.path(), ".txt");
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0].number, 2);
+  EXPECT_EQ(files[1].path.filename(), "0010.txt");
+  WriteBytes(folder_ / "readme.txt", "");
+  ExpectError<InputError>([&] { NumberedFiles(folder_.path(), ".txt"); }, {"readme"});
+  ExpectError<InputError>([&] { NumberedFiles(folder_ / "absent", ".txt"); }, {"absent", ".txt"});
+}
+
+TEST_F(KittiLabelTest, BadImageSizesAreRefused) {
+  for (const char* size : {"1242", "1242x", "x375", "0x375", "1242x-5", "widexhigh"}) {
+    ExpectError<SettingsError>(
+        [&] { WithImageSize({}, std::nullopt, RecordingValues("image_size", size), 0); },
+        {"image_size", size});
+  }
+  const Camera camera =
+      WithImageSize({}, std::nullopt, RecordingValues("image_size", "1242x375"), 0);
+  EXPECT_EQ(camera.width, 1242);
+  EXPECT_EQ(camera.height, 375);
+}
+
+}  // namespace
+}  // namespace soslam

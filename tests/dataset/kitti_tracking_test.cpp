@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_tracking.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/error.h"
+#include "dataset/import.h"
+#include "support/expect_error.h"
+#include "support/kitti_fixture.h"
+#include "support/real_data.h"
+
+namespace soslam {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+class KittiTrackingTest : public testing::Test {
+ protected:
+  KittiTrackingTest() {
+    options.format = DatasetFormat::kKittiTracking;
+    options.border_px = 0.0;
+    options.min_observations = 1;
+    options.kitti.translation_scale = "0.5";
+    options.kitti.static_min_views = KittiTrackingFixture::kFrames;
+    options.kitti.static_radius_m = 0.1;
+  }
+
+  Sequence Import() {
+    fixture.Write(folder);
+    return ImportDataset(folder, options);
+  }
+  void ExpectRefused(const std::string& file, const std::string& text,
+                     const std::vector<std::string>& words) {
+    const std::string before = fixture.files[file];
+    fixture.files[file] = text;
+    ExpectError<InputError>([&] { Import(); }, words);
+    fixture.files[file] = before;
+  }
+  void WriteImage(const std::string& name, int width, int height) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    cv::imwrite((folder / name).string(), cv::Mat(height, width, CV_8UC1, cv::Scalar(90)));
+  }
+
+  KittiTrackingFixture fixture;
+  ImportOptions options;
+  std::filesystem::path folder = FreshTestFolder() / "kitti";
+};
+
+TEST_F(KittiTrackingTest, EachRecordingIsASegment) {
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.name, "kitti");
+  EXPECT_EQ(sequence.camera.width, 1242);
+  EXPECT_EQ(sequence.camera.fx, kKittiFocal);
+  ASSERT_EQ(sequence.frames.size(), 8u);
+  EXPECT_EQ(sequence.frames[2].id, 30002);
+  EXPECT_EQ(sequence.frames[2].segment, 3);
+  EXPECT_EQ(sequence.frames[2].timestamp, 0.2);
+  EXPECT_EQ(sequence.frames[2].world_from_camera.translation, Eigen::Vector3d(0, 0, 2));
+  EXPECT_FALSE(sequence.frames[2].true_world_from_camera);
+  EXPECT_TRUE(sequence.frames[2].image.empty());
+  EXPECT_EQ(sequence.frames[4].id, 70000);
+  EXPECT_EQ(sequence.frames[4].segment, 7);
+  EXPECT_FALSE(sequence.frames[4].camera);
+}
+
+TEST_F(KittiTrackingTest, ObjectsKnowWhetherTheyStand) {
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.objects.size(), 4u);
+  const std::vector<std::pair<int, std::string>> expected = {
+      {30000, "car"}, {30001, "car"}, {30002, "pedestrian"}, {70000, "van"}};
+  const std::vector<bool> is_static = {true, false, false, true};
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(sequence.objects[i].id, expected[i].first);
+    EXPECT_EQ(sequence.objects[i].label, expected[i].second);
+    EXPECT_EQ(sequence.objects[i].is_static, is_static[i]);
+    EXPECT_EQ(sequence.planes[static_cast<size_t>(sequence.objects[i].plane_index)].id,
+              expected[i].first);
+  }
+  // The parked car's bottom face: 1.6 m below camera 0, which is 0.02 m above camera 2.
+  const Landmark& truth = sequence.objects[0].ground_truth->landmark_in_world;
+  EXPECT_LT((truth.Centre() - Eigen::Vector3d(3.1, 1.6 - 0.02 - 0.75, 14.01)).norm(), 1e-9);
+  const Plane& plane = sequence.planes[0].plane_in_world;
+  EXPECT_NEAR(plane.SignedDistance(Eigen::Vector3d(5, 1.58, 5)), 0.0, 1e-9);
+  EXPECT_GT(plane.SignedDistance(truth.Centre()), 0.0);
+}
+
+TEST_F(KittiTrackingTest, DetectionsAreTheLabelsWithTheTruthOfTheirFrame) {
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.detections.size(), 13u);
+  EXPECT_TRUE(sequence.rejected_detections.empty());
+  const Detection& driving = sequence.detections[4];  // after three objects of frame 0
+  EXPECT_EQ(sequence.FrameOf(driving).id, 30001);
+  EXPECT_EQ(sequence.ObjectOf(driving).id, 30001);
+  const KittiBox box = KittiTrackingFixture::Driving(1);
+  EXPECT_NEAR(driving.box.x_min, box.Image().x_min, 1e-3);
+  EXPECT_LT((driving.true_landmark_in_camera->Centre() -
+             (Eigen::Vector3d(box.x, box.y - 0.75, box.z) + kCamera2FromCamera0))
+                .norm(),
+            1e-9);
+  EXPECT_NEAR(driving.plane_in_camera.offset, 1.7 - 0.02, 1e-9);
+}
+
+TEST_F(KittiTrackingTest, SomeRecordingsOnly) {
+  options.kitti.sequences = "0005-0009";
+  EXPECT_EQ(Import().frames.size(), 4u);
+  options.kitti.sequences = "0003 0003-0007";
+  EXPECT_EQ(Import().frames.size(), 8u);
+  options.kitti.sequences = "0004";
+  ExpectError<SettingsError>([&] { Import(); }, {"sequences", "0004"});
+}
+
+TEST_F(KittiTrackingTest, FiltersAreCountedByReason) {
+  options.labels = "car, van";
+  options.max_occlusion = 0;
+  EXPECT_THAT(Import().rejected_detections, ElementsAre(Pair("other_label", 1)));
+  options.labels = "";
+  EXPECT_THAT(Import().rejected_detections, ElementsAre(Pair("occluded", 1)));
+  // What is parked comes nearer: 84, 91, 100 and 111 px high.
+  options.min_box_height_px = 95.0;
+  EXPECT_EQ(Import().rejected_detections.at("low_box"), 4);
+  options.frame_stride = 2;
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.frames.size(), 4u);
+  EXPECT_EQ(sequence.frames[3].id, 70002);
+  EXPECT_EQ(sequence.rejected_detections.at("frame_not_used"), 6);
+}
+
+TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
+  const Box parked = KittiTrackingFixture::Parked(2).Image();
+  const auto row = [](int frame, double x1, double y1, double x2, double y2, double score) {
+    return fmt::format("{},{},{},{},{},{}\r\n", frame, x1, y1, x2, y2, score);
+  };
+  fixture.files["rrc/Car/0003.txt"] =
+      row(2, parked.x_min + 1, parked.y_min, parked.x_max, parked.y_max + 2, 0.75) +
+      row(2, parked.x_min - 9, parked.y_min, parked.x_max, parked.y_max, 0.5) +  // the same again
+      row(1, 10, 10, 60, 60, 0.9);                                               // nothing there
+  // Where the van is, and no car.
+  fixture.files["rrc/Car/0007.txt"] =
+      row(2, parked.x_min, parked.y_min, parked.x_max, parked.y_max, 1);
+  options.kitti.detections = "rrc";
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.detections.size(), 1u);
+  const Detection& detection = sequence.detections[0];
+  EXPECT_EQ(sequence.FrameOf(detection).id, 30002);
+  EXPECT_EQ(sequence.ObjectOf(detection).id, 30000);
+  EXPECT_EQ(detection.score, 0.75);
+  EXPECT_NEAR(detection.box.y_max, parked.y_max + 2, 1e-3);
+  EXPECT_NEAR(detection.true_landmark_in_camera->Centre().z(), 12.01, 1e-9);
+  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("matches_no_label", 3)));
+
+  fixture.files["rrc/Car/0007.txt"] = "0,1,2,3\n";
+  ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt:1", "4 fields"});
+  std::filesystem::remove_all(folder / "rrc/Car");
+  fixture.files.erase("rrc/Car/0007.txt");
+  ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt", "missing"});
+  options.kitti.detections = "yolo";
+  ExpectError<InputError>([&] { Import(); }, {"yolo", "folder"});
+}
+
+TEST_F(KittiTrackingTest, ImagesAreNamedWhereTheyAre) {
+  WriteImage("image_02/0007/000001.png", 1200, 360);
+  WriteImage("image_02/0007/000003.png", 1200, 360);
+  const Sequence all = Import();
+  EXPECT_EQ(all.frames.size(), 8u);
+  EXPECT_EQ(all.frames[5].image, "image_02/0007/000001.png");
+  EXPECT_EQ(all.frames[6].image, "");
+  EXPECT_EQ(all.camera.width, 1242);
+  EXPECT_EQ(all.CameraOf(all.frames[5]).width, 1200);
+  EXPECT_EQ(all.CameraOf(all.frames[6]).height, 360);
+  EXPECT_EQ(all.CameraOf(all.frames[6]).fx, kKittiFocal);
+  options.images_only = true;
+  const Sequence some = Import();
+  EXPECT_EQ(some.frames.size(), 2u);
+  EXPECT_EQ(some.detections.size(), 2u);
+  EXPECT_EQ(some.rejected_detections.at("frame_without_image"), 11);
+}
+
+TEST_F(KittiTrackingTest, BadInputIsRefused) {
+  ExpectRefused("label_02/0003.txt", "4 0 " + KittiBox().Columns(),
+                {"label_02/0003.txt:1", "frame is 4", "0 to 3"});
+  ExpectRefused("label_02/0003.txt", "0 -1 " + KittiBox().Columns(), {"track is -1"});
+  ExpectRefused("label_02/0003.txt", "0 10000 " + KittiBox().Columns(), {"track is 10000"});
+  ExpectRefused("label_02/0003.txt",
+                "0 5 " + KittiBox().Columns() + "1 5 " + KittiBox().Columns("Van"),
+                {"label_02/0003.txt:2", "track 5", "Van", "Car"});
+  ExpectRefused("label_02/0003.txt", KittiBox().Columns(), {"15 values", "frame track"});
+  ExpectRefused("poses/0007.txt", "", {"poses/0007.txt", "no pose"});
+  ExpectRefused("calib/0007.txt", "", {"calib/0007.txt", "P2"});
+  options.kitti.translation_scale = "0003:1";
+  ExpectError<SettingsError>([&] { Import(); }, {"translation_scale", "0007"});
+  options.kitti.translation_scale = "1";
+  options.kitti.poses = "no_poses";
+  ExpectError<InputError>([&] { Import(); }, {"no_poses/0003.txt", "missing"});
+  ExpectError<InputError>([&] { ImportDataset(folder / "calib", options); }, {"label_02"});
+}
+
+// The publisher's own files, where they are.
+TEST(KittiTrackingDataTest, ReadsTheRealFolder) {
+  const std::filesystem::path data = RealDataset("kitti_tracking");
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not there";
+  ImportOptions options;
+  options.format = DatasetFormat::kKittiTracking;
+  options.border_px = 0.0;
+  options.min_observations = 1;
+  options.labels = "car";
+  options.max_truncation = 0.0;
+  options.max_occlusion = 0;
+  options.kitti.poses = "poses_orbslam3_stereo";
+  options.kitti.translation_scale = "1";  // as its README counts parked cars
+  const Sequence sequence = ImportDataset(data, options);
+  // Numbers of its README.
+  EXPECT_EQ(sequence.frames.size(), 4937u);
+  EXPECT_EQ(sequence.objects.size(), 574u);
+  EXPECT_EQ(sequence.detections.size(), 7459u);
+  const auto parked =
+      std::count_if(sequence.objects.begin(), sequence.objects.end(),
+                    [](const Object& object) { return object.label == "car" && object.is_static; });
+  EXPECT_NEAR(static_cast<double>(parked), 263, 5);
+}
+
+}  // namespace
+}  // namespace soslam
