@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// A trajectory in the format of KITTI's odometry benchmark: one line per frame, the upper 3 x 4 of
+// world_from_camera row by row, metres. The k-th pose is that of frame k, from 0. Files round
+// matrices, so each rotation is replaced by the one nearest to it. Throws InputError naming the
+// line when a matrix is no rotation within what rounding explains; also when there is no pose.
+std::vector<Rigid3d> ReadKittiPoses(const std::filesystem::path& path);
+
+}  // namespace soslam
