@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_poses.h"
+#include "dataset/kitti_trajectory.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ Rigid3d ParsePose(const TextLine& line) {
 
 }  // namespace
 
-std::vector<Rigid3d> ReadKittiPoses(const std::filesystem::path& path) {
+std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path) {
   std::vector<Rigid3d> poses;
   for (const TextLine& line : ReadTextLines(path)) poses.push_back(ParsePose(line));
   if (poses.empty()) throw InputError(path.string() + ": has no pose");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_poses.h"
+#include "dataset/kitti_trajectory.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,17 +12,17 @@
 namespace soslam {
 namespace {
 
-class KittiPosesTest : public testing::Test {
+class KittiTrajectoryTest : public testing::Test {
  protected:
   std::vector<Rigid3d> Read(const std::string& text) {
     WriteBytes(folder_ / "poses.txt", text);
-    return ReadKittiPoses(folder_ / "poses.txt");
+    return ReadKittiTrajectory(folder_ / "poses.txt");
   }
   TemporaryFolder folder_;
 };
 
 // A camera at (1, 2, 3) that looks along the world's x axis: z goes to x, x to -y, y to -z.
-TEST_F(KittiPosesTest, RowsOfWorldFromCamera) {
+TEST_F(KittiTrajectoryTest, RowsOfWorldFromCamera) {
   const auto poses = Read("1 0 0 0 0 1 0 0 0 0 1 0\n0 0 1 1 -1 0 0 2 0 -1 0 3\r\n");
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_TRUE(poses[0].Matrix().isIdentity(1e-12));
@@ -30,7 +30,7 @@ TEST_F(KittiPosesTest, RowsOfWorldFromCamera) {
   EXPECT_TRUE((poses[1] * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
 }
 
-TEST_F(KittiPosesTest, RoundedMatricesBecomeRotations) {
+TEST_F(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
   for (int i = 0; i < 50; ++i) {
     const Rigid3d pose = RandomRigid();
     std::string line;
@@ -46,7 +46,7 @@ TEST_F(KittiPosesTest, RoundedMatricesBecomeRotations) {
   }
 }
 
-TEST_F(KittiPosesTest, BadLinesAreNamed) {
+TEST_F(KittiTrajectoryTest, BadLinesAreNamed) {
   const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
       {"1 0 0 0 0 1 0 0 0 0 1", {"has 11 numbers", "12"}},
       {"1 0 0 0 0 1 0 0 0 0 1 0 0", {"has 13 numbers"}},

@@ -12,6 +12,6 @@ namespace soslam {
 // world_from_camera row by row, metres. The k-th pose is that of frame k, from 0. Files round
 // matrices, so each rotation is replaced by the one nearest to it. Throws InputError naming the
 // line when a matrix is no rotation within what rounding explains; also when there is no pose.
-std::vector<Rigid3d> ReadKittiPoses(const std::filesystem::path& path);
+std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path);
 
 }  // namespace soslam
