@@ -4,82 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <utility>
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "dataset/json_entry.h"
 #include "dataset/unit_quaternion.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
-
-// An object of somebody's JSON file, whose fields have yet to be checked.
-class Entry {
- public:
-  // `place` says in error messages where the object stands: "<file>[index]".
-  Entry(const json& fields, std::string place) : fields_(fields), place_(std::move(place)) {
-    if (!fields.is_object()) throw InputError(place_ + ": is not an object");
-  }
-
-  const std::string& place() const { return place_; }
-  bool Has(const char* name) const { return fields_.contains(name); }
-
-  int Integer(const char* name) const {
-    constexpr std::int64_t kMax = std::numeric_limits<int>::max();
-    const json& field = Field(name);
-    if (!field.is_number_integer() || field.get<double>() < -kMax || field.get<double>() > kMax) {
-      Refuse(name, "an integer");
-    }
-    return field.get<int>();
-  }
-  double Real(const char* name) const {
-    const json& field = Field(name);
-    if (!field.is_number()) Refuse(name, "a number");
-    return field.get<double>();
-  }
-  double Positive(const char* name) const {
-    if (!(Real(name) > 0.0)) Refuse(name, "a number above 0");
-    return Real(name);
-  }
-  bool Flag(const char* name, bool default_value) const {
-    if (!Has(name)) return default_value;
-    if (!Field(name).is_boolean()) Refuse(name, "true or false");
-    return Field(name).get<bool>();
-  }
-  std::string Text(const char* name) const {
-    const json& field = Field(name);
-    if (!field.is_string() || field == "") Refuse(name, "a text");
-    return field.get<std::string>();
-  }
-  template <int kSize>
-  Eigen::Matrix<double, kSize, 1> Vector(const char* name) const {
-    const json& field = Field(name);
-    const auto is_number = [](const json& element) { return element.is_number(); };
-    if (!field.is_array() || field.size() != kSize ||
-        !std::all_of(field.begin(), field.end(), is_number)) {
-      Refuse(name, fmt::format("{} numbers", kSize));
-    }
-    return Eigen::Matrix<double, kSize, 1>(field.get<std::vector<double>>().data());
-  }
-
-  [[noreturn]] void Refuse(const char* name, const std::string& expected) const {
-    throw InputError(
-        fmt::format("{}: {} is {}; expected {}", place_, name, Field(name).dump(), expected));
-  }
-
- private:
-  const json& Field(const char* name) const {
-    const auto found = fields_.find(name);
-    if (found == fields_.end()) throw InputError(fmt::format("{}: {} is missing", place_, name));
-    return *found;
-  }
-
-  const json& fields_;
-  std::string place_;
-};
+using Entry = JsonEntry;
 
 // Parses each entry of a list; sorted by id, which may not come twice.
 template <typename Item>
@@ -141,6 +76,14 @@ Camera ReadCamera(const std::filesystem::path& path) {
   if (camera.width <= 0) entry.Refuse("width", "pixels above 0");
   if (camera.height <= 0) entry.Refuse("height", "pixels above 0");
   return camera;
+}
+
+std::optional<Distortion> ReadDistortion(const std::filesystem::path& path) {
+  const json fields = ParseJsonFile(path);
+  const Entry entry(fields, path.string());
+  if (!entry.Has("distortion")) return std::nullopt;
+  const auto k = entry.Vector<5>("distortion");
+  return Distortion{k[0], k[1], k[2], k[3], k[4]};
 }
 
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
+#include "geometry/distortion.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -16,6 +17,10 @@ namespace soslam {
 
 // {"model": "pinhole" (optional), "width", "height", "fx", "fy", "cx", "cy"}, pixels.
 Camera ReadCamera(const std::filesystem::path& path);
+
+// The "distortion" of the same file, [k1, k2, p1, p2, k3]; none when it is absent: the images are
+// those of a pinhole camera.
+std::optional<Distortion> ReadDistortion(const std::filesystem::path& path);
 
 // [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal pointing
 // away from the support, of any length. Sorted by id; at least one.

@@ -11,26 +11,36 @@
 namespace soslam {
 namespace {
 
-// Files round rotations; what is further from orthonormal is not one.
-constexpr double kRotationTolerance = 1e-3;
+Eigen::Quaterniond NearestRotation(const Eigen::Matrix3d& matrix, const std::string& place) {
+  constexpr double kTolerance = 1e-3;  // of each entry of R R^T: three digits were kept at least
+  const double deviation =
+      (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= kTolerance)) {
+    throw InputError(
+        fmt::format("{}: rotation is not orthonormal, R R^T is off by {:.3g}; expected at most {}",
+                    place, deviation, kTolerance));
+  }
+  if (matrix.determinant() < 0.0) {
+    throw InputError(place +
+                     ": rotation has determinant -1; expected 1, a matrix without mirroring");
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose()))
+      .normalized();
+}
 
 Rigid3d ParsePose(const TextLine& line) {
+  constexpr size_t kNumbers = 12;
   const auto words = SplitWords(line.text);
-  if (words.size() != 12) {
-    throw InputError(fmt::format("{}: has {} numbers; expected 12, a 3 x 4 matrix by rows",
-                                 line.place, words.size()));
+  if (words.size() != kNumbers) {
+    throw InputError(fmt::format("{}: has {} numbers; expected {}, the upper 3 x 4 of a pose",
+                                 line.place, words.size(), kNumbers));
   }
-  Eigen::Matrix<double, 3, 4> matrix;
-  for (int i = 0; i < 12; ++i) {
-    matrix(i / 4, i % 4) =
-        ParseReal(words[static_cast<size_t>(i)], line.place, fmt::format("number {}", i + 1));
+  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> pose;
+  for (size_t i = 0; i < kNumbers; ++i) {
+    pose.data()[i] = ParseReal(words[i], line.place, fmt::format("number {}", i + 1));
   }
-  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
-  const double error = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm();
-  if (!(error < kRotationTolerance) || rotation.determinant() < 0.0) {
-    throw InputError(line.place + ": the first three columns are not a rotation");
-  }
-  return {Eigen::Quaterniond(rotation).normalized(), matrix.col(3)};
+  return {NearestRotation(pose.leftCols<3>(), line.place), pose.col(3)};
 }
 
 }  // namespace

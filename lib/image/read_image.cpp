@@ -50,21 +50,30 @@ void CheckComplete(std::string_view bytes, const std::filesystem::path& path) {
   }
 }
 
-}  // namespace
-
-cv::Mat ReadGreyImage(const std::filesystem::path& path) {
+// `mode` is OpenCV's IMREAD_GRAYSCALE or IMREAD_COLOR.
+cv::Mat ReadImage(const std::filesystem::path& path, int mode) {
   const std::vector<char> bytes = ReadBytes(path);
   CheckComplete({bytes.data(), bytes.size()}, path);
-  cv::Mat grey;
+  cv::Mat image;
   try {
-    grey = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    image = cv::imdecode(bytes, mode | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw InputError(fmt::format("{}: cannot be decoded: {}", path.string(), error.err));
   }
-  if (grey.empty()) {
+  if (image.empty()) {
     throw InputError(fmt::format("{}: cannot be decoded; expected an image", path.string()));
   }
-  return grey;
+  return image;
+}
+
+}  // namespace
+
+cv::Mat ReadGreyImage(const std::filesystem::path& path) {
+  return ReadImage(path, cv::IMREAD_GRAYSCALE);
+}
+
+cv::Mat ReadColourImage(const std::filesystem::path& path) {
+  return ReadImage(path, cv::IMREAD_COLOR);
 }
 
 cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height) {

@@ -14,4 +14,7 @@ cv::Mat ReadGreyImage(const std::filesystem::path& path);
 // The same; also throws InputError when the image is not width x height pixels.
 cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height);
 
+// An image in colour, CV_8UC3: blue, green, red. Otherwise as ReadGreyImage.
+cv::Mat ReadColourImage(const std::filesystem::path& path);
+
 }  // namespace soslam

@@ -290,9 +290,9 @@ void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const Symmetry
 
 void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image) {
   const Detection& detection = input_.sequence.detections[index];
-  auto residual = std::make_unique<EdgeAlignmentResidual>(image, input_.sequence.CameraOf(detection),
-                                                          LandmarkInCamera(detection),
-                                                          options_.edges, view_weights_[index]);
+  auto residual = std::make_unique<EdgeAlignmentResidual>(
+      image, input_.sequence.CameraOf(detection), LandmarkInCamera(detection), options_.edges,
+      view_weights_[index]);
   if (residual->num_residuals() == 0) {
     ++summary_.gated[kEdgesOutOfSight];
     return;

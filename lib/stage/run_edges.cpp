@@ -14,22 +14,13 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "dataset/image_path.h"
 #include "image/read_image.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path ImagePath(const fs::path& dataset, const Frame& frame, const fs::path& sequence_file) {
-  const fs::path relative = fs::path(frame.image).lexically_normal();
-  if (relative.is_absolute() || *relative.begin() == "..") {
-    throw InputError(
-        fmt::format("{}: frame {}: image is '{}'; expected a path inside the dataset folder",
-                    sequence_file.string(), frame.id, frame.image));
-  }
-  return dataset / relative;
-}
 
 struct FrameImage {
   const Frame* frame;
@@ -41,7 +32,9 @@ std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& 
   std::vector<FrameImage> images;
   for (const Frame& frame : sequence.frames) {
     if (frame.image.empty()) continue;
-    images.push_back({&frame, ImagePath(files.at("dataset"), frame, files.at("sequence"))});
+    images.push_back(
+        {&frame, ImagePath(files.at("dataset"), frame.image,
+                           fmt::format("{}: frame {}", files.at("sequence").string(), frame.id))});
   }
   if (images.empty()) {
     throw NothingUsableError(

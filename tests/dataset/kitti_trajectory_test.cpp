@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/kitti_trajectory.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/random.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -16,27 +18,50 @@ class KittiTrajectoryTest : public testing::Test {
     WriteBytes(folder_ / "poses.txt", text);
     return ReadKittiTrajectory(folder_ / "poses.txt");
   }
-  void ExpectRefused(const std::string& text, const std::vector<std::string>& words) {
-    ExpectError<InputError>([&] { Read(text); }, words);
-  }
   TemporaryFolder folder_;
 };
 
-// A quarter turn about y: the camera looks along the world's x axis.
-TEST_F(KittiTrajectoryTest, ReadsMatricesByRows) {
-  const auto poses = Read("1 0 0 0 0 1 0 0 0 0 1 0\n0 0 1 2 0 1 0 3 -1 0 0 4\n");
+// A camera at (1, 2, 3) that looks along the world's x axis: z goes to x, x to -y, y to -z.
+TEST_F(KittiTrajectoryTest, RowsOfWorldFromCamera) {
+  const auto poses = Read("1 0 0 0 0 1 0 0 0 0 1 0\n0 0 1 1 -1 0 0 2 0 -1 0 3\r\n");
   ASSERT_EQ(poses.size(), 2u);
-  EXPECT_EQ(poses[0].translation, Eigen::Vector3d::Zero());
-  const Eigen::Vector3d ahead = poses[1] * Eigen::Vector3d(0, 0, 1);
-  EXPECT_LT((ahead - Eigen::Vector3d(3, 3, 4)).norm(), 1e-12);
+  EXPECT_TRUE(poses[0].Matrix().isIdentity(1e-12));
+  EXPECT_TRUE((poses[1] * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(6, 2, 3)));
+  EXPECT_TRUE((poses[1] * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
 }
 
-TEST_F(KittiTrajectoryTest, RefusesWhatIsNoPose) {
-  ExpectRefused("", {"poses.txt", "no pose"});
-  ExpectRefused("1 0 0 0 0 1 0 0 0 0 1\n", {"poses.txt:1", "11 numbers"});
-  ExpectRefused("1 0 0 0 0 1 0 0 0 0 1 far\n", {"poses.txt:1", "number 12", "far"});
-  ExpectRefused("1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n", {"poses.txt:2", "rotation"});
-  ExpectRefused("-1 0 0 0 0 1 0 0 0 0 1 0\n", {"poses.txt:1", "rotation"});
+TEST_F(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
+  for (int i = 0; i < 50; ++i) {
+    const Rigid3d pose = RandomRigid();
+    std::string line;
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        line += fmt::format("{:.4f} ", pose.Matrix()(row, column));
+      }
+    }
+    const Rigid3d read = Read(line).front();
+    EXPECT_NEAR(read.rotation.norm(), 1.0, 1e-12);
+    // Rounding to four digits is 5e-5 in each of the numbers.
+    EXPECT_LT((read.Matrix() - pose.Matrix()).norm(), 4e-4);
+  }
+}
+
+TEST_F(KittiTrajectoryTest, BadLinesAreNamed) {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
+      {"1 0 0 0 0 1 0 0 0 0 1", {"has 11 numbers", "12"}},
+      {"1 0 0 0 0 1 0 0 0 0 1 0 0", {"has 13 numbers"}},
+      {"1 0 0 0 0 1 0 x 0 0 1 0", {"number 8 is 'x'"}},
+      {"1 0 0 0 0 1 0 nan 0 0 1 0", {"number 8 is 'nan'"}},
+      {"1.01 0 0 0 0 1 0 0 0 0 1 0", {"not orthonormal", "0.0201", "0.001"}},
+      {"1 0.002 0 0 0 1 0 0 0 0 1 0", {"not orthonormal"}},
+      {"0 0 0 0 0 0 0 0 0 0 0 0", {"not orthonormal"}},
+      {"1 0 0 0 0 -1 0 0 0 0 1 0", {"determinant -1"}}};
+  for (const auto& [line, words] : cases) {
+    auto all = words;
+    all.push_back("poses.txt:2");
+    ExpectError<InputError>([&] { Read(std::string("1 0 0 0 0 1 0 0 0 0 1 0\n") + line); }, all);
+  }
+  ExpectError<InputError>([&] { Read("\n"); }, {"poses.txt", "no pose"});
 }
 
 }  // namespace

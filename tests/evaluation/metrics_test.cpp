@@ -17,7 +17,9 @@ LandmarkEstimates TrueEstimates(const Sequence& sequence) {
   LandmarkEstimates estimates;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     estimates.observations.push_back(
-        {static_cast<int>(i), {{*TrueLandmarkInCamera(sequence, sequence.detections[i]), 0.0}}, ""});
+        {static_cast<int>(i),
+         {{*TrueLandmarkInCamera(sequence, sequence.detections[i]), 0.0}},
+         ""});
   }
   return estimates;
 }

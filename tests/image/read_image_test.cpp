@@ -52,6 +52,15 @@ TEST_F(ReadImageTest, ColourBecomesGrey) {
   EXPECT_NEAR(read.at<uchar>(4, 4), 72.7, 1.0);
 }
 
+TEST_F(ReadImageTest, ColourComesBackBlueGreenRed) {
+  const cv::Mat colour(8, 9, CV_8UC3, cv::Scalar(10, 20, 200));
+  const cv::Mat read = ReadColourImage(Write("a.png", Encode(".png", colour)));
+  ASSERT_EQ(read.type(), CV_8UC3);
+  EXPECT_EQ(read.at<cv::Vec3b>(4, 4), cv::Vec3b(10, 20, 200));
+  const cv::Mat grey = ReadColourImage(Write("b.png", Encode(".png", TestImage())));
+  EXPECT_EQ(grey.at<cv::Vec3b>(3, 5), cv::Vec3b::all(TestImage().at<uchar>(3, 5)));
+}
+
 TEST_F(ReadImageTest, OnePixelIsAnImage) {
   const cv::Mat pixel(1, 1, CV_8UC1, cv::Scalar(77));
   EXPECT_EQ(ReadGreyImage(Write("a.png", Encode(".png", pixel)), 1, 1).at<uchar>(0, 0), 77);

@@ -29,7 +29,8 @@ std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& seque
   std::map<int, std::shared_ptr<const EdgeImage>> images;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
-    const cv::Mat image = DrawCuboids(sequence.camera, {*TrueLandmarkInCamera(sequence, detection)});
+    const cv::Mat image =
+        DrawCuboids(sequence.camera, {*TrueLandmarkInCamera(sequence, detection)});
     const EdgeMaps maps = ComputeEdgeMaps(image, EdgesOptions());
     images[static_cast<int>(i)] = std::make_shared<const EdgeImage>(
         EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/json_entry.h"
+
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+
+namespace soslam {
+
+using nlohmann::json;
+
+namespace {
+
+// A value as an error message quotes it: a whole list of images is no help.
+std::string Quoted(const json& value) {
+  constexpr size_t kLongest = 100;
+  const std::string text = value.dump();
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+}  // namespace
+
+JsonEntry::JsonEntry(const json& fields, std::string place)
+    : fields_(fields), place_(std::move(place)) {
+  if (!fields.is_object()) throw InputError(place_ + ": is not an object");
+}
+
+const json& JsonEntry::Field(const char* name) const {
+  const auto found = fields_.find(name);
+  if (found == fields_.end()) throw InputError(fmt::format("{}: {} is missing", place_, name));
+  return *found;
+}
+
+const json& JsonEntry::List(const char* name) const {
+  if (!Field(name).is_array()) Refuse(name, "a list");
+  return Field(name);
+}
+
+int JsonEntry::Integer(const char* name) const {
+  constexpr std::int64_t kMax = std::numeric_limits<int>::max();
+  const json& field = Field(name);
+  if (!field.is_number_integer() || field.get<double>() < -kMax || field.get<double>() > kMax) {
+    Refuse(name, "an integer");
+  }
+  return field.get<int>();
+}
+
+double JsonEntry::Real(const char* name) const {
+  const json& field = Field(name);
+  if (!field.is_number()) Refuse(name, "a number");
+  return field.get<double>();
+}
+
+double JsonEntry::Positive(const char* name) const {
+  if (!(Real(name) > 0.0)) Refuse(name, "a number above 0");
+  return Real(name);
+}
+
+bool JsonEntry::Flag(const char* name, bool default_value) const {
+  if (!Has(name)) return default_value;
+  if (!Field(name).is_boolean()) Refuse(name, "true or false");
+  return Field(name).get<bool>();
+}
+
+std::string JsonEntry::Text(const char* name) const {
+  const json& field = Field(name);
+  if (!field.is_string() || field == "") Refuse(name, "a text");
+  return field.get<std::string>();
+}
+
+void JsonEntry::Refuse(const char* name, const std::string& expected) const {
+  throw InputError(
+      fmt::format("{}: {} is {}; expected {}", place_, name, Quoted(Field(name)), expected));
+}
+
+}  // namespace soslam

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// An object of somebody's JSON file, whose fields have yet to be checked. It refers to the
+// document, which has to outlive it. All functions throw InputError, naming place and field, when
+// the field is missing or is not what they return.
+class JsonEntry {
+ public:
+  // `place` says in error messages where the object stands: "<file>", "<file>[index]" or
+  // "<file>#<JSON pointer>".
+  JsonEntry(const nlohmann::json& fields, std::string place);
+
+  const std::string& place() const { return place_; }
+  bool Has(const char* name) const { return fields_.contains(name); }
+
+  const nlohmann::json& Field(const char* name) const;
+  const nlohmann::json& List(const char* name) const;
+  int Integer(const char* name) const;
+  double Real(const char* name) const;
+  double Positive(const char* name) const;
+  bool Flag(const char* name, bool default_value) const;
+  std::string Text(const char* name) const;  // not empty
+  template <int kSize>
+  Eigen::Matrix<double, kSize, 1> Vector(const char* name) const {
+    const nlohmann::json& field = Field(name);
+    const auto is_number = [](const nlohmann::json& element) { return element.is_number(); };
+    if (!field.is_array() || field.size() != kSize ||
+        !std::all_of(field.begin(), field.end(), is_number)) {
+      Refuse(name, fmt::format("{} numbers", kSize));
+    }
+    return Eigen::Matrix<double, kSize, 1>(field.get<std::vector<double>>().data());
+  }
+
+  [[noreturn]] void Refuse(const char* name, const std::string& expected) const;
+
+ private:
+  const nlohmann::json& fields_;
+  std::string place_;
+};
+
+}  // namespace soslam

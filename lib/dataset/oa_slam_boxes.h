@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dataset/labelled_box.h"
+
+namespace soslam {
+
+// Detections as OA-SLAM reads them (M. Zins, G. Simon, M.-O. Berger, "OA-SLAM", ISMAR 2022):
+// [{"file_name", "detections": [{"category_id", "detection_score", "bbox": [x1, y1, x2, y2]}]}],
+// pixels from the image's outer corner. `labels` are the names of the categories, from 0; OA-SLAM's
+// own files have COCO's 80. In file order. Throws InputError with file and JSON pointer.
+std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
+                                         const std::vector<std::string>& labels);
+
+}  // namespace soslam

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/options.h"
+
+namespace soslam {
+
+// How a YOLO network lays out its output. N candidates, C classes; centre, width and height are
+// pixels of the network's input.
+enum class YoloLayout {
+  kV5,  // [1, N, 5 + C]: cx cy w h, objectness, a score of each class. Also YOLOv7, YOLOX.
+  kV8,  // [1, 4 + C, N]: the same turned on its side, without objectness. Also YOLO11.
+};
+inline constexpr const char* kYoloLayoutNames[] = {"v5", "v8"};
+
+// What a network takes as the value of a pixel.
+enum class PixelValues {
+  kRgbUnit,  // red, green, blue from 0 to 1: Ultralytics' networks
+  kBgrByte,  // blue, green, red from 0 to 255: YOLOX
+};
+inline constexpr const char* kPixelValuesNames[] = {"rgb_0_1", "bgr_0_255"};
+
+struct DetectorOptions {
+  YoloLayout output_layout = YoloLayout::kV5;
+  PixelValues pixel_values = PixelValues::kRgbUnit;
+  int input_width = 640;
+  int input_height = 640;
+  double min_score = 0.25;
+  double max_overlap = 0.45;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Choice("output_layout", &output_layout, kYoloLayoutNames,
+                 "the network's output: v5 [1, N, 5 + classes] or v8 [1, 4 + classes, N]");
+    visit.Choice("pixel_values", &pixel_values, kPixelValuesNames,
+                 "what the network takes: rgb_0_1 (Ultralytics) or bgr_0_255 (YOLOX)");
+    visit.Integer("input_width", &input_width, {1, 8192},
+                  "width of the network's input, as it was exported (px)");
+    visit.Integer("input_height", &input_height, {1, 8192},
+                  "height of the network's input, as it was exported (px)");
+    visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
+    visit.Real("max_overlap", &max_overlap, {0, 1},
+               "of two boxes of one class with a larger IoU, the one with the lower score is "
+               "dropped");
+  }
+};
+
+}  // namespace soslam

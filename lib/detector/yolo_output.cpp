@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detector/yolo_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/dnn.hpp>
+
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+// The output as one row per candidate: cx cy w h, the objectness of layout v5, the class scores.
+cv::Mat CandidateRows(const cv::Mat& output, YoloLayout layout, int classes,
+                      const std::string& network) {
+  const bool is_v5 = layout == YoloLayout::kV5;
+  const int fields = (is_v5 ? 5 : 4) + classes;
+  const std::vector<int> shape(output.size.p, output.size.p + output.dims);
+  const size_t field_axis = is_v5 ? 2 : 1;
+  if (shape.size() != 3 || shape[0] != 1 || shape[field_axis] != fields ||
+      output.type() != CV_32FC1) {
+    throw InputError(
+        fmt::format("{}: output has shape [{}]; expected {} of layout {} with {} classes", network,
+                    fmt::join(shape, ", "),
+                    is_v5 ? fmt::format("[1, N, {}]", fields) : fmt::format("[1, {}, N]", fields),
+                    kYoloLayoutNames[static_cast<int>(layout)], classes));
+  }
+  const cv::Mat rows(shape[1], shape[2], CV_32FC1, const_cast<uchar*>(output.data));
+  return is_v5 ? rows : cv::Mat(rows.t());
+}
+
+}  // namespace
+
+std::vector<YoloDetection> ReadYoloOutput(const cv::Mat& output, YoloLayout layout, int classes,
+                                          double min_score, const std::string& network) {
+  const cv::Mat rows = CandidateRows(output, layout, classes, network);
+  const int first_class = rows.cols - classes;
+  const auto is_finite = [](float value) { return std::isfinite(value); };
+  std::vector<YoloDetection> boxes;
+  for (int i = 0; i < rows.rows; ++i) {
+    const float* row = rows.ptr<float>(i);
+    const float* best = std::max_element(row + first_class, row + rows.cols);
+    const double score = layout == YoloLayout::kV5 ? static_cast<double>(*best) * row[4] : *best;
+    if (score < min_score) continue;
+    if (!std::isfinite(score) || !std::all_of(row, row + 4, is_finite)) {
+      throw NumericalError(fmt::format("{}: candidate {} of the output is not finite", network, i));
+    }
+    const double cx = row[0], cy = row[1], half_w = 0.5 * row[2], half_h = 0.5 * row[3];
+    boxes.push_back({static_cast<int>(best - row) - first_class,
+                     score,
+                     {cx - half_w, cy - half_h, cx + half_w, cy + half_h}});
+  }
+  return boxes;
+}
+
+std::vector<YoloDetection> WithoutOverlaps(const std::vector<YoloDetection>& boxes, int classes,
+                                           double max_overlap) {
+  std::vector<YoloDetection> kept;
+  for (int class_index = 0; class_index < classes; ++class_index) {
+    std::vector<YoloDetection> of_class;
+    std::vector<cv::Rect2d> rectangles;
+    std::vector<float> scores;
+    for (const YoloDetection& box : boxes) {
+      if (box.class_index != class_index) continue;
+      of_class.push_back(box);
+      rectangles.emplace_back(box.box.x_min, box.box.y_min, box.box.Width(), box.box.Height());
+      scores.push_back(static_cast<float>(box.score));
+    }
+    std::vector<int> indices;
+    cv::dnn::NMSBoxes(rectangles, scores, 0.0F, static_cast<float>(max_overlap), indices);
+    for (const int index : indices) kept.push_back(of_class[static_cast<size_t>(index)]);
+  }
+  std::stable_sort(kept.begin(), kept.end(), [](const YoloDetection& a, const YoloDetection& b) {
+    return a.score > b.score;
+  });
+  return kept;
+}
+
+}  // namespace soslam

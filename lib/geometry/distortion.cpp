@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/distortion.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/calib3d.hpp>
+
+namespace soslam {
+namespace {
+
+cv::Matx33d Intrinsics(const Camera& camera) {
+  return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+}
+
+cv::Matx<double, 1, 5> Coefficients(const Distortion& distortion) {
+  return {distortion.k1, distortion.k2, distortion.p1, distortion.p2, distortion.k3};
+}
+
+// Points along the four edges. An edge that bows out by b px between two corners is met to within
+// b / kIntervals^2, a thousandth of its bow.
+std::vector<Eigen::Vector2d> Outline(const Box& box) {
+  constexpr int kIntervals = 32;
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double t = static_cast<double>(i) / kIntervals;
+    const double x = box.x_min + t * box.Width();
+    const double y = box.y_min + t * box.Height();
+    points.insert(points.end(), {{x, box.y_min}, {x, box.y_max}, {box.x_min, y}, {box.x_max, y}});
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> DistortPixels(const Camera& camera, const Distortion& distortion,
+                                           const std::vector<Eigen::Vector2d>& pixels) {
+  if (pixels.empty()) return {};
+  std::vector<cv::Point3d> points;
+  for (const Eigen::Vector2d& pixel : pixels) {
+    const Eigen::Vector3d ray = camera.Ray(pixel);
+    points.emplace_back(ray.x(), ray.y(), ray.z());
+  }
+  std::vector<cv::Point2d> projected;
+  cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), Intrinsics(camera), Coefficients(distortion),
+                    projected);
+  std::vector<Eigen::Vector2d> distorted;
+  for (const cv::Point2d& point : projected) distorted.emplace_back(point.x, point.y);
+  return distorted;
+}
+
+std::vector<std::optional<Eigen::Vector2d>> UndistortPixels(
+    const Camera& camera, const Distortion& distortion,
+    const std::vector<Eigen::Vector2d>& distorted) {
+  if (distorted.empty()) return {};
+  std::vector<cv::Point2d> points;
+  for (const Eigen::Vector2d& pixel : distorted) points.emplace_back(pixel.x(), pixel.y());
+  // The inverse is iterated. Where it does not converge, distorting the result does not lead back.
+  const cv::TermCriteria iterations(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-9);
+  constexpr double kTolerancePx = 1e-3;
+  std::vector<cv::Point2d> solutions;
+  cv::undistortPoints(points, solutions, Intrinsics(camera), Coefficients(distortion),
+                      cv::noArray(), Intrinsics(camera), iterations);
+  std::vector<Eigen::Vector2d> pixels;
+  for (const cv::Point2d& solution : solutions) pixels.emplace_back(solution.x, solution.y);
+  const auto distorted_again = DistortPixels(camera, distortion, pixels);
+  std::vector<std::optional<Eigen::Vector2d>> undistorted;
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const double error = (distorted_again[i] - distorted[i]).norm();
+    undistorted.push_back(error <= kTolerancePx ? std::optional(pixels[i]) : std::nullopt);
+  }
+  return undistorted;
+}
+
+std::optional<Box> UndistortBox(const Camera& camera, const Distortion& distortion,
+                                const Box& distorted) {
+  Eigen::AlignedBox2d around;
+  for (const auto& pixel : UndistortPixels(camera, distortion, Outline(distorted))) {
+    if (!pixel) return std::nullopt;
+    around.extend(*pixel);
+  }
+  return Box{around.min().x(), around.min().y(), around.max().x(), around.max().y()};
+}
+
+}  // namespace soslam

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/detections_csv.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class LabelledBoxesCsvTest : public testing::Test {
+ protected:
+  std::filesystem::path Write(const std::string& text) {
+    WriteBytes(folder_ / "detections.csv", text);
+    return folder_ / "detections.csv";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(LabelledBoxesCsvTest, WithAndWithoutObjectIds) {
+  for (const char* text : {"frame,label,score,x1,y1,x2,y2\n3,cup,0.5,1,2,3.25,4\n",
+                           "# a comment\nscore,frame,object_id,label,x1,y1,x2,y2\n"
+                           "0.5,3,unknown,cup,1,2,3.25,4\n"}) {
+    const auto boxes = ReadLabelledBoxes(Write(text));
+    ASSERT_EQ(boxes.size(), 1u);
+    ExpectLabelledBox(boxes[0], 3, "cup", 0.5, {1, 2, 3.25, 4});
+  }
+}
+
+TEST_F(LabelledBoxesCsvTest, DetectionsNeedObjectIds) {
+  const auto path = Write("frame,label,score,x1,y1,x2,y2\n");
+  ExpectError<InputError>([&] { ReadDetections(path); }, {"detections.csv:1", "'object_id'"});
+}
+
+TEST_F(LabelledBoxesCsvTest, WrittenBoxesComeBackRounded) {
+  const std::string text = LabelledBoxesText(
+      {{"", 0, "milk carton", 0.123456, {-0.5, 10.126, 20, 30}}, {"", 12, "cup", 1, {1, 2, 3, 4}}});
+  EXPECT_EQ(text,
+            "frame,label,score,x1,y1,x2,y2\n"
+            "0,milk carton,0.1235,-0.50,10.13,20.00,30.00\n"
+            "12,cup,1.0000,1.00,2.00,3.00,4.00\n");
+  const auto boxes = ReadLabelledBoxes(Write(text));
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectLabelledBox(boxes[0], 0, "milk carton", 0.1235, {-0.5, 10.13, 20, 30});
+}
+
+TEST_F(LabelledBoxesCsvTest, BadFilesAreNamed) {
+  const std::string header = "frame,label,score,x1,y1,x2,y2\n";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+      {"", {"detections.csv", "is empty"}},
+      {"0,cup,0.5,1,2,3,4\n", {"detections.csv:1", "'frame' is missing"}},
+      {header + "0,cup,0.5,1,2,3\n", {"detections.csv:2", "has 6 fields; expected 7"}},
+      {header + "a.png,cup,0.5,1,2,3,4\n", {"detections.csv:2", "frame is 'a.png'"}},
+      {header + "0,,0.5,1,2,3,4\n", {"detections.csv:2", "label is empty"}},
+      {header + "0,cup,0.5,1,2,3,wide\n", {"detections.csv:2", "y2 is 'wide'"}}};
+  for (const auto& [text, words] : cases) {
+    ExpectError<InputError>([&] { ReadLabelledBoxes(Write(text)); }, words);
+  }
+}
+
+}  // namespace
+}  // namespace soslam

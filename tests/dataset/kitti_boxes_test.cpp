@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class KittiBoxesTest : public testing::Test {
+ protected:
+  KittiBoxesTest() { std::filesystem::create_directory(folder_ / "Car"); }
+  std::vector<LabelledBox> Read(const std::string& text) {
+    WriteBytes(folder_ / "Car/0000.txt", text);
+    return ReadKittiBoxes(folder_ / "Car/0000.txt");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(KittiBoxesTest, FrameBoxScoreAndFolderAsLabel) {
+  const auto boxes = Read("0,296.5,160,452.25,288,0.5\r\n17,1,2,3,4,0.25\r\n");
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectLabelledBox(boxes[0], 0, "Car", 0.5, {296.5, 160, 452.25, 288});
+  ExpectLabelledBox(boxes[1], 17, "Car", 0.25, {1, 2, 3, 4});
+}
+
+TEST_F(KittiBoxesTest, EmptyFileHasNoBoxes) { EXPECT_TRUE(Read("").empty()); }
+
+TEST_F(KittiBoxesTest, BadLinesAreNamed) {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
+      {"1,2,3,4,5", {"has 5 fields", "frame,x1,y1,x2,y2,score"}},
+      {"1 2 3 4 5 6", {"has 1 fields"}},
+      {"1.5,1,2,3,4,1", {"frame is '1.5'"}},
+      {"-1,1,2,3,4,1", {"frame is -1"}},
+      {"1,1,2,inf,4,1", {"x2 is 'inf'"}},
+      {"1,1,2,3,4,", {"score is ''"}},
+      {"1,10,2,3,4,1", {"box is 10 2 3 4", "x1 <= x2"}}};
+  for (const auto& [line, words] : cases) {
+    auto all = words;
+    all.push_back("Car/0000.txt:2");
+    ExpectError<InputError>([&] { Read(std::string("0,1,2,3,4,1\r\n") + line + "\r\n"); }, all);
+  }
+}
+
+}  // namespace
+}  // namespace soslam

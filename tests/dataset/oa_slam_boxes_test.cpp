@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/oa_slam_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "dataset/coco_labels.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class OaSlamBoxesTest : public testing::Test {
+ protected:
+  std::vector<LabelledBox> Read(const std::string& text) {
+    WriteBytes(folder_ / "boxes.json", text);
+    return ReadOaSlamBoxes(folder_ / "boxes.json", CocoLabels());
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(OaSlamBoxesTest, ImagesWithTheirDetections) {
+  const auto boxes = Read(R"([
+      {"file_name": "12.5.png", "detections": [
+          {"category_id": 77, "detection_score": 0.25, "bbox": [293, 68, 359, 97]},
+          {"category_id": 0, "detection_score": 0.5, "bbox": [1, 2, 3, 4]}]},
+      {"file_name": "12.6.png", "detections": []},
+      {"file_name": "12.7.png", "detections": [
+          {"category_id": 79, "detection_score": 1, "bbox": [0, 0, 640, 480]}]}])");
+  ASSERT_EQ(boxes.size(), 3u);
+  ExpectLabelledBox(boxes[0], "12.5.png", "teddy bear", 0.25, {292.5, 67.5, 358.5, 96.5});
+  ExpectLabelledBox(boxes[1], "12.5.png", "person", 0.5, {0.5, 1.5, 2.5, 3.5});
+  ExpectLabelledBox(boxes[2], "12.7.png", "toothbrush", 1.0, {-0.5, -0.5, 639.5, 479.5});
+  EXPECT_EQ(boxes[1].place, (folder_ / "boxes.json").string() + "#/0/detections/1");
+}
+
+TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
+  const auto detection = [](const std::string& fields) {
+    return R"([{"file_name": "a.png", "detections": []},
+               {"file_name": "b.png", "detections": [{)" +
+           fields + "}]}]";
+  };
+  const std::string where = "boxes.json#/1/detections/0";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+      {"{}", {"boxes.json", "not a list"}},
+      {R"([{"detections": []}])", {"boxes.json#/0", "file_name is missing"}},
+      {R"([{"file_name": "a.png", "detections": 3}])", {"boxes.json#/0", "detections is 3"}},
+      {detection(R"("category_id": 80, "detection_score": 1, "bbox": [1, 2, 3, 4])"),
+       {where, "category_id is 80", "0 to 79"}},
+      {detection(R"("category_id": -1, "detection_score": 1, "bbox": [1, 2, 3, 4])"),
+       {where, "category_id is -1"}},
+      {detection(R"("category_id": 1, "bbox": [1, 2, 3, 4])"),
+       {where, "detection_score is missing"}},
+      {detection(R"("category_id": 1, "detection_score": 1, "bbox": [1, 2, "3", 4])"),
+       {where, "bbox is [1,2,\"3\",4]"}},
+      {detection(R"("category_id": 1, "detection_score": 1, "bbox": [300, 68, 59, 97])"),
+       {where, "x1 <= x2"}}};
+  for (const auto& [text, words] : cases) ExpectError<InputError>([&] { Read(text); }, words);
+}
+
+}  // namespace
+}  // namespace soslam

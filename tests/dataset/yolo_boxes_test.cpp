@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/yolo_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+const std::vector<std::string> kLabels = {"cup", "teddy bear", "book"};
+
+class YoloBoxesTest : public testing::Test {
+ protected:
+  std::vector<LabelledBox> Normalised() {
+    return ReadNormalisedYoloBoxes(folder_.path(), kLabels, 640, 480);
+  }
+  std::vector<LabelledBox> Pixels() { return ReadPixelYoloBoxes(folder_.path(), kLabels); }
+  void Write(const std::string& name, const std::string& text) { WriteBytes(folder_ / name, text); }
+
+  TemporaryFolder folder_;
+};
+
+// The image covers 0 to 640 from its corner, -0.5 to 639.5 in pixels.
+TEST_F(YoloBoxesTest, NormalisedCentreAndSize) {
+  Write("12.50.txt", "1 0.5 0.25 0.125 0.5 0.75\r\n2 0.5 0.5 1 1\r\n");
+  Write("11.txt", "0 0.1 0.1 0.1 0.1 0.3");
+  Write("13.txt", "");
+  Write("notes.md", "not a box");
+  const auto boxes = Normalised();
+  ASSERT_EQ(boxes.size(), 3u);
+  ExpectLabelledBox(boxes[0], "11", "cup", 0.3, {31.5, 23.5, 95.5, 71.5});
+  ExpectLabelledBox(boxes[1], "12.50", "teddy bear", 0.75, {279.5, -0.5, 359.5, 239.5});
+  ExpectLabelledBox(boxes[2], "12.50", "book", 1.0, {-0.5, -0.5, 639.5, 479.5});
+  EXPECT_EQ(boxes[2].place, (folder_ / "12.50.txt").string() + ":2");
+}
+
+TEST_F(YoloBoxesTest, PixelCornerAndSize) {
+  Write("1341.058.txt", "2 218 246 65 94 0.46\n0 10.5 0 4 8\n");
+  const auto boxes = Pixels();
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectLabelledBox(boxes[0], "1341.058", "book", 0.46, {217.5, 245.5, 282.5, 339.5});
+  ExpectLabelledBox(boxes[1], "1341.058", "cup", 1.0, {10.0, -0.5, 14.0, 7.5});
+}
+
+TEST_F(YoloBoxesTest, BadLinesAreNamed) {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
+      {"0 0.1 0.1 0.1", {"has 4 numbers", "class cx cy w h [score]"}},
+      {"0 0.1 0.1 0.1 0.1 0.5 0.5", {"has 7 numbers"}},
+      {"3 0.1 0.1 0.1 0.1", {"class is 3", "0 to 2"}},
+      {"-1 0.1 0.1 0.1 0.1", {"class is -1"}},
+      {"cup 0.1 0.1 0.1 0.1", {"class is 'cup'"}},
+      {"0 0.1 0.1 nan 0.1", {"w is 'nan'"}},
+      {"0 0.1 0.1 0.1 0.1 high", {"score is 'high'"}},
+      {"0 0.1 0.1 0.1 -0.1", {"has -0.1", "fractions"}},
+      {"0 218 246 65 94 0.4", {"has 218", "fractions"}}};
+  for (const auto& [line, words] : cases) {
+    Write("a.txt", std::string("0 0.1 0.1 0.1 0.1\n") + line + "\n");
+    auto all = words;
+    all.push_back("a.txt:2");
+    ExpectError<InputError>([&] { Normalised(); }, all);
+  }
+}
+
+TEST_F(YoloBoxesTest, BadPixelLinesAreNamed) {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
+      {"0 1 2 3", {"has 4 numbers", "class x y w h [score]"}},
+      {"0 100 100 -5 20", {"size is -5 x 20"}},
+      {"0 0.5 0.25 0.125 0.5", {"at most 1", "pixels"}}};
+  for (const auto& [line, words] : cases) {
+    Write("a.txt", line);
+    auto all = words;
+    all.push_back("a.txt:1");
+    ExpectError<InputError>([&] { Pixels(); }, all);
+  }
+}
+
+TEST_F(YoloBoxesTest, FolderWithoutFilesIsNamed) {
+  ExpectError<InputError>([&] { Pixels(); }, {folder_.path().string(), "no *.txt"});
+  ExpectError<InputError>([&] { ReadPixelYoloBoxes(folder_ / "none", kLabels); },
+                          {"none", "not a folder"});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_detect.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/error.h"
+#include "dataset/detections_csv.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/onnx_network.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kImages = 5;
+
+// Images from dark to bright, and a network that is as sure of its cup as the image is red, and
+// half as sure of its box.
+class RunDetectTest : public testing::Test {
+ protected:
+  RunDetectTest() {
+    std::filesystem::create_directory(folder_ / "rgb");
+    std::string list = "# timestamp filename\n";
+    for (int i = 0; i < kImages; ++i) {
+      const std::string name = "rgb/" + std::to_string(i) + ".png";
+      list += std::to_string(0.1 * i) + " " + name + "\n";
+      const cv::Mat image(64, 64, CV_8UC3, cv::Scalar(0, 0, 51 * i));  // red: 0, 0.2 ... 0.8
+      cv::imwrite((folder_ / name).string(), image);
+    }
+    WriteBytes(folder_ / "rgb.txt", list);
+    WriteBytes(folder_ / "labels.txt", "cup\nmilk carton\n");
+    MeanNetwork network = {{1, 2, 7}, {32, 32, 20, 30, 1, 0, 0, 10, 12, 8, 6, 1, 0, 0}, {}};
+    network.weights.resize(14, {0.0F, 0.0F, 0.0F});
+    network.weights[5][0] = 1.0F;
+    network.weights[13][0] = 0.5F;
+    WriteBytes(folder_ / "net.onnx", network.Onnx());
+    options_.input_width = options_.input_height = 64;
+  }
+
+  StageFiles Files(const std::string& output = "detections.csv") {
+    return {{"dataset", folder_.path()},
+            {"network", folder_ / "net.onnx"},
+            {"labels", folder_ / "labels.txt"},
+            {"output", folder_ / output}};
+  }
+  void Run(const StageFiles& files, int threads = 1) {
+    testing::internal::CaptureStdout();
+    RunDetect(options_, files, threads);
+    printed_ = testing::internal::GetCapturedStdout();
+  }
+  // Expects that the stage refuses its input, saying these words, and writes nothing.
+  void ExpectRefused(const StageFiles& files, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { RunDetect(options_, files, 2); }, words);
+    EXPECT_FALSE(std::filesystem::exists(files.at("output")));
+  }
+
+  TemporaryFolder folder_;
+  DetectorOptions options_;
+  std::string printed_;
+};
+
+TEST_F(RunDetectTest, WritesBoxesWithoutObjectIds) {
+  Run(Files());
+  const auto boxes = ReadLabelledBoxes(folder_ / "detections.csv");
+  ASSERT_EQ(boxes.size(), 5u);
+  const Box cup{21.5, 16.5, 41.5, 46.5};
+  ExpectLabelledBox(boxes[0], 2, "cup", 0.4, cup);
+  ExpectLabelledBox(boxes[1], 3, "cup", 0.6, cup);
+  ExpectLabelledBox(boxes[2], 3, "milk carton", 0.3, {5.5, 8.5, 13.5, 14.5});
+  ExpectLabelledBox(boxes[3], 4, "cup", 0.8, cup);
+  ExpectLabelledBox(boxes[4], 4, "milk carton", 0.4, {5.5, 8.5, 13.5, 14.5});
+  EXPECT_THAT(printed_, HasSubstr("5 images, 5 detections"));
+}
+
+TEST_F(RunDetectTest, CommentsSayWhatItWasMadeFrom) {
+  options_.min_score = 0.35;
+  Run(Files());
+  const std::string text = FileBytes(folder_ / "detections.csv");
+  const auto header = nlohmann::json::parse(text.substr(2, text.find('\n') - 2));
+  EXPECT_EQ(header["kind"], "detections");
+  EXPECT_EQ(header["settings"], OptionsToJson(options_));
+  for (const char* input : {"0.png", "4.png", "rgb.txt", "net.onnx", "labels.txt"}) {
+    EXPECT_THAT(text, HasSubstr(std::string("# input {\"file\":\"") + input + "\",\"sha256\":"));
+  }
+}
+
+TEST_F(RunDetectTest, SameBytesForAnyNumberOfThreads) {
+  Run(Files("one.csv"), 1);
+  Run(Files("three.csv"), 3);
+  Run(Files("many.csv"), 50);
+  EXPECT_EQ(FileBytes(folder_ / "one.csv"), FileBytes(folder_ / "three.csv"));
+  EXPECT_EQ(FileBytes(folder_ / "one.csv"), FileBytes(folder_ / "many.csv"));
+}
+
+TEST_F(RunDetectTest, CocoLabelsWithoutALabelFile) {
+  std::vector<float> candidate(85, 0.0F);
+  candidate[0] = candidate[1] = 32, candidate[2] = candidate[3] = 10, candidate[4] = 1;
+  candidate[5 + 77] = 0.5F;
+  WriteBytes(folder_ / "net.onnx", MeanNetwork{{1, 1, 85}, candidate, {}}.Onnx());
+  StageFiles files = Files();
+  files.erase("labels");
+  Run(files);
+  EXPECT_EQ(ReadLabelledBoxes(folder_ / "detections.csv").at(0).label, "teddy bear");
+}
+
+TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
+  StageFiles files = Files();
+  files["network"] = folder_ / "none.onnx";
+  ExpectRefused(files, {"none.onnx"});
+  files = Files();
+  files.erase("labels");
+  ExpectRefused(files, {"net.onnx", "[1, 2, 7]", "80 classes"});
+  files = Files();
+  files["labels"] = folder_ / "none.txt";
+  ExpectRefused(files, {"none.txt"});
+  std::filesystem::remove(folder_ / "rgb/3.png");
+  ExpectRefused(Files(), {"3.png", "no such file"});
+  WriteBytes(folder_ / "rgb.txt", "1.0 ../elsewhere.png\n");
+  ExpectRefused(Files(), {"rgb.txt", "../elsewhere.png"});
+  std::filesystem::remove(folder_ / "rgb.txt");
+  ExpectRefused(Files(), {"rgb.txt"});
+}
+
+TEST_F(RunDetectTest, NothingFoundIsNotAResult) {
+  options_.min_score = 0.9;
+  WriteBytes(folder_ / "detections.csv", "old");
+  ExpectError<NothingUsableError>([&] { RunDetect(options_, Files(), 1); },
+                                  {"net.onnx", "5 images", "0.9"});
+  EXPECT_EQ(FileBytes(folder_ / "detections.csv"), "old");
+}
+
+}  // namespace
+}  // namespace soslam
