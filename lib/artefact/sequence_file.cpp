@@ -11,6 +11,7 @@
 #include "artefact/ids.h"
 #include "artefact/json_geometry.h"
 #include "base/error.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -118,7 +119,6 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   json.at("plane_in_camera").get_to(detection.plane_in_camera);
   // Schema version 1.0 had no bounds: every edge counted as the object's own.
   if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
-  // Nor 1.0 and 1.1 nearer boxes: nothing was hidden.
   detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
   if (json.contains("true_landmark")) {  // since version 1.2
     detection.true_landmark_in_camera = LandmarkFromJson(json["true_landmark"], "camera");
@@ -171,6 +171,12 @@ Sequence SequenceFromJson(const json& json) {
     sequence.detections.push_back(DetectionFromJson(detection, frames, objects));
   }
   CheckOrder(sequence.detections);
+  // Versions 1.0 and 1.1 did not have them.
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    Detection& detection = sequence.detections[i];
+    if (json.at("detections")[i].contains("nearer_boxes")) continue;
+    detection.nearer_boxes = NearerBoxes(sequence, detection);
+  }
   json.at("rejected_detections").get_to(sequence.rejected_detections);
   return sequence;
 }

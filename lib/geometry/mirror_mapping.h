@@ -44,7 +44,8 @@ class VisibleSurface {
                                                bool with_jacobian = false) const;
 
   // S, the mirror image in the xz plane; again a surface point. Or in the plane y = mirror_plane *
-  // size, size the cubic root of the half axes' product: on the surface if that has a flat front.
+  // size, size the cubic root of the half axes' product: then near the surface where that is flat,
+  // and maybe beside the body.
   Point MirrorImage(const Point& point, double mirror_plane = 0.0) const;
 
   // P: the pixel of a point, whether visible or not. None behind the camera.

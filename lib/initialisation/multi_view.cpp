@@ -136,17 +136,21 @@ class LinearViews {
     add(scale * row, scale * constant, view.weight * robust);
   }
 
-  // log(s / (r c)) is (s - r c) / (r c) to first order.
+  // As RatioTerm: log(s / (r c)) is (s - r c) / (r c) to first order, the second one given the
+  // first.
   template <typename Add>
   void AddRatio(const Add& add) const {
+    const ShapePrior& prior = *observation_.prior;
+    std::array<Unknowns, 2> rows;
     for (int i = 0; i < 2; ++i) {
-      const double expected = observation_.prior->ratio[i] * landmark_.half_axes.z();
-      const double scale = 1.0 / (observation_.prior->log_sigma[i] * expected);
-      Unknowns row = Unknowns::Zero();
-      row(2 + i) = scale;
-      row(4) = -scale * observation_.prior->ratio[i];
-      add(row, 0.0, 1.0);
+      const double scale = 1.0 / (prior.log_sigma[i] * prior.ratio[i] * landmark_.half_axes.z());
+      rows[static_cast<size_t>(i)].setZero();
+      rows[static_cast<size_t>(i)](2 + i) = scale;
+      rows[static_cast<size_t>(i)](4) = -scale * prior.ratio[i];
     }
+    const double unexplained = std::sqrt(1.0 - prior.log_correlation * prior.log_correlation);
+    add(rows[0], 0.0, 1.0);
+    add((rows[1] - prior.log_correlation * rows[0]) / unexplained, 0.0, 1.0);
   }
 
   double Cost() const {

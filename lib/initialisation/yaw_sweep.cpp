@@ -84,7 +84,7 @@ bool HasEnoughEdges(const UprightObservation& observation) {
                        [](const BoxEdge& edge) { return !edge.is_bound; }) >= 3;
 }
 
-// Fits the terms, and again those of the result.
+// Fits the terms, and again those of the result. The cost is that of the result's own terms.
 std::optional<UprightSolution> Fit(const UprightObservation& observation,
                                    const YawObjective& objective, const Landmark& start,
                                    bool yaw_is_free) {
@@ -93,6 +93,9 @@ std::optional<UprightSolution> Fit(const UprightObservation& observation,
     solution = FitUpright(observation.plane_in_camera, solution->landmark,
                           objective.terms(solution->landmark), yaw_is_free);
     if (!solution || !IsInFront(solution->landmark)) return std::nullopt;
+  }
+  if (objective.rounds > 1) {
+    solution->cost = TotalCost(objective.terms(solution->landmark), solution->landmark);
   }
   if (objective.extra_cost) solution->cost += objective.extra_cost(solution->landmark);
   return solution;

@@ -22,7 +22,8 @@ double Change(const Landmark& from, const Landmark& to) {
                    to.frame_from_object.rotation.angularDistance(from.frame_from_object.rotation)});
 }
 
-void SettleWithImages(BackEndProblem* problem) {
+// Whether they settled.
+bool SettleWithImages(BackEndProblem* problem) {
   for (int round = 0; round < kMaxImageRounds; ++round) {
     const std::vector<std::optional<Landmark>> before = problem->Landmarks();
     problem->RenewImageTerms();
@@ -32,8 +33,9 @@ void SettleWithImages(BackEndProblem* problem) {
     for (size_t i = 0; i < before.size(); ++i) {
       if (before[i]) change = std::max(change, Change(*before[i], *after[i]));
     }
-    if (change < kSettled) return;
+    if (change < kSettled) return true;
   }
+  return false;
 }
 
 void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
@@ -58,15 +60,17 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   BackEndProblem problem(input, options);
   MapEstimate map;
   problem.Solve();
-  if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
-    if (options.detection_model == DetectionModel::kTangency) {
-      SettleWithImages(&problem);
-    } else {
-      problem.RenewImageTerms();  // the paper's pairs are those of the start
-      problem.Solve();
+  bool settled = true;
+  if (options.detection_model == DetectionModel::kTangency) {
+    if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
+      settled = SettleWithImages(&problem);
     }
+  } else if (!input.symmetry_images.empty()) {
+    problem.RenewImageTerms();  // the paper's pairs are those of the start
+    problem.Solve();
   }
   map.solver = problem.summary();
+  map.solver.converged = map.solver.converged && settled;
   for (const PoseBlock& pose : problem.poses()) {
     map.world_from_camera.push_back(UnpackPose(pose.data()));
   }

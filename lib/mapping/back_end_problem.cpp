@@ -22,7 +22,7 @@ namespace {
 
 // Reasons for leaving something out.
 constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
-constexpr const char* kEdgesOutOfSight = "edges_out_of_sight";
+constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 
 // Residual blocks share one loss, which outlives the problem.
 ceres::Problem::Options BorrowLoss() {
@@ -227,7 +227,7 @@ void BackEndProblem::RenewImageTerms() {
   for (const ceres::ResidualBlockId id : image_terms_) problem_.RemoveResidualBlock(id);
   image_terms_.clear();
   for (const char* kind : {"symmetry", "edges"}) summary_.residuals.erase(kind);
-  for (const char* reason : {kTooFewPairs, kEdgesOutOfSight}) summary_.gated.erase(reason);
+  for (const char* reason : {kTooFewPairs, kNoEdgeCounts}) summary_.gated.erase(reason);
   const auto has_start = [&](int detection_index) {
     const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
     return input_.starts[static_cast<size_t>(detection.object_index)].has_value();
@@ -294,7 +294,7 @@ void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImag
       image, input_.sequence.CameraOf(detection), LandmarkInCamera(detection), options_.edges,
       view_weights_[index]);
   if (residual->num_residuals() == 0) {
-    ++summary_.gated[kEdgesOutOfSight];
+    ++summary_.gated[kNoEdgeCounts];
     return;
   }
   ++summary_.residuals["edges"];

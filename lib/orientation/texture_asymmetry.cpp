@@ -38,12 +38,8 @@ bool AreEnough(Eigen::Index pairs, size_t samples, const SymmetryOptions& option
                   options.min_pair_fraction * static_cast<double>(samples));
 }
 
-std::vector<double> MirrorPlanePlaces(double range, Descriptor descriptor) {
+std::vector<double> MirrorPlanePlaces(double range) {
   if (!(range > 0.0)) return {0.0};
-  if (descriptor == Descriptor::kLinearisedDt) {
-    throw SettingsError(fmt::format(
-        "mirror_plane_range is {}; expected 0 with descriptor = improved_dt_linearised", range));
-  }
   std::vector<double> places;
   for (int i = -kMirrorPlaneSteps; i <= kMirrorPlaneSteps; ++i) {
     places.push_back(range * i / kMirrorPlaneSteps);
@@ -52,6 +48,16 @@ std::vector<double> MirrorPlanePlaces(double range, Descriptor descriptor) {
 }
 
 }  // namespace
+
+void CheckMirrorPlane(const TextureOptions& options, Descriptor descriptor) {
+  const bool on_surface = descriptor == Descriptor::kNearestEdge3d ||
+                          descriptor == Descriptor::kImprovedDt ||
+                          descriptor == Descriptor::kLinearisedDt;
+  if (!on_surface || !(options.mirror_plane_range > 0.0)) return;
+  throw SettingsError(fmt::format("mirror_plane_range is {}; expected 0 with descriptor = {}",
+                                  options.mirror_plane_range,
+                                  kDescriptorNames[static_cast<size_t>(descriptor)]));
+}
 
 std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
                                                    const Landmark& landmark_in_camera,
@@ -62,8 +68,7 @@ std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, c
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options.descriptor, options), 2);
   const auto samples = SamplePixels(image, camera, landmark_in_camera, symmetry_options);
-  const std::vector<double> places =
-      MirrorPlanePlaces(options.mirror_plane_range, symmetry_options.descriptor);
+  const std::vector<double> places = MirrorPlanePlaces(options.mirror_plane_range);
   // One row per sample, one column per place; NaN where there is no pair.
   Eigen::ArrayXXd residuals(samples.size(), places.size());
   for (size_t i = 0; i < samples.size(); ++i) {

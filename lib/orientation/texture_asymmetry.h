@@ -15,9 +15,14 @@
 
 namespace soslam {
 
+// Throws SettingsError for a mirror plane that may lie beside the xz plane and a descriptor that is
+// measured on the surface, where mirror points are not any more.
+void CheckMirrorPlane(const TextureOptions& options, Descriptor descriptor);
+
 // The visible mirrored pairs of the texture in one detection's box, on the landmark's own surface,
 // at the place of the mirror plane (see VisibleSurface::MirrorImage) within
-// options.mirror_plane_range where they differ least.
+// options.mirror_plane_range where they differ least. Mirror pixels may then lie beside the
+// landmark: how wide the object is, is known no better than where its middle is.
 struct MirroredTexture {
   // The mean over the pairs of d^2 / (d^2 + s^2), d the descriptor difference of eq. (16), s what
   // counts as no symmetry: 0 to 1; a pair that differs wholly counts no more than one that differs
@@ -26,8 +31,7 @@ struct MirroredTexture {
   double mirror_plane = 0.0;
   std::vector<Eigen::Vector2d> pixels;  // one of each pair
 };
-// None where too few pairs are visible. Throws SettingsError for a mirror plane that may lie beside
-// the xz plane and kLinearisedDt, whose tangent planes would not touch the surface then.
+// None where too few pairs are visible.
 std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
                                                    const Landmark& landmark_in_camera,
                                                    const TextureOptions& options,
@@ -40,8 +44,8 @@ double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
                      const SymmetryOptions& symmetry_options);
 
 // The same for the back end, of the pairs and the mirror plane that are the start's, the cost
-// multiplied by `weight`. A pair that leaves the surface counts as asymmetric, the limit of one
-// that differs more and more. Residuals: one per pair, none where too few are visible. Blocks:
+// multiplied by `weight`. A pair whose pixel leaves the surface counts as asymmetric, the limit of
+// one that differs more and more. Residuals: one per pair, none where too few are visible. Blocks:
 // world_from_camera, landmark in the world. Not for kBrief, which has no derivative.
 class AsymmetryResidual final : public ceres::CostFunction {
  public:

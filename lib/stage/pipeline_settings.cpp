@@ -101,6 +101,15 @@ json ReadLayer(const fs::path& file) {
   return layer;
 }
 
+// A file that all variants start from.
+json ReadBaseLayer(const fs::path& file) {
+  json layer = ReadLayer(file);
+  if (layer.contains("extends")) {
+    throw SettingsError(file.string() + ": 'extends' is for variants only");
+  }
+  return layer;
+}
+
 // The variant in `file` after those that it extends.
 std::vector<json> ReadVariantLayers(fs::path file) {
   std::vector<json> layers;
@@ -110,8 +119,9 @@ std::vector<json> ReadVariantLayers(fs::path file) {
       throw SettingsError(file.string() + ": 'extends' leads back to this file");
     }
     layers.push_back(ReadLayer(file));
-    if (!layers.back().contains("extends")) break;
-    const std::string name = layers.back().at("extends").get<std::string>() + ".json";
+    const json extends = layers.back().value("extends", json());
+    if (extends.is_null()) break;
+    const std::string name = extends.get<std::string>() + ".json";
     file = (file.parent_path() / name).lexically_normal();
   }
   std::reverse(layers.begin(), layers.end());
@@ -168,9 +178,9 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
     throw SettingsError(fmt::format("{}: no such variant; known are {}", variant_file.string(),
                                     fmt::join(VariantNames(pipelines), ", ")));
   }
-  json merged = ReadLayer(pipelines / "base.json");
+  json merged = ReadBaseLayer(pipelines / "base.json");
   const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
-  if (fs::exists(dataset_file)) merged.merge_patch(ReadLayer(dataset_file));
+  if (fs::exists(dataset_file)) merged.merge_patch(ReadBaseLayer(dataset_file));
   for (const json& layer : ReadVariantLayers(variant_file)) merged.merge_patch(layer);
 
   const std::string file = variant_file.string();

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
+#include "orientation/texture_asymmetry.h"
 
 namespace soslam {
 namespace {
@@ -21,6 +22,10 @@ void CheckImageOptions(const OptimiseOptions& options, const StageFiles& files) 
   if ((options.symmetry || options.edge_alignment) && files.count("edges") == 0) {
     throw SettingsError("symmetry or edge_alignment = true needs --edges FILE; found none");
   }
+  if (options.edge_alignment && options.detection_model != DetectionModel::kTangency) {
+    throw SettingsError("edge_alignment = true needs detection_model = tangency; found quadric");
+  }
+  if (options.symmetry) CheckMirrorPlane(options.texture, options.symmetry_options.descriptor);
   if (options.symmetry && options.symmetry_options.descriptor == Descriptor::kBrief) {
     throw SettingsError("symmetry needs a descriptor with a derivative; found descriptor = brief");
   }

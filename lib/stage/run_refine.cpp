@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "orientation/refine_orientation.h"
+#include "orientation/texture_asymmetry.h"
 
 namespace soslam {
 namespace {
@@ -93,6 +94,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
     throw SettingsError(
         "parameters = all needs a descriptor with a derivative; found descriptor = brief");
   }
+  CheckMirrorPlane(options.profile.texture, options.turn.symmetry.descriptor);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);

@@ -10,6 +10,7 @@
 #include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "model/occlusion.h"
 #include "support/dataset_fixture.h"
 #include "support/random_estimates.h"
 
@@ -184,17 +185,28 @@ TEST_F(ArtefactFilesTest, BoundsMayComeInAnyOrder) {
             (std::array<bool, 4>{true, false, false, true}));
 }
 
-TEST_F(ArtefactFilesTest, WithoutShapeExponentsBoundsAndNearerBoxesThereAreEllipsoidsAndNone) {
+TEST_F(ArtefactFilesTest, WithoutShapeExponentsAndBoundsThereAreEllipsoidsAndNone) {
   WriteSequence(file, sequence, {});
   nlohmann::json document = ParseJsonFile(file);
   document["objects"][0]["ground_truth"]["landmark"].erase("shape_exponent");
   document["detections"][1].erase("bounds");
-  document["detections"][1].erase("nearer_boxes");
   std::ofstream(file) << document;
   const Sequence read = ReadSequence(file);
   EXPECT_EQ(read.objects[0].ground_truth->landmark_in_world.shape_exponent, 2.0);
   EXPECT_EQ(read.detections[1].is_bound, (std::array<bool, 4>{}));
-  EXPECT_TRUE(read.detections[1].nearer_boxes.empty());
+}
+
+TEST_F(ArtefactFilesTest, WithoutNearerBoxesTheyAreThoseOfTheSequencesOwnDetections) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json document = ParseJsonFile(file);
+  for (auto& detection : document["detections"]) detection.erase("nearer_boxes");
+  std::ofstream(file) << document;
+  size_t boxes = 0;
+  for (const Detection& detection : ReadSequence(file).detections) {
+    EXPECT_EQ(detection.nearer_boxes, NearerBoxes(sequence, detection));
+    boxes += detection.nearer_boxes.size();
+  }
+  EXPECT_GT(boxes, 0u);
 }
 
 TEST_F(ArtefactFilesTest, EmptyEstimatesComeBack) {

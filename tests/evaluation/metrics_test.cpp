@@ -78,7 +78,8 @@ TEST(Metrics, TheTruthOfADetectionGoesBeforeThatOfItsObject) {
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     if (sequence.detections[i].object_index != 1) continue;
     Landmark& estimate = estimates.observations[i].hypotheses[0].landmark_in_camera;
-    estimate.frame_from_object.translation += Eigen::Vector3d(0.0, 0.0, 10.0 + 0.1 * i);
+    estimate.frame_from_object.translation +=
+        Eigen::Vector3d(0.0, 0.0, 10.0 + 0.1 * static_cast<double>(i));
     sequence.detections[i].true_landmark_in_camera = estimate;
   }
   sequence.objects[1].is_static = false;

@@ -239,6 +239,35 @@ TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
   EXPECT_GT(with, 0.9);
 }
 
+// Which edge points count is decided anew until nothing moves: from there, nothing does.
+TEST(TangencyBackEnd, SettlesWithEdges) {
+  const Sequence sequence = CuboidSequence(4, 10);
+  Sequence noisy = sequence;
+  for (Detection& detection : noisy.detections) detection.box.y_min += RandomUniform(0.0, 6.0);
+  BackEndInput input = TruthInput(noisy);
+  for (auto& prior : input.priors) prior->log_sigma = {0.2, 0.2};
+  input.edge_images = DrawnEdges(sequence);
+  Disturb(&input);
+  const MapEstimate first = OptimiseMap(input, TangencyOptions());
+  EXPECT_TRUE(first.solver.converged);
+  for (size_t i = 0; i < input.starts.size(); ++i) {
+    input.starts[i] = first.objects[i].landmark_in_world;
+  }
+  for (size_t i = 0; i < noisy.frames.size(); ++i) {
+    noisy.frames[i].world_from_camera = first.world_from_camera[i];
+  }
+  OptimiseOptions once_more = TangencyOptions();
+  once_more.odometry_rotation_sigma_deg = 1e-6;  // the poses stay
+  once_more.odometry_translation_sigma_m = 1e-9;
+  const MapEstimate second = OptimiseMap(input, once_more);
+  for (size_t i = 0; i < input.starts.size(); ++i) {
+    const Landmark& before = *first.objects[i].landmark_in_world;
+    const Landmark& after = *second.objects[i].landmark_in_world;
+    EXPECT_LT((after.Centre() - before.Centre()).norm(), 0.01 * before.half_axes.norm());
+    EXPECT_LT((after.half_axes - before.half_axes).norm(), 0.01 * before.half_axes.norm());
+  }
+}
+
 // A rigid motion of the whole world leaves the cost unchanged and moves the result.
 TEST(TangencyBackEnd, MovesWithTheWorld) {
   Sequence sequence = CuboidSequence(3, 8);

@@ -101,14 +101,17 @@ TEST(AsymmetryCost, FindsTheMirrorPlaneBesideTheCentre) {
   EXPECT_NEAR(AsymmetryCost(image, camera, landmark, texture, options), beside->asymmetry, 1e-12);
 }
 
-TEST(AsymmetryCost, RefusesALooseMirrorPlaneOnTangentPlanes) {
-  SymmetryOptions options = EverywhereInTheImage();
-  options.descriptor = Descriptor::kLinearisedDt;
+TEST(MirrorPlane, MayNotLieBesideTheCentreOfWhatIsMeasuredOnTheSurface) {
   TextureOptions texture;
+  for (const Descriptor descriptor :
+       {Descriptor::kNearestEdge3d, Descriptor::kImprovedDt, Descriptor::kLinearisedDt}) {
+    texture.mirror_plane_range = 0.1;
+    EXPECT_THROW(CheckMirrorPlane(texture, descriptor), SettingsError);
+    texture.mirror_plane_range = 0.0;
+    EXPECT_NO_THROW(CheckMirrorPlane(texture, descriptor));
+  }
   texture.mirror_plane_range = 0.1;
-  EXPECT_THROW(
-      AsymmetryCost(SparseImage(), TestCamera(), FacingView().LandmarkInCamera(), texture, options),
-      SettingsError);
+  EXPECT_NO_THROW(CheckMirrorPlane(texture, Descriptor::kDistanceTransform));
 }
 
 TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {

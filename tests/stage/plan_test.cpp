@@ -178,6 +178,9 @@ TEST_F(PlanTest, AVariantComesAfterTheOneThatItExtends) {
   EXPECT_EQ(import["border_px"], 4);
   EXPECT_EQ(import["min_observations"], ImportOptions().min_observations);
   EXPECT_EQ(import["max_time_difference_s"], 5);
+  Write("pipelines/variants/Plain.json", R"({"extends": null})");
+  EXPECT_EQ(ReadVariant(folder_ / "pipelines", "desk", "Plain").options.at("import")["border_px"],
+            ImportOptions().border_px);
 }
 
 TEST_F(PlanTest, RefusalsNameTheFile) {
@@ -206,6 +209,8 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
   ExpectRefused("Missing", {"variants/Missing.json", "known are Bad, Full, Mapped, Plain"});
   Write("pipelines/variants/Bad.json", R"({"extends": "Nowhere"})");
   ExpectRefused("Bad", {"variants/Nowhere.json"});
+  Write("pipelines/datasets/room.json", R"({"extends": "Plain"})");
+  ExpectRefused("Full", {"datasets/room.json", "'extends' is for variants only"});
   Write("pipelines/datasets/room.json", R"({"import": {"unheard_of": 1}})");
   ExpectRefused("Plain", {"datasets/room.json: import", "unheard_of"});
 }
