@@ -108,7 +108,7 @@ Sequence Joined(const Sequence& one, const Sequence& other) {
 }
 
 TEST(TangencyBackEnd, SegmentsDoNotPullOnEachOther) {
-  const Sequence one = Cuboids(3, 10);
+  const Sequence one = CuboidSequence(3, 10);
   // Wrong odometry, so that there is something to pull.
   Sequence other = SyntheticSequence(RandomScene(8, 3, 10, {Shape::kBox}), true);
   const Sequence joined = Joined(one, other);
@@ -133,7 +133,7 @@ TEST(TangencyBackEnd, SegmentsDoNotPullOnEachOther) {
 }
 
 TEST(TangencyBackEnd, WhatMovesIsNoLandmark) {
-  Sequence sequence = Cuboids(3, 10);
+  Sequence sequence = CuboidSequence(3, 10);
   sequence.objects[1].is_static = false;
   BackEndInput input = TruthInput(sequence);
   LandmarkEstimates estimates;
