@@ -93,19 +93,17 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
   objective.rounds = 3;
   objective.extra_cost = [](const Landmark&) { return 7.0; };
   const YawSweep sweep = SweepYaw(body.observation, objective, 45.0 * kDegrees);
-  ASSERT_EQ(starts.size(), 12u);
+  ASSERT_EQ(starts.size(), 16u);  // of each yaw three fits, and the cost of the result
   for (size_t i = 0; i < 4; ++i) {
-    EXPECT_TRUE(IsSameBody(starts[3 * i], *SolveAtYaw(body.observation, sweep.yaw[i]), 1e-12));
-    Landmark landmark = starts[3 * i];
-    double cost = 0.0;
+    EXPECT_TRUE(IsSameBody(starts[4 * i], *SolveAtYaw(body.observation, sweep.yaw[i]), 1e-12));
+    Landmark landmark = starts[4 * i];
     for (size_t round = 0; round < 3; ++round) {
-      EXPECT_TRUE(IsSameBody(starts[3 * i + round], landmark, 1e-9));
-      const auto fit = FitUpright(body.plane, landmark, box.terms(landmark), false);
-      landmark = fit->landmark;
-      cost = fit->cost;
+      EXPECT_TRUE(IsSameBody(starts[4 * i + round], landmark, 1e-9));
+      landmark = FitUpright(body.plane, landmark, box.terms(landmark), false)->landmark;
     }
+    EXPECT_TRUE(IsSameBody(starts[4 * i + 3], landmark, 1e-9));
     EXPECT_TRUE(IsSameBody(sweep.solutions[i]->landmark, landmark, 1e-9));
-    EXPECT_NEAR(sweep.solutions[i]->cost, cost + 7.0, 1e-9);
+    EXPECT_NEAR(sweep.solutions[i]->cost, CostAtOwnDepths(box, landmark) + 7.0, 1e-9);
   }
 }
 
