@@ -95,7 +95,7 @@ class MotionPriors {
 };
 
 std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& detection) {
-  const auto truth = ExactLandmarkInCamera(sequence, detection);
+  const auto truth = TrueLandmarkInCamera(sequence, detection);
   if (!truth) return std::nullopt;
   return YawPrior{Yaw(detection.plane_in_camera.normal, truth->frame_from_object.rotation),
                   kTrueYawSigma};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "priors/learn_shape_exponent.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "constraints/tangency.h"
@@ -19,7 +21,7 @@ double HuberLoss(double residual) {
 }
 
 double Loss(const Sequence& sequence, const Detection& detection, double shape_exponent) {
-  Landmark in_camera = ExactLandmarkInCamera(sequence, detection).value();
+  Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
   in_camera.shape_exponent = shape_exponent;
   double loss = 0.0;
   for (const BoxEdge& edge :
@@ -27,6 +29,16 @@ double Loss(const Sequence& sequence, const Detection& detection, double shape_e
     loss += HuberLoss(Tangency(edge, in_camera, TangentDepth(edge, in_camera), 0.0, nullptr));
   }
   return loss;
+}
+
+// Of a body that reaches behind the camera an edge may have no tangent point in view.
+std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>& detections) {
+  std::vector<int> in_front;
+  std::copy_if(detections.begin(), detections.end(), std::back_inserter(in_front), [&](int index) {
+    return IsInFront(
+        *TrueLandmarkInCamera(sequence, sequence.detections[static_cast<size_t>(index)]));
+  });
+  return in_front;
 }
 
 }  // namespace
@@ -54,8 +66,9 @@ std::map<int, double> LearnShapeExponents(const Sequence& sequence, int min_view
   const auto by_object = DetectionsByObject(sequence);
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     if (!sequence.objects[i].ground_truth) continue;
-    if (by_object[i].size() < static_cast<size_t>(min_views)) continue;
-    exponents[static_cast<int>(i)] = BestShapeExponent(sequence, by_object[i]);
+    const std::vector<int> usable = WhollyInFront(sequence, by_object[i]);
+    if (usable.size() < static_cast<size_t>(min_views)) continue;
+    exponents[static_cast<int>(i)] = BestShapeExponent(sequence, usable);
   }
   return exponents;
 }

@@ -13,7 +13,7 @@ namespace soslam {
 // of several of one shape, that have ground truth.
 double BestShapeExponent(const Sequence& sequence, const std::vector<int>& detections);
 
-// That of each object that has ground truth and at least `min_views` boxes, by object index.
+// That of each object that has ground truth and at least `min_views` such boxes, by object index.
 std::map<int, double> LearnShapeExponents(const Sequence& sequence, int min_views);
 
 }  // namespace soslam
