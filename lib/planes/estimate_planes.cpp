@@ -57,16 +57,12 @@ std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
 class Estimator {
  public:
   Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-            const PlanesOptions& options, int threads)
+            const CameraAttitude& attitude, const PlanesOptions& options, int threads)
       : sequence_(sequence),
         options_(options),
         threads_(threads),
-        detections_(DetectionsByObject(sequence)) {
-    std::vector<Rigid3d> poses;
-    for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-    attitude_ = AttitudeOf(poses, options.camera_roll_sigma_deg * kRadians,
-                           options.camera_pitch_sigma_deg * kRadians,
-                           options.view_correlation_deg * kRadians);
+        detections_(DetectionsByObject(sequence)),
+        attitude_(attitude) {
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       observations_.push_back(Observe(detections_[i], priors[i]));
       sparse_.push_back(Observe(SpreadOver(detections_[i], kViewsOfSearch), priors[i]));
@@ -157,8 +153,7 @@ class Estimator {
     for (const StandingBody& body : own_) {
       evidence.push_back(
           Loosened(EvidenceOf(body, pivot), HeightSigma(body, options_.height_sigma_fraction)));
-      heights.push_back(body.observation.plane_in_world.SignedDistance(pivot));
-      heights.back() = -heights.back();
+      heights.push_back(-body.observation.plane_in_world.SignedDistance(pivot));
     }
     const Levels levels = FindLevels(evidence, heights, EvidenceOf(attitude_, *reference), kMaxTilt,
                                      options_.new_plane_cost);
@@ -302,8 +297,9 @@ class Estimator {
 
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
                               const std::vector<std::optional<ShapePrior>>& priors,
-                              const PlanesOptions& options, int threads) {
-  return Estimator(sequence, priors, options, threads).Estimate();
+                              const CameraAttitude& attitude, const PlanesOptions& options,
+                              int threads) {
+  return Estimator(sequence, priors, attitude, options, threads).Estimate();
 }
 
 }  // namespace soslam

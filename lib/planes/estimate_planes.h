@@ -6,16 +6,18 @@
 
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "planes/camera_attitude.h"
 #include "planes/options.h"
 #include "planes/planes_estimate.h"
 
 namespace soslam {
 
 // The planes that the sequence's objects stand on, upright, from their boxes in several frames, the
-// trajectory and the objects' priors alone. Throws NothingUsableError when no object's views
-// determine the height of its foot (one view, or all from the same place).
+// trajectory, the objects' priors and what is known about up. Throws NothingUsableError when no
+// object's views determine the height of its foot (one view, or all from the same place).
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
                               const std::vector<std::optional<ShapePrior>>& priors,
-                              const PlanesOptions& options, int threads);
+                              const CameraAttitude& attitude, const PlanesOptions& options,
+                              int threads);
 
 }  // namespace soslam

@@ -23,6 +23,9 @@ struct PlanesOptions {
   double huber_delta = 1.0;
   double camera_roll_sigma_deg = 5.0;
   double camera_pitch_sigma_deg = 30.0;
+  bool verticals = true;
+  double vertical_sigma_deg = 1.0;
+  double vertical_min_length_px = 30.0;
   double height_sigma_fraction = 0.05;
   double new_plane_cost = 10.0;
 
@@ -48,6 +51,13 @@ struct PlanesOptions {
                "estimated: how level the cameras' x axes are held; large: anyhow");
     visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
                "estimated: how level the cameras' optical axes are held; large: anyhow");
+    visit.Flag("verticals", &verticals,
+               "estimated: look for vertical edges in the images; without it they are not read");
+    visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
+               "verticals: standard deviation of the direction of an edge; those off by more than "
+               "three are of other edges");
+    visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
+               "verticals: shorter edges are not used");
     visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
                "estimated: standard deviation of the height of an object's lowest point over its "
                "plane, as a fraction of the object's height, for bodies that are not of their "

@@ -41,8 +41,9 @@ struct ObjectSupport {
 
 struct PlanesEstimate {
   std::vector<EstimatedPlane> planes;
-  std::vector<ObjectSupport> objects;                        // of the sequence's
-  Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();  // in the world
+  std::vector<ObjectSupport> objects;  // of the sequence's
+  // In the world, before boxes are looked at.
+  Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
   std::optional<double> cost;  // of all boxes, ratios and camera attitudes
   int rounds = 0;              // of deciding who stands where
   bool settled = false;        // the last round decided as the one before

@@ -126,14 +126,16 @@ class Writer {
     }
     files.insert(files.end(), stamps.begin(), stamps.end());
     if (instance.stage == "import") files.emplace_back("$(results)/shared/dataset.txt");
-    if (instance.stage == "edges") files.emplace_back("$(results)/shared/images.txt");
+    if (instance.stage == "edges" || instance.stage == "planes") {
+      files.emplace_back("$(results)/shared/images.txt");
+    }
     if (!instance.semantic_table.empty()) files.push_back(SemanticTable(instance));
     return files;
   }
 
   static std::string Command(const StageInstance& instance) {
     std::string command = "soslam-" + instance.stage;
-    if (instance.stage == "import" || instance.stage == "edges") {
+    if (instance.stage == "import" || instance.stage == "planes" || instance.stage == "edges") {
       command += " --dataset $(dataset)";
     }
     for (const auto& [argument, source] : instance.inputs) {

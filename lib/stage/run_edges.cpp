@@ -15,29 +15,12 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/read_image.h"
+#include "stage/image_paths.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path ImagePath(const fs::path& dataset, const Frame& frame, const fs::path& sequence_file) {
-  const fs::path relative = fs::path(frame.image).lexically_normal();
-  if (frame.image.empty() || relative.is_absolute() || *relative.begin() == "..") {
-    throw InputError(
-        fmt::format("{}: frame {}: image is '{}'; expected a path inside the dataset folder",
-                    sequence_file.string(), frame.id, frame.image));
-  }
-  return dataset / relative;
-}
-
-std::vector<fs::path> ImagePaths(const Sequence& sequence, const StageFiles& files) {
-  std::vector<fs::path> images;
-  for (const Frame& frame : sequence.frames) {
-    images.push_back(ImagePath(files.at("dataset"), frame, files.at("sequence")));
-  }
-  return images;
-}
 
 // Nearest edges are stored as 16-bit coordinates.
 void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
@@ -55,7 +38,7 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   const fs::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file);
   CheckCamera(sequence.camera, sequence_file);
-  const std::vector<fs::path> images = ImagePaths(sequence, files);
+  const std::vector<fs::path> images = ImagePaths(sequence, files.at("dataset"), sequence_file);
   if (images.empty()) {
     throw NothingUsableError(sequence_file.string() + ": has no frames; expected at least one");
   }

@@ -6,9 +6,9 @@
 
 namespace soslam {
 
-// soslam-planes: files "sequence" and "table" to "output", the sequence with estimated planes, and
-// "report", planes.json. Throws SettingsError for planes = given, NothingUsableError as
-// EstimatePlanes.
+// soslam-planes: files "sequence", "table" and, with verticals, the images of folder "dataset" to
+// "output", the sequence with estimated planes, and "report", planes.json. Throws SettingsError for
+// planes = given and for verticals without a dataset, NothingUsableError as EstimatePlanes.
 void RunPlanes(const PlanesOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

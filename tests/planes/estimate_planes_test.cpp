@@ -34,7 +34,10 @@ Scene CuboidScene(int seed, int objects) {
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {
-  return EstimatePlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), options, 2);
+  std::vector<Rigid3d> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  const CameraAttitude attitude = AttitudeOf(poses, 5.0 * kDegrees, 30.0 * kDegrees, 0.3);
+  return EstimatePlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), attitude, options, 2);
 }
 
 void ExpectGiven(const Sequence& sequence, const PlanesEstimate& estimate, double angle,

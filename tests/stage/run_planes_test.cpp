@@ -23,6 +23,7 @@ class RunPlanesTest : public testing::Test {
  protected:
   RunPlanesTest() {
     options_.planes = PlaneSource::kEstimated;
+    options_.verticals = false;  // there are no images
     json labels;
     for (const Object& object : sequence_.objects) {
       const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
@@ -109,6 +110,11 @@ TEST_F(RunPlanesTest, CameraHeightIsTheGroundOfEveryFrame) {
 TEST_F(RunPlanesTest, RefusesGivenPlanes) {
   options_.planes = PlaneSource::kGiven;
   ExpectError<SettingsError>([&] { Run(); }, {"given", "estimated or camera_height"});
+}
+
+TEST_F(RunPlanesTest, VerticalsNeedImages) {
+  options_.verticals = true;
+  ExpectError<SettingsError>([&] { Run(); }, {"--dataset", "verticals = false"});
 }
 
 TEST_F(RunPlanesTest, RefusesASequenceSeenFromOnePlace) {
