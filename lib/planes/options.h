@@ -26,6 +26,7 @@ struct PlanesOptions {
   bool verticals = true;
   double vertical_sigma_deg = 1.0;
   double vertical_min_length_px = 30.0;
+  double odometry_rotation_sigma_deg = 0.2;
   double height_sigma_fraction = 0.05;
   double new_plane_cost = 10.0;
 
@@ -58,6 +59,10 @@ struct PlanesOptions {
                "three are of other edges");
     visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
                "verticals: shorter edges are not used");
+    visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 90.0},
+               "verticals: standard deviation of the odometry between two frames about each "
+               "horizontal axis; its drift is taken out before planes are estimated; 0: it has "
+               "none");
     visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
                "estimated: standard deviation of the height of an object's lowest point over its "
                "plane, as a fraction of the object's height, for bodies that are not of their "

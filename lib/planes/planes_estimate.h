@@ -13,8 +13,9 @@ namespace soslam {
 
 struct EstimatedPlane {
   Plane plane_in_world;
-  Eigen::Vector3d point_in_world;   // on the plane, among what stands on it
-  Eigen::Vector3d x_axis_in_world;  // in the plane
+  Eigen::Vector3d point_in_world =
+      Eigen::Vector3d::Zero();  // on the plane, among what stands on it
+  Eigen::Vector3d x_axis_in_world = Eigen::Vector3d::UnitX();  // in the plane
   // Of the plane's turns (rad) about x_axis_in_world and normal x x_axis_in_world through the
   // point, and of its rise (m) along the normal; none where it is not known.
   std::optional<Eigen::Matrix3d> covariance;

@@ -74,6 +74,11 @@ class Verticals {
 
 }  // namespace
 
+Eigen::Matrix3d InformationOfVerticals(const Camera& camera, const SegmentView& view, double sigma,
+                                       const Eigen::Vector3d& up_in_world) {
+  return Verticals(PlanesOf(camera, {view}, sigma, 0.0), sigma).Information(up_in_world);
+}
+
 CameraAttitude WithVerticals(const CameraAttitude& attitude, const Camera& camera,
                              const std::vector<SegmentView>& views, double sigma,
                              double correlation_rad, double max_tilt) {

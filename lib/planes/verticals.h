@@ -17,6 +17,11 @@ struct SegmentView {
   Rigid3d world_from_camera;
 };
 
+// What one camera's segments say about up, near `up_in_world`, as CameraAttitude::information; see
+// WithVerticals. The camera counts as one.
+Eigen::Matrix3d InformationOfVerticals(const Camera& camera, const SegmentView& view, double sigma,
+                                       const Eigen::Vector3d& up_in_world);
+
 // What is made by people has vertical edges. The planes through a camera's centre and the images of
 // vertical edges contain the up direction. Each segment counts by its length, in proportion to
 // segments of a tenth of the image's height, with this standard deviation (rad) of the angle

@@ -14,7 +14,7 @@
 #include "image/read_image.h"
 #include "planes/camera_height.h"
 #include "planes/estimate_planes.h"
-#include "planes/verticals.h"
+#include "planes/level_trajectory.h"
 #include "stage/image_paths.h"
 
 namespace soslam {
@@ -42,39 +42,53 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
   return views;
 }
 
-CameraAttitude Attitude(const Sequence& sequence, const PlanesOptions& options,
-                        const StageFiles& files, int threads) {
+// What is known about up, and the sequence's poses with the same up in all frames.
+LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& options,
+                            const StageFiles& files, int threads) {
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  const double correlation = options.view_correlation_deg * kRadians;
-  const CameraAttitude attitude =
-      AttitudeOf(poses, options.camera_roll_sigma_deg * kRadians,
-                 options.camera_pitch_sigma_deg * kRadians, correlation);
-  if (!options.verticals) return attitude;
-  return WithVerticals(attitude, sequence.camera,
-                       ViewsOfSegments(sequence, options, files, threads),
-                       options.vertical_sigma_deg * kRadians, correlation, kMaxTiltOfVerticals);
-}
-
-PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options,
-                        const StageFiles& files, int threads) {
-  if (options.planes == PlaneSource::kCameraHeight) {
-    return PlanesBelowCameras(sequence, options.camera_height_m);
+  LevelOptions level;
+  level.roll_sigma = options.camera_roll_sigma_deg * kRadians;
+  level.pitch_sigma = options.camera_pitch_sigma_deg * kRadians;
+  level.vertical_sigma = options.vertical_sigma_deg * kRadians;
+  level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadians;
+  level.correlation_rad = options.view_correlation_deg * kRadians;
+  if (!options.verticals) {
+    return {poses, AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad)};
   }
-  const SemanticTable table = ReadSemanticTable(files.at("table"));
-  return EstimatePlanes(sequence, ObjectPriors(sequence, table, RatioPrior::kTable),
-                        Attitude(sequence, options, files, threads), options, threads);
+  return Level(sequence.camera, ViewsOfSegments(sequence, options, files, threads), level);
 }
 
-// With the camera's height it is the ground in every frame, whatever the trajectory says.
-Sequence Apply(const Sequence& sequence, const PlanesEstimate& estimate,
-               const PlanesOptions& options) {
-  Sequence with_planes = WithPlanes(sequence, estimate);
-  if (options.planes != PlaneSource::kCameraHeight) return with_planes;
-  for (Detection& detection : with_planes.detections) {
+struct Result {
+  PlanesEstimate estimate;
+  Sequence sequence;
+};
+
+Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,
+                 int threads) {
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
+  const LevelTrajectory trajectory = LevelFrames(sequence, options, files, threads);
+  Sequence level = sequence;
+  for (size_t i = 0; i < level.frames.size(); ++i) {
+    level.frames[i].world_from_camera = trajectory.world_from_camera[i];
+  }
+  Result result;
+  result.estimate = EstimatePlanes(level, ObjectPriors(sequence, table, RatioPrior::kTable),
+                                   trajectory.attitude, options, threads);
+  result.sequence = WithPlanes(std::move(level), result.estimate);
+  result.sequence.frames = sequence.frames;  // odometry stays what was measured
+  return result;
+}
+
+// In every frame it is the ground, whatever the trajectory says.
+Result FromCameraHeight(const Sequence& sequence, const PlanesOptions& options) {
+  Result result;
+  result.estimate = PlanesBelowCameras(sequence, options.camera_height_m);
+  result.sequence = WithPlanes(sequence, result.estimate);
+  for (Detection& detection : result.sequence.detections) {
     detection.plane_in_camera = GroundInCamera(options.camera_height_m);
   }
-  return with_planes;
+  return result;
 }
 
 }  // namespace
@@ -85,11 +99,13 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
         "planes is given; expected estimated or camera_height (given planes need no stage)");
   }
   const Sequence sequence = ReadSequence(files.at("sequence"));
-  const PlanesEstimate estimate = Estimate(sequence, options, files, threads);
+  const Result result = options.planes == PlaneSource::kCameraHeight
+                            ? FromCameraHeight(sequence, options)
+                            : FromBoxes(sequence, options, files, threads);
   const ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
-  WritePlanes(files.at("report"), estimate, sequence, info);
-  WriteSequence(files.at("output"), Apply(sequence, estimate, options), info);
-  fmt::print("{}: {} planes of {} objects\n", sequence.name, estimate.planes.size(),
+  WritePlanes(files.at("report"), result.estimate, sequence, info);
+  WriteSequence(files.at("output"), result.sequence, info);
+  fmt::print("{}: {} planes of {} objects\n", sequence.name, result.estimate.planes.size(),
              sequence.objects.size());
 }
 
