@@ -18,7 +18,11 @@ constexpr double kSettled = 1e-6;  // relative change of the half axes
 // A direction that is known so much less than the best known one is not known at all.
 constexpr double kMinInformationShare = 1e-9;
 
-using Unknowns = Eigen::Matrix<double, 5, 1>;  // foot x, foot y, a, b, c
+// Foot x, foot y, a, b, c and, where it is free, the foot's height over the plane.
+constexpr int kMaxUnknowns = 6;
+using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxUnknowns, 1>;
+using NormalMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxUnknowns, kMaxUnknowns>;
 
 bool HasRatio(const MultiViewObservation& observation) {
   return observation.prior && !observation.ratio_is_free;
@@ -39,9 +43,11 @@ Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
       right_side -= offset * normal;
     }
   }
-  const Plane& plane = observation.plane_in_world;
-  normal_matrix += plane.normal * plane.normal.transpose();
-  right_side -= plane.offset * plane.normal;
+  if (!observation.height_is_free) {
+    const Plane& plane = observation.plane_in_world;
+    normal_matrix += plane.normal * plane.normal.transpose();
+    right_side -= plane.offset * plane.normal;
+  }
   return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
 }
 
@@ -85,9 +91,11 @@ class LinearViews {
     landmark_.half_axes *= sum / static_cast<double>(observation_.views.size());
   }
 
+  Eigen::Index NumUnknowns() const { return observation_.height_is_free ? 6 : 5; }
+
   bool Step(bool is_first) {
-    Eigen::Matrix<double, 5, 5> normal_matrix = Eigen::Matrix<double, 5, 5>::Zero();
-    Unknowns right_side = Unknowns::Zero();
+    NormalMatrix normal_matrix = NormalMatrix::Zero(NumUnknowns(), NumUnknowns());
+    Unknowns right_side = Unknowns::Zero(NumUnknowns());
     const auto add = [&](const Unknowns& row, double constant, double weight) {
       normal_matrix += weight * row * row.transpose();
       right_side -= weight * constant * row;
@@ -97,16 +105,17 @@ class LinearViews {
       for (const BoxEdge& edge : view.edges) AddEdge(view, edge, in_camera, is_first, add);
     }
     if (HasRatio(observation_)) AddRatio(add);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(normal_matrix);
-    const Unknowns& information = eigen.eigenvalues();  // ascending, 1 / m^2
-    if (!(information(0) > kMinInformationShare * information(4))) return false;
+    const Eigen::SelfAdjointEigenSolver<NormalMatrix> eigen(normal_matrix);
+    const Unknowns information = eigen.eigenvalues();  // ascending, 1 / m^2
+    if (!(information(0) > kMinInformationShare * information(NumUnknowns() - 1))) return false;
     const Unknowns unknowns = eigen.eigenvectors() * information.cwiseInverse().asDiagonal() *
                               eigen.eigenvectors().transpose() * right_side;
-    if (!unknowns.allFinite() || !(unknowns.tail<3>().minCoeff() > 0.0)) return false;
+    if (!unknowns.allFinite() || !(unknowns.segment<3>(2).minCoeff() > 0.0)) return false;
     const Plane& plane = observation_.plane_in_world;
-    landmark_.half_axes = unknowns.tail<3>();
-    landmark_.frame_from_object.translation = -plane.offset * plane.normal + unknowns(0) * x_ +
-                                              unknowns(1) * y_ + unknowns(4) * plane.normal;
+    landmark_.half_axes = unknowns.segment<3>(2);
+    const double height = observation_.height_is_free ? unknowns(5) : 0.0;
+    landmark_.frame_from_object.translation =
+        unknowns(0) * x_ + unknowns(1) * y_ + (unknowns(4) + height - plane.offset) * plane.normal;
     return true;
   }
 
@@ -126,10 +135,11 @@ class LinearViews {
     const Eigen::Vector3d normal = view.camera_from_world.rotation.conjugate() * edge.plane;
     const SupportValue support = SupportFunction(landmark_.half_axes, landmark_.shape_exponent,
                                                  world_from_object_.conjugate() * normal);
-    Unknowns row;
-    row << normal.dot(x_), normal.dot(y_),
+    Unknowns row(NumUnknowns());
+    row.head<5>() << normal.dot(x_), normal.dot(y_),
         support.by_log_half_axes.cwiseQuotient(landmark_.half_axes);
     row(4) += normal.dot(plane.normal);
+    if (observation_.height_is_free) row(5) = normal.dot(plane.normal);
     const double constant = edge.plane.dot(view.camera_from_world.translation) -
                             plane.offset * normal.dot(plane.normal);
     const double scale = 1.0 / (depth * edge.sigma_px);
@@ -144,7 +154,7 @@ class LinearViews {
     std::array<Unknowns, 2> rows;
     for (int i = 0; i < 2; ++i) {
       const double scale = 1.0 / (prior.log_sigma[i] * prior.ratio[i] * landmark_.half_axes.z());
-      rows[static_cast<size_t>(i)].setZero();
+      rows[static_cast<size_t>(i)] = Unknowns::Zero(NumUnknowns());
       rows[static_cast<size_t>(i)](2 + i) = scale;
       rows[static_cast<size_t>(i)](4) = -scale * prior.ratio[i];
     }
@@ -185,9 +195,10 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior,
                                               double detection_sigma_fraction,
-                                              double view_correlation_rad) {
+                                              double view_correlation_rad, bool height_is_free) {
   MultiViewObservation observation;
   observation.prior = prior;
+  observation.height_is_free = height_is_free;
   for (const int index : detections) {
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];

@@ -27,6 +27,7 @@ struct MultiViewObservation {
   Plane plane_in_world;
   std::optional<ShapePrior> prior;  // without one the ratio is free, the shape a cuboid's
   bool ratio_is_free = false;       // also with one
+  bool height_is_free = false;      // the plane is known by its normal only
   double axes_weight = 0.0;         // see AxisTerm
   double huber_delta = 1.0;
 
@@ -38,7 +39,8 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior,
                                               double detection_sigma_fraction,
-                                              double view_correlation_rad);
+                                              double view_correlation_rad,
+                                              bool height_is_free = false);
 
 // What a landmark in the world is fitted to; tangent points are at their depths on `start`. Views
 // that it is not wholly in front of are left out.
@@ -48,15 +50,16 @@ LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark&
 // least squares solution over all views with the prior's ratio as soft equations, repeated with
 // each edge's Huber weight (residuals in px / sigma), tangent depth and, for other exponents, the
 // derivative of the support function by the half axes, at the solution before. Unlike the SVD of
-// dual quadrics it does not need a wide baseline: plane and ratio hold what parallax does not. None
-// when the views do not determine the body, or it would not be in front of all cameras.
+// dual quadrics it does not need a wide baseline: plane and ratio hold what parallax does not. With
+// a free height that of the foot is one more linear unknown. None when the views do not determine
+// the body, or it would not be in front of all cameras.
 std::optional<UprightSolution> SolveViewsAtYaw(const MultiViewObservation& observation, double yaw);
 
 // The local optima of these over half a turn in steps (rad), lowest cost first; landmarks in the
 // world.
 std::vector<UprightSolution> SweepViews(const MultiViewObservation& observation, double step);
 
-// The best of these, polished by Levenberg-Marquardt over yaw as well.
+// The best of these, polished by Levenberg-Marquardt over yaw as well. Not for a free height.
 std::optional<UprightSolution> SolveViews(const MultiViewObservation& observation, double step);
 
 }  // namespace soslam

@@ -15,6 +15,7 @@
 #include "initialisation/options.h"
 #include "mapping/options.h"
 #include "orientation/options.h"
+#include "planes/options.h"
 #include "stage/settings_file.h"
 
 namespace soslam {
@@ -35,11 +36,18 @@ struct PipelineStage {
   const char* name;
   json (*resolve)(const json& values, const std::string& where);
   std::vector<std::string> needs;  // stages whose artefacts it reads
+  // Whether its (resolved) settings ask for it; null for a stage that 'stages' lists.
+  bool (*is_asked_for)(const json& settings) = nullptr;
 };
 
-const std::array<PipelineStage, 6>& Stages() {
-  static const std::array<PipelineStage, 6> stages = {{
+bool AsksForPlanes(const json& settings) {
+  return settings.at("planes") != kPlaneSourceNames[static_cast<size_t>(PlaneSource::kGiven)];
+}
+
+const std::array<PipelineStage, 7>& Stages() {
+  static const std::array<PipelineStage, 7> stages = {{
       {"import", &Resolve<ImportOptions>, {}},
+      {"planes", &Resolve<PlanesOptions>, {"import"}, &AsksForPlanes},
       {"edges", &Resolve<EdgesOptions>, {"import"}},
       {"initialise", &Resolve<InitialiseOptions>, {"import"}},
       {"refine", &Resolve<OrientationOptions>, {"import", "initialise", "edges"}},
@@ -55,15 +63,25 @@ const PipelineStage* FindStage(const std::string& name) {
   return found == Stages().end() ? nullptr : &*found;
 }
 
+// Those that 'stages' may list.
+std::vector<std::string> ListedStages() {
+  std::vector<std::string> names;
+  for (const PipelineStage& stage : Stages()) {
+    if (stage.is_asked_for == nullptr) names.emplace_back(stage.name);
+  }
+  return names;
+}
+
 void CheckStageList(const json& stages, const std::string& file) {
   std::set<std::string> seen;
   if (!stages.is_array() || stages.empty()) {
     throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
   }
   for (const json& stage : stages) {
-    if (!stage.is_string() || FindStage(stage) == nullptr) {
+    const std::vector<std::string> listed = ListedStages();
+    if (!stage.is_string() || std::find(listed.begin(), listed.end(), stage) == listed.end()) {
       throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
-                                      fmt::join(PipelineStages(), ", ")));
+                                      fmt::join(listed, ", ")));
     }
     if (!seen.insert(stage).second) {
       throw SettingsError(fmt::format("{}: 'stages' has {} twice", file, stage.dump()));
@@ -188,9 +206,14 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   CheckStageList(merged.value("stages", json()), file);
   settings.stages = merged.at("stages").get<std::set<std::string>>();
   settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
-  for (const std::string& stage : settings.stages) {
-    settings.options[stage] =
-        FindStage(stage)->resolve(merged.value(stage, json::object()), file + ": " + stage);
+  for (const PipelineStage& stage : Stages()) {
+    const bool is_listed = settings.stages.count(stage.name) > 0;
+    if (!is_listed && stage.is_asked_for == nullptr) continue;
+    const json resolved = stage.resolve(merged.value(stage.name, json::object()),
+                                        fmt::format("{}: {}", file, stage.name));
+    if (!is_listed && !stage.is_asked_for(resolved)) continue;
+    settings.stages.insert(stage.name);
+    settings.options[stage.name] = resolved;
   }
   CheckNeeds(settings, file);
   return settings;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace soslam {
@@ -80,12 +81,16 @@ class Writer {
   std::string VariantRules(const VariantChain& variant) const {
     const std::string folder = "$(results)/" + variant.name;
     std::vector<std::string> stamps, links, targets;
+    std::map<std::string, std::string> last_maker;  // of each file: what later stages read
     for (const std::string& id : variant.instances) {
       stamps.push_back(Shared(id, "done"));
       for (const StageOutput& output : OutputsOfStage(plan_.Instance(id).stage)) {
-        links.push_back(folder + "/" + output.file);
-        targets.push_back("../shared/" + id + "/" + output.file);
+        last_maker[output.file] = id;
       }
+    }
+    for (const auto& [file, id] : last_maker) {
+      links.push_back(folder + "/" + file);
+      targets.push_back("../shared/" + id + "/" + file);
     }
     return fmt::format(
         "\n{variant}: {folder}/.linked\n"
@@ -121,14 +126,16 @@ class Writer {
     }
     files.insert(files.end(), stamps.begin(), stamps.end());
     if (instance.stage == "import") files.emplace_back("$(results)/shared/dataset.txt");
-    if (instance.stage == "edges") files.emplace_back("$(results)/shared/images.txt");
+    if (instance.stage == "edges" || instance.stage == "planes") {
+      files.emplace_back("$(results)/shared/images.txt");
+    }
     if (!instance.semantic_table.empty()) files.push_back(SemanticTable(instance));
     return files;
   }
 
   static std::string Command(const StageInstance& instance) {
     std::string command = "soslam-" + instance.stage;
-    if (instance.stage == "import" || instance.stage == "edges") {
+    if (instance.stage == "import" || instance.stage == "planes" || instance.stage == "edges") {
       command += " --dataset $(dataset)";
     }
     for (const auto& [argument, source] : instance.inputs) {

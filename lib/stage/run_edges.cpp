@@ -14,35 +14,13 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "dataset/image_path.h"
 #include "image/read_image.h"
+#include "stage/frame_images.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct FrameImage {
-  const Frame* frame;
-  fs::path path;
-};
-
-// Of the frames that have one.
-std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& files) {
-  std::vector<FrameImage> images;
-  for (const Frame& frame : sequence.frames) {
-    if (frame.image.empty()) continue;
-    images.push_back(
-        {&frame, ImagePath(files.at("dataset"), frame.image,
-                           fmt::format("{}: frame {}", files.at("sequence").string(), frame.id))});
-  }
-  if (images.empty()) {
-    throw NothingUsableError(
-        fmt::format("{}: none of its {} frames has an image; expected at least one",
-                    files.at("sequence").string(), sequence.frames.size()));
-  }
-  return images;
-}
 
 // Nearest edges are stored as 16-bit coordinates.
 void CheckCamera(const Camera& camera, const fs::path& sequence_file) {

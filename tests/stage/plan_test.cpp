@@ -99,6 +99,33 @@ TEST_F(PlanTest, StagesReadTheLatestLandmarks) {
   EXPECT_EQ(input(2, "evaluate", "landmarks"), "map.json");
 }
 
+TEST_F(PlanTest, PlanesAreAStageWhereASettingAsksForThem) {
+  EXPECT_EQ(Id("Mapped", "planes"), "");
+  const std::string import = Id("Mapped", "import");
+  const std::string edges = Id("Full", "edges");
+  Write("pipelines/datasets/room.json", R"({"planes": {"planes": "estimated"}})");
+  const std::string planes = Id("Mapped", "planes");
+  EXPECT_NE(planes, "");
+  EXPECT_EQ(Id("Mapped", "import"), import);
+  EXPECT_EQ(Id("Full", "edges"), edges);  // images do not depend on planes
+  const Plan plan = Make({"Full"});
+  const auto sequence_of = [&](const std::string& stage) {
+    return plan.Instance(Id("Full", stage)).inputs.at("sequence").instance;
+  };
+  EXPECT_EQ(sequence_of("planes"), import);
+  EXPECT_EQ(sequence_of("edges"), import);
+  for (const char* stage : {"initialise", "refine", "optimise", "evaluate"}) {
+    EXPECT_EQ(sequence_of(stage), planes) << stage;
+  }
+  EXPECT_FALSE(plan.Instance(planes).semantic_table.empty());
+}
+
+TEST_F(PlanTest, ListsOfStagesCannotAskForPlanes) {
+  Write("pipelines/variants/Listed.json",
+        R"({"stages": ["import", "planes", "initialise", "evaluate"]})");
+  ExpectRefused("Listed", {"Listed.json", "planes", "expected one of import, edges"});
+}
+
 TEST_F(PlanTest, InputsComeBeforeWhatReadsThem) {
   std::set<std::string> seen;
   for (const StageInstance& instance : Make({"Full", "Plain"}).instances) {

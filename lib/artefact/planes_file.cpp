@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/planes_file.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "artefact/json_geometry.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+json VectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+json OrNull(const std::optional<double>& value) { return value ? json(*value) : json(); }
+
+json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) {
+  if (!error) return {};
+  return {{"plane", given.planes[static_cast<size_t>(error->given_plane_index)].id},
+          {"angle_deg", kDegPerRad * error->angle},
+          {"offset_m", error->offset}};
+}
+
+json PlaneToJson(const EstimatedPlane& plane) {
+  json covariance, tilt_sigma, height_sigma;
+  if (plane.covariance) {
+    covariance = json::array();
+    for (const auto& row : plane.covariance->rowwise()) covariance.push_back(VectorToJson(row));
+    const Eigen::Matrix2d of_turns = plane.covariance->topLeftCorner<2, 2>();
+    tilt_sigma = kDegPerRad * std::sqrt(of_turns.trace());
+    height_sigma = std::sqrt((*plane.covariance)(2, 2));
+  }
+  return {{"plane_in_world", plane.plane_in_world},
+          {"point_in_world", VectorToJson(plane.point_in_world)},
+          {"x_axis_in_world", VectorToJson(plane.x_axis_in_world)},
+          {"covariance", covariance},
+          {"tilt_sigma_deg", tilt_sigma},
+          {"height_sigma_m", height_sigma}};
+}
+
+json SupportToJson(const ObjectSupport& support, const Object& object) {
+  return {{"object", object.id},
+          {"label", object.label},
+          {"plane", support.plane_index},
+          {"reason", kSupportReasonNames[static_cast<size_t>(support.reason)]},
+          {"height_m", OrNull(support.height)},
+          {"height_sigma_m", OrNull(support.height_sigma)},
+          {"cost", OrNull(support.cost)}};
+}
+
+}  // namespace
+
+void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
+                 const Sequence& given, const ArtefactInfo& info) {
+  json body = {{"dataset", given.name},
+               {"planes", json::array()},
+               {"objects", json::array()},
+               {"up_of_cameras_in_world", VectorToJson(estimate.up_of_cameras)},
+               {"cost", OrNull(estimate.cost)},
+               {"rounds", estimate.rounds},
+               {"settled", estimate.settled}};
+  for (size_t i = 0; i < estimate.planes.size(); ++i) {
+    const int index = static_cast<int>(i);
+    json plane = PlaneToJson(estimate.planes[i]);
+    plane["plane"] = index;
+    plane["error"] = ErrorToJson(CompareWithGiven(given, estimate, index), given);
+    body["planes"].push_back(std::move(plane));
+  }
+  for (size_t i = 0; i < estimate.objects.size(); ++i) {
+    body["objects"].push_back(SupportToJson(estimate.objects[i], given.objects[i]));
+  }
+  WriteArtefact(path, "planes", info, std::move(body));
+}
+
+}  // namespace soslam

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "artefact/json_file.h"
+#include "model/sequence.h"
+#include "planes/planes_estimate.h"
+
+namespace soslam {
+
+// Writes planes.json (kind "planes", schemas/planes.schema.json). `given`: the sequence that the
+// planes were estimated from, with the planes that it gives. Errors as WriteArtefact.
+void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
+                 const Sequence& given, const ArtefactInfo& info);
+
+}  // namespace soslam

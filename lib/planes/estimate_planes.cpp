@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/estimate_planes.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "planes/levels.h"
+#include "planes/standing_bodies.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+// Where up may be before boxes are looked at: this far (standard deviations) from the cameras' up.
+constexpr double kMaxSigmas = 2.5;
+constexpr double kMaxTiltOfCameras = 45.0 * kRadians;
+constexpr double kTiltStep = 7.5 * kRadians;
+// For that search, of each object.
+constexpr size_t kViewsOfSearch = 12;
+constexpr double kYawStepOfSearch = 6.0 * kRadians;
+// A direction of up in which an object has no body is worse than any in which it has one.
+constexpr double kCostWithoutBody = 1e4;
+
+constexpr double kYawStep = 3.0 * kRadians;
+constexpr int kMaxRounds = 10;
+// Either way, of deciding who stands where.
+constexpr double kMaxTilt = 8.0 * kRadians;
+// An object whose height is known no better than to this share of its size does not decide.
+constexpr double kMaxHeightSigmaBySize = 1.0;
+
+// Directions around the cameras' up, itself first.
+std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
+  const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
+  const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
+  const int steps = static_cast<int>(kMaxTiltOfCameras / kTiltStep);
+  std::vector<Eigen::Vector3d> candidates = {attitude.up_in_world};
+  for (int i = -steps; i <= steps; ++i) {
+    for (int k = -steps; k <= steps; ++k) {
+      const Eigen::Vector3d turn(i * kTiltStep, k * kTiltStep, 0.0);
+      if ((i == 0 && k == 0) || turn.norm() > kMaxTiltOfCameras) continue;
+      const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
+      if (up.dot(attitude.information * up) - lowest > kMaxSigmas * kMaxSigmas) continue;
+      candidates.push_back(up);
+    }
+  }
+  return candidates;
+}
+
+class Estimator {
+ public:
+  Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
+            const CameraAttitude& attitude, const PlanesOptions& options, int threads)
+      : sequence_(sequence),
+        options_(options),
+        threads_(threads),
+        detections_(DetectionsByObject(sequence)),
+        attitude_(attitude) {
+    for (size_t i = 0; i < sequence.objects.size(); ++i) {
+      observations_.push_back(Observe(detections_[i], priors[i]));
+      sparse_.push_back(Observe(SpreadOver(detections_[i], kViewsOfSearch), priors[i]));
+    }
+  }
+
+  PlanesEstimate Estimate() {
+    PlanesEstimate estimate;
+    estimate.up_of_cameras = attitude_.up_in_world;
+    Plane reference{SearchUp(), 0.0};
+    std::vector<int> before;
+    for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
+      FindOwnHeights(reference.normal);
+      Decide(&reference);
+      RefineAll();
+      estimate.settled = before == deciding_level_;
+      before = deciding_level_;
+      reference = standing_.planes.front();
+    }
+    Write(&estimate);
+    return estimate;
+  }
+
+ private:
+  std::optional<MultiViewObservation> Observe(const std::vector<int>& detections,
+                                              const std::optional<ShapePrior>& prior) const {
+    if (detections.empty()) return std::nullopt;
+    MultiViewObservation observation =
+        MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction,
+                                 options_.view_correlation_deg * kRadians, /*height_is_free=*/true);
+    observation.huber_delta = options_.huber_delta;
+    return observation;
+  }
+
+  // Of the directions that the cameras leave open, the one in which upright bodies of any height
+  // explain the boxes best.
+  Eigen::Vector3d SearchUp() const {
+    const std::vector<Eigen::Vector3d> candidates = UpCandidates(attitude_);
+    std::vector<double> costs(candidates.size());
+    ParallelFor(static_cast<int>(candidates.size()), threads_, [&](int i) {
+      const Eigen::Vector3d& up = candidates[static_cast<size_t>(i)];
+      double cost = 0.5 * up.dot(attitude_.information * up);
+      for (auto observation : sparse_) {
+        if (!observation) continue;
+        observation->plane_in_world = {up, 0.0};
+        const auto optima = SweepViews(*observation, kYawStepOfSearch);
+        cost += optima.empty() ? kCostWithoutBody : optima.front().cost;
+      }
+      costs[static_cast<size_t>(i)] = cost;
+    });
+    const auto lowest = std::min_element(costs.begin(), costs.end());
+    return candidates[static_cast<size_t>(lowest - costs.begin())];
+  }
+
+  // The bodies whose own views determine the height of their foot, the normal being given.
+  void FindOwnHeights(const Eigen::Vector3d& normal) {
+    std::vector<std::optional<StandingBody>> found(observations_.size());
+    ParallelFor(static_cast<int>(found.size()), threads_, [&](int i) {
+      const auto index = static_cast<size_t>(i);
+      if (!observations_[index]) return;
+      auto body = BodyOfFreeHeight(*observations_[index], normal, kYawStep);
+      if (!body) return;
+      const double information = EvidenceOf(*body, body->landmark.Centre()).information(2, 2);
+      const double size = 2.0 * body->landmark.half_axes.maxCoeff();
+      if (information * std::pow(kMaxHeightSigmaBySize * size, 2) > 1.0) found[index] = body;
+    });
+    deciding_.clear();
+    own_.clear();
+    for (size_t i = 0; i < found.size(); ++i) {
+      if (!found[i]) continue;
+      deciding_.push_back(i);
+      own_.push_back(*found[i]);
+    }
+    if (deciding_.empty()) {
+      throw NothingUsableError(fmt::format(
+          "{}: no object's boxes determine the height of the plane that it stands on; expected an "
+          "object seen from several places, or planes = given",
+          sequence_.name));
+    }
+  }
+
+  // Which of these bodies share a plane, and the planes.
+  void Decide(Plane* reference) {
+    const Eigen::Vector3d pivot = MiddleOfFeet(own_);
+    *reference = {reference->normal, -reference->normal.dot(pivot)};
+    std::vector<PlaneEvidence> evidence;
+    std::vector<double> heights;
+    for (const StandingBody& body : own_) {
+      evidence.push_back(
+          Loosened(EvidenceOf(body, pivot), HeightSigma(body, options_.height_sigma_fraction)));
+      heights.push_back(-body.observation.plane_in_world.SignedDistance(pivot));
+    }
+    const Levels levels = FindLevels(evidence, heights, EvidenceOf(attitude_, *reference), kMaxTilt,
+                                     options_.new_plane_cost);
+    deciding_level_ = levels.level_of;
+    standing_ = {own_, levels.level_of, {}, attitude_, options_.height_sigma_fraction};
+    for (const double height : levels.heights) {
+      standing_.planes.push_back(
+          Moved(*reference, pivot, {levels.tilt.x(), levels.tilt.y(), height}));
+    }
+    for (size_t i = 0; i < own_.size(); ++i) {
+      StandingBody& body = standing_.bodies[i];
+      const Plane own = body.observation.plane_in_world;
+      const auto level = static_cast<size_t>(levels.level_of[i]);
+      body.landmark =
+          Moved(own, pivot, {levels.tilt.x(), levels.tilt.y(), levels.heights[level] - heights[i]},
+                body.landmark);
+      body.observation.plane_in_world = standing_.planes[level];
+    }
+  }
+
+  void RefineAll() {
+    refined_.clear();
+    if (options_.parallel) {
+      refined_.push_back(Refine(&standing_, threads_));
+      return;
+    }
+    for (size_t plane = 0; plane < standing_.planes.size(); ++plane) {
+      StandingBodies alone{
+          {}, {}, {standing_.planes[plane]}, attitude_, options_.height_sigma_fraction};
+      for (size_t i = 0; i < standing_.bodies.size(); ++i) {
+        if (standing_.plane_of[i] == static_cast<int>(plane)) {
+          alone.bodies.push_back(standing_.bodies[i]);
+          alone.plane_of.push_back(0);
+        }
+      }
+      refined_.push_back(Refine(&alone, threads_));
+      standing_.planes[plane] = alone.planes.front();
+    }
+  }
+
+  // The covariance of one plane's motion, through refined_'s pivot.
+  Eigen::Matrix3d CovarianceOf(size_t plane) const {
+    const RefinedPlanes& refined = options_.parallel ? refined_.front() : refined_[plane];
+    const auto rise = static_cast<Eigen::Index>(options_.parallel ? 2 + plane : 2);
+    const std::array<Eigen::Index, 3> at = {0, 1, rise};
+    Eigen::Matrix3d covariance;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index k = 0; k < 3; ++k) covariance(i, k) = refined.covariance(at[i], at[k]);
+    }
+    return covariance;
+  }
+
+  void Write(PlanesEstimate* estimate) const {
+    estimate->cost = 0.0;
+    for (const RefinedPlanes& refined : refined_) *estimate->cost += refined.cost;
+    for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
+    estimate->objects.resize(sequence_.objects.size());
+    ParallelFor(static_cast<int>(estimate->objects.size()), threads_, [&](int i) {
+      estimate->objects[static_cast<size_t>(i)] =
+          WriteObject(static_cast<size_t>(i), estimate->planes);
+    });
+  }
+
+  EstimatedPlane WritePlane(size_t index) const {
+    const Plane& plane = standing_.planes[index];
+    std::vector<StandingBody> bodies;
+    for (size_t i = 0; i < standing_.bodies.size(); ++i) {
+      if (standing_.plane_of[i] == static_cast<int>(index)) bodies.push_back(standing_.bodies[i]);
+    }
+    const Eigen::Vector3d feet = MiddleOfFeet(bodies);
+    const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
+    const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+    // Turns about the pivot raise the plane at the point.
+    const Eigen::Vector3d& pivot =
+        options_.parallel ? refined_.front().pivot : refined_[index].pivot;
+    Eigen::Matrix3d at_point = Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d arm = point - pivot;
+    at_point(2, 0) = level.col(1).dot(arm);
+    at_point(2, 1) = -level.col(0).dot(arm);
+    return {plane, point, level.col(0), at_point * CovarianceOf(index) * at_point.transpose()};
+  }
+
+  int PlaneOfMost() const {
+    std::vector<int> objects(standing_.planes.size(), 0);
+    for (const int plane : standing_.plane_of) ++objects[static_cast<size_t>(plane)];
+    return static_cast<int>(std::max_element(objects.begin(), objects.end()) - objects.begin());
+  }
+
+  ObjectSupport WriteObject(size_t index, const std::vector<EstimatedPlane>& planes) const {
+    ObjectSupport support;
+    if (!observations_[index]) {
+      support.plane_index = PlaneOfMost();
+      return support;
+    }
+    const auto deciding = std::find(deciding_.begin(), deciding_.end(), index);
+    const bool decides = deciding != deciding_.end();
+    if (decides) {
+      support.plane_index = standing_.plane_of[static_cast<size_t>(deciding - deciding_.begin())];
+      WriteOwnHeight(index, planes[static_cast<size_t>(support.plane_index)].plane_in_world,
+                     &support);
+    }
+    support.reason = decides ? SupportReason::kOwnHeight : SupportReason::kLowestCost;
+    for (size_t i = 0; i < planes.size(); ++i) {
+      if (decides && support.plane_index != static_cast<int>(i)) continue;
+      MultiViewObservation observation = *observations_[index];
+      observation.plane_in_world = planes[i].plane_in_world;
+      observation.height_is_free = false;
+      const auto solution = SolveViews(observation, kYawStep);
+      if (!solution || (support.cost && solution->cost >= *support.cost)) continue;
+      support.cost = solution->cost;
+      support.plane_index = static_cast<int>(i);
+    }
+    return support;
+  }
+
+  void WriteOwnHeight(size_t index, const Plane& plane, ObjectSupport* support) const {
+    const auto body = BodyOfFreeHeight(*observations_[index], plane.normal, kYawStep);
+    if (!body) return;
+    const Eigen::Vector3d centre = body->landmark.Centre();
+    support->height = plane.SignedDistance(centre) - body->landmark.half_axes.z();
+    support->height_sigma = 1.0 / std::sqrt(EvidenceOf(*body, centre).information(2, 2));
+  }
+
+  const Sequence& sequence_;
+  const PlanesOptions& options_;
+  int threads_;
+  std::vector<std::vector<int>> detections_;
+  CameraAttitude attitude_;
+  // By object; none without detections.
+  std::vector<std::optional<MultiViewObservation>> observations_;
+  std::vector<std::optional<MultiViewObservation>> sparse_;
+  // Objects that decide about planes, and their bodies, each on its own plane.
+  std::vector<size_t> deciding_;
+  std::vector<StandingBody> own_;
+  std::vector<int> deciding_level_;
+  StandingBodies standing_;
+  std::vector<RefinedPlanes> refined_;  // one for all planes where they are parallel
+};
+
+}  // namespace
+
+PlanesEstimate EstimatePlanes(const Sequence& sequence,
+                              const std::vector<std::optional<ShapePrior>>& priors,
+                              const CameraAttitude& attitude, const PlanesOptions& options,
+                              int threads) {
+  return Estimator(sequence, priors, attitude, options, threads).Estimate();
+}
+
+}  // namespace soslam

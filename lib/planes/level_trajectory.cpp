@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/level_trajectory.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/landmark.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kMaxTilt = 12.0 * std::numbers::pi / 180.0;
+constexpr int kMaxRounds = 50;
+constexpr double kSettled = 1e-7;  // rad
+
+using Basis = Eigen::Matrix<double, 3, 2>;
+
+Basis LevelAxes(const Eigen::Vector3d& up) {
+  return UprightRotation(up, 0.0).toRotationMatrix().leftCols<2>();
+}
+
+// A chain of tilts, each with information of its own about where it is (of half tilt^T information
+// tilt - tilt^T right_side) and tied to the one before.
+class Chain {
+ public:
+  // `stiffness`: 1 / rad^2.
+  Chain(std::vector<Eigen::Matrix2d> information, std::vector<Eigen::Vector2d> right_side,
+        double stiffness)
+      : information_(std::move(information)),
+        right_side_(std::move(right_side)),
+        stiffness_(stiffness) {
+    // What all that follow say about each, by elimination from the last.
+    for (size_t i = information_.size() - 1; i > 0; --i) {
+      const Eigen::Matrix2d share = stiffness_ * Tied(i).inverse();
+      information_[i - 1] += stiffness_ * (Eigen::Matrix2d::Identity() - share);
+      right_side_[i - 1] += share * right_side_[i];
+    }
+  }
+
+  const Eigen::Matrix2d& InformationOfFirst() const { return information_.front(); }
+
+  std::vector<Eigen::Vector2d> Solve() const {
+    std::vector<Eigen::Vector2d> tilts = {information_[0].ldlt().solve(right_side_[0])};
+    for (size_t i = 1; i < information_.size(); ++i) {
+      tilts.push_back(Tied(i).ldlt().solve(right_side_[i] + stiffness_ * tilts.back()));
+    }
+    return tilts;
+  }
+
+ private:
+  Eigen::Matrix2d Tied(size_t i) const {
+    return information_[i] + stiffness_ * Eigen::Matrix2d::Identity();
+  }
+
+  std::vector<Eigen::Matrix2d> information_;
+  std::vector<Eigen::Vector2d> right_side_;
+  double stiffness_;
+};
+
+std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
+                            const std::vector<Eigen::Vector3d>& ups) {
+  std::vector<Rigid3d> levelled = {drifted.front()};
+  for (size_t i = 1; i < drifted.size(); ++i) {
+    const Rigid3d motion = drifted[i - 1].Inverse() * drifted[i];
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(ups[i], ups.front());
+    levelled.push_back(
+        {(turn * drifted[i].rotation).normalized(), levelled.back() * motion.translation});
+  }
+  return levelled;
+}
+
+}  // namespace
+
+LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions& options) {
+  std::vector<Rigid3d> poses;
+  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
+  const CameraAttitude held =
+      AttitudeOf(poses, options.roll_sigma, options.pitch_sigma, options.correlation_rad);
+  const CameraAttitude mean =
+      WithVerticals(held, views, options.vertical_sigma, options.correlation_rad, kMaxTilt);
+  if (!(options.odometry_sigma > 0.0)) return {poses, mean};
+
+  const std::vector<double> shares = ShareOfCameras(poses, options.correlation_rad);
+  const Basis level = LevelAxes(mean.up_in_world);
+  const double stiffness = 1.0 / (options.odometry_sigma * options.odometry_sigma);
+  std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
+  Eigen::Matrix2d information_of_first;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    std::vector<Eigen::Matrix2d> information;
+    std::vector<Eigen::Vector2d> right_side;
+    for (size_t i = 0; i < views.size(); ++i) {
+      const Eigen::Matrix3d all =
+          shares[i] *
+          (AttitudeOf({poses[i]}, options.roll_sigma, options.pitch_sigma, 0.0).information +
+           InformationOfVerticals(views[i], options.vertical_sigma, ups[i]));
+      information.push_back(level.transpose() * all * level);
+      right_side.push_back(-level.transpose() * all * mean.up_in_world);
+    }
+    const Chain chain(std::move(information), std::move(right_side), stiffness);
+    information_of_first = chain.InformationOfFirst();
+    const std::vector<Eigen::Vector2d> tilts = chain.Solve();
+    double largest = 0.0;
+    for (size_t i = 0; i < ups.size(); ++i) {
+      const Eigen::Vector3d before = ups[i];
+      ups[i] = (mean.up_in_world + level * tilts[i]).normalized();
+      largest = std::max(largest, (ups[i] - before).norm());
+    }
+    if (largest < kSettled) break;
+  }
+  const Basis about_first = LevelAxes(ups.front());
+  const Eigen::Matrix2d turned = about_first.transpose() * level;
+  return {
+      Joined(poses, ups),
+      {about_first * (turned * information_of_first * turned.transpose()) * about_first.transpose(),
+       ups.front()}};
+}
+
+}  // namespace soslam

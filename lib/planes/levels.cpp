@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/levels.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace soslam {
+namespace {
+
+// Either way from no tilt.
+constexpr int kTiltSteps = 32;
+
+// An object's height and how well it is known (1 / m^2), at a certain tilt.
+struct Height {
+  double mean;
+  double information;
+};
+
+// The partition of heights into levels of lowest cost: levels hold neighbours, so the best one of
+// the first n follows from those of fewer.
+class Partition {
+ public:
+  Partition(const std::vector<Height>& heights, double new_level_cost)
+      : heights_(heights), order_(heights.size()), cost_(heights.size() + 1) {
+    std::iota(order_.begin(), order_.end(), size_t{0});
+    std::stable_sort(order_.begin(), order_.end(), [&](size_t one, size_t other) {
+      return heights[one].mean < heights[other].mean;
+    });
+    begin_.resize(heights.size() + 1);
+    for (size_t end = 1; end <= order_.size(); ++end) {
+      cost_[end] = std::numeric_limits<double>::infinity();
+      Sums sums;
+      for (size_t begin = end; begin-- > 0;) {
+        sums.Add(heights_[order_[begin]], heights_[order_[end - 1]].mean);
+        const double cost = cost_[begin] + sums.Cost() + new_level_cost;
+        if (cost >= cost_[end]) continue;
+        cost_[end] = cost;
+        begin_[end] = begin;
+      }
+    }
+  }
+
+  double Cost() const { return cost_.back(); }
+
+  void Write(Levels* levels) const {
+    std::vector<size_t> ends;
+    for (size_t end = order_.size(); end > 0; end = begin_[end]) ends.push_back(end);
+    std::reverse(ends.begin(), ends.end());
+    levels->level_of.resize(order_.size());
+    for (size_t level = 0; level < ends.size(); ++level) {
+      Sums sums;
+      const double reference = heights_[order_[begin_[ends[level]]]].mean;
+      for (size_t i = begin_[ends[level]]; i < ends[level]; ++i) {
+        sums.Add(heights_[order_[i]], reference);
+        levels->level_of[order_[i]] = static_cast<int>(level);
+      }
+      levels->heights.push_back(reference + sums.Mean());
+    }
+  }
+
+ private:
+  // Of heights over a reference among them, so that squares do not cancel.
+  struct Sums {
+    double weight = 0.0;
+    double first = 0.0;
+    double second = 0.0;
+
+    void Add(const Height& height, double reference) {
+      const double from_reference = height.mean - reference;
+      weight += height.information;
+      first += height.information * from_reference;
+      second += height.information * from_reference * from_reference;
+    }
+    double Mean() const { return first / weight; }
+    double Cost() const { return std::max(0.0, 0.5 * (second - first * first / weight)); }
+  };
+
+  const std::vector<Height>& heights_;
+  std::vector<size_t> order_;
+  std::vector<double> cost_;   // of the first n
+  std::vector<size_t> begin_;  // of the last level of the first n
+};
+
+// Of an object at a tilt, its height being its own.
+Height HeightAt(const PlaneEvidence& evidence, double height, const Eigen::Vector2d& tilt) {
+  const double information = evidence.information(2, 2);
+  const double slope = evidence.gradient(2) + evidence.information.row(2).head<2>().dot(tilt);
+  return {height - slope / information, information};
+}
+
+double CostAt(const PlaneEvidence& evidence, const Eigen::Vector2d& tilt) {
+  const double slope = evidence.gradient(2) + evidence.information.row(2).head<2>().dot(tilt);
+  return evidence.gradient.head<2>().dot(tilt) +
+         0.5 * tilt.dot(evidence.information.topLeftCorner<2, 2>() * tilt) -
+         0.5 * slope * slope / evidence.information(2, 2);
+}
+
+}  // namespace
+
+PlaneEvidence Loosened(const PlaneEvidence& evidence, double height_sigma) {
+  const Eigen::Vector3d by_height = evidence.information.col(2);
+  const double variance = height_sigma * height_sigma;
+  const double share = variance / (1.0 + variance * by_height.z());
+  const double slope = evidence.gradient.z();
+  return {evidence.cost - 0.5 * share * slope * slope,
+          evidence.gradient - share * slope * by_height,
+          evidence.information - share * by_height * by_height.transpose()};
+}
+
+Levels FindLevels(const std::vector<PlaneEvidence>& evidence, const std::vector<double>& heights,
+                  const PlaneEvidence& prior, double max_tilt, double new_level_cost) {
+  Levels best;
+  best.cost = std::numeric_limits<double>::infinity();
+  std::vector<Height> at_tilt(evidence.size());
+  const double step = max_tilt / kTiltSteps;
+  for (int i = -kTiltSteps; i <= kTiltSteps; ++i) {
+    for (int k = -kTiltSteps; k <= kTiltSteps; ++k) {
+      const Eigen::Vector2d tilt(i * step, k * step);
+      double cost = prior.gradient.head<2>().dot(tilt) +
+                    0.5 * tilt.dot(prior.information.topLeftCorner<2, 2>() * tilt);
+      for (size_t n = 0; n < evidence.size(); ++n) {
+        cost += CostAt(evidence[n], tilt);
+        at_tilt[n] = HeightAt(evidence[n], heights[n], tilt);
+      }
+      const Partition partition(at_tilt, new_level_cost);
+      cost += partition.Cost();
+      if (cost >= best.cost) continue;
+      best = {tilt, {}, {}, cost};
+      partition.Write(&best);
+    }
+  }
+  return best;
+}
+
+}  // namespace soslam

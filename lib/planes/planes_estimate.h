@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/plane.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+struct EstimatedPlane {
+  Plane plane_in_world;
+  Eigen::Vector3d point_in_world =
+      Eigen::Vector3d::Zero();  // on the plane, among what stands on it
+  Eigen::Vector3d x_axis_in_world = Eigen::Vector3d::UnitX();  // in the plane
+  // Of the plane's turns (rad) about x_axis_in_world and normal x x_axis_in_world through the
+  // point, and of its rise (m) along the normal; none where it is not known.
+  std::optional<Eigen::Matrix3d> covariance;
+};
+
+// Why an object stands on the plane that it does.
+enum class SupportReason {
+  kOwnHeight,     // its views determine the height of its lowest point
+  kLowestCost,    // they do not: the plane on which its boxes are explained best
+  kNoViews,       // it has none: the plane of most objects
+  kCameraHeight,  // the ground below the cameras that see it
+};
+inline constexpr std::array kSupportReasonNames = {"own_height", "lowest_cost", "no_views",
+                                                   "camera_height"};
+
+struct ObjectSupport {
+  int plane_index = 0;
+  SupportReason reason = SupportReason::kNoViews;
+  // Of its lowest point over the plane (m), by its own views, the normal being known.
+  std::optional<double> height;
+  std::optional<double> height_sigma;
+  std::optional<double> cost;  // of its boxes, on its plane
+};
+
+struct PlanesEstimate {
+  std::vector<EstimatedPlane> planes;
+  std::vector<ObjectSupport> objects;  // of the sequence's
+  // In the world, before boxes are looked at.
+  Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
+  std::optional<double> cost;  // of all boxes, ratios and camera attitudes
+  int rounds = 0;              // of deciding who stands where
+  bool settled = false;        // the last round decided as the one before
+};
+
+// The sequence with these planes, carried into each frame with the estimated pose.
+Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate);
+
+// How far an estimated plane is from the one that the sequence gives most of the objects on it, for
+// evaluation; none when no object stands on it.
+struct PlaneError {
+  int given_plane_index = 0;
+  double angle = 0.0;   // between the normals (rad)
+  double offset = 0.0;  // of the estimated plane's point over the given plane (m)
+};
+std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEstimate& estimate,
+                                           int plane_index);
+
+}  // namespace soslam

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/standing_body.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "initialisation/upright.h"
+
+namespace soslam {
+namespace {
+
+// Tangent points move with the body: each round fits to those of the body before.
+constexpr int kRounds = 3;
+constexpr int kHeightSteps = 20;
+constexpr double kSettledHeight = 1e-6;  // of the body's size
+// Of the largest: what the boxes say less about than this (the yaw of a round body) stays free.
+constexpr double kMinInformationShare = 1e-9;
+
+Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
+  const Eigen::Quaterniond level = UprightRotation(plane.normal, 0.0);
+  const Eigen::Quaterniond turn = ExpRotation(level * Eigen::Vector3d(motion.x(), motion.y(), 0.0));
+  return {turn, pivot - turn * pivot + motion.z() * (turn * plane.normal)};
+}
+
+// d (nine parameters of kLandmarkDof) / d motion, at no motion.
+Eigen::Matrix<double, kLandmarkDof, 3> ByMotion(const Plane& plane, const Eigen::Vector3d& pivot,
+                                                const Landmark& landmark) {
+  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+  Eigen::Matrix<double, kLandmarkDof, 3> by_motion;
+  by_motion.setZero();
+  by_motion.topLeftCorner<3, 2>() = level.leftCols<2>();
+  by_motion.block<3, 2>(3, 0) = -Skew(landmark.Centre() - pivot) * level.leftCols<2>();
+  by_motion.block<3, 1>(3, 2) = plane.normal;
+  return by_motion;
+}
+
+// The inverse on what is known, zero on what is not.
+Eigen::Matrix<double, 6, 6> InverseOfKnown(const Eigen::Matrix<double, 6, 6>& information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(information);
+  const double least = kMinInformationShare * eigen.eigenvalues()(5);
+  const Eigen::Matrix<double, 6, 1> inverse = eigen.eigenvalues().unaryExpr(
+      [least](double value) { return value > least ? 1.0 / value : 0.0; });
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+// The height that is best near the body's own, all else following it.
+std::optional<StandingBody> AtBestHeight(StandingBody body) {
+  for (int i = 0; i < kHeightSteps; ++i) {
+    const auto settled = Settled(body);
+    if (!settled) return std::nullopt;
+    body = *settled;
+    const Eigen::Vector3d centre = body.landmark.Centre();
+    const PlaneEvidence evidence = EvidenceOf(body, centre);
+    if (!(evidence.information(2, 2) > 0.0)) return std::nullopt;
+    const double size = body.landmark.half_axes.maxCoeff();
+    const double rise =
+        std::clamp(-evidence.gradient(2) / evidence.information(2, 2), -0.5 * size, 0.5 * size);
+    if (std::abs(rise) < kSettledHeight * size) break;
+    const PlaneMotion motion(0.0, 0.0, rise);
+    const Plane plane = body.observation.plane_in_world;
+    body.landmark = Moved(plane, centre, motion, body.landmark);
+    body.observation.plane_in_world = Moved(plane, centre, motion);
+  }
+  return Settled(body);
+}
+
+}  // namespace
+
+Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
+  return Transform(MotionOf(plane, pivot, motion), plane);
+}
+
+Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
+               const Landmark& landmark) {
+  return Transform(MotionOf(plane, pivot, motion), landmark);
+}
+
+Plane PlaneUnder(const Plane& plane, const Landmark& landmark) {
+  return {plane.normal, landmark.half_axes.z() - plane.normal.dot(landmark.Centre())};
+}
+
+std::optional<StandingBody> Settled(StandingBody body) {
+  const Plane& plane = body.observation.plane_in_world;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto fitted = FitUpright(plane, body.landmark, ViewTerms(body.observation, body.landmark),
+                                   /*yaw_is_free=*/true);
+    if (!fitted) return std::nullopt;
+    body.landmark = fitted->landmark;
+  }
+  return body;
+}
+
+PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot) {
+  const Plane& plane = body.observation.plane_in_world;
+  const auto by_motion = ByMotion(plane, pivot, body.landmark);
+  const UprightJacobian by_upright = UprightByParameters(plane, body.landmark);
+  PlaneEvidence evidence;
+  Eigen::Matrix<double, 6, 6> of_body = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 3, 6> mixed = Eigen::Matrix<double, 3, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> slope = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const auto& term : ViewTerms(body.observation, body.landmark)) {
+    Eigen::VectorXd residuals(term->NumResiduals());
+    LandmarkTerm::Jacobian jacobian(term->NumResiduals(), kLandmarkDof);
+    term->Evaluate(body.landmark, residuals, &jacobian);
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> plane_part = jacobian * by_motion;
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> body_part = jacobian * by_upright;
+    evidence.cost += 0.5 * residuals.squaredNorm() + term->ConstantCost();
+    evidence.gradient += plane_part.transpose() * residuals;
+    evidence.information += plane_part.transpose() * plane_part;
+    mixed += plane_part.transpose() * body_part;
+    of_body += body_part.transpose() * body_part;
+    slope += body_part.transpose() * residuals;
+  }
+  const Eigen::Matrix<double, 3, 6> follows = mixed * InverseOfKnown(of_body);
+  evidence.gradient -= follows * slope;
+  evidence.information -= follows * mixed.transpose();
+  return evidence;
+}
+
+std::optional<StandingBody> BodyOfFreeHeight(MultiViewObservation observation,
+                                             const Eigen::Vector3d& normal_in_world, double step) {
+  observation.plane_in_world = {normal_in_world, 0.0};
+  observation.height_is_free = true;
+  const auto optima = SweepViews(observation, step);
+  observation.height_is_free = false;
+  std::optional<StandingBody> best;
+  double lowest = 0.0;
+  for (const UprightSolution& optimum : optima) {
+    observation.plane_in_world = PlaneUnder(observation.plane_in_world, optimum.landmark);
+    const auto body = AtBestHeight({observation, optimum.landmark});
+    if (!body) continue;
+    const double cost = EvidenceOf(*body, body->landmark.Centre()).cost;
+    if (best && cost >= lowest) continue;
+    best = body;
+    lowest = cost;
+  }
+  return best;
+}
+
+}  // namespace soslam

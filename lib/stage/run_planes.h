@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "planes/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+// soslam-planes: files "sequence", "table" and, with verticals, the images of folder "dataset" to
+// "output", the sequence with estimated planes, and "report", planes.json. Throws SettingsError for
+// planes = given and for verticals without a dataset, NothingUsableError as EstimatePlanes.
+void RunPlanes(const PlanesOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam

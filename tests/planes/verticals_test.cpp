@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/verticals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+constexpr double kSigma = 1.0 * kDegrees;
+constexpr double kCorrelation = 20.0 * kDegrees;
+constexpr double kMaxTilt = 12.0 * kDegrees;
+
+// A camera anywhere in a room around the origin that looks somewhat downwards, not level.
+Rigid3d RandomCamera(double heading) {
+  const Eigen::Quaterniond level =
+      Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ())) *
+      Eigen::Quaterniond((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
+  const Eigen::Vector3d attitude(RandomUniform(-0.5, -0.2), 0.0, RandomUniform(-0.1, 0.1));
+  return {level * ExpRotation(attitude), RandomVector(-0.3, 0.3)};
+}
+
+// Edges along `directions` (or any, where there is none) as a camera sees them.
+SegmentView View(const Rigid3d& world_from_camera, const std::vector<Eigen::Vector3d>& directions) {
+  SegmentView view{TestCamera(), {}, world_from_camera};
+  const Camera camera = TestCamera();
+  const Rigid3d camera_from_world = world_from_camera.Inverse();
+  for (const Eigen::Vector3d& direction : directions) {
+    for (;;) {
+      const Eigen::Vector3d point =
+          world_from_camera *
+          Eigen::Vector3d(RandomUniform(-1, 1), RandomUniform(-0.7, 0.7), RandomUniform(2.5, 4));
+      const auto begin = camera.Project(camera_from_world * point);
+      const auto end = camera.Project(camera_from_world * (point + 0.5 * direction));
+      if (!begin || !end || (*end - *begin).norm() < 30.0) continue;
+      view.segments.push_back({*begin, *end});
+      break;
+    }
+  }
+  return view;
+}
+
+// Verticals, and twice as many edges of any direction.
+std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc) {
+  std::vector<SegmentView> views;
+  for (int i = 0; i < cameras; ++i) {
+    std::vector<Eigen::Vector3d> directions(8, up);
+    for (int k = 0; k < 16; ++k) directions.push_back(RandomRotation() * up);
+    views.push_back(View(RandomCamera(arc * i / cameras), directions));
+  }
+  return views;
+}
+
+CameraAttitude HeldAttitude(const std::vector<SegmentView>& views) {
+  std::vector<Rigid3d> poses;
+  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
+  return AttitudeOf(poses, 5.0 * kDegrees, 30.0 * kDegrees, kCorrelation);
+}
+
+double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  return std::atan2(one.cross(other).norm(), one.dot(other));
+}
+
+// Edges are exact, so only those of other directions and the cameras' attitude disturb: far less
+// than one edge's standard deviation. Without verticals it is degrees.
+TEST(WithVerticals, FindsUpAmongOtherEdges) {
+  double before = 0.0;
+  for (int i = 0; i < 10; ++i) {
+    const auto views = Room(Eigen::Vector3d::UnitZ(), 12, 6.0);
+    const CameraAttitude held = HeldAttitude(views);
+    const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
+    EXPECT_LT(AngleBetween(found.up_in_world, Eigen::Vector3d::UnitZ()), 0.3 * kDegrees);
+    before += AngleBetween(held.up_in_world, Eigen::Vector3d::UnitZ()) / 10;
+  }
+  EXPECT_GT(before, 0.5 * kDegrees);
+}
+
+TEST(WithVerticals, LeavesTheAttitudeWhereThereIsNoEdge) {
+  auto views = Room(Eigen::Vector3d::UnitZ(), 6, 3.0);
+  for (SegmentView& view : views) view.segments.clear();
+  const CameraAttitude held = HeldAttitude(views);
+  const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
+  EXPECT_LT((found.up_in_world - held.up_in_world).norm(), 1e-9);
+  EXPECT_EQ(found.information, held.information);
+}
+
+// Up is what most edges say, but never far from how cameras are held.
+TEST(WithVerticals, StaysNearTheAttitude) {
+  const Eigen::Vector3d slanted(std::sin(0.7), 0.0, std::cos(0.7));
+  const auto views = Room(slanted, 12, 6.0);
+  const CameraAttitude held = HeldAttitude(views);
+  const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
+  EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxTilt);
+}
+
+// The same edges again say nothing new.
+TEST(WithVerticals, CamerasInOnePlaceCountAsOne) {
+  const std::vector<SegmentView> one = {Room(Eigen::Vector3d::UnitZ(), 1, 0.0)};
+  const std::vector<SegmentView> ten(10, one.front());
+  const auto found = [&](const std::vector<SegmentView>& views) {
+    return WithVerticals(HeldAttitude(views), views, kSigma, kCorrelation, kMaxTilt);
+  };
+  EXPECT_LT((found(one).up_in_world - found(ten).up_in_world).norm(), 1e-6);
+  EXPECT_LT((found(one).information - found(ten).information).norm(),
+            1e-6 * found(one).information.norm());
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_planes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "artefact/json_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/standing_scene.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// The stage on cuboids on a floor and a shelf, with their true ratios.
+class RunPlanesTest : public testing::Test {
+ protected:
+  RunPlanesTest() {
+    options_.planes = PlaneSource::kEstimated;
+    options_.verticals = false;  // there are no images
+    json labels;
+    for (const Object& object : sequence_.objects) {
+      const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
+      labels[object.label] = {{"a_by_c", half_axes.x() / half_axes.z()},
+                              {"b_by_c", half_axes.y() / half_axes.z()},
+                              {"a_by_c_log_sigma", 0.1},
+                              {"b_by_c_log_sigma", 0.1},
+                              {"shape_exponent", 1.0},
+                              {"source", "the test"}};
+    }
+    WriteBytes(File("table"), json{{"labels", labels}}.dump());
+    WriteSequence(File("sequence"), sequence_, {});
+  }
+
+  std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
+  void Run(int threads = 1) const {
+    StageFiles files;
+    for (const char* name : {"sequence", "table", "output", "report"}) files[name] = File(name);
+    RunPlanes(options_, files, threads);
+  }
+
+  PlanesOptions options_;
+  Sequence sequence_ =
+      SyntheticSequence(WithShelf(RandomScene(1, 4, 16, {Shape::kBox}), 0.3), false);
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunPlanesTest, LaterStagesReadTheEstimatedPlanes) {
+  Run();
+  const Sequence output = ReadSequence(File("output"));
+  EXPECT_EQ(output.detections.size(), sequence_.detections.size());
+  ASSERT_EQ(output.planes.size(), 2u);
+  for (size_t i = 0; i < sequence_.objects.size(); ++i) {
+    const Plane& given =
+        sequence_.planes[static_cast<size_t>(sequence_.objects[i].plane_index)].plane_in_world;
+    const Plane& found =
+        output.planes[static_cast<size_t>(output.objects[i].plane_index)].plane_in_world;
+    EXPECT_GT(found.normal.dot(given.normal), std::cos(0.01)) << i;
+    EXPECT_NEAR(found.SignedDistance(sequence_.objects[i].ground_truth->landmark_in_world.Centre()),
+                sequence_.objects[i].ground_truth->landmark_in_world.half_axes.z(), 0.02)
+        << i;
+  }
+}
+
+TEST_F(RunPlanesTest, ReportSaysWhyAndHowSure) {
+  Run();
+  const json report = ReadArtefact(File("report"), "planes");
+  ASSERT_EQ(report.at("planes").size(), 2u);
+  for (const json& plane : report.at("planes")) {
+    EXPECT_GT(plane.at("tilt_sigma_deg").get<double>(), 0.0);
+    EXPECT_GT(plane.at("height_sigma_m").get<double>(), 0.0);
+    EXPECT_LT(plane.at("error").at("angle_deg").get<double>(), 0.6);
+    EXPECT_LT(std::abs(plane.at("error").at("offset_m").get<double>()), 0.02);
+  }
+  ASSERT_EQ(report.at("objects").size(), sequence_.objects.size());
+  EXPECT_EQ(report.at("objects")[0].at("reason"), "own_height");
+  EXPECT_EQ(report.at("artefact").at("inputs").size(), 2u);
+}
+
+TEST_F(RunPlanesTest, SameBytesWithAnyNumberOfThreads) {
+  Run(1);
+  const std::string output = FileBytes(File("output"));
+  const std::string report = FileBytes(File("report"));
+  Run(4);
+  EXPECT_EQ(FileBytes(File("output")), output);
+  EXPECT_EQ(FileBytes(File("report")), report);
+}
+
+TEST_F(RunPlanesTest, CameraHeightIsTheGroundOfEveryFrame) {
+  options_.planes = PlaneSource::kCameraHeight;
+  options_.camera_height_m = 1.1;
+  Run();
+  for (const Detection& detection : ReadSequence(File("output")).detections) {
+    EXPECT_EQ(detection.plane_in_camera.normal, Eigen::Vector3d(0, -1, 0));
+    EXPECT_EQ(detection.plane_in_camera.offset, 1.1);
+  }
+  const json report = ReadArtefact(File("report"), "planes");
+  EXPECT_EQ(report.at("planes").size(), sequence_.objects.size());
+  EXPECT_TRUE(report.at("cost").is_null());
+}
+
+TEST_F(RunPlanesTest, RefusesGivenPlanes) {
+  options_.planes = PlaneSource::kGiven;
+  ExpectError<SettingsError>([&] { Run(); }, {"given", "estimated or camera_height"});
+}
+
+TEST_F(RunPlanesTest, VerticalsNeedImages) {
+  options_.verticals = true;
+  ExpectError<SettingsError>([&] { Run(); }, {"--dataset", "verticals = false"});
+}
+
+TEST_F(RunPlanesTest, RefusesASequenceSeenFromOnePlace) {
+  std::erase_if(sequence_.detections, [&](const Detection& detection) {
+    return detection.frame_index != sequence_.detections.front().frame_index;
+  });
+  WriteSequence(File("sequence"), sequence_, {});
+  ExpectError<NothingUsableError>([&] { Run(); }, {sequence_.name, "several places"});
+  EXPECT_FALSE(std::filesystem::exists(File("output")));
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "initialisation/semantic_table.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+
+// Each object's true ratio, known to log_sigma, and a cuboid's shape.
+inline std::vector<std::optional<ShapePrior>> TrueCuboidPriors(const Sequence& sequence,
+                                                               double log_sigma) {
+  std::vector<std::optional<ShapePrior>> priors;
+  for (const Object& object : sequence.objects) {
+    const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
+    priors.push_back(ShapePrior{half_axes.head<2>() / half_axes.z(),
+                                Eigen::Vector2d::Constant(log_sigma), kCuboidExponent});
+  }
+  return priors;
+}
+
+// The scene with the objects of odd index on a shelf this much higher (m).
+inline Scene WithShelf(Scene scene, double height) {
+  scene.planes.push_back({1, "shelf", {Eigen::Vector3d::UnitZ(), -height}, std::nullopt});
+  for (size_t i = 1; i < scene.objects.size(); i += 2) scene.objects[i].plane_index = 1;
+  return scene;
+}
+
+// The sequence in another world.
+inline Sequence Moved(const Rigid3d& new_from_old, Sequence sequence) {
+  for (Frame& frame : sequence.frames) {
+    frame.world_from_camera = new_from_old * frame.world_from_camera;
+    if (frame.true_world_from_camera) {
+      frame.true_world_from_camera = new_from_old * *frame.true_world_from_camera;
+    }
+  }
+  for (SupportPlane& plane : sequence.planes) {
+    plane.plane_in_world = Transform(new_from_old, plane.plane_in_world);
+  }
+  for (Object& object : sequence.objects) {
+    if (!object.ground_truth) continue;
+    Landmark& landmark = object.ground_truth->landmark_in_world;
+    landmark = Transform(new_from_old, landmark);
+  }
+  return sequence;
+}
+
+}  // namespace soslam
