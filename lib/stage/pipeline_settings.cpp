@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "association/options.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "dataset/import_options.h"
@@ -37,9 +38,13 @@ struct PipelineStage {
   std::vector<std::string> needs;  // stages whose artefacts it reads
 };
 
-const std::array<PipelineStage, 6>& Stages() {
-  static const std::array<PipelineStage, 6> stages = {{
+// Runs when its own setting says so, and is not listed in 'stages'.
+constexpr const char* kAssociate = "associate";
+
+const std::array<PipelineStage, 7>& Stages() {
+  static const std::array<PipelineStage, 7> stages = {{
       {"import", &Resolve<ImportOptions>, {}},
+      {kAssociate, &Resolve<AssociateOptions>, {"import"}},
       {"edges", &Resolve<EdgesOptions>, {"import"}},
       {"initialise", &Resolve<InitialiseOptions>, {"import"}},
       {"refine", &Resolve<OrientationOptions>, {"import", "initialise", "edges"}},
@@ -55,15 +60,29 @@ const PipelineStage* FindStage(const std::string& name) {
   return found == Stages().end() ? nullptr : &*found;
 }
 
+// What 'stages' may list.
+std::vector<std::string> ListedStages() {
+  std::vector<std::string> names = PipelineStages();
+  std::erase(names, kAssociate);
+  return names;
+}
+
 void CheckStageList(const json& stages, const std::string& file) {
+  const std::vector<std::string> known = ListedStages();
   std::set<std::string> seen;
   if (!stages.is_array() || stages.empty()) {
     throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
   }
   for (const json& stage : stages) {
-    if (!stage.is_string() || FindStage(stage) == nullptr) {
+    if (stage == kAssociate) {
+      throw SettingsError(
+          fmt::format("{}: 'stages' has \"{}\"; expected its setting association to say whether it "
+                      "runs",
+                      file, kAssociate));
+    }
+    if (!stage.is_string() || std::ranges::find(known, stage) == known.end()) {
       throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
-                                      fmt::join(PipelineStages(), ", ")));
+                                      fmt::join(known, ", ")));
     }
     if (!seen.insert(stage).second) {
       throw SettingsError(fmt::format("{}: 'stages' has {} twice", file, stage.dump()));
@@ -128,6 +147,12 @@ std::vector<json> ReadVariantLayers(fs::path file) {
   return layers;
 }
 
+bool IsAssociationEstimated(const json& settings, const std::string& file) {
+  AssociateOptions options;
+  OptionsFromJson(settings, file + ": " + kAssociate, &options);
+  return options.association == AssociationSource::kEstimated;
+}
+
 void CheckNeeds(const VariantSettings& settings, const std::string& file) {
   for (const std::string& name : settings.stages) {
     for (const std::string& needed : FindStage(name)->needs) {
@@ -188,6 +213,9 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   CheckStageList(merged.value("stages", json()), file);
   settings.stages = merged.at("stages").get<std::set<std::string>>();
   settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
+  if (IsAssociationEstimated(merged.value(kAssociate, json::object()), file)) {
+    settings.stages.insert(kAssociate);
+  }
   for (const std::string& stage : settings.stages) {
     settings.options[stage] =
         FindStage(stage)->resolve(merged.value(stage, json::object()), file + ": " + stage);

@@ -34,7 +34,7 @@ class ChainBuilder {
     instance.stage = stage;
     instance.settings = settings_.options.at(stage);
     instance.inputs = Inputs(stage);
-    if (stage == "initialise" || stage == "refine" || stage == "optimise") {
+    if (stage == "associate" || stage == "initialise" || stage == "refine" || stage == "optimise") {
       instance.semantic_table = settings_.semantic_table;
     }
     instance.key = Key(instance);
@@ -44,7 +44,10 @@ class ChainBuilder {
 
   std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
     if (stage == "import") return {};
-    std::map<std::string, ArtefactSource> inputs = {{"sequence", Output("import")}};
+    // Images do not change with what is seen in them.
+    const bool needs_objects = stage != "edges" && stage != "associate";
+    std::map<std::string, ArtefactSource> inputs = {
+        {"sequence", needs_objects ? Latest({"associate", "import"}) : Output("import")}};
     if (stage == "refine") {
       inputs["initial"] = Output("initialise");
       inputs["edges"] = Output("edges");
@@ -66,7 +69,7 @@ class ChainBuilder {
     const auto found = std::find_if(stages.begin(), stages.end(), [&](const std::string& stage) {
       return ids_.count(stage) > 0;
     });
-    if (found == stages.end()) throw std::logic_error("no stage that gives landmarks");
+    if (found == stages.end()) throw std::logic_error("no stage to read from");
     return Output(*found);
   }
 
@@ -97,6 +100,8 @@ const StageInstance& Plan::Instance(const std::string& id) const {
 const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
   static const std::map<std::string, std::vector<StageOutput>> outputs = {
       {"import", {{"output", "sequence.json"}}},
+      {"associate",
+       {{"output", "associated_sequence.json"}, {"associations", "associations.json"}}},
       {"edges", {{"output", "edges.h5"}}},
       {"initialise", {{"output", "initial.json"}}},
       {"refine", {{"output", "refined.json"}, {"curves", "symmetry.h5"}}},

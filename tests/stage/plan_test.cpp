@@ -99,6 +99,39 @@ TEST_F(PlanTest, StagesReadTheLatestLandmarks) {
   EXPECT_EQ(input(2, "evaluate", "landmarks"), "map.json");
 }
 
+TEST_F(PlanTest, EstimatedAssociationReplacesTheObjectsOfTheImport) {
+  const std::vector<std::string> given = Make({"Full"}).variants[0].instances;
+  EXPECT_EQ(Id("Full", "associate"), "");
+  Write("pipelines/datasets/room.json", R"({"associate": {"association": "estimated"}})");
+  const Plan plan = Make({"Full"});
+  const std::vector<std::string>& estimated = plan.variants[0].instances;
+  ASSERT_EQ(estimated.size(), given.size() + 1);
+  EXPECT_EQ(estimated[0], given[0]);  // import
+  EXPECT_EQ(plan.Instance(estimated[1]).stage, "associate");
+  EXPECT_EQ(plan.Instance(estimated[1]).inputs.at("sequence").instance, given[0]);
+  EXPECT_FALSE(plan.Instance(estimated[1]).semantic_table.empty());
+  EXPECT_EQ(estimated[2], given[1]);  // edges: of the same images
+  for (size_t i = 3; i < estimated.size(); ++i) {
+    const ArtefactSource& sequence = plan.Instance(estimated[i]).inputs.at("sequence");
+    EXPECT_EQ(sequence.instance, estimated[1]);
+    EXPECT_EQ(sequence.file, "associated_sequence.json");
+    EXPECT_NE(estimated[i], given[i - 1]);
+  }
+}
+
+TEST_F(PlanTest, SettingsOfAnAssociationThatDoesNotRunDoNotMatter) {
+  const std::string initialise = Id("Plain", "initialise");
+  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 5}})");
+  EXPECT_EQ(Id("Plain", "initialise"), initialise);
+  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 0}})");
+  ExpectRefused("Plain", {"room.json", "associate", "min_observations"});
+}
+
+TEST_F(PlanTest, AssociationIsNotListedAmongTheStages) {
+  Write("pipelines/variants/Listed.json", R"({"stages": ["import", "associate", "evaluate"]})");
+  ExpectRefused("Listed", {"Listed.json", "stages", "associate", "association"});
+}
+
 TEST_F(PlanTest, InputsComeBeforeWhatReadsThem) {
   std::set<std::string> seen;
   for (const StageInstance& instance : Make({"Full", "Plain"}).instances) {
