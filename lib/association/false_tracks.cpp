@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "base/parallel.h"
 #include "model/occlusion.h"
@@ -30,19 +31,22 @@ double SmallestDistanceToBorder(const Sequence& sequence) {
   return smallest;
 }
 
-// In how many frames the track should have been detected: wholly in the image, as far from its
-// border as all detections are, as large as the smallest of its boxes, and not behind what was
+// In how many frames the track was detected, or should have been: wholly in the image, as far from
+// its border as all detections are, as large as the smallest of its boxes, and not behind what was
 // detected.
 int FramesInSight(const AssociationModel& model, const Track& track, double border_px) {
   const Sequence& sequence = model.sequence();
   double smallest_height = std::numeric_limits<double>::infinity();
-  for (const int detection : track.detections) {
-    smallest_height =
-        std::min(smallest_height, sequence.detections[static_cast<size_t>(detection)].box.Height());
+  std::vector<bool> is_detected(sequence.frames.size(), false);
+  for (const int index : track.detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    smallest_height = std::min(smallest_height, detection.box.Height());
+    is_detected[static_cast<size_t>(detection.frame_index)] = true;
   }
   const Plane& plane = sequence.planes[static_cast<size_t>(track.plane_index)].plane_in_world;
-  int frames = 0;
+  auto frames = static_cast<int>(track.detections.size());
   for (int frame = 0; frame < static_cast<int>(sequence.frames.size()); ++frame) {
+    if (is_detected[static_cast<size_t>(frame)]) continue;
     const auto prediction = model.Predict(track, frame);
     if (!prediction) continue;
     const Box& box = prediction->outline;

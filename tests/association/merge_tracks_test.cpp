@@ -115,11 +115,10 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
   const int track = AddTrack(of_objects_[0]);
   DropFalseTracks(Model(), 1, &association_);
   EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
-  // Boxes are exact, and in every frame that shows the object whole. What is left out is at the
-  // limits of sight.
+  // It is detected in every frame that shows it whole; the estimate may reach a little farther.
   const auto detections = static_cast<int>(of_objects_[0].size());
+  EXPECT_GE(TrackAt(track).frames_in_sight.value(), detections);
   EXPECT_LE(TrackAt(track).frames_in_sight.value(), detections + 2);
-  EXPECT_GE(TrackAt(track).frames_in_sight.value(), detections / 2);
 
   // The camera goes back to where it saw the object well, and does not see it any more.
   const auto middle = static_cast<size_t>(of_objects_[0][of_objects_[0].size() / 2]);
