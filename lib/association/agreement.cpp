@@ -62,9 +62,10 @@ Agreement CompareWithGiven(const Sequence& sequence, const Association& associat
   const auto given = DetectionsByObject(sequence);
   Agreement agreement;
   agreement.given_of_object.resize(association.objects.size());
-  agreement.given_objects = static_cast<int>(std::ranges::count_if(given, [&](const auto& of_one) {
-    return static_cast<int>(of_one.size()) >= min_observations;
-  }));
+  const auto counts = [&](size_t i) {
+    return sequence.objects[i].is_static && static_cast<int>(given[i].size()) >= min_observations;
+  };
+  for (size_t i = 0; i < given.size(); ++i) agreement.given_objects += counts(i) ? 1 : 0;
   std::set<int> taken;
   for (const Pair& pair : PairsByShare(sequence, association)) {
     auto& given_of_object = agreement.given_of_object[static_cast<size_t>(pair.object)];
@@ -73,8 +74,9 @@ Agreement CompareWithGiven(const Sequence& sequence, const Association& associat
     const auto track = static_cast<size_t>(association.objects[static_cast<size_t>(pair.object)]);
     const auto estimated_size = static_cast<int>(association.tracks[track].detections.size());
     const auto given_size = static_cast<int>(given[static_cast<size_t>(pair.given)].size());
-    const bool counts = given_size >= min_observations;
-    if (counts && 2 * pair.shared > estimated_size + given_size - pair.shared) ++agreement.matched;
+    if (counts(static_cast<size_t>(pair.given)) &&
+        2 * pair.shared > estimated_size + given_size - pair.shared)
+      ++agreement.matched;
   }
   return agreement;
 }
@@ -88,7 +90,8 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
     const Track& track = association.tracks[static_cast<size_t>(association.objects[i])];
     Object object{static_cast<int>(i) + 1, WinningLabel(track.votes), track.plane_index, {}};
     if (const auto given = agreement.given_of_object[i]) {
-      object.ground_truth = sequence.objects[static_cast<size_t>(*given)].ground_truth;
+      const Object& given_object = sequence.objects[static_cast<size_t>(*given)];
+      if (given_object.is_static) object.ground_truth = given_object.ground_truth;
     }
     associated.objects.push_back(object);
   }

@@ -14,8 +14,8 @@ struct Agreement {
   // The given object of each estimated one, an index into Sequence::objects: pairs that share the
   // most detections first, one to one; none when no detection is shared with any that is left.
   std::vector<std::optional<int>> given_of_object;
-  // Given objects with at least min_observations detections; pairs of one of these and an estimated
-  // object that share more than half of the detections that either has.
+  // Given objects that stand still, with at least min_observations detections; pairs of one of
+  // these and an estimated object that share more than half of the detections that either has.
   int given_objects = 0;
   int matched = 0;
 
@@ -30,7 +30,7 @@ Agreement CompareWithGiven(const Sequence& sequence, const Association& associat
 
 // The sequence with the estimated objects, ids from 1, in place of its own, and the detections that
 // are theirs; the others are counted as rejected. Each object takes the ground truth of the given
-// one that it agrees with, for evaluation.
+// one that it agrees with, if that stands still, for evaluation.
 Sequence AssociatedSequence(const Sequence& sequence, const Association& association,
                             const Agreement& agreement);
 

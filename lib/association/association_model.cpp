@@ -32,22 +32,22 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
       boxes_(sequence, options),
       labels_(LabelsOf(sequence), options.label_confusion, options.interchangeable_labels) {}
 
-const std::string& AssociationModel::LabelOf(const Detection& detection) const {
-  return sequence_.objects[static_cast<size_t>(detection.object_index)].label;
-}
-
-int AssociationModel::PlaneOf(const Detection& detection) const {
-  return sequence_.objects[static_cast<size_t>(detection.object_index)].plane_index;
-}
-
 void AssociationModel::Fit(Track* track) const {
   const ShapePrior prior = table_.Find(WinningLabel(track->votes)).value_or(UnknownShape());
   const auto fit = FitObject(sequence_, track->detections, prior, options_);
   if (fit) track->fit = fit;
 }
 
+int AssociationModel::SegmentOf(const Track& track) const {
+  const auto first = static_cast<size_t>(track.detections.front());
+  return sequence_.FrameOf(sequence_.detections[first]).segment;
+}
+
 std::optional<Prediction> AssociationModel::Predict(const Track& track, int frame_index) const {
-  if (!track.fit) return std::nullopt;
+  if (!track.fit ||
+      SegmentOf(track) != sequence_.frames[static_cast<size_t>(frame_index)].segment) {
+    return std::nullopt;
+  }
   const auto frame_of = [this](int detection) {
     return sequence_.detections[static_cast<size_t>(detection)].frame_index;
   };
@@ -72,11 +72,11 @@ std::optional<Explanation> AssociationModel::Explain(const Track& track,
   auto explanation = boxes_.Explain(prediction, detection);
   if (!explanation) return std::nullopt;
   explanation->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
-  return explanation->cost < NewObjectCost() ? explanation : std::nullopt;
+  return explanation->cost < NewObjectCost(detection) ? explanation : std::nullopt;
 }
 
-double AssociationModel::NewObjectCost() const {
-  return boxes_.CostOfAnyBox() + labels_.CostOfAnyLabel() -
+double AssociationModel::NewObjectCost(const Detection& detection) const {
+  return boxes_.CostOfAnyBox(detection) + labels_.CostOfAnyLabel() -
          2.0 * std::log(options_.new_object_probability);
 }
 

@@ -128,19 +128,20 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
   prediction.object = &object;
   prediction.camera_from_world = frame.world_from_camera.Inverse();
   prediction.landmark_in_camera = Transform(prediction.camera_from_world, object.landmark_in_world);
-  const auto outline = OutlineBox(sequence_.camera, prediction.landmark_in_camera);
+  const Camera& camera = sequence_.CameraOf(frame);
+  const auto outline = OutlineBox(camera, prediction.landmark_in_camera);
   if (!outline) return std::nullopt;
   prediction.outline = *outline;
   prediction.drift_covariance =
       drift_.PointCovariance(known_frame_index, frame_index, object.landmark_in_world.Centre());
-  prediction.max_spread_px = MaxSpread(prediction, sequence_.camera);
+  prediction.max_spread_px = MaxSpread(prediction, camera);
   return prediction;
 }
 
 std::optional<Explanation> BoxLikelihood::Explain(const Prediction& prediction,
                                                   const Detection& detection) const {
-  const auto edges =
-      BoxEdges(sequence_.camera, detection.box, detection.is_bound, options_.box_sigma_fraction);
+  const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_bound,
+                              options_.box_sigma_fraction);
   if (IsOutOfReach(prediction, detection, edges)) return std::nullopt;
   const Innovation innovation =
       InnovationOf(prediction, PlaneOfDetection(sequence_, detection), edges);
@@ -162,9 +163,9 @@ std::optional<Explanation> BoxLikelihood::Explain(const Prediction& prediction,
   return best;
 }
 
-double BoxLikelihood::CostOfAnyBox() const {
-  const double width = sequence_.camera.width;
-  const double height = sequence_.camera.height;
+double BoxLikelihood::CostOfAnyBox(const Detection& detection) const {
+  const double width = sequence_.CameraOf(detection).width;
+  const double height = sequence_.CameraOf(detection).height;
   // Left and right edge anywhere in the image, in this order; so top and bottom.
   return 2.0 * std::log(0.5 * width * width * 0.5 * height * height);
 }

@@ -40,8 +40,9 @@ class BoxLikelihood {
  public:
   BoxLikelihood(const Sequence& sequence, const AssociateOptions& options);
 
-  // None when the landmark is not wholly in front of the camera. `known_frame_index`: of a frame in
-  // which the object was seen, that its landmark is good for. Keeps a pointer to the object.
+  // None when the landmark is not wholly in front of the camera. `known_frame_index`: of a frame of
+  // the same segment in which the object was seen, that its landmark is good for. Keeps a pointer
+  // to the object.
   std::optional<Prediction> Predict(const FittedObject& object, int known_frame_index,
                                     int frame_index) const;
 
@@ -50,7 +51,7 @@ class BoxLikelihood {
                                      const Detection& detection) const;
 
   // Of the box of an object that nothing is known of: anywhere in the image, of any size.
-  double CostOfAnyBox() const;
+  double CostOfAnyBox(const Detection& detection) const;
 
  private:
   const Sequence& sequence_;

@@ -25,8 +25,8 @@ double CoveredShare(const Box& box, const Box& by) {
 double SmallestDistanceToBorder(const Sequence& sequence) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const Detection& detection : sequence.detections) {
-    smallest = std::min(
-        smallest, DistanceToBorder(detection.box, sequence.camera.width, sequence.camera.height));
+    const Camera& camera = sequence.CameraOf(detection);
+    smallest = std::min(smallest, DistanceToBorder(detection.box, camera.width, camera.height));
   }
   return smallest;
 }
@@ -50,12 +50,16 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
     const auto prediction = model.Predict(track, frame);
     if (!prediction) continue;
     const Box& box = prediction->outline;
+    const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(frame)]);
     if (box.Height() < smallest_height ||
-        DistanceToBorder(box, sequence.camera.width, sequence.camera.height) < border_px) {
+        DistanceToBorder(box, camera.width, camera.height) < border_px) {
       continue;
     }
-    const Detection expected{
-        frame, kNoObject, 1.0, box, Transform(prediction->camera_from_world, plane), {}, {}};
+    Detection expected;
+    expected.frame_index = frame;
+    expected.object_index = kNoObject;
+    expected.box = box;
+    expected.plane_in_camera = Transform(prediction->camera_from_world, plane);
     const std::vector<Box> nearer = NearerBoxes(sequence, expected);
     const bool is_hidden = std::ranges::any_of(
         nearer, [&](const Box& other) { return CoveredShare(box, other) >= kHiddenShare; });

@@ -37,7 +37,7 @@ UprightCovariance CovarianceOf(const MultiViewObservation& observation, const La
 // From one box alone: the best yaw of a sweep.
 std::optional<Landmark> LandmarkInWorld(const Sequence& sequence, const Detection& detection,
                                         const ShapePrior& prior, const AssociateOptions& options) {
-  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+  const Frame& frame = sequence.FrameOf(detection);
   UprightObservation observation = MakeUprightObservation(
       sequence, detection, prior,
       {options.box_sigma_fraction, /*axes_weight=*/0.0, options.yaw_grid_deg});
@@ -74,8 +74,8 @@ std::optional<Landmark> LandmarkInWorld(const Sequence& sequence,
 }  // namespace
 
 const Plane& PlaneOfDetection(const Sequence& sequence, const Detection& detection) {
-  const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-  return sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+  const auto plane_index = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
+  return sequence.planes[plane_index].plane_in_world;
 }
 
 std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,

@@ -85,7 +85,8 @@ class FrameLinker {
   }
 
   void Predict(int frame) {
-    const Camera& camera = model_.sequence().camera;
+    const Camera& camera =
+        model_.sequence().CameraOf(model_.sequence().frames[static_cast<size_t>(frame)]);
     ParallelFor(static_cast<int>(states_.size()), threads_, [&](int i) {
       State& state = states_[static_cast<size_t>(i)];
       state.prediction = model_.Predict(association_.tracks[static_cast<size_t>(i)], frame);
@@ -113,8 +114,11 @@ class FrameLinker {
         if (explanation) costs(row, column) = explanation->cost;
       }
     }
-    const std::vector<int> track_of_row =
-        Assign(costs, Eigen::VectorXd::Constant(rows, model_.NewObjectCost()));
+    Eigen::VectorXd costs_of_new_objects(rows);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      costs_of_new_objects[row] = model_.NewObjectCost(At(detections[static_cast<size_t>(row)]));
+    }
+    const std::vector<int> track_of_row = Assign(costs, costs_of_new_objects);
     for (size_t row = 0; row < detections.size(); ++row) {
       const int track = track_of_row[row];
       if (track == kUnassigned) {

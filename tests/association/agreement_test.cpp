@@ -22,8 +22,10 @@ Sequence GivenSequence(const std::vector<int>& objects) {
     sequence.objects.back().ground_truth->landmark_in_world.half_axes.x() = i + 1.0;
   }
   for (size_t i = 0; i < objects.size(); ++i) {
-    sequence.frames.push_back({static_cast<int>(i), 0.0, "image", {}, {}});
-    sequence.detections.push_back({static_cast<int>(i), objects[i], 1.0, {}, {}, {}, {}});
+    sequence.frames.emplace_back();
+    sequence.detections.emplace_back();
+    sequence.detections.back().frame_index = static_cast<int>(i);
+    sequence.detections.back().object_index = objects[i];
   }
   return sequence;
 }
@@ -106,6 +108,20 @@ TEST(AssociatedSequenceTest, ObjectsAreTheFoundOnesWithTheGroundTruthOfTheGiven)
   EXPECT_EQ(associated.detections[0].object_index, 1);
   EXPECT_EQ(associated.detections[5].object_index, 0);
   EXPECT_EQ(associated.rejected_detections.at("too_few_detections"), 1);
+}
+
+TEST(AssociatedSequenceTest, MovingObjectsAreNotCountedAndGiveNoGroundTruth) {
+  Sequence given = GivenSequence({0, 0, 0, 1, 1, 1});
+  given.objects[1].is_static = false;
+  const Association found = Found({0, 0, 0, 1, 1, 1});
+  const Agreement agreement = CompareWithGiven(given, found, 3);
+  EXPECT_EQ(agreement.given_objects, 1);
+  EXPECT_EQ(agreement.matched, 1);
+  EXPECT_EQ(agreement.Precision(), 0.5);
+  const Sequence associated = AssociatedSequence(given, found, agreement);
+  EXPECT_TRUE(associated.objects[0].ground_truth);
+  EXPECT_FALSE(associated.objects[1].ground_truth);
+  EXPECT_TRUE(associated.objects[1].is_static);
 }
 
 TEST(AssociatedSequenceTest, AnObjectWithoutCounterpartHasNoGroundTruth) {

@@ -241,6 +241,31 @@ TEST(AssociateTest, WithoutDetectionsThereAreNoObjects) {
   EXPECT_TRUE(association.tracks.empty());
 }
 
+// The same frames once more, as another recording, in a world of its own that looks the same.
+TEST(AssociateTest, EachSegmentHasItsOwnObjects) {
+  const Sequence once = SyntheticSequence(LabelledScene(6, 2, 20, {"thing"}), false);
+  Sequence twice = once;
+  const auto frames = static_cast<int>(once.frames.size());
+  for (Frame frame : once.frames) {
+    frame.id += frames;
+    frame.segment = 1;
+    twice.frames.push_back(frame);
+  }
+  for (Detection detection : once.detections) {
+    detection.frame_index += frames;
+    twice.detections.push_back(detection);
+  }
+  const Association association = AssociateAll(twice);
+  EXPECT_EQ(association.objects.size(), 4u);
+  for (const Track& track : association.tracks) {
+    std::set<int> segments;
+    for (const int i : track.detections) {
+      segments.insert(twice.FrameOf(twice.detections[static_cast<size_t>(i)]).segment);
+    }
+    EXPECT_EQ(segments.size(), 1u);
+  }
+}
+
 // Nothing explains what stands on another plane, wherever it is in the image.
 TEST(AssociateTest, ObjectsStayOnTheirPlane) {
   Sequence sequence = SyntheticSequence(LabelledScene(6, 1, 20, {"thing"}), false);

@@ -65,14 +65,18 @@ TEST_F(BoxLikelihoodTest, TheExpectedBoxIsExplainedBest) {
     EXPECT_GT(shifted->cost, before) << share;
     before = shifted->cost;
   }
-  EXPECT_LT(best->cost, BoxLikelihood(sequence_, options_).CostOfAnyBox());
+  EXPECT_LT(best->cost, BoxLikelihood(sequence_, options_).CostOfAnyBox(expected_));
 }
 
-TEST_F(BoxLikelihoodTest, ABoxFarOffIsNotExplainedAtAll) { EXPECT_FALSE(Explain(Shifted(3.0))); }
+// Near ones are compared, and found less likely.
+TEST_F(BoxLikelihoodTest, ABoxFarOffIsNotExplainedAtAll) {
+  EXPECT_TRUE(Explain(Shifted(0.5)));
+  EXPECT_FALSE(Explain(Shifted(20.0)));
+}
 
 TEST_F(BoxLikelihoodTest, ABoxBesideIsMoreLikelyOfAnyObject) {
   const auto beside = Explain(Shifted(1.0));
-  EXPECT_FALSE(beside && beside->cost < BoxLikelihood(sequence_, options_).CostOfAnyBox());
+  EXPECT_FALSE(beside && beside->cost < BoxLikelihood(sequence_, options_).CostOfAnyBox(expected_));
 }
 
 // What the density gains in width it loses in height.
