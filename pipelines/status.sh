@@ -3,7 +3,7 @@
 # each of its stages is done, stale or missing. Reads BIN and RESULTS.
 set -euo pipefail
 
-stages=(import planes edges initialise refine optimise evaluate)
+stages=(import associate planes edges initialise refine optimise evaluate)
 
 # print_row FIRST CELL...
 print_row() {

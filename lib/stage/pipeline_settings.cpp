@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "association/options.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "dataset/import_options.h"
@@ -44,9 +45,15 @@ bool AsksForPlanes(const json& settings) {
   return settings.at("planes") != kPlaneSourceNames[static_cast<size_t>(PlaneSource::kGiven)];
 }
 
-const std::array<PipelineStage, 7>& Stages() {
-  static const std::array<PipelineStage, 7> stages = {{
+bool AsksForAssociation(const json& settings) {
+  return settings.at("association") !=
+         kAssociationSourceNames[static_cast<size_t>(AssociationSource::kGiven)];
+}
+
+const std::array<PipelineStage, 8>& Stages() {
+  static const std::array<PipelineStage, 8> stages = {{
       {"import", &Resolve<ImportOptions>, {}},
+      {"associate", &Resolve<AssociateOptions>, {"import"}, &AsksForAssociation},
       {"planes", &Resolve<PlanesOptions>, {"import"}, &AsksForPlanes},
       {"edges", &Resolve<EdgesOptions>, {"import"}},
       {"initialise", &Resolve<InitialiseOptions>, {"import"}},
@@ -77,9 +84,9 @@ void CheckStageList(const json& stages, const std::string& file) {
   if (!stages.is_array() || stages.empty()) {
     throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
   }
+  const std::vector<std::string> listed = ListedStages();
   for (const json& stage : stages) {
-    const std::vector<std::string> listed = ListedStages();
-    if (!stage.is_string() || std::find(listed.begin(), listed.end(), stage) == listed.end()) {
+    if (!stage.is_string() || std::ranges::find(listed, stage) == listed.end()) {
       throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
                                       fmt::join(listed, ", ")));
     }

@@ -34,7 +34,9 @@ class ChainBuilder {
     instance.stage = stage;
     instance.settings = settings_.options.at(stage);
     instance.inputs = Inputs(stage);
-    if (stage == "planes" || stage == "initialise" || stage == "refine" || stage == "optimise") {
+    static const std::set<std::string> kReadTable = {"associate", "planes", "initialise", "refine",
+                                                     "optimise"};
+    if (kReadTable.contains(stage)) {
       instance.semantic_table = settings_.semantic_table;
     }
     instance.key = Key(instance);
@@ -44,8 +46,11 @@ class ChainBuilder {
 
   std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
     if (stage == "import") return {};
-    if (stage == "planes" || stage == "edges") return {{"sequence", Output("import")}};
-    std::map<std::string, ArtefactSource> inputs = {{"sequence", Latest({"planes", "import"})}};
+    // Images do not change with what is seen in them.
+    if (stage == "edges" || stage == "associate") return {{"sequence", Output("import")}};
+    std::map<std::string, ArtefactSource> inputs = {
+        {"sequence", stage == "planes" ? Latest({"associate", "import"})
+                                       : Latest({"planes", "associate", "import"})}};
     if (stage == "refine") {
       inputs["initial"] = Output("initialise");
       inputs["edges"] = Output("edges");
@@ -98,6 +103,7 @@ const StageInstance& Plan::Instance(const std::string& id) const {
 const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
   static const std::map<std::string, std::vector<StageOutput>> outputs = {
       {"import", {{"output", "sequence.json"}}},
+      {"associate", {{"output", "sequence.json"}, {"associations", "associations.json"}}},
       {"planes", {{"output", "sequence.json"}, {"report", "planes.json"}}},
       {"edges", {{"output", "edges.h5"}}},
       {"initialise", {{"output", "initial.json"}}},

@@ -99,6 +99,34 @@ TEST_F(PlanTest, StagesReadTheLatestLandmarks) {
   EXPECT_EQ(input(2, "evaluate", "landmarks"), "map.json");
 }
 
+TEST_F(PlanTest, EstimatedAssociationReplacesTheObjectsOfTheImport) {
+  const std::vector<std::string> given = Make({"Full"}).variants[0].instances;
+  EXPECT_EQ(Id("Full", "associate"), "");
+  Write("pipelines/datasets/room.json", R"({"associate": {"association": "estimated"}})");
+  const Plan plan = Make({"Full"});
+  const std::vector<std::string>& estimated = plan.variants[0].instances;
+  ASSERT_EQ(estimated.size(), given.size() + 1);
+  EXPECT_EQ(estimated[0], given[0]);  // import
+  EXPECT_EQ(plan.Instance(estimated[1]).stage, "associate");
+  EXPECT_EQ(plan.Instance(estimated[1]).inputs.at("sequence").instance, given[0]);
+  EXPECT_FALSE(plan.Instance(estimated[1]).semantic_table.empty());
+  EXPECT_EQ(estimated[2], given[1]);  // edges: of the same images
+  for (size_t i = 3; i < estimated.size(); ++i) {
+    const ArtefactSource& sequence = plan.Instance(estimated[i]).inputs.at("sequence");
+    EXPECT_EQ(sequence.instance, estimated[1]);
+    EXPECT_EQ(sequence.file, "sequence.json");
+    EXPECT_NE(estimated[i], given[i - 1]);
+  }
+}
+
+TEST_F(PlanTest, SettingsOfAnAssociationThatDoesNotRunDoNotMatter) {
+  const std::string initialise = Id("Plain", "initialise");
+  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 5}})");
+  EXPECT_EQ(Id("Plain", "initialise"), initialise);
+  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 0}})");
+  ExpectRefused("Plain", {"room.json", "associate", "min_observations"});
+}
+
 TEST_F(PlanTest, PlanesAreAStageWhereASettingAsksForThem) {
   EXPECT_EQ(Id("Mapped", "planes"), "");
   const std::string import = Id("Mapped", "import");
@@ -120,10 +148,22 @@ TEST_F(PlanTest, PlanesAreAStageWhereASettingAsksForThem) {
   EXPECT_FALSE(plan.Instance(planes).semantic_table.empty());
 }
 
-TEST_F(PlanTest, ListsOfStagesCannotAskForPlanes) {
-  Write("pipelines/variants/Listed.json",
-        R"({"stages": ["import", "planes", "initialise", "evaluate"]})");
-  ExpectRefused("Listed", {"Listed.json", "planes", "expected one of import, edges"});
+TEST_F(PlanTest, PlanesAreOfTheObjectsThatAssociationFound) {
+  Write("pipelines/datasets/room.json",
+        R"({"associate": {"association": "estimated"}, "planes": {"planes": "estimated"}})");
+  const std::string associate = Id("Full", "associate");
+  const std::string planes = Id("Full", "planes");
+  const Plan plan = Make({"Full"});
+  EXPECT_EQ(plan.Instance(planes).inputs.at("sequence").instance, associate);
+  EXPECT_EQ(plan.Instance(Id("Full", "initialise")).inputs.at("sequence").instance, planes);
+}
+
+TEST_F(PlanTest, StagesThatASettingAsksForAreNotListed) {
+  for (const std::string stage : {"planes", "associate"}) {
+    Write("pipelines/variants/Listed.json",
+          R"({"stages": ["import", ")" + stage + R"(", "initialise", "evaluate"]})");
+    ExpectRefused("Listed", {"Listed.json", stage, "expected one of import, edges"});
+  }
 }
 
 TEST_F(PlanTest, InputsComeBeforeWhatReadsThem) {

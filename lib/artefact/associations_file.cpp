@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/associations_file.h"
+
+#include <array>
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// In the order of Detection::is_bound.
+constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
+
+template <typename T>
+json OrNull(const std::optional<T>& value) {
+  return value ? json(*value) : json();
+}
+
+json IdOrNull(int index, int first_id) { return index >= 0 ? json(index + first_id) : json(); }
+
+// How files name a detection of the sequence that was read.
+json NameOf(const Sequence& sequence, int index) {
+  const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+  return {{"frame", sequence.frames[static_cast<size_t>(detection.frame_index)].id},
+          {"given_object", sequence.objects[static_cast<size_t>(detection.object_index)].id}};
+}
+
+json LinkToJson(const DetectionDecision& decision) {
+  const bool is_link =
+      decision.decision == LinkDecision::kLinked || decision.decision == LinkDecision::kRevisited;
+  if (!is_link) return {};
+  return {
+      {"overlap", decision.overlap},
+      {"distance_sigmas", decision.distance},
+      {"cut_edge",
+       decision.cut_edge ? json(kEdgeNames.at(static_cast<size_t>(*decision.cut_edge))) : json()},
+      {"frames_since_seen", decision.frames_since_seen}};
+}
+
+json DetectionToJson(const Sequence& sequence, const Association& association, int index) {
+  const DetectionDecision& decision = association.detections[static_cast<size_t>(index)];
+  json row = NameOf(sequence, index);
+  row["decision"] = kLinkDecisionNames.at(static_cast<size_t>(decision.decision));
+  row["link"] = LinkToJson(decision);
+  row["track"] = IdOrNull(decision.track, 0);
+  row["object"] = IdOrNull(decision.object, 1);
+  row["superseded"] = decision.superseded;
+  row["duplicate_of"] =
+      decision.duplicate_of >= 0 ? NameOf(sequence, decision.duplicate_of) : json();
+  return row;
+}
+
+json TrackToJson(const Track& track, int index) {
+  json merge;
+  if (track.fate == TrackFate::kMerged) {
+    merge = {{"into_track", track.merged_into},
+             {"explained_boxes", track.explained},
+             {"tried_boxes", track.tried},
+             {"shared_frames", track.shared_frames}};
+  }
+  return {{"track", index},
+          {"fate", kTrackFateNames.at(static_cast<size_t>(track.fate))},
+          {"merge", merge},
+          {"linked_detections", track.linked},
+          {"detections", track.detections.size()},
+          {"frames_in_sight", OrNull(track.frames_in_sight)}};
+}
+
+json ObjectToJson(const Sequence& sequence, const Association& association,
+                  const Agreement& agreement, size_t index) {
+  const int track_index = association.objects[index];
+  const Track& track = association.tracks[static_cast<size_t>(track_index)];
+  const auto given = agreement.given_of_object[index];
+  return {
+      {"object", index + 1},
+      {"track", track_index},
+      {"label", WinningLabel(track.votes)},
+      {"label_votes", track.votes},
+      {"detections", track.detections.size()},
+      {"given_object", given ? json(sequence.objects[static_cast<size_t>(*given)].id) : json()}};
+}
+
+json AgreementToJson(const Agreement& agreement) {
+  return {{"objects", agreement.given_of_object.size()},
+          {"given_objects", agreement.given_objects},
+          {"matched", agreement.matched},
+          {"precision", OrNull(agreement.Precision())},
+          {"recall", OrNull(agreement.Recall())},
+          {"f1", OrNull(agreement.F1())}};
+}
+
+}  // namespace
+
+void WriteAssociations(const std::filesystem::path& path, const Sequence& sequence,
+                       const Association& association, const Agreement& agreement,
+                       const ArtefactInfo& info) {
+  json body = {{"detections", json::array()},
+               {"tracks", json::array()},
+               {"objects", json::array()},
+               {"agreement", AgreementToJson(agreement)}};
+  for (size_t i = 0; i < association.detections.size(); ++i) {
+    body["detections"].push_back(DetectionToJson(sequence, association, static_cast<int>(i)));
+  }
+  for (size_t i = 0; i < association.tracks.size(); ++i) {
+    body["tracks"].push_back(TrackToJson(association.tracks[i], static_cast<int>(i)));
+  }
+  for (size_t i = 0; i < association.objects.size(); ++i) {
+    body["objects"].push_back(ObjectToJson(sequence, association, agreement, i));
+  }
+  WriteArtefact(path, "associations", info, std::move(body));
+}
+
+}  // namespace soslam

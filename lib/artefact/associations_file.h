@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "artefact/json_file.h"
+#include "association/agreement.h"
+#include "association/association.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The artefact of kind "associations": what was decided on each detection of the sequence, each
+// track and each object, and why; how the objects agree with those of the sequence. Objects have
+// the ids that AssociatedSequence gives them. Errors as WriteArtefact.
+void WriteAssociations(const std::filesystem::path& path, const Sequence& sequence,
+                       const Association& association, const Agreement& agreement,
+                       const ArtefactInfo& info);
+
+}  // namespace soslam

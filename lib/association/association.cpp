@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/association.h"
+
+#include <algorithm>
+
+#include "association/association_model.h"
+#include "association/false_tracks.h"
+#include "association/link_frames.h"
+#include "association/merge_tracks.h"
+
+namespace soslam {
+namespace {
+
+// By their first detection in the sequence.
+void ListObjects(const Sequence& sequence, Association* association) {
+  for (int i = 0; i < static_cast<int>(association->tracks.size()); ++i) {
+    if (association->tracks[static_cast<size_t>(i)].fate == TrackFate::kObject) {
+      association->objects.push_back(i);
+    }
+  }
+  const auto first_frame = [&](int track) {
+    const int detection = association->tracks[static_cast<size_t>(track)].detections.front();
+    return sequence.detections[static_cast<size_t>(detection)].frame_index;
+  };
+  std::ranges::stable_sort(association->objects, {}, first_frame);
+  for (size_t object = 0; object < association->objects.size(); ++object) {
+    const auto track = static_cast<size_t>(association->objects[object]);
+    for (const int detection : association->tracks[track].detections) {
+      association->detections[static_cast<size_t>(detection)].object = static_cast<int>(object);
+    }
+  }
+}
+
+}  // namespace
+
+Association Associate(const Sequence& sequence, const SemanticTable& table,
+                      const AssociateOptions& options, int threads) {
+  const AssociationModel model(sequence, table, options);
+  Association association = LinkFrames(model, threads);
+  MergeTracks(model, threads, &association);
+  DropFalseTracks(model, threads, &association);
+  ListObjects(sequence, &association);
+  return association;
+}
+
+}  // namespace soslam

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/association_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace soslam {
+namespace {
+
+std::set<std::string> LabelsOf(const Sequence& sequence) {
+  std::set<std::string> labels;
+  for (const Object& object : sequence.objects) labels.insert(object.label);
+  return labels;
+}
+
+// Of a label that the table knows nothing about: as long and wide as high, give or take a factor of
+// e, and a cuboid.
+ShapePrior UnknownShape() {
+  ShapePrior prior;
+  prior.shape_exponent = kCuboidExponent;
+  return prior;
+}
+
+}  // namespace
+
+AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable& table,
+                                   const AssociateOptions& options)
+    : sequence_(sequence),
+      table_(table),
+      options_(options),
+      boxes_(sequence, options),
+      labels_(LabelsOf(sequence), options.label_confusion, options.interchangeable_labels) {}
+
+void AssociationModel::Fit(Track* track) const {
+  const ShapePrior prior = table_.Find(WinningLabel(track->votes)).value_or(UnknownShape());
+  const auto fit = FitObject(sequence_, track->detections, prior, options_);
+  if (fit) track->fit = fit;
+}
+
+int AssociationModel::SegmentOf(const Track& track) const {
+  const auto first = static_cast<size_t>(track.detections.front());
+  return sequence_.FrameOf(sequence_.detections[first]).segment;
+}
+
+std::optional<Prediction> AssociationModel::Predict(const Track& track, int frame_index) const {
+  if (!track.fit ||
+      SegmentOf(track) != sequence_.frames[static_cast<size_t>(frame_index)].segment) {
+    return std::nullopt;
+  }
+  const auto frame_of = [this](int detection) {
+    return sequence_.detections[static_cast<size_t>(detection)].frame_index;
+  };
+  const auto next =
+      std::lower_bound(track.detections.begin(), track.detections.end(), frame_index,
+                       [&](int detection, int frame) { return frame_of(detection) < frame; });
+  int nearest =
+      next == track.detections.end() ? frame_of(track.detections.back()) : frame_of(*next);
+  if (next != track.detections.begin()) {
+    const int before = frame_of(*std::prev(next));
+    if (std::abs(frame_index - before) <= std::abs(frame_index - nearest)) nearest = before;
+  }
+  return boxes_.Predict(*track.fit, nearest, frame_index);
+}
+
+std::optional<Explanation> AssociationModel::Explain(const Track& track,
+                                                     const Prediction& prediction,
+                                                     const Detection& detection) const {
+  if (PlaneOf(detection) != track.plane_index) return std::nullopt;
+  const double label_cost = labels_.Cost(WinningLabel(track.votes), LabelOf(detection));
+  if (!std::isfinite(label_cost)) return std::nullopt;
+  auto explanation = boxes_.Explain(prediction, detection);
+  if (!explanation) return std::nullopt;
+  explanation->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
+  return explanation->cost < NewObjectCost(detection) ? explanation : std::nullopt;
+}
+
+double AssociationModel::NewObjectCost(const Detection& detection) const {
+  return boxes_.CostOfAnyBox(detection) + labels_.CostOfAnyLabel() -
+         2.0 * std::log(options_.new_object_probability);
+}
+
+}  // namespace soslam

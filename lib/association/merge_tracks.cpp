@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/merge_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "base/parallel.h"
+
+namespace soslam {
+namespace {
+
+// How a track would take up another one.
+struct Merge {
+  int into = -1;
+  int explained = 0;
+  int tried = 0;
+  int shared_frames = 0;
+  double cost = 0.0;  // of the explained boxes, in all
+
+  bool IsBetterThan(const Merge& other) const {
+    return std::tuple(-explained, cost, into) <
+           std::tuple(-other.explained, other.cost, other.into);
+  }
+};
+
+class TrackMerger {
+ public:
+  TrackMerger(const AssociationModel& model, int threads, Association* association)
+      : model_(model), threads_(threads), association_(*association) {}
+
+  void Run() {
+    for (int round = 1; MergeOnce(); ++round) {
+    }
+  }
+
+ private:
+  const Detection& At(int detection) const {
+    return model_.sequence().detections[static_cast<size_t>(detection)];
+  }
+  Track& TrackAt(int track) { return association_.tracks[static_cast<size_t>(track)]; }
+  const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
+
+  // The tracks that are left, fewest detections first, of equals the youngest.
+  std::vector<int> SmallestFirst() const {
+    std::vector<int> order;
+    for (int i = 0; i < static_cast<int>(association_.tracks.size()); ++i) {
+      if (TrackAt(i).fate != TrackFate::kMerged) order.push_back(i);
+    }
+    std::ranges::sort(order, {},
+                      [&](int i) { return std::tuple(TrackAt(i).detections.size(), -i); });
+    return order;
+  }
+
+  // Finds for each track the one to merge it into, and merges those pairs of which neither track
+  // has changed since. Returns whether any were.
+  bool MergeOnce() {
+    const std::vector<int> order = SmallestFirst();
+    std::vector<std::optional<Merge>> merges(order.size());
+    ParallelFor(static_cast<int>(order.size()), threads_, [&](int i) {
+      const auto position = static_cast<size_t>(i);
+      for (size_t larger = position + 1; larger < order.size(); ++larger) {
+        const auto merge = TryMerge(order[larger], order[position]);
+        if (merge && (!merges[position] || merge->IsBetterThan(*merges[position]))) {
+          merges[position] = merge;
+        }
+      }
+    });
+    std::vector<bool> has_changed(association_.tracks.size(), false);
+    std::vector<int> grown;
+    for (size_t i = 0; i < order.size(); ++i) {
+      const auto& merge = merges[i];
+      if (!merge || has_changed[static_cast<size_t>(order[i])] ||
+          has_changed[static_cast<size_t>(merge->into)]) {
+        continue;
+      }
+      Apply(*merge, order[i]);
+      has_changed[static_cast<size_t>(order[i])] = has_changed[static_cast<size_t>(merge->into)] =
+          true;
+      grown.push_back(merge->into);
+    }
+    ParallelFor(static_cast<int>(grown.size()), threads_,
+                [&](int i) { model_.Fit(&TrackAt(grown[static_cast<size_t>(i)])); });
+    return !grown.empty();
+  }
+
+  std::optional<Merge> TryMerge(int into, int smaller) const {
+    const Track& large = TrackAt(into);
+    const Track& small = TrackAt(smaller);
+    if (large.plane_index != small.plane_index || !large.fit) return std::nullopt;
+    const std::vector<int> boxes =
+        SpreadOver(small.detections, static_cast<size_t>(model_.options().max_views));
+    Merge merge{into, 0, static_cast<int>(boxes.size()), 0, 0.0};
+    const int needed =
+        std::max(1, static_cast<int>(std::ceil(model_.options().merge_share * merge.tried - 1e-9)));
+    for (int i = 0; i < merge.tried; ++i) {
+      if (merge.explained + merge.tried - i < needed) return std::nullopt;
+      const Detection& detection = At(boxes[static_cast<size_t>(i)]);
+      const auto prediction = model_.Predict(large, detection.frame_index);
+      const auto explanation =
+          prediction ? model_.Explain(large, *prediction, detection) : std::nullopt;
+      if (!explanation) continue;
+      ++merge.explained;
+      merge.cost += explanation->cost;
+    }
+    if (merge.explained < needed) return std::nullopt;
+    merge.shared_frames = SharedFrames(large, small);
+    const double allowed =
+        model_.options().max_shared_frames * static_cast<double>(small.detections.size());
+    if (merge.shared_frames > allowed) return std::nullopt;
+    return merge;
+  }
+
+  int SharedFrames(const Track& one, const Track& other) const {
+    const auto frames_of = [this](const Track& track) {
+      std::vector<int> frames;
+      for (const int detection : track.detections) frames.push_back(At(detection).frame_index);
+      return frames;
+    };
+    std::vector<int> shared;
+    std::ranges::set_intersection(frames_of(one), frames_of(other), std::back_inserter(shared));
+    return static_cast<int>(shared.size());
+  }
+
+  void Apply(const Merge& merge, int smaller) {
+    Track& large = TrackAt(merge.into);
+    Track& small = TrackAt(smaller);
+    small.fate = TrackFate::kMerged;
+    small.merged_into = merge.into;
+    small.explained = merge.explained;
+    small.tried = merge.tried;
+    small.shared_frames = merge.shared_frames;
+    for (const auto& [label, votes] : small.votes) large.votes[label] += votes;
+    std::vector<int> all;
+    const auto by_frame = [this](int detection) {
+      return std::tuple(At(detection).frame_index, -At(detection).score);
+    };
+    std::ranges::merge(large.detections, small.detections, std::back_inserter(all), {}, by_frame,
+                       by_frame);
+    large.detections.clear();
+    for (const int detection : all) {
+      const bool is_first = large.detections.empty() ||
+                            At(large.detections.back()).frame_index != At(detection).frame_index;
+      if (is_first) {
+        large.detections.push_back(detection);
+      } else {
+        association_.detections[static_cast<size_t>(detection)].superseded = true;
+      }
+    }
+  }
+
+  const AssociationModel& model_;
+  int threads_;
+  Association& association_;
+};
+
+}  // namespace
+
+void MergeTracks(const AssociationModel& model, int threads, Association* association) {
+  TrackMerger(model, threads, association).Run();
+}
+
+}  // namespace soslam

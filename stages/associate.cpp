@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_associate.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::AssociateOptions>(
+      argc, argv,
+      {.name = "soslam-associate",
+       .purpose = "Finds out which detections are of the same object, without their ids.",
+       .files = {{"sequence", "sequence.json of soslam-import"},
+                 {"table", "semantic table with the size ratio of each label"},
+                 {"output", "sequence to write, with the objects found"},
+                 {"associations", "associations.json to write: what was decided, and why"}},
+       .example = "soslam-associate --association estimated --sequence sequence.json --table "
+                  "pipelines/priors/semantic_table.json --output associated.json "
+                  "--associations associations.json"},
+      &soslam::RunAssociate);
+}

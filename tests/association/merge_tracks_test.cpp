@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/merge_tracks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "association/false_tracks.h"
+#include "support/association_scenes.h"
+
+namespace soslam {
+namespace {
+
+using testing::SizeIs;
+
+// Two objects, of which tracks are made by hand.
+class TrackTest : public testing::Test {
+ protected:
+  TrackTest() {
+    association_.detections.resize(sequence_.detections.size());
+    of_objects_ = DetectionsByObject(sequence_);
+  }
+
+  AssociationModel Model() const { return {sequence_, table_, options_}; }
+
+  int AddTrack(const std::vector<int>& detections) {
+    const AssociationModel model = Model();
+    const int index = static_cast<int>(association_.tracks.size());
+    Track track;
+    track.detections = detections;
+    track.linked = static_cast<int>(detections.size());
+    for (const int i : detections) {
+      track.votes[model.LabelOf(sequence_.detections[static_cast<size_t>(i)])] += 1.0;
+      association_.detections[static_cast<size_t>(i)].track = index;
+    }
+    model.Fit(&track);
+    association_.tracks.push_back(track);
+    return index;
+  }
+  // Every `step`-th detection of an object from `first` on.
+  std::vector<int> EveryOf(size_t object, size_t first, size_t step) const {
+    std::vector<int> chosen;
+    for (size_t i = first; i < of_objects_[object].size(); i += step) {
+      chosen.push_back(of_objects_[object][i]);
+    }
+    return chosen;
+  }
+  const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
+
+  AssociateOptions options_ = EstimatedAssociation();
+  SemanticTable table_ = UnknowingTable();
+  Sequence sequence_ = SyntheticSequence(LabelledScene(11, 2, 30, {"thing"}), false);
+  std::vector<std::vector<int>> of_objects_;
+  Association association_;
+};
+
+TEST_F(TrackTest, PartsOfOneObjectAreMergedIntoTheLargest) {
+  ASSERT_THAT(of_objects_[0], SizeIs(testing::Ge(8u)));
+  const int larger = AddTrack(EveryOf(0, 0, 2));
+  const int smaller = AddTrack(EveryOf(0, 1, 4));
+  const int rest = AddTrack(EveryOf(0, 3, 4));
+  MergeTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(larger).detections, of_objects_[0]);
+  for (const int track : {smaller, rest}) {
+    EXPECT_EQ(TrackAt(track).fate, TrackFate::kMerged);
+    EXPECT_EQ(TrackAt(track).explained, TrackAt(track).tried);
+    EXPECT_EQ(TrackAt(track).shared_frames, 0);
+  }
+}
+
+TEST_F(TrackTest, TwoObjectsAreNotMerged) {
+  const int one = AddTrack(of_objects_[0]);
+  const int other = AddTrack(of_objects_[1]);
+  MergeTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(one).fate, TrackFate::kObject);
+  EXPECT_EQ(TrackAt(other).fate, TrackFate::kObject);
+}
+
+// The same body twice in the same frames is two things, or two kinds of detections.
+TEST_F(TrackTest, WhatIsDetectedTogetherIsNotMerged) {
+  const size_t count = sequence_.detections.size();
+  for (size_t i = 0; i < count; ++i) {
+    Detection detection = sequence_.detections[i];
+    if (detection.object_index == 0) sequence_.detections.push_back(detection);
+  }
+  association_.detections.resize(sequence_.detections.size());
+  std::vector<int> copies;
+  for (size_t i = count; i < sequence_.detections.size(); ++i)
+    copies.push_back(static_cast<int>(i));
+  const int original = AddTrack(of_objects_[0]);
+  const int copy = AddTrack(copies);
+  MergeTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(original).fate, TrackFate::kObject);
+  EXPECT_EQ(TrackAt(copy).fate, TrackFate::kObject);
+
+  options_.max_shared_frames = 1.0;
+  MergeTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(original).detections.size() + TrackAt(copy).detections.size(),
+            2 * of_objects_[0].size());
+  const auto superseded =
+      std::ranges::count(association_.detections, true, &DetectionDecision::superseded);
+  EXPECT_EQ(superseded, static_cast<long>(of_objects_[0].size()));
+}
+
+TEST_F(TrackTest, TracksWithFewDetectionsAreFalse) {
+  const int track = AddTrack({of_objects_[0][0], of_objects_[0][1]});
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kTooFewDetections);
+  EXPECT_FALSE(TrackAt(track).frames_in_sight);
+  options_.min_observations = 2;
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+}
+
+TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
+  const int track = AddTrack(of_objects_[0]);
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+  // It is detected in every frame that shows it whole; the estimate may reach a little farther.
+  const auto detections = static_cast<int>(of_objects_[0].size());
+  EXPECT_GE(TrackAt(track).frames_in_sight.value(), detections);
+  EXPECT_LE(TrackAt(track).frames_in_sight.value(), detections + 2);
+
+  // The camera goes back to where it saw the object well, and does not see it any more.
+  const auto middle = static_cast<size_t>(of_objects_[0][of_objects_[0].size() / 2]);
+  const Frame frame =
+      sequence_.frames[static_cast<size_t>(sequence_.detections[middle].frame_index)];
+  for (int i = 0; i < 10 * detections; ++i) sequence_.frames.push_back(frame);
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kRarelyDetected);
+  options_.min_detection_share = 0.0;
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+}
+
+TEST_F(TrackTest, ATrackWithoutLandmarkIsNoObject) {
+  const int track = AddTrack(of_objects_[0]);
+  association_.tracks[static_cast<size_t>(track)].fit.reset();
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kNoLandmark);
+}
+
+}  // namespace
+}  // namespace soslam

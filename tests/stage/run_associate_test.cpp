@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_associate.h"
+
+#include <gtest/gtest.h>
+
+#include "artefact/json_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "support/association_scenes.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+class RunAssociateTest : public testing::Test {
+ protected:
+  RunAssociateTest() {
+    WriteSequence(File("sequence"), sequence_, {});
+    WriteBytes(File("table"), R"({"default": {"a_by_c": 1, "a_by_c_log_sigma": 0.5, "b_by_c": 1,
+                                  "b_by_c_log_sigma": 0.5, "shape_exponent": 1.1,
+                                  "source": "the test"}, "labels": {}})");
+  }
+
+  std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
+  void Run(int threads = 1) const {
+    StageFiles files;
+    for (const char* name : {"sequence", "table", "output", "associations"}) {
+      files[name] = File(name);
+    }
+    RunAssociate(options_, files, threads);
+  }
+  json Associations() const { return ReadArtefact(File("associations"), "associations"); }
+
+  AssociateOptions options_ = EstimatedAssociation();
+  Sequence sequence_ = SyntheticSequence(LabelledScene(7, 4, 30, {"thing", "other"}), false);
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunAssociateTest, WritesASequenceThatLaterStagesRead) {
+  Run();
+  const Sequence associated = ReadSequence(File("output"));
+  EXPECT_EQ(associated.objects.size(), sequence_.objects.size());
+  EXPECT_EQ(associated.detections.size(), sequence_.detections.size());
+  for (const Object& object : associated.objects) EXPECT_TRUE(object.ground_truth);
+}
+
+TEST_F(RunAssociateTest, SaysWhatItDecided) {
+  Run();
+  const json associations = Associations();
+  EXPECT_EQ(associations["agreement"]["f1"], 1.0);
+  ASSERT_EQ(associations["detections"].size(), sequence_.detections.size());
+  ASSERT_EQ(associations["objects"].size(), sequence_.objects.size());
+  std::map<int, int> detections;
+  for (const json& row : associations["detections"]) {
+    const bool is_link = row["decision"] == "linked" || row["decision"] == "revisited";
+    EXPECT_EQ(row["link"].is_object(), is_link) << row;
+    if (!row["object"].is_null()) ++detections[row["object"].get<int>()];
+  }
+  for (const json& object : associations["objects"]) {
+    EXPECT_EQ(object["detections"], detections[object["object"].get<int>()]);
+    EXPECT_EQ(object["label_votes"].size(), 1u);
+    EXPECT_EQ(object["label_votes"].value(object["label"].get<std::string>(), 0.0),
+              object["detections"].get<double>());
+    EXPECT_EQ(associations["tracks"][object["track"].get<size_t>()]["fate"], "object");
+  }
+}
+
+TEST_F(RunAssociateTest, DetectionsWithoutIdsGiveTheSameWithNothingToCompareWith) {
+  Run();
+  const Sequence with_ids = ReadSequence(File("output"));
+  WriteSequence(File("sequence"), WithoutIds(sequence_), {});
+  Run();
+  const Sequence without_ids = ReadSequence(File("output"));
+  ASSERT_EQ(with_ids.detections.size(), without_ids.detections.size());
+  for (size_t i = 0; i < with_ids.detections.size(); ++i) {
+    EXPECT_EQ(with_ids.detections[i].object_index, without_ids.detections[i].object_index);
+  }
+  for (const Object& object : without_ids.objects) EXPECT_FALSE(object.ground_truth);
+  EXPECT_EQ(Associations()["agreement"]["given_objects"], 0);
+  EXPECT_TRUE(Associations()["agreement"]["f1"].is_null());
+}
+
+TEST_F(RunAssociateTest, SameBytesForAnyNumberOfThreads) {
+  Run(1);
+  const std::string sequence = FileBytes(File("output"));
+  const std::string associations = FileBytes(File("associations"));
+  Run(3);
+  EXPECT_EQ(FileBytes(File("output")), sequence);
+  EXPECT_EQ(FileBytes(File("associations")), associations);
+}
+
+TEST_F(RunAssociateTest, ThereIsNothingToDoForGivenObjects) {
+  options_.association = AssociationSource::kGiven;
+  ExpectError<SettingsError>([&] { Run(); }, {"association", "given", "estimated"});
+}
+
+TEST_F(RunAssociateTest, NoObjectIsNothingUsable) {
+  options_.min_observations = 1000;
+  ExpectError<NothingUsableError>([&] { Run(); },
+                                  {"sequence.json", "no object", "too_few_detections"});
+  EXPECT_FALSE(std::filesystem::exists(File("output")));
+  EXPECT_FALSE(std::filesystem::exists(File("associations")));
+}
+
+TEST_F(RunAssociateTest, BadInputIsNamed) {
+  options_.interchangeable_labels = "thing,thing";
+  ExpectError<SettingsError>([&] { Run(); }, {"interchangeable_labels", "thing", "twice"});
+  options_.interchangeable_labels = "";
+  WriteBytes(File("table"), R"({"labels": 3})");
+  ExpectError<InputError>([&] { Run(); }, {"table.json", "labels"});
+  WriteBytes(File("sequence"), "{}");
+  ExpectError<InputError>([&] { Run(); }, {"sequence.json"});
+}
+
+}  // namespace
+}  // namespace soslam

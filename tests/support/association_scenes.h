@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "association/agreement.h"
+#include "association/association.h"
+#include "support/random.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+
+// Objects of all shapes, with these labels in turn, that a robot drives past.
+inline Scene LabelledScene(int seed, int objects, int frames,
+                           const std::vector<std::string>& labels) {
+  Scene scene =
+      RandomScene(seed, objects, frames, {Shape::kBox, Shape::kEllipsoid, Shape::kCylinder});
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    scene.objects[i].label = labels[i % labels.size()];
+  }
+  return scene;
+}
+
+// Of an ordinary detector, and of the odometry that AssociateOptions are for.
+inline SceneNoise OrdinaryNoise() {
+  SceneNoise noise;
+  noise.box_edge_sigma = 0.02;
+  noise.box_sigma_px = 1.0;
+  noise.miss_probability = 0.1;
+  noise.odometry_translation_sigma = 0.008;
+  noise.odometry_rotation_sigma_deg = 0.25;
+  return noise;
+}
+
+// A table that knows no label: as long and wide as high, give or take a factor of e^0.5.
+inline SemanticTable UnknowingTable() {
+  SemanticTable table;
+  table.default_prior = ShapePrior{{1.0, 1.0}, {0.5, 0.5}, 1.1};
+  return table;
+}
+
+inline AssociateOptions EstimatedAssociation() {
+  AssociateOptions options;
+  options.association = AssociationSource::kEstimated;
+  return options;
+}
+
+// Sorted as sequences are.
+inline void SortDetections(Sequence* sequence) {
+  std::ranges::stable_sort(sequence->detections, {}, [](const Detection& detection) {
+    return std::tuple(detection.frame_index, detection.object_index);
+  });
+}
+
+// The same detections in the same order, each of an object of its own without ground truth.
+inline Sequence WithoutIds(const Sequence& sequence) {
+  Sequence hidden = sequence;
+  hidden.objects.clear();
+  for (size_t i = 0; i < hidden.detections.size(); ++i) {
+    const auto given = static_cast<size_t>(hidden.detections[i].object_index);
+    const Object& object = sequence.objects[given];
+    hidden.objects.push_back({static_cast<int>(i), object.label, object.plane_index, {}});
+    hidden.detections[i].object_index = static_cast<int>(i);
+  }
+  return hidden;
+}
+
+// A detection of an object that is seen nowhere else. Detections have to be sorted again.
+inline void AddFalseDetection(int frame_index, const Box& box, const std::string& label,
+                              Sequence* sequence) {
+  const int object_index = static_cast<int>(sequence->objects.size());
+  sequence->objects.push_back({sequence->objects.back().id + 1, label, 0, {}});
+  const Frame& frame = sequence->frames[static_cast<size_t>(frame_index)];
+  sequence->detections.push_back(
+      {frame_index,
+       object_index,
+       1.0,
+       box,
+       Transform(frame.world_from_camera.Inverse(), sequence->planes[0].plane_in_world),
+       {},
+       {}});
+}
+
+inline Box RandomBox(const Camera& camera) {
+  const double width = RandomUniform(30.0, 150.0);
+  const double height = RandomUniform(30.0, 150.0);
+  const double x = RandomUniform(0.0, camera.width - 1.0 - width);
+  const double y = RandomUniform(0.0, camera.height - 1.0 - height);
+  return {x, y, x + width, y + height};
+}
+
+// F1 of the objects found in `seen`, whose detections are those of `given` in the same order.
+inline double F1(const Sequence& seen, const Sequence& given,
+                 const AssociateOptions& options = EstimatedAssociation()) {
+  const Association association = Associate(seen, UnknowingTable(), options, 2);
+  return CompareWithGiven(given, association, options.min_observations).F1().value();
+}
+
+}  // namespace soslam
