@@ -86,7 +86,7 @@ void CheckStageList(const json& stages, const std::string& file) {
   }
   const std::vector<std::string> listed = ListedStages();
   for (const json& stage : stages) {
-    if (!stage.is_string() || std::ranges::find(listed, stage) == listed.end()) {
+    if (!stage.is_string() || std::ranges::find(listed, stage.get<std::string>()) == listed.end()) {
       throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
                                       fmt::join(listed, ", ")));
     }
