@@ -16,9 +16,6 @@ inline constexpr const char* kTrajectorySourceNames[] = {"odometry", "groundtrut
 enum class PlanePoses { kGroundTruth, kTrajectory };
 inline constexpr const char* kPlanePosesNames[] = {"groundtruth", "trajectory"};
 
-enum class PlaneSource { kGiven };
-inline constexpr const char* kPlaneSourceNames[] = {"given"};
-
 // What the readers of KITTI's formats need to know beyond the files.
 struct KittiOptions {
   std::string sequences;
@@ -60,7 +57,6 @@ struct KittiOptions {
 struct ImportOptions {
   DatasetFormat format = DatasetFormat::kSoslam;
   TrajectorySource trajectory = TrajectorySource::kOdometry;
-  PlaneSource planes = PlaneSource::kGiven;
   PlanePoses camera_planes = PlanePoses::kGroundTruth;
   int frame_stride = 1;
   bool images_only = false;
@@ -79,9 +75,6 @@ struct ImportOptions {
     visit.Choice("format", &format, kDatasetFormatNames, "what the dataset folder holds");
     visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
                  "soslam: the file with the pose estimates; the other one when it is absent");
-    visit.Choice("planes", &planes, kPlaneSourceNames,
-                 "where support planes come from: the dataset's annotation (given); of KITTI the "
-                 "bottom faces of its labelled boxes");
     visit.Choice("camera_planes", &camera_planes, kPlanePosesNames,
                  "the poses that carry annotated world planes into each frame; the trajectory when "
                  "there is no ground truth");
