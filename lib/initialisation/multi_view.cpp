@@ -28,6 +28,28 @@ bool HasRatio(const MultiViewObservation& observation) {
   return observation.prior && !observation.ratio_is_free;
 }
 
+bool HasSize(const MultiViewObservation& observation) {
+  return observation.size_is_known && observation.prior && observation.prior->height_m;
+}
+
+double HeightAtUnitDepth(const BoxView& view) {
+  const Eigen::Vector3d height = view.edges[1].plane + view.edges[3].plane;
+  return std::abs(height.z() / view.edges[3].plane.y());
+}
+
+// Where rays hardly cross, a body of the prior's height is as high in the image as the boxes are.
+void AddDepthsOfSize(const MultiViewObservation& observation, Eigen::Matrix3d* normal_matrix,
+                     Eigen::Vector3d* right_side) {
+  constexpr double kWeight = 1e-4;  // of a ray
+  for (const BoxView& view : observation.views) {
+    const Eigen::Vector3d axis =
+        view.camera_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double depth = observation.prior->height_m->median / HeightAtUnitDepth(view);
+    *normal_matrix += kWeight * axis * axis.transpose();
+    *right_side += kWeight * (depth - view.camera_from_world.translation.z()) * axis;
+  }
+}
+
 // The point nearest to the rays through the middles of all boxes.
 Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
@@ -43,12 +65,19 @@ Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
       right_side -= offset * normal;
     }
   }
+  if (HasSize(observation)) AddDepthsOfSize(observation, &normal_matrix, &right_side);
   if (!observation.height_is_free) {
     const Plane& plane = observation.plane_in_world;
     normal_matrix += plane.normal * plane.normal.transpose();
     right_side -= plane.offset * plane.normal;
   }
   return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
+}
+
+double CostOf(const LandmarkTerm& prior, const Landmark& landmark) {
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1> residuals(prior.NumResiduals());
+  prior.Evaluate(landmark, residuals, nullptr);
+  return 0.5 * residuals.squaredNorm();
 }
 
 class LinearViews {
@@ -85,8 +114,7 @@ class LinearViews {
     double sum = 0.0;
     for (const BoxView& view : observation_.views) {
       const double depth = (view.camera_from_world * point).z();
-      const Eigen::Vector3d height = view.edges[1].plane + view.edges[3].plane;
-      sum += 0.5 * std::abs(depth * height.z() / view.edges[3].plane.y());
+      sum += 0.5 * std::abs(depth) * HeightAtUnitDepth(view);
     }
     landmark_.half_axes *= sum / static_cast<double>(observation_.views.size());
   }
@@ -105,6 +133,7 @@ class LinearViews {
       for (const BoxEdge& edge : view.edges) AddEdge(view, edge, in_camera, is_first, add);
     }
     if (HasRatio(observation_)) AddRatio(add);
+    if (HasSize(observation_)) AddSize(add);
     const Eigen::SelfAdjointEigenSolver<NormalMatrix> eigen(normal_matrix);
     const Unknowns information = eigen.eigenvalues();  // ascending, 1 / m^2
     if (!(information(0) > kMinInformationShare * information(NumUnknowns() - 1))) return false;
@@ -163,6 +192,16 @@ class LinearViews {
     add((rows[1] - prior.log_correlation * rows[0]) / unexplained, 0.0, 1.0);
   }
 
+  // As HeightTerm: to first order about the height before.
+  template <typename Add>
+  void AddSize(const Add& add) const {
+    const LogNormal& height_m = *observation_.prior->height_m;
+    const double before = landmark_.half_axes.z();
+    Unknowns row = Unknowns::Zero(NumUnknowns());
+    row(4) = 1.0 / (height_m.log_sigma * before);
+    add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
+  }
+
   double Cost() const {
     double cost = 0.0;
     for (const BoxView& view : observation_.views) {
@@ -174,11 +213,8 @@ class LinearViews {
         cost += view.weight * (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
       }
     }
-    if (HasRatio(observation_)) {
-      Eigen::VectorXd residuals(2);
-      RatioTerm(*observation_.prior).Evaluate(landmark_, residuals, nullptr);
-      cost += 0.5 * residuals.squaredNorm();
-    }
+    if (HasRatio(observation_)) cost += CostOf(RatioTerm(*observation_.prior), landmark_);
+    if (HasSize(observation_)) cost += CostOf(HeightTerm(*observation_.prior->height_m), landmark_);
     return cost;
   }
 
@@ -219,6 +255,9 @@ LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark&
   LandmarkTerms terms;
   const Plane& plane = observation.plane_in_world;
   if (HasRatio(observation)) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
+  if (HasSize(observation)) {
+    terms.push_back(std::make_unique<HeightTerm>(*observation.prior->height_m));
+  }
   terms.push_back(std::make_unique<AxisTerm>(plane, WorldAxis(plane), observation.axes_weight));
   for (const BoxView& view : observation.views) {
     const Landmark in_camera = Transform(view.camera_from_world, start_in_world);

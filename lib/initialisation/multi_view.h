@@ -28,6 +28,7 @@ struct MultiViewObservation {
   std::optional<ShapePrior> prior;  // without one the ratio is free, the shape a cuboid's
   bool ratio_is_free = false;       // also with one
   bool height_is_free = false;      // the plane is known by its normal only
+  bool size_is_known = false;       // as far as the prior's height_m says
   double axes_weight = 0.0;         // see AxisTerm
   double huber_delta = 1.0;
 
@@ -49,10 +50,10 @@ LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark&
 // At a given yaw, the tangencies of a cuboid are linear in its foot and its three half axes: the
 // least squares solution over all views with the prior's ratio as soft equations, repeated with
 // each edge's Huber weight (residuals in px / sigma), tangent depth and, for other exponents, the
-// derivative of the support function by the half axes, at the solution before. Unlike the SVD of
-// dual quadrics it does not need a wide baseline: plane and ratio hold what parallax does not. With
-// a free height that of the foot is one more linear unknown. None when the views do not determine
-// the body, or it would not be in front of all cameras.
+// derivative of the support function by the half axes, at the solution before; so with a known
+// size. Unlike the SVD of dual quadrics it does not need a wide baseline: plane and ratio hold what
+// parallax does not. With a free height that of the foot is one more linear unknown. None when the
+// views do not determine the body, or it would not be in front of all cameras.
 std::optional<UprightSolution> SolveViewsAtYaw(const MultiViewObservation& observation, double yaw);
 
 // The local optima of these over half a turn in steps (rad), lowest cost first; landmarks in the

@@ -135,6 +135,15 @@ void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::V
   jacobian->row(1) = (jacobian->row(1) - correlation * jacobian->row(0)) / unexplained;
 }
 
+void HeightTerm::Evaluate(const Landmark& landmark_in_camera,
+                          Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+  residuals[0] =
+      std::log(2.0 * landmark_in_camera.half_axes.z() / height_m_.median) / height_m_.log_sigma;
+  if (jacobian == nullptr) return;
+  jacobian->setZero();
+  (*jacobian)(0, 8) = 1.0 / height_m_.log_sigma;
+}
+
 void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
                               Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
   term_->Evaluate(Transform(camera_from_reference_, landmark_in_reference), residuals, jacobian);

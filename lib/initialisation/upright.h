@@ -69,6 +69,18 @@ class RatioTerm final : public LandmarkTerm {
   ShapePrior prior_;
 };
 
+// The logarithm of the height, 2 c, against the prior's.
+class HeightTerm final : public LandmarkTerm {
+ public:
+  explicit HeightTerm(const LogNormal& height_m) : height_m_(height_m) {}
+  int NumResiduals() const override { return 1; }
+  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  LogNormal height_m_;
+};
+
 // A term of one camera, for a landmark in another frame; each residual under a Huber loss (none
 // with an infinite delta), and the cost multiplied by a weight.
 class RobustViewTerm final : public LandmarkTerm {

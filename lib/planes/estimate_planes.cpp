@@ -94,6 +94,7 @@ class Estimator {
         MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction,
                                  options_.view_correlation_deg * kRadians, /*height_is_free=*/true);
     observation.huber_delta = options_.huber_delta;
+    observation.size_is_known = options_.size_prior;
     return observation;
   }
 

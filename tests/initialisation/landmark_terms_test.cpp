@@ -117,6 +117,19 @@ TEST(RatioTerm, JacobianAgreesWithNumbers) {
   }
 }
 
+TEST(HeightTerm, JacobianAgreesWithNumbers) {
+  for (int i = 0; i < 20; ++i) {
+    const LogNormal height_m{RandomUniform(0.1, 2.0), RandomUniform(0.05, 0.5)};
+    ExpectCorrectTermJacobian(HeightTerm(height_m), RandomLandmarkInCamera());
+  }
+}
+
+TEST(HeightTerm, CountsStandardDeviationsOfTheLogarithm) {
+  Landmark landmark;
+  landmark.half_axes.z() = 0.5 * 0.8 * std::exp(1.5 * 0.3);
+  EXPECT_NEAR(Residuals(HeightTerm({0.8, 0.3}), landmark)[0], 1.5, 1e-12);
+}
+
 TEST(RatioTerm, CountsStandardDeviationsOfTheLogarithms) {
   for (int i = 0; i < 20; ++i) {
     const ShapePrior prior{RandomVector(0.3, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>(),

@@ -77,6 +77,35 @@ void ExpectSame(const Landmark& found, const Landmark& expected, double toleranc
   EXPECT_EQ(found.shape_exponent, expected.shape_exponent);
 }
 
+// The plane is given one metre too low.
+TEST(SolveViewsAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
+  for (const double exponent : {kCuboidExponent, 1.4, kEllipsoidExponent}) {
+    World world(exponent);
+    world.AddArc(8);
+    MultiViewObservation observation = world.Observation(world.Prior(0.2));
+    observation.plane_in_world.offset += 1.0;
+    observation.height_is_free = true;
+    const auto solution = SolveViewsAtYaw(observation, world.TrueYaw());
+    ASSERT_TRUE(solution);
+    ExpectSame(solution->landmark, world.truth, 1e-3);
+  }
+}
+
+// How high a body is says how far away it is, also where the camera was in one place only.
+TEST(SolveViewsAtYaw, AKnownSizeTellsDepthFromOneBox) {
+  World world(kCuboidExponent);
+  world.AddView({4, 0, 1.6}, {0, 0, 0.4});
+  MultiViewObservation observation = world.Observation(world.Prior(0.02));
+  observation.height_is_free = true;
+  EXPECT_FALSE(SolveViewsAtYaw(observation, world.TrueYaw()));
+  observation.prior->height_m = LogNormal{2.0 * world.truth.half_axes.z(), 0.02};
+  EXPECT_FALSE(SolveViewsAtYaw(observation, world.TrueYaw()));
+  observation.size_is_known = true;
+  const auto solution = SolveViewsAtYaw(observation, world.TrueYaw());
+  ASSERT_TRUE(solution);
+  ExpectSame(solution->landmark, world.truth, 1e-3);
+}
+
 TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
   for (const double p : kShapeExponents) {
     SCOPED_TRACE(p);
