@@ -63,7 +63,9 @@ GroundTruth GroundTruthFromJson(const json& json) {
 json ObjectToJson(const Object& object, const Sequence& sequence) {
   return {{"object", object.id},
           {"label", object.label},
-          {"plane", sequence.planes.at(static_cast<size_t>(object.plane_index)).id},
+          {"plane", sequence.planes.empty()
+                        ? json()
+                        : json(sequence.planes.at(static_cast<size_t>(object.plane_index)).id)},
           {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
           {"is_static", object.is_static}};
 }
@@ -72,7 +74,8 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   Object object;
   json.at("object").get_to(object.id);
   json.at("label").get_to(object.label);
-  object.plane_index = planes.IndexOf(json.at("plane").get<int>());
+  const auto& plane = json.at("plane");
+  object.plane_index = plane.is_null() ? kNoPlane : planes.IndexOf(plane.get<int>());
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
   if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
@@ -87,6 +90,15 @@ json BoundsToJson(const std::array<bool, 4>& is_bound) {
   return names;
 }
 
+json DistortionToJson(const Distortion& lens) {
+  return {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+}
+
+Distortion DistortionFromJson(const json& json) {
+  const auto k = json.get<std::array<double, 5>>();
+  return {k[0], k[1], k[2], k[3], k[4]};
+}
+
 std::array<bool, 4> BoundsFromJson(const json& names) {
   std::array<bool, 4> is_bound;
   std::transform(kEdgeNames.begin(), kEdgeNames.end(), is_bound.begin(), [&](const char* name) {
@@ -96,13 +108,14 @@ std::array<bool, 4> BoundsFromJson(const json& names) {
 }
 
 json DetectionToJson(const Detection& detection, const Sequence& sequence) {
-  json fields = {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
-                 {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
-                 {"score", detection.score},
-                 {"box", detection.box},
-                 {"plane_in_camera", detection.plane_in_camera},
-                 {"bounds", BoundsToJson(detection.is_bound)},
-                 {"nearer_boxes", detection.nearer_boxes}};
+  json fields = {
+      {"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
+      {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
+      {"score", detection.score},
+      {"box", detection.box},
+      {"plane_in_camera", sequence.planes.empty() ? json() : json(detection.plane_in_camera)},
+      {"bounds", BoundsToJson(detection.is_bound)},
+      {"nearer_boxes", detection.nearer_boxes}};
   if (detection.true_landmark_in_camera) {
     fields["true_landmark"] = LandmarkToJson(*detection.true_landmark_in_camera, "camera");
   }
@@ -116,7 +129,8 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   detection.object_index = objects.IndexOf(json.at("object").get<int>());
   json.at("score").get_to(detection.score);
   json.at("box").get_to(detection.box);
-  json.at("plane_in_camera").get_to(detection.plane_in_camera);
+  const auto& plane = json.at("plane_in_camera");
+  if (!plane.is_null()) plane.get_to(detection.plane_in_camera);
   // Schema version 1.0 had no bounds: every edge counted as the object's own.
   if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
   detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
@@ -151,10 +165,29 @@ void CheckSegments(const std::vector<Frame>& frames) {
   }
 }
 
+// Either all planes are known or none.
+void CheckPlanes(const json& json) {
+  const bool is_known = !json.at("planes").empty();
+  for (const auto& [list, field] : {std::pair("objects", "plane"),  //
+                                    std::pair("detections", "plane_in_camera")}) {
+    for (size_t i = 0; i < json.at(list).size(); ++i) {
+      const auto& value = json[list][i].at(field);
+      if (value.is_null() != is_known) continue;
+      throw InputError(fmt::format("/{}/{}/{} is {}; expected {}, as there are {}planes", list, i,
+                                   field, value.is_null() ? "null" : "a plane",
+                                   is_known ? "a plane" : "null", is_known ? "" : "no "));
+    }
+  }
+}
+
 Sequence SequenceFromJson(const json& json) {
   Sequence sequence;
   json.at("name").get_to(sequence.name);
   json.at("camera").get_to(sequence.camera);
+  if (json.contains("image_distortion")) {  // since version 1.3
+    sequence.image_distortion = DistortionFromJson(json["image_distortion"]);
+  }
+  CheckPlanes(json);
   for (const auto& frame : json.at("frames")) sequence.frames.push_back(FrameFromJson(frame));
   CheckSegments(sequence.frames);
   for (const auto& plane : json.at("planes")) {
@@ -183,8 +216,15 @@ Sequence SequenceFromJson(const json& json) {
 
 }  // namespace
 
-Sequence ReadSequence(const std::filesystem::path& path) {
-  return ReadArtefactAs(path, "sequence", &SequenceFromJson);
+Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need) {
+  Sequence sequence = ReadArtefactAs(path, "sequence", &SequenceFromJson);
+  if (need == PlaneNeed::kNeeded && sequence.planes.empty()) {
+    throw InputError(fmt::format(
+        "{}: has no support planes; expected those of planes.json in the dataset, or estimated "
+        "ones: settings {{\"planes\": {{\"planes\": \"estimated\"}}}}",
+        path.string()));
+  }
+  return sequence;
 }
 
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
@@ -196,6 +236,8 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                {"objects", json::array()},
                {"detections", json::array()},
                {"rejected_detections", sequence.rejected_detections}};
+  if (sequence.image_distortion)
+    body["image_distortion"] = DistortionToJson(*sequence.image_distortion);
   for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
   for (const SupportPlane& plane : sequence.planes) {
     body["planes"].push_back({{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}});

@@ -8,9 +8,13 @@
 
 namespace soslam {
 
+// Whether a reader can work with a sequence whose support planes nobody knows yet.
+enum class PlaneNeed { kNeeded, kNotNeeded };
+
 // The artefact of kind "sequence". Files name frames, planes and objects by id.
-// Throws InputError for a file that is missing, of another kind, newer or not valid.
-Sequence ReadSequence(const std::filesystem::path& path);
+// Throws InputError for a file that is missing, of another kind, newer or not valid, and for one
+// without the planes that are needed.
+Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need = PlaneNeed::kNeeded);
 // Errors as WriteArtefact.
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info);

@@ -35,23 +35,24 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
 
 }  // namespace
 
+std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
+  return {box.x_min + 0.5 <= kCutAtBorderPx,                 //
+          box.y_min + 0.5 <= kCutAtBorderPx,                 //
+          camera.width - 0.5 - box.x_max <= kCutAtBorderPx,  //
+          camera.height - 0.5 - box.y_max <= kCutAtBorderPx};
+}
+
 // Nearer objects make a bound of the lower edge only. They stand on the same support, so they hide
 // what is behind them from the feet upwards, and a box that ends within another has probably lost
 // its feet. Sides and tops tell less: the box of a tall object full of gaps (a chair) covers much
 // that is seen past its back and between its legs, and the edge of the object behind is then
 // measured as well as any.
-void MarkBoundEdges(const ImportOptions& options, Sequence* sequence) {
+void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence) {
   for (Detection& detection : sequence->detections) {
-    const Camera& camera = sequence->CameraOf(detection);
-    const double right_border = camera.width - 0.5;
-    const double lower_border = camera.height - 0.5;
-    const Box& box = detection.box;
-    const double hidden_share = CoveredShareOfLowerEdge(box, detection.nearer_boxes);
-    const bool is_hidden = hidden_share >= options.hidden_edge_fraction - kShareTolerance;
-    detection.is_bound = {box.x_min + 0.5 <= kCutAtBorderPx,           //
-                          box.y_min + 0.5 <= kCutAtBorderPx,           //
-                          right_border - box.x_max <= kCutAtBorderPx,  //
-                          lower_border - box.y_max <= kCutAtBorderPx || is_hidden};
+    const double hidden_share = CoveredShareOfLowerEdge(detection.box, detection.nearer_boxes);
+    if (hidden_share >= options.hidden_edge_fraction - kShareTolerance) {
+      detection.is_bound[3] = true;
+    }
   }
 }
 

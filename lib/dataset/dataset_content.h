@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "dataset/detection_row.h"
@@ -18,14 +19,16 @@ struct ListedFrame {
 
 // What the reader of a dataset's format finds there, before anything of it is left out.
 struct DatasetContent {
-  Camera camera;                    // of the frames that do not have one of their own
-  std::vector<ListedFrame> frames;  // by ascending id, segment after segment
-  std::vector<SupportPlane> planes;
+  Camera camera;                     // of the frames that do not have one of their own
+  std::vector<ListedFrame> frames;   // by ascending id, segment after segment
+  std::vector<SupportPlane> planes;  // none: not known
   std::vector<Object> objects;
-  std::vector<DetectionRow> rows;            // of these frames and objects
-  RejectionCounts rejected;                  // detections of which there is no row
-  bool has_true_poses = false;               // of some frames at least
-  std::vector<std::filesystem::path> files;  // that were read
+  std::vector<DetectionRow> rows;  // of these frames and objects
+  RejectionCounts rejected;        // detections of which there is no row
+  bool has_true_poses = false;     // of some frames at least
+  bool has_object_ids = true;      // otherwise each row is of an object of its own
+  std::optional<Distortion> image_distortion = std::nullopt;  // see Sequence
+  std::vector<std::filesystem::path> files;                   // that were read
 };
 
 }  // namespace soslam

@@ -2,6 +2,9 @@
 #include "dataset/dataset_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "base/error.h"
 
@@ -10,47 +13,91 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path Required(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError(path.string() + ": is missing");
-  return path;
-}
+// Looks for the files of a folder, and remembers which are missing.
+class Finder {
+ public:
+  explicit Finder(const fs::path& folder) : folder_(folder) {}
 
-std::optional<fs::path> IfPresent(const fs::path& path) {
-  return fs::exists(path) ? std::optional(path) : std::nullopt;
+  std::optional<fs::path> IfPresent(const std::string& name) const {
+    if (name.empty() || !fs::exists(folder_ / name)) return std::nullopt;
+    return folder_ / name;
+  }
+  fs::path Required(const std::string& name) {
+    if (!fs::exists(folder_ / name)) missing_.push_back(name);
+    return folder_ / name;
+  }
+  // None when nothing is named.
+  std::optional<fs::path> RequiredIfNamed(const std::string& name) {
+    return name.empty() ? std::nullopt : std::optional(Required(name));
+  }
+  // May be absent when it has its usual name.
+  std::optional<fs::path> Trajectory(const std::string& name, const std::string& usual_name) {
+    return name == usual_name ? IfPresent(name) : RequiredIfNamed(name);
+  }
+  void Miss(const std::string& name) { missing_.push_back(name); }
+
+  void RefuseIfAnyIsMissing(const ImportOptions& options) const {
+    if (missing_.empty()) return;
+    throw InputError(fmt::format("{}: {} {} missing; expected a dataset folder of format {}",
+                                 folder_.string(), fmt::join(missing_, ", "),
+                                 missing_.size() == 1 ? "is" : "are",
+                                 kDatasetFormatNames[static_cast<size_t>(options.format)]));
+  }
+
+ private:
+  fs::path folder_;
+  std::vector<std::string> missing_;
+};
+
+std::vector<fs::path> FilesIn(const fs::path& path) {
+  if (!fs::is_directory(path)) return {path};
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(path)) {
+    if (entry.is_regular_file() && entry.path().extension() == ".txt") files.push_back(entry);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace
 
 std::vector<fs::path> DatasetFiles::All() const {
-  std::vector<fs::path> files = {images, camera, planes, detections, trajectory};
+  std::vector<fs::path> files = FilesIn(detections);
+  files.push_back(trajectory);
   if (groundtruth && *groundtruth != trajectory) files.push_back(*groundtruth);
-  if (objects) files.push_back(*objects);
+  for (const auto& file : {images, camera, planes, class_names, objects}) {
+    if (file) files.push_back(*file);
+  }
   return files;
 }
 
-DatasetFiles FindDatasetFiles(const fs::path& folder, TrajectorySource trajectory) {
+DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& options) {
   if (!fs::is_directory(folder)) {
     throw InputError(folder.string() + ": is not a folder; expected a dataset folder");
   }
-  const auto odometry = IfPresent(folder / "odometry.txt");
-  const auto groundtruth = IfPresent(folder / "groundtruth.txt");
-  const bool wants_odometry = trajectory == TrajectorySource::kOdometry;
-  const auto& wanted = wants_odometry ? odometry : groundtruth;
-  const auto& other = wants_odometry ? groundtruth : odometry;
+  const FolderOptions usual;
+  const FolderOptions& names = options.folder;
+  Finder find(folder);
+  DatasetFiles files;
+  files.images = find.RequiredIfNamed(names.images);
+  if (names.camera.empty()) files.camera = find.Required("camera.json");
+  files.planes = find.IfPresent("planes.json");
+  files.detections =
+      find.Required(options.detections.empty() ? "detections.csv" : options.detections);
+  files.class_names = find.RequiredIfNamed(names.class_names);
+  files.objects = find.IfPresent("objects.json");
+  const auto odometry = find.Trajectory(names.odometry, usual.odometry);
+  files.groundtruth = find.Trajectory(names.groundtruth, usual.groundtruth);
+  const bool wants_odometry = options.trajectory == TrajectorySource::kOdometry;
+  const auto& wanted = wants_odometry ? odometry : files.groundtruth;
+  const auto& other = wants_odometry ? files.groundtruth : odometry;
   if (!wanted && !other) {
-    throw InputError(
-        fmt::format("{}: has neither odometry.txt nor groundtruth.txt; expected a "
-                    "trajectory",
-                    folder.string()));
+    find.Miss(fmt::format("a trajectory ({} or {})", usual.odometry, usual.groundtruth));
   }
-  return {Required(folder / "rgb.txt"),
-          Required(folder / "camera.json"),
-          Required(folder / "planes.json"),
-          Required(folder / "detections.csv"),
-          wanted ? *wanted : *other,
-          !wanted,
-          groundtruth,
-          IfPresent(folder / "objects.json")};
+  find.RefuseIfAnyIsMissing(options);
+  files.trajectory = wanted ? *wanted : *other;
+  files.trajectory_is_fallback = !wanted;
+  return files;
 }
 
 }  // namespace soslam

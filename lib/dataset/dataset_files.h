@@ -9,22 +9,24 @@
 
 namespace soslam {
 
-// The text files of a dataset folder that an import with certain options reads.
+// The text files of a folder of images that an import with certain options reads.
 struct DatasetFiles {
-  std::filesystem::path images;         // rgb.txt
-  std::filesystem::path camera;         // camera.json
-  std::filesystem::path planes;         // planes.json
-  std::filesystem::path detections;     // detections.csv
-  std::filesystem::path trajectory;     // odometry.txt or groundtruth.txt: the pose estimates
+  std::optional<std::filesystem::path> images;  // the list; none: detections name their images
+  std::optional<std::filesystem::path> camera;  // camera.json; none: the options say it
+  std::optional<std::filesystem::path> planes;  // planes.json
+  std::filesystem::path detections;             // a file or a folder
+  std::optional<std::filesystem::path> class_names;
+  std::filesystem::path trajectory;     // the pose estimates: the odometry or the true poses
   bool trajectory_is_fallback = false;  // the file that the options ask for is absent
-  std::optional<std::filesystem::path> groundtruth;  // groundtruth.txt
-  std::optional<std::filesystem::path> objects;      // objects.json
+  std::optional<std::filesystem::path> groundtruth;
+  std::optional<std::filesystem::path> objects;  // objects.json
 
-  // Each of them once.
+  // Each of them once, those in the folder of detections one by one.
   std::vector<std::filesystem::path> All() const;
 };
 
-// Throws InputError naming a required file that is missing.
-DatasetFiles FindDatasetFiles(const std::filesystem::path& folder, TrajectorySource trajectory);
+// Throws InputError naming all required files that are missing. Odometry and true poses with the
+// usual names may be absent; files that the options name have to be there.
+DatasetFiles FindDatasetFiles(const std::filesystem::path& folder, const ImportOptions& options);
 
 }  // namespace soslam

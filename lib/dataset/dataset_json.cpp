@@ -7,6 +7,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "dataset/icl_nuim.h"
 #include "dataset/json_entry.h"
 #include "dataset/unit_quaternion.h"
 
@@ -65,17 +66,30 @@ ListedObject ParseObject(const Entry& entry) {
 
 }  // namespace
 
-Camera ReadCamera(const std::filesystem::path& path) {
-  const json fields = ParseJsonFile(path);
-  const Entry entry(fields, path.string());
+Camera ParseCamera(const Entry& entry) {
   if (entry.Has("model") && entry.Text("model") != "pinhole") {
     entry.Refuse("model", "\"pinhole\": undistort the images first");
   }
   Camera camera{entry.Integer("width"), entry.Integer("height"), entry.Positive("fx"),
-                entry.Positive("fy"),   entry.Real("cx"),        entry.Real("cy")};
+                entry.Real("fy"),       entry.Real("cx"),        entry.Real("cy")};
   if (camera.width <= 0) entry.Refuse("width", "pixels above 0");
   if (camera.height <= 0) entry.Refuse("height", "pixels above 0");
   return camera;
+}
+
+Camera ReadCamera(const std::filesystem::path& path) {
+  const json fields = ParseJsonFile(path);
+  const Entry entry(fields, path.string());
+  entry.Positive("fy");
+  return ParseCamera(entry);
+}
+
+Camera ReadCameraWithYUp(const std::filesystem::path& path) {
+  const json fields = ParseJsonFile(path);
+  const Entry entry(fields, path.string());
+  if (!(entry.Real("fy") < 0.0))
+    entry.Refuse("fy", "that of a camera with y up, which is negative");
+  return WithYDown(ParseCamera(entry));
 }
 
 std::optional<Distortion> ReadDistortion(const std::filesystem::path& path) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dataset/json_entry.h"
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
 #include "model/sequence.h"
@@ -15,8 +16,15 @@ namespace soslam {
 // The JSON files of a dataset folder. Fields that are not named here are ignored. All throw
 // InputError naming the file, entry and field.
 
+// The fields of a camera as below; fy may be negative.
+Camera ParseCamera(const JsonEntry& entry);
+
 // {"model": "pinhole" (optional), "width", "height", "fx", "fy", "cx", "cy"}, pixels.
 Camera ReadCamera(const std::filesystem::path& path);
+
+// The same file of a camera with y up, whose fy is negative: as the camera with y down that gives
+// the same images.
+Camera ReadCameraWithYUp(const std::filesystem::path& path);
 
 // The "distortion" of the same file, [k1, k2, p1, p2, k3]; none when it is absent: the images are
 // those of a pinhole camera.

@@ -18,6 +18,8 @@ struct DetectionRow {
   std::string label;
   double score;
   Box box;
+  // Where the lens put it, in a dataset whose images are distorted.
+  std::optional<Box> box_in_image_file = std::nullopt;
   // Where the dataset's labels say more about this object in this frame; frames are the camera's.
   double truncation = 0.0;  // how much of it is outside the image, in the dataset's own measure
   int occlusion = 0;        // how much of it is hidden, in the dataset's own measure

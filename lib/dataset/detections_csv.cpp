@@ -100,6 +100,13 @@ LabelledBox ParseLabelledBox(const Row& row) {
 
 }  // namespace
 
+bool HasObjectIds(const std::filesystem::path& path) {
+  const std::vector<TextLine> lines = ReadTextLines(path);
+  if (lines.empty()) return false;
+  const auto columns = SplitFields(lines[0].text);
+  return std::find(columns.begin(), columns.end(), "object_id") != columns.end();
+}
+
 std::vector<DetectionRow> ReadDetections(const std::filesystem::path& path) {
   return ReadTable(path, kColumns, &ParseDetection);
 }

@@ -15,6 +15,9 @@ namespace soslam {
 // absent. No quoting: a label cannot hold a comma. The readers throw InputError naming the line,
 // and for a file without header.
 
+// Whether the table says which object each box is of.
+bool HasObjectIds(const std::filesystem::path& path);
+
 // The rows of a table that says which object each box is of.
 std::vector<DetectionRow> ReadDetections(const std::filesystem::path& path);
 

@@ -23,19 +23,11 @@ bool IsListed(std::string_view label, const std::string& labels) {
 }  // namespace
 
 const char* RejectReasonName(RejectReason reason) {
-  constexpr std::array kNames = {"frame_not_used",
-                                 "frame_without_image",
-                                 "frame_without_pose",
-                                 "other_label",
-                                 "truncated",
-                                 "occluded",
-                                 "low_score",
-                                 "empty_box",
-                                 "outside_image",
-                                 "low_box",
-                                 "near_border",
-                                 "duplicate",
-                                 "too_few_observations",
+  constexpr std::array kNames = {"frame_not_listed",   "frame_not_used", "frame_without_image",
+                                 "frame_without_pose", "other_label",    "truncated",
+                                 "occluded",           "low_score",      "beyond_lens_model",
+                                 "empty_box",          "outside_image",  "low_box",
+                                 "near_border",        "duplicate",      "too_few_observations",
                                  "matches_no_label"};
   return kNames.at(static_cast<size_t>(reason));
 }
@@ -68,7 +60,7 @@ std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camer
                                     const ImportOptions& options) {
   // A box exactly border_px from the border is kept, whatever the rounding of its edges.
   constexpr double kTolerancePx = 1e-9;
-  const Box& box = row.box;
+  const Box box = row.box_in_image_file.value_or(row.box);
   if (!IsListed(row.label, options.labels)) return RejectReason::kOtherLabel;
   if (row.score < options.min_score) return RejectReason::kLowScore;
   if (box.Width() <= 0.0 || box.Height() <= 0.0) return RejectReason::kEmptyBox;

@@ -14,13 +14,15 @@ namespace soslam {
 
 // Why a detection is not used. Sequence::rejected_detections counts them by name.
 enum class RejectReason {
-  kFrameNotUsed,        // its image is skipped by the frame stride
+  kFrameNotListed,      // its image is not in the dataset's list
+  kFrameNotUsed,        // its image is skipped: first_frame, frame_stride
   kFrameWithoutImage,   // the dataset does not have its image, and images_only asks for it
   kFrameWithoutPose,    // no pose close in time for its image, or for its plane
   kOtherLabel,          // not one of `labels`
   kTruncated,           // more than max_truncation
   kOccluded,            // more than max_occlusion
   kLowScore,            // score below min_score
+  kBeyondLensModel,     // a lens cannot have put the box where it is, says its distortion
   kEmptyBox,            // no width or no height
   kOutsideImage,        // no part of the box is in the image
   kLowBox,              // lower than min_box_height_px

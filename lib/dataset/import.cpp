@@ -14,6 +14,7 @@
 #include "dataset/gate.h"
 #include "dataset/kitti_object.h"
 #include "dataset/kitti_tracking.h"
+#include "dataset/slam_synthetic.h"
 #include "dataset/soslam_folder.h"
 #include "model/occlusion.h"
 
@@ -23,11 +24,15 @@ namespace {
 DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOptions& options) {
   switch (options.format) {
     case DatasetFormat::kSoslam:
+    case DatasetFormat::kTumRgbd:
+    case DatasetFormat::kIclNuim:
       return ReadSoslamFolder(folder, options);
     case DatasetFormat::kKittiTracking:
       return ReadKittiTracking(folder, options);
     case DatasetFormat::kKittiObject:
       return ReadKittiObject(folder, options);
+    case DatasetFormat::kSlamSynthetic:
+      return ReadSlamSynthetic(folder, options);
   }
   throw std::logic_error("format without a reader");
 }
@@ -43,7 +48,8 @@ std::map<int, FrameSlot> ChooseFrames(const std::vector<ListedFrame>& listed,
   for (size_t i = 0; i < listed.size(); ++i) {
     const Frame& frame = listed[i].frame;
     in_segment = i > 0 && frame.segment == listed[i - 1].frame.segment ? in_segment + 1 : 0;
-    if (in_segment % options.frame_stride != 0) {
+    if (in_segment < options.first_frame ||
+        (in_segment - options.first_frame) % options.frame_stride != 0) {
       slots[frame.id] = RejectReason::kFrameNotUsed;
     } else if (options.images_only && frame.image.empty()) {
       slots[frame.id] = RejectReason::kFrameWithoutImage;
@@ -79,7 +85,9 @@ class Importer {
       if (reason) ++(*rejected)[RejectReasonName(*reason)];
     }
     usable = WithoutDuplicates(std::move(usable), rejected);
-    usable = WithEnoughObservations(usable, options_.min_observations, rejected);
+    if (content_.has_object_ids) {
+      usable = WithEnoughObservations(usable, options_.min_observations, rejected);
+    }
     sequence_->detections = Detections(usable);
 
     RejectionCounts not_reported;
@@ -88,7 +96,7 @@ class Importer {
     for (Detection& detection : sequence_->detections) {
       detection.nearer_boxes = NearerBoxes(all_in_view, detection);
     }
-    MarkBoundEdges(options_, sequence_);
+    MarkHiddenEdges(options_, sequence_);
   }
 
  private:
@@ -102,7 +110,8 @@ class Importer {
     const FrameSlot& slot = slots_.at(row.frame_id);
     if (const auto* reason = std::get_if<RejectReason>(&slot)) return *reason;
     const Frame& frame = sequence_->frames[static_cast<size_t>(std::get<int>(slot))];
-    if (!row.plane_in_camera && !PlanePose(frame)) return RejectReason::kFrameWithoutPose;
+    const bool needs_plane_pose = !row.plane_in_camera && !sequence_->planes.empty();
+    if (needs_plane_pose && !PlanePose(frame)) return RejectReason::kFrameWithoutPose;
     return GateRow(row, sequence_->CameraOf(frame), options_);
   }
 
@@ -114,8 +123,12 @@ class Importer {
       detection.object_index = object_ids_.IndexOf(row.object_id);
       detection.score = row.score;
       detection.box = row.box;
-      detection.plane_in_camera =
-          row.plane_in_camera ? *row.plane_in_camera : WorldPlane(detection);
+      if (!sequence_->planes.empty()) {
+        detection.plane_in_camera =
+            row.plane_in_camera ? *row.plane_in_camera : WorldPlane(detection);
+      }
+      detection.is_bound =
+          EdgesCutByBorder(row.box_in_image_file.value_or(row.box), sequence_->CameraOf(detection));
       detection.true_landmark_in_camera = row.true_landmark_in_camera;
       detections.push_back(detection);
     }
@@ -137,6 +150,25 @@ class Importer {
   bool planes_from_truth_;
 };
 
+// Where each detection is an object of its own, those that are not used are no objects either, nor
+// is what objects.json lists, of which no detection is known to be.
+void DropUndetectedObjects(Sequence* sequence) {
+  std::vector<bool> is_kept(sequence->objects.size());
+  for (const Detection& detection : sequence->detections) {
+    is_kept[static_cast<size_t>(detection.object_index)] = true;
+  }
+  std::vector<int> new_index(is_kept.size());
+  std::vector<Object> kept;
+  for (size_t i = 0; i < is_kept.size(); ++i) {
+    new_index[i] = static_cast<int>(kept.size());
+    if (is_kept[i]) kept.push_back(std::move(sequence->objects[i]));
+  }
+  sequence->objects = std::move(kept);
+  for (Detection& detection : sequence->detections) {
+    detection.object_index = new_index[static_cast<size_t>(detection.object_index)];
+  }
+}
+
 void RequireDetections(const std::filesystem::path& folder, const Sequence& sequence) {
   if (!sequence.detections.empty()) return;
   throw NothingUsableError(fmt::format("{}: no usable detection left; {}", folder.string(),
@@ -154,11 +186,13 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   Sequence sequence;
   sequence.name = std::filesystem::canonical(folder).filename().string();
   sequence.camera = content.camera;
+  sequence.image_distortion = content.image_distortion;
   sequence.planes = content.planes;
   sequence.objects = content.objects;
   sequence.rejected_detections = content.rejected;
   Importer(content, options, &sequence).Import();
   RequireDetections(folder, sequence);
+  if (!content.has_object_ids) DropUndetectedObjects(&sequence);
   if (files_read != nullptr) *files_read = content.files;
   return sequence;
 }

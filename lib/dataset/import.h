@@ -14,8 +14,8 @@ namespace soslam {
 // that the protocol of the paper's experiments does not use. Frames without a pose estimate are
 // left out.
 //
-// Formats: soslam (ReadSoslamFolder), kitti_tracking (ReadKittiTracking), kitti_object
-// (ReadKittiObject).
+// Formats: soslam, tum_rgbd, icl_nuim (ReadSoslamFolder), kitti_tracking (ReadKittiTracking),
+// kitti_object (ReadKittiObject), slam_synthetic (ReadSlamSynthetic).
 //
 // `files_read`, when not null, becomes the list of the files that were read. Throws InputError,
 // naming file and line or field, for whatever is missing, malformed or contradictory; SettingsError

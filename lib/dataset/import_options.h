@@ -7,8 +7,16 @@
 
 namespace soslam {
 
-enum class DatasetFormat { kSoslam, kKittiTracking, kKittiObject };
-inline constexpr const char* kDatasetFormatNames[] = {"soslam", "kitti_tracking", "kitti_object"};
+enum class DatasetFormat {
+  kSoslam,
+  kTumRgbd,
+  kIclNuim,
+  kKittiTracking,
+  kKittiObject,
+  kSlamSynthetic
+};
+inline constexpr const char* kDatasetFormatNames[] = {
+    "soslam", "tum_rgbd", "icl_nuim", "kitti_tracking", "kitti_object", "slam_synthetic"};
 
 enum class TrajectorySource { kOdometry, kGroundTruth };
 inline constexpr const char* kTrajectorySourceNames[] = {"odometry", "groundtruth"};
@@ -16,10 +24,64 @@ inline constexpr const char* kTrajectorySourceNames[] = {"odometry", "groundtrut
 enum class PlanePoses { kGroundTruth, kTrajectory };
 inline constexpr const char* kPlanePosesNames[] = {"groundtruth", "trajectory"};
 
+enum class TrajectoryFormat { kTum, kKitti };
+inline constexpr const char* kTrajectoryFormatNames[] = {"tum", "kitti"};
+
+enum class DetectionsFormat { kCsv, kYolo, kYoloPixels, kCoco, kOaSlam, kKitti };
+inline constexpr const char* kDetectionsFormatNames[] = {"csv",  "yolo",    "yolo_pixels",
+                                                         "coco", "oa_slam", "kitti"};
+
+// What is in which file of a folder of images, and how. Paths are relative to the dataset folder,
+// or absolute.
+struct FolderOptions {
+  std::string images = "rgb.txt";
+  std::string odometry = "odometry.txt";
+  std::string groundtruth = "groundtruth.txt";
+  TrajectoryFormat trajectory_format = TrajectoryFormat::kTum;
+  bool align_odometry = false;
+  std::string camera;
+  std::string distortion;
+  DetectionsFormat detections_format = DetectionsFormat::kCsv;
+  std::string class_names;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Text("images", &images,
+               "soslam, tum_rgbd, icl_nuim: the list of images, lines \"timestamp filename\"; of "
+               "the latter two also pairs of colour and depth images; empty: the images are those "
+               "that the detections name by their timestamps");
+    visit.Text("odometry", &odometry,
+               "soslam, tum_rgbd, icl_nuim: the file with the pose estimates");
+    visit.Text("groundtruth", &groundtruth,
+               "soslam, tum_rgbd, icl_nuim: the file with the true poses");
+    visit.Choice(
+        "trajectory_format", &trajectory_format, kTrajectoryFormatNames,
+        "soslam, tum_rgbd, icl_nuim: how both files say poses: timestamp tx ty tz qx qy qz "
+        "qw (tum), or 12 numbers, one line for each listed image (kitti)");
+    visit.Flag("align_odometry", &align_odometry,
+               "soslam, tum_rgbd, icl_nuim: the odometry has a world of its own: it is moved as a "
+               "whole so that its first pose that has a true one is that");
+    visit.Text("camera", &camera,
+               "soslam, tum_rgbd, icl_nuim: \"width height fx fy cx cy\" (px); empty: camera.json "
+               "says it");
+    visit.Text("distortion", &distortion,
+               "soslam, tum_rgbd: what the lens did to images and boxes: \"k1 k2 p1 p2 k3\" as "
+               "OpenCV has them; empty: camera.json says it, or nothing");
+    visit.Choice(
+        "detections_format", &detections_format, kDetectionsFormatNames,
+        "soslam, tum_rgbd, icl_nuim: how `detections` says boxes: detections.csv with or "
+        "without object ids (csv); a folder or archive of text files with fractions of the "
+        "image (yolo) or pixels from the upper left corner (yolo_pixels); COCO's results "
+        "(coco); OA-SLAM's JSON (oa_slam); <class>/<name>.txt, or a folder of such class "
+        "folders (kitti)");
+    visit.Text("class_names", &class_names,
+               "yolo, yolo_pixels, oa_slam: the file with the names of the classes, one a line; "
+               "coco: the JSON file of the dataset; empty: COCO's");
+  }
+};
+
 // What the readers of KITTI's formats need to know beyond the files.
 struct KittiOptions {
   std::string sequences;
-  std::string detections = "labels";
   double match_min_iou = 0.5;
   std::string poses = "poses";
   std::string translation_scale = "1";
@@ -30,10 +92,8 @@ struct KittiOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Text("sequences", &sequences,
-               "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; empty: all");
-    visit.Text("detections", &detections,
-               "kitti_tracking: whose boxes to use: those of the labels, or of a detector, by the "
-               "name of its folder; its boxes take the objects of the labels that they match");
+               "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; slam_synthetic: "
+               "the names of the problems; empty: all");
     visit.Real("match_min_iou", &match_min_iou, {1e-6, 1},
                "kitti_tracking: a detector's box matches a labelled one with at least this overlap "
                "(intersection over union, 2D)");
@@ -58,6 +118,8 @@ struct ImportOptions {
   DatasetFormat format = DatasetFormat::kSoslam;
   TrajectorySource trajectory = TrajectorySource::kOdometry;
   PlanePoses camera_planes = PlanePoses::kGroundTruth;
+  std::string detections;
+  int first_frame = 0;
   int frame_stride = 1;
   bool images_only = false;
   std::string labels;
@@ -69,16 +131,25 @@ struct ImportOptions {
   double max_time_difference_s = 0.02;
   double min_score = 0.0;
   double hidden_edge_fraction = 0.7;
+  FolderOptions folder;
   KittiOptions kitti;
 
   void Describe(OptionVisitor& visit) {
     visit.Choice("format", &format, kDatasetFormatNames, "what the dataset folder holds");
     visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
-                 "soslam: the file with the pose estimates; the other one when it is absent");
+                 "soslam, tum_rgbd, icl_nuim, slam_synthetic: which poses are the estimates; the "
+                 "others when a folder does not have them");
+    visit.Text("detections", &detections,
+               "the file or folder with the boxes; empty: detections.csv, of kitti_tracking the "
+               "boxes of its labels (\"labels\"). For kitti_tracking the folder of a detector, "
+               "whose boxes take the objects of the labels that they match");
     visit.Choice("camera_planes", &camera_planes, kPlanePosesNames,
                  "the poses that carry annotated world planes into each frame; the trajectory when "
                  "there is no ground truth");
-    visit.Integer("frame_stride", &frame_stride, {1, 1000000}, "every n-th image is used");
+    visit.Integer("first_frame", &first_frame, {0, 1000000},
+                  "images before this one, counted from 0 in each segment, are not used");
+    visit.Integer("frame_stride", &frame_stride, {1, 1000000},
+                  "of the images from first_frame on every n-th is used");
     visit.Flag("images_only", &images_only, "frames whose image the dataset lacks are not used");
     visit.Text("labels", &labels,
                "detections of other labels are dropped; commas between several, empty: all are "
@@ -93,7 +164,8 @@ struct ImportOptions {
     visit.Real("border_px", &border_px, {0, 1e5},
                "boxes closer to the image border than this are dropped (px)");
     visit.Integer("min_observations", &min_observations, {1, 1000000},
-                  "objects with fewer usable detections lose them all");
+                  "objects with fewer usable detections lose them all; of no effect where "
+                  "detections do not say which object they are of");
     visit.Real("max_time_difference_s", &max_time_difference_s, {0, 1e6},
                "an image takes the pose nearest in time, at most this far away (s)");
     visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
@@ -101,6 +173,7 @@ struct ImportOptions {
         "hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
         "the share of a box's lower edge that must lie inside boxes of nearer objects for it "
         "to be a lower bound only");
+    folder.Describe(visit);
     kitti.Describe(visit);
   }
 };

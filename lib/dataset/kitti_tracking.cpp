@@ -51,18 +51,19 @@ std::vector<FoundBox> ReadFoundBoxes(const fs::path& path) {
 // Reads one recording into the content.
 class Recording {
  public:
-  Recording(const fs::path& folder, const NumberedPath& labels, const KittiOptions& options,
+  Recording(const fs::path& folder, const NumberedPath& labels, const ImportOptions& options,
             DatasetContent* content)
       : folder_(folder),
         number_(labels.number),
         file_(labels.path.filename()),
-        options_(options),
+        options_(options.kitti),
+        detections_(options.detections),
         content_(content) {
     calibration_ = ReadKittiCalibration(Read(folder / "calib" / file_));
     labels_ = ReadKittiTrackingLabels(Read(labels.path));
-    poses_ = ReadKittiTrajectory(Read(folder / options.poses / file_));
+    poses_ = ReadKittiTrajectory(Read(folder / options_.poses / file_));
     const double scale =
-        RecordingValues("translation_scale", options.translation_scale).PositiveOf(number_);
+        RecordingValues("translation_scale", options_.translation_scale).PositiveOf(number_);
     for (Rigid3d& pose : poses_) pose.translation *= scale;
     CheckIds();
   }
@@ -70,7 +71,7 @@ class Recording {
   void Add() {
     AddFrames();
     AddObjects();
-    if (options_.detections == "labels") {
+    if (detections_.empty() || detections_ == "labels") {
       for (const KittiLabel& label : labels_) AddRow(label, label.box, 1.0);
     } else {
       AddFoundBoxes();
@@ -166,12 +167,12 @@ class Recording {
   void AddFoundBoxes() {
     std::vector<fs::path> types;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder_ / options_.detections, error)) {
+    for (const auto& entry : fs::directory_iterator(folder_ / detections_, error)) {
       if (entry.is_directory()) types.push_back(entry.path());
     }
     if (types.empty()) {
       throw InputError(fmt::format("{}: has no folders; expected one for each type of object",
-                                   (folder_ / options_.detections).string()));
+                                   (folder_ / detections_).string()));
     }
     std::sort(types.begin(), types.end());
     for (const fs::path& type : types) AddFoundBoxes(type);
@@ -210,6 +211,7 @@ class Recording {
   int number_;
   fs::path file_;  // SSSS.txt
   const KittiOptions& options_;
+  std::string detections_;  // empty: those of the labels
   DatasetContent* content_;
   KittiCalibration calibration_;
   Camera camera_;
@@ -246,7 +248,7 @@ DatasetContent ReadKittiTracking(const fs::path& folder, const ImportOptions& op
   DatasetContent content;
   for (const NumberedPath& labels :
        ChooseRecordings(folder / "label_02", options.kitti.sequences)) {
-    Recording(folder, labels, options.kitti, &content).Add();
+    Recording(folder, labels, options, &content).Add();
   }
   return content;
 }

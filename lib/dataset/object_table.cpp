@@ -6,13 +6,13 @@
 #include <map>
 
 #include "base/error.h"
-#include "dataset/dataset_json.h"
 
 namespace soslam {
 namespace {
 
 int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& planes,
                const std::string& file) {
+  if (planes.empty()) return kNoPlane;
   if (!object.plane_id) {
     if (planes.size() == 1) return 0;
     throw InputError(
@@ -30,12 +30,11 @@ int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& plan
 
 }  // namespace
 
-std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<DetectionRow>& rows,
+std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<ListedObject>& given,
+                                const std::vector<DetectionRow>& rows,
                                 const std::vector<SupportPlane>& planes) {
   std::map<int, ListedObject> listed;
-  if (files.objects) {
-    for (const ListedObject& object : ReadObjects(*files.objects)) listed[object.id] = object;
-  }
+  for (const ListedObject& object : given) listed[object.id] = object;
   for (const DetectionRow& row : rows) {
     const ListedObject only_detected{row.object_id, row.label, std::nullopt, std::nullopt};
     const ListedObject& object = listed.try_emplace(row.object_id, only_detected).first->second;

@@ -4,16 +4,18 @@
 #include <vector>
 
 #include "dataset/dataset_files.h"
-#include "dataset/detections_csv.h"
+#include "dataset/dataset_json.h"
+#include "dataset/detection_row.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
-// All objects of a dataset, sorted by id: those of objects.json, detected or not, and those that
-// only detections name, which have no ground truth. An object stands on its support_plane, or else
-// on the only plane. Throws InputError for contradicting labels, a plane that does not exist, and
-// when the plane is not given although there are several.
-std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<DetectionRow>& rows,
+// All objects of a dataset, sorted by id: those given in objects.json, detected or not, and those
+// that only detections name, which have no ground truth. An object stands on its support_plane, or
+// else on the only plane; on none when no plane is known. Throws InputError for contradicting
+// labels, a plane that does not exist, and when the plane is not given although there are several.
+std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<ListedObject>& given,
+                                const std::vector<DetectionRow>& rows,
                                 const std::vector<SupportPlane>& planes);
 
 }  // namespace soslam

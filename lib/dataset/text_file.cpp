@@ -39,13 +39,17 @@ std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
   if (!stream || std::filesystem::is_directory(path)) {
     throw InputError(path.string() + ": cannot be read; expected a text file");
   }
+  return TextLines(stream, path.string());
+}
+
+std::vector<TextLine> TextLines(std::istream& stream, const std::string& name) {
   std::vector<TextLine> lines;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     const std::string_view text = Trimmed(line);
     if (text.empty() || text.front() == '#') continue;
-    lines.push_back({fmt::format("{}:{}", path.string(), number), std::string(text)});
+    lines.push_back({fmt::format("{}:{}", name, number), std::string(text)});
     if (!IsUtf8(line)) throw InputError(lines.back().place + ": is not UTF-8 text");
   }
   return lines;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,8 @@ struct TextLine {
 // order mark and carriage returns at line ends are dropped. Throws InputError when the file cannot
 // be read or is not UTF-8.
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
+// The same of a text that is not a file of its own; `name` stands for it in error messages.
+std::vector<TextLine> TextLines(std::istream& text, const std::string& name);
 
 // Without blanks at both ends.
 std::string_view Trimmed(std::string_view text);

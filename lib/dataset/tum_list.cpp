@@ -26,6 +26,14 @@ TimedPose ParsePose(const TextLine& line) {
   return {v[0], {UnitQuaternion({v[4], v[5], v[6], v[7]}, line.place), {v[1], v[2], v[3]}}};
 }
 
+// Within what a camera moves while a clock of some digits does not.
+bool IsSamePose(const Rigid3d& a, const Rigid3d& b) {
+  constexpr double kMetres = 0.01;
+  constexpr double kRadians = 0.02;
+  return (a.translation - b.translation).norm() <= kMetres &&
+         a.rotation.angularDistance(b.rotation) <= kRadians;
+}
+
 }  // namespace
 
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path) {
@@ -43,24 +51,47 @@ std::vector<ListedImage> ReadImageList(const std::filesystem::path& path) {
   return images;
 }
 
+std::vector<ListedImage> ReadPairedImageList(const std::filesystem::path& path, PairOrder order) {
+  std::vector<ListedImage> images;
+  for (const TextLine& line : ReadTextLines(path)) {
+    const auto words = SplitWords(line.text);
+    if (words.size() != 2 && words.size() != 4) {
+      throw InputError(
+          fmt::format("{}: has {} words; expected timestamp filename [timestamp filename]",
+                      line.place, words.size()));
+    }
+    const size_t first = words.size() == 4 && order == PairOrder::kImageSecond ? 2 : 0;
+    images.push_back(
+        {ParseReal(words[first], line.place, "timestamp"), std::string(words[first + 1])});
+  }
+  if (images.empty()) throw InputError(path.string() + ": lists no image");
+  return images;
+}
+
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
   std::vector<TimedPose> trajectory;
   for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParsePose(line));
   if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
-  std::sort(trajectory.begin(), trajectory.end(),
-            [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
-  const auto twice = std::adjacent_find(
+  std::stable_sort(
       trajectory.begin(), trajectory.end(),
-      [](const TimedPose& a, const TimedPose& b) { return a.timestamp == b.timestamp; });
+      [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
+  const auto same_time = [](const TimedPose& a, const TimedPose& b) {
+    return a.timestamp == b.timestamp;
+  };
+  const auto twice = std::adjacent_find(
+      trajectory.begin(), trajectory.end(), [&](const TimedPose& a, const TimedPose& b) {
+        return same_time(a, b) && !IsSamePose(a.world_from_camera, b.world_from_camera);
+      });
   if (twice != trajectory.end()) {
-    throw InputError(fmt::format("{}: timestamp {} twice; expected one pose each", path.string(),
-                                 twice->timestamp));
+    throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
+                                 path.string(), twice->timestamp));
   }
+  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), same_time), trajectory.end());
   return trajectory;
 }
 
-std::optional<Rigid3d> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,
-                                   double max_difference_s) {
+std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,
+                                     double max_difference_s) {
   const auto difference = [&](const TimedPose& pose) {
     return std::abs(pose.timestamp - timestamp);
   };
@@ -74,7 +105,7 @@ std::optional<Rigid3d> NearestPose(const std::vector<TimedPose>& trajectory, dou
     nearest = std::prev(after);
   }
   if (difference(*nearest) > max_difference_s) return std::nullopt;
-  return nearest->world_from_camera;
+  return *nearest;
 }
 
 }  // namespace soslam

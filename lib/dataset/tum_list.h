@@ -21,19 +21,25 @@ struct ListedImage {
 // The rows in the order of the file. Throws InputError naming the line; also when there is no row.
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path);
 
+// Rows as above, or "timestamp filename timestamp filename" as tools write them that associate
+// colour images with depth images: the first pair is the image, or else the second.
+enum class PairOrder { kImageFirst, kImageSecond };
+std::vector<ListedImage> ReadPairedImageList(const std::filesystem::path& path, PairOrder order);
+
 // A row "timestamp tx ty tz qx qy qz qw" of a trajectory.
 struct TimedPose {
   double timestamp;  // seconds
   Rigid3d world_from_camera;
 };
 
-// The poses by ascending timestamp, quaternions normalised. Throws InputError naming the line, for
-// two poses of one time, and when there is no pose.
+// The poses by ascending timestamp, quaternions normalised; of those of one time, which a
+// recorder's clock may give to two, the first. Throws InputError naming the line, for two poses of
+// one time that are not about the same, and when there is no pose.
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path);
 
 // The pose of `trajectory` (ascending) that is nearest in time, none when it is further away than
 // `max_difference_s`.
-std::optional<Rigid3d> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,
-                                   double max_difference_s);
+std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,
+                                     double max_difference_s);
 
 }  // namespace soslam

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "base/error.h"
+#include "dataset/text_archive.h"
 #include "dataset/text_file.h"
 
 namespace soslam {
@@ -67,30 +69,53 @@ Box PixelBox(const std::array<double, 4>& values, const std::string& place) {
   return FromCornerOrigin({x, y, x + w, y + h});
 }
 
-std::vector<fs::path> TextFiles(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
-    throw InputError(folder.string() + ": is not a folder; expected one of YOLO text files");
-  }
+// The boxes of one image.
+struct ImageText {
+  std::string image;  // its name without extension
+  std::vector<TextLine> lines;
+};
+
+std::vector<ImageText> ReadFolder(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".txt") files.push_back(entry.path());
   }
-  if (files.empty()) {
-    throw InputError(folder.string() + ": has no *.txt; expected one for each image");
-  }
   std::sort(files.begin(), files.end());
-  return files;
+  std::vector<ImageText> texts;
+  for (const fs::path& file : files) texts.push_back({file.stem().string(), ReadTextLines(file)});
+  return texts;
+}
+
+std::vector<ImageText> ReadArchive(const fs::path& archive) {
+  std::vector<ImageText> texts;
+  for (const ArchivedText& entry : ReadTextArchive(archive, ".txt")) {
+    std::istringstream text(entry.text);
+    texts.push_back({fs::path(entry.name).stem().string(),
+                     TextLines(text, fmt::format("{}/{}", archive.string(), entry.name))});
+  }
+  return texts;
+}
+
+std::vector<ImageText> ReadTexts(const fs::path& path) {
+  if (!fs::exists(path)) {
+    throw InputError(path.string() + ": is missing; expected a folder of YOLO text files");
+  }
+  std::vector<ImageText> texts = fs::is_directory(path) ? ReadFolder(path) : ReadArchive(path);
+  if (texts.empty()) {
+    throw InputError(path.string() + ": has no *.txt; expected one for each image");
+  }
+  return texts;
 }
 
 template <typename MakeBox>
-std::vector<LabelledBox> ReadFolder(const fs::path& folder, const std::vector<std::string>& labels,
-                                    const std::array<const char*, 4>& names,
-                                    const MakeBox& make_box) {
+std::vector<LabelledBox> ReadBoxes(const fs::path& path, const std::vector<std::string>& labels,
+                                   const std::array<const char*, 4>& names,
+                                   const MakeBox& make_box) {
   std::vector<LabelledBox> boxes;
-  for (const fs::path& file : TextFiles(folder)) {
-    for (const TextLine& line : ReadTextLines(file)) {
+  for (const ImageText& image : ReadTexts(path)) {
+    for (const TextLine& line : image.lines) {
       const YoloLine parsed = ParseLine(line, names, labels);
-      boxes.push_back({line.place, file.stem().string(), parsed.label, parsed.score,
+      boxes.push_back({line.place, image.image, parsed.label, parsed.score,
                        make_box(parsed.values, line.place)});
     }
   }
@@ -99,18 +124,18 @@ std::vector<LabelledBox> ReadFolder(const fs::path& folder, const std::vector<st
 
 }  // namespace
 
-std::vector<LabelledBox> ReadNormalisedYoloBoxes(const fs::path& folder,
+std::vector<LabelledBox> ReadNormalisedYoloBoxes(const fs::path& path,
                                                  const std::vector<std::string>& labels,
                                                  int image_width, int image_height) {
-  return ReadFolder(folder, labels, {"cx", "cy", "w", "h"},
-                    [&](const std::array<double, 4>& values, const std::string& place) {
-                      return NormalisedBox(values, place, image_width, image_height);
-                    });
+  return ReadBoxes(path, labels, {"cx", "cy", "w", "h"},
+                   [&](const std::array<double, 4>& values, const std::string& place) {
+                     return NormalisedBox(values, place, image_width, image_height);
+                   });
 }
 
-std::vector<LabelledBox> ReadPixelYoloBoxes(const fs::path& folder,
+std::vector<LabelledBox> ReadPixelYoloBoxes(const fs::path& path,
                                             const std::vector<std::string>& labels) {
-  return ReadFolder(folder, labels, {"x", "y", "w", "h"}, &PixelBox);
+  return ReadBoxes(path, labels, {"x", "y", "w", "h"}, &PixelBox);
 }
 
 }  // namespace soslam

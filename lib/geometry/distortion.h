@@ -20,6 +20,8 @@ struct Distortion {
   double p1 = 0.0;
   double p2 = 0.0;
   double k3 = 0.0;
+
+  bool operator==(const Distortion&) const = default;
 };
 
 // Where the lens puts what a pinhole camera would see at each of `pixels`.

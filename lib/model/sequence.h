@@ -10,6 +10,7 @@
 
 #include "geometry/box.h"
 #include "geometry/camera.h"
+#include "geometry/distortion.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
@@ -45,10 +46,13 @@ struct GroundTruth {
   bool rotationally_symmetric = false;
 };
 
+// Object::plane_index where nobody has said yet what there is to stand on.
+inline constexpr int kNoPlane = -1;
+
 struct Object {
   int id = 0;
   std::string label;
-  int plane_index = 0;  // into Sequence::planes: the plane it stands on
+  int plane_index = 0;  // into Sequence::planes: the plane it stands on; kNoPlane without planes
   std::optional<GroundTruth> ground_truth;
   // Otherwise it moves, or is not known to stand still: single frames can estimate it, but it has
   // no place in the map.
@@ -56,7 +60,7 @@ struct Object {
 };
 
 // A 2D box of one object in one frame. `plane_in_camera` is the object's support plane as that
-// camera sees it.
+// camera sees it; it means nothing in a sequence without planes.
 struct Detection {
   int frame_index = 0;   // into Sequence::frames
   int object_index = 0;  // into Sequence::objects
@@ -78,8 +82,11 @@ struct Detection {
 struct Sequence {
   std::string name;
   Camera camera;
+  // Of the image files, whose frames have no cameras of their own; boxes are those of a camera
+  // without it. None: the images are, too.
+  std::optional<Distortion> image_distortion = std::nullopt;
   std::vector<Frame> frames;
-  std::vector<SupportPlane> planes;
+  std::vector<SupportPlane> planes;  // empty: not known, nor is any detection's plane
   std::vector<Object> objects;
   std::vector<Detection> detections;
   std::map<std::string, int> rejected_detections;  // reason -> how many

@@ -32,7 +32,7 @@ std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEs
   for (size_t i = 0; i < given.objects.size(); ++i) {
     if (estimate.objects[i].plane_index == plane_index) ++votes[given.objects[i].plane_index];
   }
-  if (votes.empty()) return std::nullopt;
+  if (votes.empty() || given.planes.empty()) return std::nullopt;
   const auto most = std::max_element(
       votes.begin(), votes.end(),
       [](const auto& one, const auto& other) { return one.second < other.second; });

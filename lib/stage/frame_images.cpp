@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "dataset/image_path.h"
+#include "image/read_image.h"
 
 namespace soslam {
 
@@ -22,6 +23,16 @@ std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& 
                     files.at("sequence").string(), sequence.frames.size()));
   }
   return images;
+}
+
+FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequence) {
+  if (sequence.image_distortion) undistorter_.emplace(sequence.camera, *sequence.image_distortion);
+}
+
+cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
+  const Camera& camera = sequence_.CameraOf(*image.frame);
+  const cv::Mat grey = ReadGreyImage(image.path, camera.width, camera.height);
+  return undistorter_ ? undistorter_->Undistort(grey) : grey;
 }
 
 }  // namespace soslam

@@ -10,6 +10,7 @@
 #include "artefact/sequence_file.h"
 #include "association/agreement.h"
 #include "association/association.h"
+#include "association/provisional_planes.h"
 #include "base/error.h"
 
 namespace soslam {
@@ -34,8 +35,10 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
     throw SettingsError(
         "setting 'association' is 'given', which leaves nothing to do; expected 'estimated'");
   }
-  const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
+  const Sequence read = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
+  const bool has_planes = !read.planes.empty();
+  const Sequence sequence = has_planes ? read : OnProvisionalPlanes(read, table, options);
   const Association association = Associate(sequence, table, options, threads);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
@@ -46,7 +49,7 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
   const ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
   const Sequence associated = AssociatedSequence(sequence, association, agreement);
   WriteAssociations(files.at("associations"), sequence, association, agreement, info);
-  WriteSequence(files.at("output"), associated, info);
+  WriteSequence(files.at("output"), has_planes ? associated : WithoutPlanes(associated), info);
   fmt::print("{} objects with {} of {} detections; tracks: {}\n", association.objects.size(),
              associated.detections.size(), sequence.detections.size(), DescribeTracks(association));
   if (const auto f1 = agreement.F1()) {

@@ -14,7 +14,6 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/read_image.h"
 #include "stage/frame_images.h"
 
 namespace soslam {
@@ -36,7 +35,7 @@ void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
 void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads) {
   options.Check();
   const fs::path& sequence_file = files.at("sequence");
-  const Sequence sequence = ReadSequence(sequence_file);
+  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
   const std::vector<FrameImage> images = FrameImages(sequence, files);
   std::vector<fs::path> inputs = {sequence_file};
   for (const FrameImage& image : images) {
@@ -45,15 +44,14 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   }
   EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});
 
+  const FrameImageReader reader(sequence);
   cv::setNumThreads(1);  // frames run in parallel; OpenCV's own threads would exceed `threads`
   const int frames = static_cast<int>(images.size());
   const int batch = 4 * threads;  // bounds the maps that wait for being written
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
-      const FrameImage& image = images[static_cast<size_t>(begin + i)];
-      const Camera& camera = sequence.CameraOf(*image.frame);
-      const cv::Mat grey = ReadGreyImage(image.path, camera.width, camera.height);
+      const cv::Mat grey = reader.ReadGrey(images[static_cast<size_t>(begin + i)]);
       maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
     });
     for (size_t i = 0; i < maps.size(); ++i) {

@@ -76,12 +76,14 @@ struct FoundFiles {
 };
 
 FoundFiles FindFiles(const fs::path& dataset) {
+  static const std::set<std::string> kTables = {".txt", ".csv", ".json", ".gz",
+                                                ".tgz", ".tar", ".zip"};
   FoundFiles found;
   for (const auto& entry :
        fs::recursive_directory_iterator(dataset, fs::directory_options::follow_directory_symlink)) {
     if (!entry.is_regular_file()) continue;
     const fs::path extension = entry.path().extension();
-    const bool is_table = extension == ".txt" || extension == ".csv" || extension == ".json";
+    const bool is_table = kTables.count(extension.string()) > 0;
     (is_table ? found.tables : found.others)
         .insert(entry.path().lexically_relative(dataset).string());
   }

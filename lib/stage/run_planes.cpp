@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/line_segments.h"
-#include "image/read_image.h"
 #include "planes/camera_height.h"
 #include "planes/estimate_planes.h"
 #include "planes/level_trajectory.h"
@@ -35,11 +34,11 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
     views[i] = {sequence.CameraOf(sequence.frames[i]), {}, sequence.frames[i].world_from_camera};
   }
   const std::vector<FrameImage> images = FrameImages(sequence, files);
+  const FrameImageReader reader(sequence);
   ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
     const FrameImage& image = images[static_cast<size_t>(i)];
     SegmentView& view = views[static_cast<size_t>(image.frame - sequence.frames.data())];
-    const cv::Mat grey = ReadGreyImage(image.path, view.camera.width, view.camera.height);
-    view.segments = FindLineSegments(grey, options.vertical_min_length_px);
+    view.segments = FindLineSegments(reader.ReadGrey(image), options.vertical_min_length_px);
   });
   return views;
 }
@@ -100,7 +99,7 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
     throw SettingsError(
         "planes is given; expected estimated or camera_height (given planes need no stage)");
   }
-  const Sequence sequence = ReadSequence(files.at("sequence"));
+  const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
   const Result result = options.planes == PlaneSource::kCameraHeight
                             ? FromCameraHeight(sequence, options)
                             : FromBoxes(sequence, options, files, threads);

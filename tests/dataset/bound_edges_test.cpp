@@ -18,10 +18,11 @@ constexpr Bounds kBottom = {false, false, false, true};
 std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction = 0.7) {
   for (Detection& detection : sequence.detections) {
     detection.nearer_boxes = NearerBoxes(sequence, detection);
+    detection.is_bound = EdgesCutByBorder(detection.box, sequence.CameraOf(detection));
   }
   ImportOptions options;
   options.hidden_edge_fraction = hidden_edge_fraction;
-  MarkBoundEdges(options, &sequence);
+  MarkHiddenEdges(options, &sequence);
   std::vector<Bounds> bounds;
   for (const Detection& detection : sequence.detections) bounds.push_back(detection.is_bound);
   return bounds;

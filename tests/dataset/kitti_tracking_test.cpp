@@ -141,7 +141,7 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
   // Where the van is, and no car.
   fixture.files["rrc/Car/0007.txt"] =
       row(2, parked.x_min, parked.y_min, parked.x_max, parked.y_max, 1);
-  options.kitti.detections = "rrc";
+  options.detections = "rrc";
   const Sequence sequence = Import();
   ASSERT_EQ(sequence.detections.size(), 1u);
   const Detection& detection = sequence.detections[0];
@@ -157,7 +157,7 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
   std::filesystem::remove_all(folder / "rrc/Car");
   fixture.files.erase("rrc/Car/0007.txt");
   ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt", "missing"});
-  options.kitti.detections = "yolo";
+  options.detections = "yolo";
   ExpectError<InputError>([&] { Import(); }, {"yolo", "folder"});
 }
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/folder_detections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "base/error.h"
+#include "dataset/coco_labels.h"
+#include "dataset/coco_results.h"
+#include "dataset/detections_csv.h"
+#include "dataset/frame_lookup.h"
+#include "dataset/kitti_boxes.h"
+#include "dataset/label_file.h"
+#include "dataset/oa_slam_boxes.h"
+#include "dataset/yolo_boxes.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+FolderBoxes ReadTable(const fs::path& path) {
+  if (!HasObjectIds(path)) return {ReadLabelledBoxes(path), {}};
+  FolderBoxes read;
+  for (const DetectionRow& row : ReadDetections(path)) {
+    read.boxes.push_back({row.place, row.frame_id, row.label, row.score, row.box});
+    read.object_ids.push_back(row.object_id);
+  }
+  return read;
+}
+
+std::vector<fs::path> Sorted(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+// A file of one class, or a folder with a folder for each class, which has one file.
+std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
+  if (!fs::is_directory(path)) return ReadKittiBoxes(path);
+  std::vector<LabelledBox> boxes;
+  for (const fs::path& class_folder : Sorted(path)) {
+    if (!fs::is_directory(class_folder)) continue;
+    const std::vector<fs::path> files = Sorted(class_folder);
+    if (files.size() != 1) {
+      throw InputError(fmt::format("{}: has {} files; expected one, that of this sequence",
+                                   class_folder.string(), files.size()));
+    }
+    const std::vector<LabelledBox> of_class = ReadKittiBoxes(files.front());
+    boxes.insert(boxes.end(), of_class.begin(), of_class.end());
+  }
+  return boxes;
+}
+
+std::vector<LabelledBox> ReadBoxesWithoutIds(const DatasetFiles& files, DetectionsFormat format,
+                                             const Camera& camera) {
+  const fs::path& path = files.detections;
+  if (format == DetectionsFormat::kCoco) return ReadCocoResults(path, files.class_names);
+  if (format == DetectionsFormat::kKitti) return ReadKittiClasses(path);
+  const auto labels = files.class_names ? ReadLabelFile(*files.class_names) : CocoLabels();
+  if (format == DetectionsFormat::kYolo) {
+    return ReadNormalisedYoloBoxes(path, labels, camera.width, camera.height);
+  }
+  if (format == DetectionsFormat::kYoloPixels) return ReadPixelYoloBoxes(path, labels);
+  return ReadOaSlamBoxes(path, labels);
+}
+
+[[noreturn]] void RefuseRow(const LabelledBox& box, const DatasetFiles& files, size_t images) {
+  throw InputError(fmt::format(
+      "{}: frame is {}; expected a row of {}, 0 to {}", box.place, std::get<int>(box.frame),
+      files.images.value_or(files.detections).filename().string(), images - 1));
+}
+
+}  // namespace
+
+FolderBoxes ReadFolderBoxes(const DatasetFiles& files, const ImportOptions& options,
+                            const Camera& camera) {
+  const DetectionsFormat format = options.folder.detections_format;
+  if (format == DetectionsFormat::kCsv) return ReadTable(files.detections);
+  return {ReadBoxesWithoutIds(files, format, camera), {}};
+}
+
+std::vector<DetectionRow> RowsOfBoxes(const FolderBoxes& boxes, const DatasetFiles& files,
+                                      const std::vector<ListedImage>& images, int first_free_id,
+                                      RejectionCounts* rejected) {
+  const FrameLookup lookup(images);
+  const int max_boxes = std::numeric_limits<int>::max() - std::max(first_free_id, 0);
+  if (boxes.boxes.size() > static_cast<size_t>(max_boxes)) {
+    throw InputError(fmt::format("{}: has {} boxes; expected at most {}", files.detections.string(),
+                                 boxes.boxes.size(), max_boxes));
+  }
+  std::vector<DetectionRow> rows;
+  for (size_t i = 0; i < boxes.boxes.size(); ++i) {
+    const LabelledBox& box = boxes.boxes[i];
+    const auto frame = lookup.Find(box.frame, box.place);
+    if (!frame && std::holds_alternative<int>(box.frame)) RefuseRow(box, files, images.size());
+    if (!frame) continue;
+    const int object_id =
+        boxes.object_ids.empty() ? first_free_id + static_cast<int>(i) : boxes.object_ids[i];
+    rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
+  }
+  const size_t unlisted = boxes.boxes.size() - rows.size();
+  if (unlisted == 0) return rows;
+  if (rows.empty()) {
+    throw InputError(
+        fmt::format("{}: image '{}' is not listed, nor that of any other box; "
+                    "expected images of {}",
+                    boxes.boxes.front().place, std::get<std::string>(boxes.boxes.front().frame),
+                    files.images.value_or(files.detections).filename().string()));
+  }
+  (*rejected)[RejectReasonName(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
+  fmt::print(stderr, "{}: {} of {} detections are of listed images\n",
+             files.detections.filename().string(), rows.size(), boxes.boxes.size());
+  return rows;
+}
+
+std::vector<DetectionRow> Undistorted(std::vector<DetectionRow> rows, const Camera& camera,
+                                      const Distortion& distortion, RejectionCounts* rejected) {
+  std::vector<DetectionRow> undistorted;
+  for (DetectionRow& row : rows) {
+    const auto box = UndistortBox(camera, distortion, row.box);
+    if (!box) {
+      ++(*rejected)[RejectReasonName(RejectReason::kBeyondLensModel)];
+      continue;
+    }
+    row.box_in_image_file = row.box;
+    row.box = *box;
+    undistorted.push_back(std::move(row));
+  }
+  return undistorted;
+}
+
+}  // namespace soslam

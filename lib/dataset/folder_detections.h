@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "dataset/dataset_content.h"
+#include "dataset/dataset_files.h"
+#include "dataset/import_options.h"
+#include "dataset/labelled_box.h"
+#include "dataset/tum_list.h"
+#include "geometry/distortion.h"
+
+namespace soslam {
+
+// The boxes of a folder of images.
+struct FolderBoxes {
+  std::vector<LabelledBox> boxes;
+  std::vector<int> object_ids;  // of each box; empty: nobody has said which object it is of
+};
+
+// In any of the formats of `detections_format`. Throws InputError.
+FolderBoxes ReadFolderBoxes(const DatasetFiles& files, const ImportOptions& options,
+                            const Camera& camera);
+
+// The boxes as rows of these images. Boxes without object ids are of an object each, with ids from
+// `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and how many
+// these are is said on stderr. Throws InputError for a row number beyond the list, and when no box
+// is of a listed image.
+std::vector<DetectionRow> RowsOfBoxes(const FolderBoxes& boxes, const DatasetFiles& files,
+                                      const std::vector<ListedImage>& images, int first_free_id,
+                                      RejectionCounts* rejected);
+
+// Turns boxes in images that a lens took into those of a pinhole camera (UndistortBox). Boxes
+// without such a counterpart are counted in `rejected`.
+std::vector<DetectionRow> Undistorted(std::vector<DetectionRow> rows, const Camera& camera,
+                                      const Distortion& distortion, RejectionCounts* rejected);
+
+}  // namespace soslam

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/folder_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <variant>
+
+#include "base/error.h"
+#include "dataset/icl_nuim.h"
+#include "dataset/image_path.h"
+#include "dataset/kitti_trajectory.h"
+#include "dataset/text_file.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// By image; none where there is no pose near enough in time.
+using ImagePoses = std::vector<std::optional<Rigid3d>>;
+
+void CheckFrameNumber(double number, const std::string& place) {
+  if (number >= 0.0 && number == std::floor(number)) return;
+  throw InputError(fmt::format(
+      "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
+}
+
+std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
+  std::map<double, ListedImage> images;
+  for (const LabelledBox& box : boxes) {
+    const auto* name = std::get_if<std::string>(&box.frame);
+    if (name == nullptr) {
+      throw InputError(
+          fmt::format("{}: image is row {} of a list; expected a list of images, or a "
+                      "name that is a timestamp",
+                      box.place, std::get<int>(box.frame)));
+    }
+    const double timestamp = ParseReal(fs::path(*name).filename().replace_extension().string(),
+                                       box.place, "image name without extension, a timestamp,");
+    images.try_emplace(timestamp, ListedImage{timestamp, *name});
+  }
+  if (images.empty()) throw InputError("the detections name no image; expected a list of images");
+  std::vector<ListedImage> listed;
+  for (const auto& [timestamp, image] : images) listed.push_back(image);
+  return listed;
+}
+
+std::vector<TimedPose> ReadTimedPoses(const fs::path& path, const ImportOptions& options) {
+  const std::vector<TimedPose> trajectory = ReadTrajectory(path);
+  if (options.format != DatasetFormat::kIclNuim) return trajectory;
+  for (const TimedPose& pose : trajectory) CheckFrameNumber(pose.timestamp, path.string());
+  return FromIclNuim(trajectory);
+}
+
+ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size_t images) {
+  const std::vector<Rigid3d> trajectory = ReadKittiTrajectory(path);
+  if (trajectory.size() != images) {
+    throw InputError(fmt::format("{}: has {} poses; expected {}, one for each listed image",
+                                 path.string(), trajectory.size(), images));
+  }
+  ImagePoses poses;
+  for (const Rigid3d& pose : trajectory) {
+    poses.push_back(options.format == DatasetFormat::kIclNuim ? MirroredInY(pose) : pose);
+  }
+  return poses;
+}
+
+ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
+                       const std::vector<ListedImage>& images) {
+  const std::vector<TimedPose> trajectory = ReadTimedPoses(path, options);
+  ImagePoses poses;
+  size_t matched = 0;
+  double largest_s = 0.0;
+  for (const ListedImage& image : images) {
+    const auto pose = NearestPose(trajectory, image.timestamp, options.max_time_difference_s);
+    poses.push_back(pose ? std::optional(pose->world_from_camera) : std::nullopt);
+    if (!pose) continue;
+    ++matched;
+    largest_s = std::max(largest_s, std::abs(pose->timestamp - image.timestamp));
+  }
+  fmt::print(
+      stderr,
+      "{}: {} of {} images have a pose, at most {:.1f} ms away; {} have none within {:g} ms\n",
+      path.filename().string(), matched, images.size(), 1e3 * largest_s, images.size() - matched,
+      1e3 * options.max_time_difference_s);
+  return poses;
+}
+
+ImagePoses ReadPoses(const fs::path& path, const ImportOptions& options,
+                     const std::vector<ListedImage>& images) {
+  return options.folder.trajectory_format == TrajectoryFormat::kKitti
+             ? PosesInOrder(path, options, images.size())
+             : PosesByTime(path, options, images);
+}
+
+// Moves all estimates together so that the first one with a true pose is that.
+void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* estimates) {
+  for (size_t i = 0; i < truth.size(); ++i) {
+    if (!truth[i] || !(*estimates)[i]) continue;
+    const Rigid3d true_from_estimated = *truth[i] * (*estimates)[i]->Inverse();
+    for (auto& pose : *estimates) {
+      if (pose) pose = true_from_estimated * *pose;
+    }
+    return;
+  }
+  throw InputError(fmt::format(
+      "{}: no image has a pose of it and a true one; expected one at least for align_odometry",
+      file.string()));
+}
+
+// The image's path in a frame; empty when it is not there and need not be.
+std::string ImageOfFrame(const fs::path& folder, const ListedImage& image,
+                         const ImportOptions& options) {
+  if (options.format == DatasetFormat::kSoslam && !options.folder.images.empty()) {
+    return image.image;
+  }
+  return fs::exists(ImagePath(folder, image.image, options.folder.images)) ? image.image : "";
+}
+
+}  // namespace
+
+std::vector<ListedImage> ListImages(const DatasetFiles& files, const ImportOptions& options,
+                                    const std::vector<LabelledBox>& boxes) {
+  const bool is_icl_nuim = options.format == DatasetFormat::kIclNuim;
+  std::vector<ListedImage> images;
+  if (!files.images) {
+    images = ImagesOfBoxes(boxes);
+  } else if (options.format == DatasetFormat::kSoslam) {
+    images = ReadImageList(*files.images);
+  } else {
+    images = ReadPairedImageList(*files.images,
+                                 is_icl_nuim ? PairOrder::kImageSecond : PairOrder::kImageFirst);
+  }
+  if (!is_icl_nuim) return images;
+  for (ListedImage& image : images) {
+    CheckFrameNumber(image.timestamp, files.images.value_or(files.detections).string());
+    image.timestamp /= kIclNuimFramesPerSecond;
+  }
+  return images;
+}
+
+std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetFiles& files,
+                                          const ImportOptions& options,
+                                          const std::vector<ListedImage>& images) {
+  ImagePoses estimates = ReadPoses(files.trajectory, options, images);
+  ImagePoses truth(images.size());
+  if (files.groundtruth == files.trajectory) {
+    truth = estimates;
+  } else if (files.groundtruth) {
+    truth = ReadPoses(*files.groundtruth, options, images);
+  }
+  if (options.folder.align_odometry) AlignAtFirst(truth, files.trajectory, &estimates);
+  std::vector<ListedFrame> frames;
+  size_t absent = 0;
+  for (size_t i = 0; i < images.size(); ++i) {
+    Frame frame;
+    frame.id = static_cast<int>(i);
+    frame.timestamp = images[i].timestamp;
+    frame.image = ImageOfFrame(folder, images[i], options);
+    frame.world_from_camera = estimates[i].value_or(Rigid3d());
+    frame.true_world_from_camera = truth[i];
+    if (frame.image.empty()) ++absent;
+    frames.push_back({frame, estimates[i].has_value()});
+  }
+  if (absent > 0) {
+    fmt::print(stderr, "{}: {} of {} image files are not there\n", folder.string(), absent,
+               images.size());
+  }
+  return frames;
+}
+
+}  // namespace soslam

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/slam_synthetic.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "dataset/dataset_json.h"
+#include "dataset/json_entry.h"
+#include "dataset/nearest_rotation.h"
+#include "dataset/text_file.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kIdsPerProblem = 10000;
+constexpr const char* kLabel = "ellipsoid";
+
+Rigid3d ParsePose(const json& rows, const std::string& place) {
+  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix;
+  const auto is_row = [](const json& row) {
+    return row.is_array() && row.size() == 4 &&
+           std::all_of(row.begin(), row.end(), [](const json& x) { return x.is_number(); });
+  };
+  if (!rows.is_array() || rows.size() != 4 || !std::all_of(rows.begin(), rows.end(), is_row)) {
+    throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
+  }
+  for (size_t i = 0; i < 16; ++i) matrix.data()[i] = rows[i / 4][i % 4].get<double>();
+  return {NearestRotation(matrix.topLeftCorner<3, 3>(), place), matrix.topRightCorner<3, 1>()};
+}
+
+// Reads one problem into the content.
+class Problem {
+ public:
+  Problem(const fs::path& file, int number, const ImportOptions& options, DatasetContent* content)
+      : file_(file),
+        number_(number),
+        options_(options),
+        content_(content),
+        document_(ParseJsonFile(file)),
+        entry_(document_, file.string()) {}
+
+  void Add() {
+    content_->files.push_back(file_);
+    AddFrames();
+    AddObjects();
+    AddRows();
+  }
+
+ private:
+  int Id(size_t number) const { return number_ * kIdsPerProblem + static_cast<int>(number); }
+  std::string Place(const char* list, size_t i) const {
+    return fmt::format("{}#/{}/{}", file_.string(), list, i);
+  }
+
+  const json& ShortList(const char* name) const {
+    const json& list = entry_.List(name);
+    if (list.size() > kIdsPerProblem) {
+      entry_.Refuse(name, fmt::format("at most {} entries", kIdsPerProblem));
+    }
+    return list;
+  }
+
+  std::vector<Rigid3d> Poses(const char* name) const {
+    std::vector<Rigid3d> poses;
+    const json& list = ShortList(name);
+    for (size_t i = 0; i < list.size(); ++i) poses.push_back(ParsePose(list[i], Place(name, i)));
+    return poses;
+  }
+
+  void AddFrames() {
+    const Camera camera =
+        ParseCamera(JsonEntry(entry_.Field("camera"), file_.string() + "#/camera"));
+    if (content_->frames.empty()) content_->camera = camera;
+    const auto truth = Poses("T_wc");
+    const auto odometry = Poses("init_T_wc");
+    frames_ = truth.size();
+    if (odometry.size() != frames_) {
+      throw InputError(fmt::format("{}: init_T_wc has {} poses; expected {}, as many as T_wc",
+                                   file_.string(), odometry.size(), frames_));
+    }
+    const bool wants_odometry = options_.trajectory == TrajectorySource::kOdometry;
+    for (size_t i = 0; i < frames_; ++i) {
+      Frame frame;
+      frame.id = Id(i);
+      frame.timestamp = static_cast<double>(i);
+      frame.world_from_camera = wants_odometry ? odometry[i] : truth[i];
+      frame.true_world_from_camera = truth[i];
+      frame.segment = number_;
+      if (camera != content_->camera) frame.camera = camera;
+      content_->frames.push_back({std::move(frame), true});
+    }
+  }
+
+  void AddObjects() {
+    const Eigen::Vector4d plane = entry_.Vector<4>("support_plane_world");
+    const double length = plane.head<3>().norm();
+    if (!(length > 0.0)) entry_.Refuse("support_plane_world", "nx, ny, nz, d");
+    const int plane_index = static_cast<int>(content_->planes.size());
+    content_->planes.push_back({number_, {plane.head<3>() / length, plane[3] / length}});
+    const json& list = ShortList("objects");
+    objects_ = list.size();
+    for (size_t i = 0; i < objects_; ++i) {
+      const JsonEntry entry(list[i], Place("objects", i));
+      Landmark landmark;
+      landmark.frame_from_object = {
+          Eigen::Quaterniond(Eigen::AngleAxisd(entry.Real("yaw"), Eigen::Vector3d::UnitZ())),
+          entry.Vector<3>("center")};
+      landmark.half_axes = entry.Vector<3>("half");
+      if (!(landmark.half_axes.minCoeff() > 0.0)) entry.Refuse("half", "3 numbers above 0");
+      Object object;
+      object.id = Id(i);
+      object.label = kLabel;
+      object.plane_index = plane_index;
+      object.ground_truth.emplace().landmark_in_world = landmark;
+      content_->objects.push_back(std::move(object));
+    }
+  }
+
+  // An index into a list of this size.
+  static size_t Index(const JsonEntry& entry, const char* field, size_t size) {
+    const int index = entry.Integer(field);
+    if (index < 0 || index >= static_cast<int>(size)) {
+      entry.Refuse(field, fmt::format("0 to {}", static_cast<int>(size) - 1));
+    }
+    return static_cast<size_t>(index);
+  }
+
+  void AddRows() {
+    const json& list = entry_.List("boxes");
+    for (size_t i = 0; i < list.size(); ++i) {
+      const JsonEntry entry(list[i], Place("boxes", i));
+      const Eigen::Vector4d box = entry.Vector<4>("box");
+      content_->rows.push_back({entry.place(), Id(Index(entry, "frame", frames_)),
+                                Id(Index(entry, "object", objects_)), kLabel, 1.0,
+                                Box{box[0], box[1], box[2], box[3]}});
+    }
+  }
+
+  fs::path file_;
+  int number_;
+  const ImportOptions& options_;
+  DatasetContent* content_;
+  json document_;
+  JsonEntry entry_;
+  size_t frames_ = 0;
+  size_t objects_ = 0;
+};
+
+std::vector<fs::path> ProblemFiles(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  if (files.empty()) {
+    throw InputError(folder.string() + ": has no *.json; expected one for each problem");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+DatasetContent ReadSlamSynthetic(const fs::path& folder, const ImportOptions& options) {
+  const std::vector<fs::path> files = ProblemFiles(folder);
+  const std::string& names = options.kitti.sequences;
+  const auto chosen = SplitWords(names);
+  for (const std::string_view name : chosen) {
+    if (std::ranges::find(files, name, [](const fs::path& file) { return file.stem(); }) !=
+        files.end()) {
+      continue;
+    }
+    throw SettingsError(fmt::format("sequences: found '{}'; expected the name of a *.json in {}",
+                                    name, folder.string()));
+  }
+  DatasetContent content;
+  content.has_true_poses = true;
+  for (size_t i = 0; i < files.size(); ++i) {
+    const bool is_chosen =
+        chosen.empty() || std::ranges::find(chosen, files[i].stem().string()) != chosen.end();
+    if (is_chosen) Problem(files[i], static_cast<int>(i), options, &content).Add();
+  }
+  return content;
+}
+
+}  // namespace soslam

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/text_archive.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+struct FreeArchive {
+  void operator()(archive* opened) const { archive_read_free(opened); }
+};
+using ArchivePointer = std::unique_ptr<archive, FreeArchive>;
+
+[[noreturn]] void Refuse(const std::filesystem::path& path, archive* opened) {
+  const char* reason = archive_error_string(opened);
+  throw InputError(fmt::format("{}: cannot be read: {}; expected an archive (.tar.gz, .tar, .zip)",
+                               path.string(), reason == nullptr ? "damaged" : reason));
+}
+
+ArchivePointer Open(const std::filesystem::path& path) {
+  constexpr size_t kBlock = 1 << 16;  // bytes
+  ArchivePointer opened(archive_read_new());
+  archive_read_support_filter_all(opened.get());
+  archive_read_support_format_tar(opened.get());
+  archive_read_support_format_zip(opened.get());
+  if (archive_read_open_filename(opened.get(), path.c_str(), kBlock) != ARCHIVE_OK) {
+    Refuse(path, opened.get());
+  }
+  return opened;
+}
+
+// Of the entry that was opened last.
+std::string ReadEntry(const std::filesystem::path& path, archive* opened) {
+  std::string text;
+  std::array<char, 1 << 16> block;
+  for (;;) {
+    const la_ssize_t size = archive_read_data(opened, block.data(), block.size());
+    if (size < 0) Refuse(path, opened);
+    if (size == 0) return text;
+    text.append(block.data(), static_cast<size_t>(size));
+  }
+}
+
+}  // namespace
+
+std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
+                                          const std::string& extension) {
+  const ArchivePointer opened = Open(path);
+  std::vector<ArchivedText> texts;
+  for (;;) {
+    archive_entry* entry = nullptr;
+    const int status = archive_read_next_header(opened.get(), &entry);
+    if (status == ARCHIVE_EOF) break;
+    if (status < ARCHIVE_WARN) Refuse(path, opened.get());
+    const char* name = archive_entry_pathname(entry);
+    if (name == nullptr || std::filesystem::path(name).extension() != extension) continue;
+    texts.push_back({name, ReadEntry(path, opened.get())});
+  }
+  std::ranges::sort(texts, {}, &ArchivedText::name);
+  return texts;
+}
+
+}  // namespace soslam

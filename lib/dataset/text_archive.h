@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// A file in an archive.
+struct ArchivedText {
+  std::string name;  // its path in the archive
+  std::string text;
+};
+
+// The files of an archive (tar, also compressed; zip) whose names have this extension (".txt"), by
+// name. Throws InputError for what is no archive, and for one that is cut short.
+std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
+                                          const std::string& extension);
+
+}  // namespace soslam
