@@ -79,6 +79,7 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
   for (size_t i = 0; i < read.planes.size(); ++i) {
     EXPECT_EQ(read.planes[i].id, sequence.planes[i].id);
     ExpectSame(read.planes[i].plane_in_world, sequence.planes[i].plane_in_world);
+    EXPECT_EQ(read.planes[i].attitude_information, sequence.planes[i].attitude_information);
   }
   for (size_t i = 0; i < read.objects.size(); ++i) {
     const Object& a = read.objects[i];
@@ -143,6 +144,10 @@ TEST_F(ArtefactFilesTest, MapComesBack) {
   ASSERT_EQ(read.world_from_camera.size(), map.world_from_camera.size());
   for (size_t i = 0; i < map.world_from_camera.size(); ++i) {
     ExpectSame(read.world_from_camera[i], map.world_from_camera[i]);
+  }
+  ASSERT_EQ(read.planes_in_world.size(), map.planes_in_world.size());
+  for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
+    ExpectSame(read.planes_in_world[i], map.planes_in_world[i]);
   }
   const SolverSummary& a = read.solver;
   const SolverSummary& b = map.solver;
