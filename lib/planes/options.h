@@ -56,7 +56,7 @@ struct PlanesOptions {
     visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
                "estimated: how level the cameras' optical axes are held; large: anyhow");
     visit.Flag("verticals", &verticals,
-               "estimated: look for vertical edges in the images; without it they are not read");
+               "estimated: look for vertical edges in the images, where there are any");
     visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
                "verticals: standard deviation of the direction of an edge; those off by more than "
                "three are of other edges");

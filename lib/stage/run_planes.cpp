@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "artefact/planes_file.h"
@@ -56,7 +57,9 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& optio
   level.vertical_sigma = options.vertical_sigma_deg * kRadians;
   level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadians;
   level.correlation_rad = options.view_correlation_deg * kRadians;
-  if (!options.verticals) {
+  const bool has_images =
+      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
+  if (!options.verticals || !has_images) {
     return {poses, AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad)};
   }
   return Level(ViewsOfSegments(sequence, options, files, threads), level);
