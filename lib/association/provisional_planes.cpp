@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <vector>
@@ -53,7 +54,10 @@ std::optional<HeightVote> VoteOf(const Sequence& sequence, const Detection& dete
       observation, objective, SweepYaw(observation, objective, options.yaw_grid_deg * kRadians), 1);
   if (optima.empty()) return std::nullopt;
   const double distance = height.median / (2.0 * optima.front().landmark.half_axes.z());
-  return HeightVote{camera_height - distance, 1.0 / (distance * height.log_sigma)};
+  // Of flat things the box shows length and width, from which the height follows by the ratio.
+  const double log_sigma =
+      std::hypot(height.log_sigma, prior.log_sigma.norm() / std::numbers::sqrt2);
+  return HeightVote{camera_height - distance, 1.0 / (distance * log_sigma)};
 }
 
 // The detections of each segment whose label has a height.

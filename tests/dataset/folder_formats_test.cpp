@@ -117,8 +117,8 @@ TEST_F(FolderFormatsTest, OdometryOfItsOwnWorldIsAligned) {
   options_.folder.align_odometry = true;
   const Sequence sequence = Import();
   // The camera goes 0.1 m to its right: in the true world along x, at height 1.
-  EXPECT_TRUE(sequence.frames[1].world_from_camera.translation.isApprox(
-      Eigen::Vector3d(0.1, 0, 1), 1e-6));
+  EXPECT_TRUE(
+      sequence.frames[1].world_from_camera.translation.isApprox(Eigen::Vector3d(0.1, 0, 1), 1e-6));
   options_.folder.odometry = "absent.txt";
   ExpectError<InputError>([&] { Import(); }, {"absent.txt", "missing"});
 }
@@ -163,10 +163,10 @@ TEST_F(FolderFormatsTest, YoloInFractions) {
 TEST_F(FolderFormatsTest, YoloInPixelsFromAnArchiveAndWithoutAList) {
   Write("txts/2.0.txt", "0 100 110 20 30 0.6\n");
   Write("names.txt", "cup\n");
-  ASSERT_EQ(RunCommand({"tar", "czf", (folder_ / "txts.tar.gz").string(), "-C", folder_.string(),
-                        "txts"})
-                .exit_code,
-            0);
+  ASSERT_EQ(
+      RunCommand({"tar", "czf", (folder_ / "txts.tar.gz").string(), "-C", folder_.string(), "txts"})
+          .exit_code,
+      0);
   fs::remove_all(folder_ / "txts");
   options_.folder.class_names = "names.txt";
   options_.folder.images = "";

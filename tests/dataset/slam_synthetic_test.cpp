@@ -56,8 +56,8 @@ TEST_F(SlamSyntheticTest, AProblemIsASegment) {
   EXPECT_EQ(truth.Centre(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(truth.half_axes, Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(truth.shape_exponent, kEllipsoidExponent);
-  EXPECT_NEAR(truth.frame_from_object.rotation.angularDistance(Eigen::Quaterniond(
-                  Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()))),
+  EXPECT_NEAR(truth.frame_from_object.rotation.angularDistance(
+                  Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()))),
               0.0, 1e-12);
   EXPECT_EQ(sequence.planes[1].plane_in_world.offset, -0.5);
   EXPECT_EQ(sequence.detections.size(), 6u);
