@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <vector>
@@ -53,7 +54,10 @@ std::optional<HeightVote> VoteOf(const Sequence& sequence, const Detection& dete
       observation, objective, SweepYaw(observation, objective, options.yaw_grid_deg * kRadians), 1);
   if (optima.empty()) return std::nullopt;
   const double distance = height.median / (2.0 * optima.front().landmark.half_axes.z());
-  return HeightVote{camera_height - distance, 1.0 / (distance * height.log_sigma)};
+  // Of flat things the box shows length and width, from which the height follows by the ratio.
+  const double log_sigma =
+      std::hypot(height.log_sigma, prior.log_sigma.norm() / std::numbers::sqrt2);
+  return HeightVote{camera_height - distance, 1.0 / (distance * log_sigma)};
 }
 
 // The detections of each segment whose label has a height.
@@ -69,18 +73,23 @@ std::map<int, std::vector<int>> VotersBySegment(const Sequence& sequence,
   return voters;
 }
 
-Plane ProvisionalPlane(const Sequence& sequence, int segment, const std::vector<int>& voters,
-                       const SemanticTable& table, const AssociateOptions& options) {
+// Up in the world of a segment, by how its cameras are held.
+Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment,
+                            const AssociateOptions& options) {
   constexpr double kRollSigma = 5.0 * kRadians;  // as soslam-planes has them
   constexpr double kPitchSigma = 30.0 * kRadians;
-  constexpr size_t kVoters = 200;
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) {
     if (frame.segment == segment) poses.push_back(frame.world_from_camera);
   }
-  const Eigen::Vector3d up =
-      AttitudeOf(poses, kRollSigma, kPitchSigma, options.view_correlation_deg * kRadians)
-          .up_in_world;
+  return AttitudeOf(poses, kRollSigma, kPitchSigma, options.view_correlation_deg * kRadians)
+      .up_in_world;
+}
+
+double HeightOfPlane(const Sequence& sequence, const Eigen::Vector3d& up,
+                     const std::vector<int>& voters, const SemanticTable& table,
+                     const AssociateOptions& options) {
+  constexpr size_t kVoters = 200;
   std::vector<HeightVote> votes;
   for (const int index : SpreadOver(voters, kVoters)) {
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
@@ -90,31 +99,37 @@ Plane ProvisionalPlane(const Sequence& sequence, int segment, const std::vector<
   }
   if (votes.empty()) {
     throw NothingUsableError(fmt::format(
-        "{}: no planes are known, nor the height of anything that is detected in segment {}; "
-        "expected planes.json, or a semantic table with heights of its labels",
-        sequence.name, segment));
+        "{}: no planes are known, nor the height of anything that is detected; expected "
+        "planes.json, or a semantic table with heights of its labels",
+        sequence.name));
   }
-  return {up, -WeightedMedian(std::move(votes))};
+  return WeightedMedian(std::move(votes));
 }
 
 }  // namespace
 
 Sequence OnProvisionalPlanes(Sequence sequence, const SemanticTable& table,
                              const AssociateOptions& options) {
+  const auto voters_by_segment = VotersBySegment(sequence, table);
   std::map<int, int> plane_of_segment;
-  for (const auto& [segment, voters] : VotersBySegment(sequence, table)) {
+  for (const auto& [segment, voters] : voters_by_segment) {
     plane_of_segment[segment] = static_cast<int>(sequence.planes.size());
-    sequence.planes.push_back(
-        {segment, ProvisionalPlane(sequence, segment, voters, table, options)});
+    sequence.planes.push_back({segment, {UpOfSegment(sequence, segment, options), 0.0}});
   }
-  for (Object& object : sequence.objects) object.plane_index = 0;
+  for (Object& object : sequence.objects) object.plane_index = 0;  // also of those never detected
+  for (const Detection& detection : sequence.detections) {
+    sequence.objects[static_cast<size_t>(detection.object_index)].plane_index =
+        plane_of_segment.at(sequence.FrameOf(detection).segment);
+  }
+  for (SupportPlane& plane : sequence.planes) {
+    Plane& in_world = plane.plane_in_world;
+    in_world.offset =
+        -HeightOfPlane(sequence, in_world.normal, voters_by_segment.at(plane.id), table, options);
+  }
   for (Detection& detection : sequence.detections) {
-    const Frame& frame = sequence.FrameOf(detection);
-    const int plane = plane_of_segment.at(frame.segment);
-    sequence.objects[static_cast<size_t>(detection.object_index)].plane_index = plane;
-    detection.plane_in_camera =
-        Transform(frame.world_from_camera.Inverse(),
-                  sequence.planes[static_cast<size_t>(plane)].plane_in_world);
+    const auto plane = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
+    detection.plane_in_camera = Transform(sequence.FrameOf(detection).world_from_camera.Inverse(),
+                                          sequence.planes[plane].plane_in_world);
   }
   return sequence;
 }

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "model/occlusion.h"
 #include "support/dataset_fixture.h"
+#include "support/expect_error.h"
 #include "support/random_estimates.h"
 
 namespace soslam {
@@ -52,6 +53,32 @@ void ExpectSame(const std::vector<ObjectEstimate>& a, const std::vector<ObjectEs
     ASSERT_EQ(a[i].landmark_in_world.has_value(), b[i].landmark_in_world.has_value());
     if (a[i].landmark_in_world) ExpectSame(*a[i].landmark_in_world, *b[i].landmark_in_world);
   }
+}
+
+TEST_F(ArtefactFilesTest, SequenceWithoutPlanesComesBackToThoseWhoNeedNone) {
+  sequence.planes.clear();
+  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file, PlaneNeed::kNotNeeded);
+  EXPECT_TRUE(read.planes.empty());
+  EXPECT_EQ(read.objects.at(0).plane_index, kNoPlane);
+  EXPECT_EQ(read.detections.size(), sequence.detections.size());
+  ExpectError<InputError>([&] { ReadSequence(file); }, {file.string(), "no support planes"});
+}
+
+TEST_F(ArtefactFilesTest, PlanesAreKnownForAllOrNone) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json edited = ParseJsonFile(file);
+  edited["detections"][1]["plane_in_camera"] = nullptr;
+  std::ofstream(file) << edited;
+  ExpectError<InputError>([&] { ReadSequence(file); },
+                          {"/detections/1/plane_in_camera is null", "expected a plane"});
+}
+
+TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
+  sequence.image_distortion = Distortion{0.1, -0.2, 0.003, -0.004, 0.5};
+  WriteSequence(file, sequence, {});
+  EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
 }
 
 TEST_F(ArtefactFilesTest, SequenceComesBack) {
