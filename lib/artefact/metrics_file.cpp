@@ -31,6 +31,29 @@ nlohmann::json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
           {"yaw_error_deg", OrNull(metrics.yaw_deg)}};
 }
 
+nlohmann::json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
+  nlohmann::json json = {{"frames", metrics.frames},
+                         {"min_iou", kMinHeldOutIou},
+                         {"detections", metrics.detections},
+                         {"detections_matched", metrics.detections_matched},
+                         {"in_sight", metrics.in_sight},
+                         {"in_sight_matched", metrics.in_sight_matched},
+                         {"iou_mean", OrNull(metrics.iou_mean)},
+                         {"iou_median", OrNull(metrics.iou_median)},
+                         {"iou_mean_of_detections", OrNull(metrics.iou_mean_of_detections)},
+                         {"objects", nlohmann::json::array()}};
+  for (const HeldOutObject& one : metrics.objects) {
+    const Object& object = sequence.objects[static_cast<size_t>(one.object_index)];
+    json["objects"].push_back({{"object", object.id},
+                               {"label", object.label},
+                               {"in_sight", one.in_sight},
+                               {"in_sight_matched", one.in_sight_matched},
+                               {"matched", one.matched},
+                               {"iou_mean", OrNull(one.iou_mean)}});
+  }
+  return json;
+}
+
 }  // namespace
 
 void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
@@ -48,6 +71,7 @@ void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
     body["trajectory"] = {{"ate_rmse_m", metrics.trajectory->ate_rmse_m},
                           {"odometry_ate_rmse_m", metrics.trajectory->odometry_ate_rmse_m}};
   }
+  if (metrics.held_out) body["held_out"] = ToJson(*metrics.held_out, sequence);
   WriteArtefact(path, "metrics", info, std::move(body));
 }
 

@@ -156,6 +156,23 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   return detection;
 }
 
+json HeldOutToJson(const HeldOutFrame& held_out) {
+  json boxes = json::array();
+  for (const auto& [label, score, box] : held_out.boxes) {
+    boxes.push_back({{"label", label}, {"score", score}, {"box", box}});
+  }
+  return {{"frame", FrameToJson(held_out.frame)}, {"boxes", boxes}};
+}
+
+HeldOutFrame HeldOutFromJson(const json& json) {
+  HeldOutFrame held_out{FrameFromJson(json.at("frame")), {}};
+  for (const auto& box : json.at("boxes")) {
+    held_out.boxes.push_back({box.at("label").get<std::string>(), box.at("score").get<double>(),
+                              box.at("box").get<Box>()});
+  }
+  return held_out;
+}
+
 void CheckOrder(const std::vector<Detection>& detections) {
   const auto key = [](const Detection& detection) {
     return std::tuple(detection.frame_index, detection.object_index);
@@ -225,6 +242,10 @@ Sequence SequenceFromJson(const json& json) {
     if (json.at("detections")[i].contains("nearer_boxes")) continue;
     detection.nearer_boxes = NearerBoxes(sequence, detection);
   }
+  for (const auto& held_out :
+       json.value("held_out", nlohmann::json::array())) {  // since version 1.3
+    sequence.held_out.push_back(HeldOutFromJson(held_out));
+  }
   json.at("rejected_detections").get_to(sequence.rejected_detections);
   return sequence;
 }
@@ -262,6 +283,9 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
   }
   for (const Detection& detection : sequence.detections) {
     body["detections"].push_back(DetectionToJson(detection, sequence));
+  }
+  for (const HeldOutFrame& held_out : sequence.held_out) {
+    body["held_out"].push_back(HeldOutToJson(held_out));
   }
   WriteArtefact(path, "sequence", info, std::move(body));
 }

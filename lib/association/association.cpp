@@ -33,6 +33,12 @@ void ListObjects(const Sequence& sequence, Association* association) {
 
 }  // namespace
 
+Sequence WithoutPlanes(Sequence sequence) {
+  sequence.planes.clear();
+  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
+  return sequence;
+}
+
 Association Associate(const Sequence& sequence, const SemanticTable& table,
                       const AssociateOptions& options, int threads) {
   const AssociationModel model(sequence, table, options);

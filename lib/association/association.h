@@ -72,12 +72,15 @@ struct Association {
   std::vector<int> objects;  // into `tracks`, by their first detection
 };
 
-// Finds out which detections are of the same object, from boxes, labels, scores, support planes and
-// poses alone: neither objects nor their ids are looked at, but for the label and plane that each
-// detection has through its own. The frames are gone through in order: each one's detections are
-// assigned to the tracks so far, or start new ones, as is most likely. Then tracks are merged that
-// turn out to be one object, and false ones dropped. Throws SettingsError for malformed
-// interchangeable_labels.
+// The sequence as if nobody knew what its objects stand on.
+Sequence WithoutPlanes(Sequence sequence);
+
+// Finds out which detections are of the same object, from boxes, labels, scores, poses and, where
+// the sequence has them, support planes alone: neither objects nor their ids are looked at, but for
+// the label and plane that each detection has through its own. The frames are gone through in
+// order: each one's detections are assigned to the tracks so far, or start new ones, as is most
+// likely. Then tracks are merged that turn out to be one object, and false ones dropped. Throws
+// SettingsError for malformed interchangeable_labels.
 Association Associate(const Sequence& sequence, const SemanticTable& table,
                       const AssociateOptions& options, int threads);
 

@@ -14,6 +14,9 @@ std::set<std::string> LabelsOf(const Sequence& sequence) {
   return labels;
 }
 
+// Of things whose label has no height: to a factor of e.
+constexpr double kUnknownHeightLogSigma = 1.0;
+
 // Of a label that the table knows nothing about: as long and wide as high, give or take a factor of
 // e, and a cuboid.
 ShapePrior UnknownShape() {
@@ -29,12 +32,18 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
     : sequence_(sequence),
       table_(table),
       options_(options),
+      up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, options)
+                                              : std::map<int, UpEstimate>()),
       boxes_(sequence, options),
       labels_(LabelsOf(sequence), options.label_confusion, options.interchangeable_labels) {}
 
 void AssociationModel::Fit(Track* track) const {
-  const ShapePrior prior = table_.Find(WinningLabel(track->votes)).value_or(UnknownShape());
-  const auto fit = FitObject(sequence_, track->detections, prior, options_);
+  ShapePrior prior = table_.Find(WinningLabel(track->votes)).value_or(UnknownShape());
+  if (!prior.height_m) prior.height_m = {options_.unknown_height_m, kUnknownHeightLogSigma};
+  const auto up = up_of_segments_.find(SegmentOf(*track));
+  const auto fit =
+      FitObject(sequence_, track->detections, prior, options_,
+                up == up_of_segments_.end() ? std::nullopt : std::optional(up->second));
   if (fit) track->fit = fit;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
 #include "association/association.h"
 #include "association/box_likelihood.h"
 #include "association/labels.h"
+#include "association/up_estimate.h"
 
 namespace soslam {
 
@@ -47,6 +49,7 @@ class AssociationModel {
   const Sequence& sequence_;
   const SemanticTable& table_;
   const AssociateOptions& options_;
+  std::map<int, UpEstimate> up_of_segments_;  // empty: planes are known
   BoxLikelihood boxes_;
   LabelConfusion labels_;
 };

@@ -30,23 +30,19 @@ struct Innovation {
   Eigen::Vector4d sigmas_px;
 };
 
-Innovation InnovationOf(const Prediction& prediction, const Plane& plane_in_world,
-                        const std::array<BoxEdge, 4>& edges) {
+Innovation InnovationOf(const Prediction& prediction, const std::array<BoxEdge, 4>& edges) {
   const Landmark& landmark = prediction.object->landmark_in_world;
   const RobustViewTerm term(std::make_unique<BoxTerm>(edges, prediction.landmark_in_camera),
                             prediction.camera_from_world, kNoHuber, 1.0);
   Eigen::VectorXd residuals(4);
   LandmarkTerm::Jacobian by_landmark(4, kLandmarkDof);
   term.Evaluate(landmark, residuals, &by_landmark);
-  const Eigen::Matrix<double, 4, 6> by_parameters =
-      by_landmark * UprightByParameters(plane_in_world, landmark);
   const Eigen::Matrix<double, 4, 3> by_centre = by_landmark.middleCols<3>(3);
   Innovation innovation;
   innovation.residuals = residuals;
-  innovation.covariance =
-      Eigen::Matrix4d::Identity() +
-      by_parameters * prediction.object->covariance * by_parameters.transpose() +
-      by_centre * prediction.drift_covariance * by_centre.transpose();
+  innovation.covariance = Eigen::Matrix4d::Identity() +
+                          by_landmark * prediction.object->covariance * by_landmark.transpose() +
+                          by_centre * prediction.drift_covariance * by_centre.transpose();
   for (size_t i = 0; i < edges.size(); ++i) {
     innovation.sigmas_px[static_cast<Eigen::Index>(i)] = edges[i].sigma_px;
   }
@@ -79,14 +75,14 @@ NormalDensity DensityOf(const Innovation& innovation, const std::vector<int>& ed
 // By the sums of all that may move an edge, each at the nearest point of the body.
 double MaxSpread(const Prediction& prediction, const Camera& camera) {
   const Landmark& landmark = prediction.landmark_in_camera;
-  const UprightCovariance& covariance = prediction.object->covariance;
+  const Covariance9& covariance = prediction.object->covariance;
   const double radius = landmark.half_axes.norm();
-  const auto sigma = [](double variance) { return std::sqrt(std::max(0.0, variance)); };
-  double sum_m = sigma(prediction.drift_covariance.trace());
-  for (int i = 0; i < 6; ++i) {
-    const bool is_foot = i == 1 || i == 2;
-    sum_m += (is_foot ? 1.0 : 2.0 * radius) * sigma(covariance(i, i));
-  }
+  const auto sigma = [](const Eigen::Matrix3d& block) {
+    return std::sqrt(std::max(0.0, block.trace()));
+  };
+  const double sum_m =
+      sigma(prediction.drift_covariance) + sigma(covariance.block<3, 3>(3, 3)) +
+      radius * (sigma(covariance.block<3, 3>(0, 0)) + sigma(covariance.block<3, 3>(6, 6)));
   const double depth = std::max(landmark.Centre().z() - radius, 0.1 * landmark.Centre().z());
   return std::max(camera.fx, camera.fy) / depth * sum_m;
 }
@@ -143,8 +139,7 @@ std::optional<Explanation> BoxLikelihood::Explain(const Prediction& prediction,
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_bound,
                               options_.box_sigma_fraction);
   if (IsOutOfReach(prediction, detection, edges)) return std::nullopt;
-  const Innovation innovation =
-      InnovationOf(prediction, PlaneOfDetection(sequence_, detection), edges);
+  const Innovation innovation = InnovationOf(prediction, edges);
   const double p = options_.cut_edge_probability;
   Explanation best;
   best.overlap = BoxOverlap(prediction.outline, detection.box);

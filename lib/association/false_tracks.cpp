@@ -21,6 +21,12 @@ double CoveredShare(const Box& box, const Box& by) {
   return std::max(0.0, width) * std::max(0.0, height) / (box.Width() * box.Height());
 }
 
+// The plane that a landmark stands on.
+Plane PlaneUnder(const Landmark& landmark) {
+  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+  return {up, landmark.half_axes.z() - up.dot(landmark.Centre())};
+}
+
 // How close to the image border (px) boxes are still used.
 double SmallestDistanceToBorder(const Sequence& sequence) {
   double smallest = std::numeric_limits<double>::infinity();
@@ -43,7 +49,6 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
     smallest_height = std::min(smallest_height, detection.box.Height());
     is_detected[static_cast<size_t>(detection.frame_index)] = true;
   }
-  const Plane& plane = sequence.planes[static_cast<size_t>(track.plane_index)].plane_in_world;
   auto frames = static_cast<int>(track.detections.size());
   for (int frame = 0; frame < static_cast<int>(sequence.frames.size()); ++frame) {
     if (is_detected[static_cast<size_t>(frame)]) continue;
@@ -59,7 +64,7 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
     expected.frame_index = frame;
     expected.object_index = kNoObject;
     expected.box = box;
-    expected.plane_in_camera = Transform(prediction->camera_from_world, plane);
+    expected.plane_in_camera = PlaneUnder(prediction->landmark_in_camera);
     const std::vector<Box> nearer = NearerBoxes(sequence, expected);
     const bool is_hidden = std::ranges::any_of(
         nearer, [&](const Box& other) { return CoveredShare(box, other) >= kHiddenShare; });

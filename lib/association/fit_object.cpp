@@ -7,43 +7,69 @@
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
 #include "initialisation/yaw_sweep.h"
+#include "planes/standing_body.h"
 
 namespace soslam {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
+// UprightVector, and the height of the foot over the plane (m), which is free without a plane.
+constexpr int kMaxParameters = 7;
+using Information =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParameters, kMaxParameters>;
+using ByParameters =
+    Eigen::Matrix<double, kLandmarkDof, Eigen::Dynamic, 0, kLandmarkDof, kMaxParameters>;
+
 // What is known without any box, as standard deviations: a yaw is somewhere on half a turn, the
 // foot (m) anywhere, half axes to a factor of e.
-UprightCovariance PriorInformation() {
-  UprightVector sigmas;
-  sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0;
-  return sigmas.array().square().inverse().matrix().asDiagonal();
+Information PriorInformation(Eigen::Index parameters) {
+  Eigen::Matrix<double, kMaxParameters, 1> sigmas;
+  sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;
+  return sigmas.head(parameters).array().square().inverse().matrix().asDiagonal();
 }
 
-UprightCovariance CovarianceOf(const MultiViewObservation& observation, const Landmark& landmark) {
-  const UprightJacobian by_parameters = UprightByParameters(observation.plane_in_world, landmark);
-  UprightCovariance information = PriorInformation();
+ByParameters LandmarkByParameters(const MultiViewObservation& observation,
+                                  const Landmark& landmark) {
+  const Plane& plane = observation.plane_in_world;
+  ByParameters by_parameters = ByParameters::Zero(kLandmarkDof, observation.height_is_free ? 7 : 6);
+  by_parameters.leftCols<6>() = UprightByParameters(plane, landmark);
+  if (observation.height_is_free) by_parameters.block<3, 1>(3, 6) = plane.normal;
+  return by_parameters;
+}
+
+// A body leans with `up`, and its parameters follow so that its boxes stay explained.
+Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark& landmark,
+                         const Eigen::Matrix3d& up_covariance) {
+  const ByParameters by_parameters = LandmarkByParameters(observation, landmark);
+  Information information = PriorInformation(by_parameters.cols());
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed(by_parameters.cols(), 3);
+  mixed.setZero();
   for (const auto& term : ViewTerms(observation, landmark)) {
     Eigen::VectorXd residuals(term->NumResiduals());
     LandmarkTerm::Jacobian by_landmark(term->NumResiduals(), kLandmarkDof);
     term->Evaluate(landmark, residuals, &by_landmark);
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> jacobian = by_landmark * by_parameters;
+    const Eigen::MatrixXd jacobian = by_landmark * by_parameters;
     information += jacobian.transpose() * jacobian;
+    mixed += jacobian.transpose() * by_landmark.leftCols<3>();
   }
-  return information.ldlt().solve(UprightCovariance::Identity());
+  const Eigen::LDLT<Information> solver(information);
+  Eigen::Matrix<double, kLandmarkDof, 3> by_turn = -by_parameters * solver.solve(mixed);
+  by_turn.topRows<3>() += Eigen::Matrix3d::Identity();
+  return by_parameters * solver.solve(ByParameters(by_parameters).transpose()) +
+         by_turn * up_covariance * by_turn.transpose();
 }
 
 // From one box alone: the best yaw of a sweep.
-std::optional<Landmark> LandmarkInWorld(const Sequence& sequence, const Detection& detection,
-                                        const ShapePrior& prior, const AssociateOptions& options) {
+std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detection& detection,
+                                        const MultiViewObservation& all,
+                                        const AssociateOptions& options) {
   const Frame& frame = sequence.FrameOf(detection);
   UprightObservation observation = MakeUprightObservation(
-      sequence, detection, prior,
+      sequence, detection, *all.prior,
       {options.box_sigma_fraction, /*axes_weight=*/0.0, options.yaw_grid_deg});
   // Of the same pose as all other views, while the detection's own may be of a better one.
-  observation.plane_in_camera =
-      Transform(frame.world_from_camera.Inverse(), PlaneOfDetection(sequence, detection));
+  observation.plane_in_camera = Transform(frame.world_from_camera.Inverse(), all.plane_in_world);
   const YawObjective objective = BoxObjective(observation);
   const auto optima = LocalOptima(
       observation, objective, SweepYaw(observation, objective, options.yaw_grid_deg * kRadians), 1);
@@ -52,7 +78,7 @@ std::optional<Landmark> LandmarkInWorld(const Sequence& sequence, const Detectio
 }
 
 // From all views at once; where these need a start, from the first one that gives one.
-std::optional<Landmark> LandmarkInWorld(const Sequence& sequence,
+std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence,
                                         const std::vector<int>& detections,
                                         const MultiViewObservation& observation,
                                         const AssociateOptions& options) {
@@ -62,7 +88,7 @@ std::optional<Landmark> LandmarkInWorld(const Sequence& sequence,
   }
   for (const int index : detections) {
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-    const auto start = LandmarkInWorld(sequence, detection, *observation.prior, options);
+    const auto start = LandmarkOnPlane(sequence, detection, observation, options);
     if (!start) continue;
     const auto solution = FitUpright(observation.plane_in_world, *start,
                                      ViewTerms(observation, *start), /*yaw_is_free=*/true);
@@ -73,19 +99,25 @@ std::optional<Landmark> LandmarkInWorld(const Sequence& sequence,
 
 }  // namespace
 
-const Plane& PlaneOfDetection(const Sequence& sequence, const Detection& detection) {
-  const auto plane_index = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
-  return sequence.planes[plane_index].plane_in_world;
-}
-
 std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
-                                      const ShapePrior& prior, const AssociateOptions& options) {
+                                      const ShapePrior& prior, const AssociateOptions& options,
+                                      const std::optional<UpEstimate>& up) {
   const std::vector<int> used = SpreadOver(detections, static_cast<size_t>(options.max_views));
-  const MultiViewObservation observation = MakeMultiViewObservation(
-      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadians);
-  const auto landmark = LandmarkInWorld(sequence, used, observation, options);
+  MultiViewObservation observation = MakeMultiViewObservation(
+      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadians,
+      /*height_is_free=*/up.has_value(), /*size_is_known=*/up.has_value());
+  std::optional<Landmark> landmark;
+  if (up) {
+    const auto body =
+        BodyOfFreeHeight(observation, up->up_in_world, options.yaw_grid_deg * kRadians);
+    if (body) landmark = body->landmark;
+    observation.plane_in_world = {up->up_in_world, 0.0};
+  } else {
+    landmark = LandmarkOnPlane(sequence, used, observation, options);
+  }
   if (!landmark) return std::nullopt;
-  const UprightCovariance covariance = CovarianceOf(observation, *landmark);
+  const Covariance9 covariance =
+      CovarianceOf(observation, *landmark, up ? up->covariance : Eigen::Matrix3d::Zero());
   if (!covariance.allFinite()) return std::nullopt;
   return FittedObject{*landmark, covariance};
 }

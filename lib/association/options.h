@@ -16,6 +16,10 @@ inline constexpr std::array kAssociationSourceNames = {"given", "estimated"};
 
 struct AssociateOptions {
   AssociationSource association = AssociationSource::kGiven;
+  bool use_planes = true;
+  double camera_roll_sigma_deg = 5.0;
+  double camera_pitch_sigma_deg = 30.0;
+  double unknown_height_m = 0.4;
   double box_sigma_fraction = 0.05;
   double cut_edge_probability = 0.05;
   double new_object_probability = 0.05;
@@ -36,6 +40,16 @@ struct AssociateOptions {
     visit.Choice("association", &association, kAssociationSourceNames,
                  "whether the dataset says which detection is of which object, or this stage finds "
                  "it out; the stage runs only in the latter case");
+    visit.Flag("use_planes", &use_planes,
+               "boxes are linked on the support planes of the dataset, where it has any; without "
+               "planes objects stand at any height, and the result has no planes");
+    visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
+               "without planes: how level the cameras' x axes are held; large: anyhow");
+    visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
+               "without planes: how level the cameras' optical axes are held; large: anyhow");
+    visit.Real("unknown_height_m", &unknown_height_m, {1e-6, 1e6},
+               "without planes: how high things are, give or take a factor of e, whose label has "
+               "no height in the semantic table (in the trajectory's metres)");
     visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
                "standard deviation of a box edge about that of the object's body, as a fraction of "
                "the box's width or height, at least 1 px: the detector's error, and what a body of "

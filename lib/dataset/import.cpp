@@ -12,6 +12,7 @@
 #include "dataset/bound_edges.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
+#include "dataset/hold_out.h"
 #include "dataset/kitti_object.h"
 #include "dataset/kitti_tracking.h"
 #include "dataset/slam_synthetic.h"
@@ -191,6 +192,7 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.objects = content.objects;
   sequence.rejected_detections = content.rejected;
   Importer(content, options, &sequence).Import();
+  sequence = HoldOutFrames(std::move(sequence), options.held_out);
   RequireDetections(folder, sequence);
   if (!content.has_object_ids) DropUndetectedObjects(&sequence);
   if (files_read != nullptr) *files_read = content.files;

@@ -24,6 +24,12 @@ inline constexpr const char* kTrajectorySourceNames[] = {"odometry", "groundtrut
 enum class PlanePoses { kGroundTruth, kTrajectory };
 inline constexpr const char* kPlanePosesNames[] = {"groundtruth", "trajectory"};
 
+enum class HeldOutFrames {
+  kNone,
+  kOdd,  // every other one of those that are used, the first one not
+};
+inline constexpr const char* kHeldOutFramesNames[] = {"none", "odd"};
+
 enum class TrajectoryFormat { kTum, kKitti };
 inline constexpr const char* kTrajectoryFormatNames[] = {"tum", "kitti"};
 
@@ -121,6 +127,7 @@ struct ImportOptions {
   std::string detections;
   int first_frame = 0;
   int frame_stride = 1;
+  HeldOutFrames held_out = HeldOutFrames::kNone;
   bool images_only = false;
   std::string labels;
   double max_truncation = 100.0;
@@ -150,6 +157,9 @@ struct ImportOptions {
                   "images before this one, counted from 0 in each segment, are not used");
     visit.Integer("frame_stride", &frame_stride, {1, 1000000},
                   "of the images from first_frame on every n-th is used");
+    visit.Choice("held_out", &held_out, kHeldOutFramesNames,
+                 "which of the used frames no estimate gets to see; what was detected there is "
+                 "kept to judge landmarks by (odd: the second, the fourth, ... of each segment)");
     visit.Flag("images_only", &images_only, "frames whose image the dataset lacks are not used");
     visit.Text("labels", &labels,
                "detections of other labels are dropped; commas between several, empty: all are "

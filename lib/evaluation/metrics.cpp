@@ -8,26 +8,13 @@
 
 #include "evaluation/iou.h"
 #include "evaluation/rotation_error.h"
+#include "evaluation/statistics.h"
 #include "evaluation/trajectory_error.h"
 
 namespace soslam {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-std::optional<double> Mean(const std::vector<double>& values) {
-  if (values.empty()) return std::nullopt;
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-std::optional<double> Median(std::vector<double> values) {
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 // The landmark turned about its z axis until its x axis points as the estimate's does.
 Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
@@ -52,10 +39,10 @@ ObjectMetrics Average(int object_index, int observations,
     if (error->rotation_deg) rotations.push_back(*error->rotation_deg);
     if (error->yaw_deg) yaws.push_back(*error->yaw_deg);
   }
-  metrics.iou = Mean(ious).value_or(0.0);
-  metrics.centre_m = Mean(centres);
-  metrics.rotation_deg = Mean(rotations);
-  metrics.yaw_deg = Mean(yaws);
+  metrics.iou = MeanOf(ious).value_or(0.0);
+  metrics.centre_m = MeanOf(centres);
+  metrics.rotation_deg = MeanOf(rotations);
+  metrics.yaw_deg = MeanOf(yaws);
   return metrics;
 }
 
@@ -70,12 +57,12 @@ MetricsSummary Summarise(const std::vector<ObjectMetrics>& objects) {
     if (object.rotation_deg) rotations.push_back(*object.rotation_deg);
     if (object.yaw_deg) yaws.push_back(*object.yaw_deg);
   }
-  summary.iou_mean = Mean(ious);
-  summary.iou_median = Median(ious);
-  summary.rotation_deg_mean = Mean(rotations);
-  summary.rotation_deg_median = Median(rotations);
-  summary.yaw_error_deg_mean = Mean(yaws);
-  summary.yaw_error_deg_median = Median(yaws);
+  summary.iou_mean = MeanOf(ious);
+  summary.iou_median = MedianOf(ious);
+  summary.rotation_deg_mean = MeanOf(rotations);
+  summary.rotation_deg_median = MedianOf(rotations);
+  summary.yaw_error_deg_mean = MeanOf(yaws);
+  summary.yaw_error_deg_median = MedianOf(yaws);
   return summary;
 }
 
@@ -155,6 +142,11 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
     metrics.first_observation = Summarise(first_only);
   }
   metrics.summary = Summarise(metrics.objects);
+  std::vector<Rigid3d> held_out_poses;
+  for (const HeldOutFrame& held_out : sequence.held_out) {
+    held_out_poses.push_back(held_out.frame.world_from_camera);
+  }
+  metrics.held_out = EvaluateHeldOut(sequence, estimates.objects, held_out_poses);
   return metrics;
 }
 
@@ -162,6 +154,8 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map) {
   Metrics metrics;
   metrics.objects = EvaluateObjects(sequence, map.objects);
   metrics.summary = Summarise(metrics.objects);
+  metrics.held_out =
+      EvaluateHeldOut(sequence, map.objects, HeldOutPoses(sequence, map.world_from_camera));
 
   // Segments have worlds of their own.
   if (!sequence.frames.empty() &&

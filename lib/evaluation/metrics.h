@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "evaluation/held_out.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
 
@@ -49,6 +50,7 @@ struct Metrics {
   std::vector<ObjectMetrics> objects;
   std::optional<MetricsSummary> first_observation;  // single-frame estimates only
   std::optional<TrajectoryMetrics> trajectory;      // maps only, where the true poses are known
+  std::optional<HeldOutMetrics> held_out;           // where frames were held out
 };
 
 LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,

@@ -231,16 +231,20 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior,
                                               double detection_sigma_fraction,
-                                              double view_correlation_rad, bool height_is_free) {
+                                              double view_correlation_rad, bool height_is_free,
+                                              bool size_is_known) {
   MultiViewObservation observation;
   observation.prior = prior;
   observation.height_is_free = height_is_free;
+  observation.size_is_known = size_is_known;
   for (const int index : detections) {
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
     const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-    observation.plane_in_world =
-        sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+    if (object.plane_index != kNoPlane) {
+      observation.plane_in_world =
+          sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+    }
     observation.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
                                           detection.is_bound, detection_sigma_fraction),
                                  frame.world_from_camera.Inverse()});

@@ -36,12 +36,10 @@ struct MultiViewObservation {
 };
 // Of one object's detections (indices into Sequence::detections, at least one), from the frames'
 // estimated poses, weighted as ViewWeights says for where the rays through the boxes meet.
-MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
-                                              const std::vector<int>& detections,
-                                              const std::optional<ShapePrior>& prior,
-                                              double detection_sigma_fraction,
-                                              double view_correlation_rad,
-                                              bool height_is_free = false);
+MultiViewObservation MakeMultiViewObservation(
+    const Sequence& sequence, const std::vector<int>& detections,
+    const std::optional<ShapePrior>& prior, double detection_sigma_fraction,
+    double view_correlation_rad, bool height_is_free = false, bool size_is_known = false);
 
 // What a landmark in the world is fitted to; tangent points are at their depths on `start`. Views
 // that it is not wholly in front of are left out.

@@ -81,6 +81,18 @@ struct Detection {
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
 };
 
+// A frame that no estimate may use, and what was detected there: to judge landmarks by. Boxes pass
+// the same gates as detections; nobody says whose they are.
+struct HeldOutFrame {
+  struct LabelledBox {
+    std::string label;
+    double score = 1.0;
+    Box box;
+  };
+  Frame frame;
+  std::vector<LabelledBox> boxes;
+};
+
 // What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then
 // by object; frames, objects and planes by id.
 struct Sequence {
@@ -93,6 +105,7 @@ struct Sequence {
   std::vector<SupportPlane> planes;  // empty: not known, nor is any detection's plane
   std::vector<Object> objects;
   std::vector<Detection> detections;
+  std::vector<HeldOutFrame> held_out;              // by frame id; none of them in `frames`
   std::map<std::string, int> rejected_detections;  // reason -> how many
 
   const Frame& FrameOf(const Detection& detection) const {

@@ -10,7 +10,6 @@
 #include "artefact/sequence_file.h"
 #include "association/agreement.h"
 #include "association/association.h"
-#include "association/provisional_planes.h"
 #include "base/error.h"
 
 namespace soslam {
@@ -36,9 +35,8 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
         "setting 'association' is 'given', which leaves nothing to do; expected 'estimated'");
   }
   const SemanticTable table = ReadSemanticTable(files.at("table"));
-  const Sequence read = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
-  const bool has_planes = !read.planes.empty();
-  const Sequence sequence = has_planes ? read : OnProvisionalPlanes(read, table, options);
+  Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
+  if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
   const Association association = Associate(sequence, table, options, threads);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
@@ -49,7 +47,7 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
   const ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
   const Sequence associated = AssociatedSequence(sequence, association, agreement);
   WriteAssociations(files.at("associations"), sequence, association, agreement, info);
-  WriteSequence(files.at("output"), has_planes ? associated : WithoutPlanes(associated), info);
+  WriteSequence(files.at("output"), associated, info);
   fmt::print("{} objects with {} of {} detections; tracks: {}\n", association.objects.size(),
              associated.detections.size(), sequence.detections.size(), DescribeTracks(association));
   if (const auto f1 = agreement.F1()) {

@@ -29,6 +29,11 @@ void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*
                               : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence));
   WriteMetrics(files.at("output"), metrics, sequence,
                {OptionsToJson(options), {files.at("sequence"), landmarks}});
+  if (const auto& held_out = metrics.held_out) {
+    fmt::print("held-out frames: {} of {} detections matched, mean IoU {:.3f}\n",
+               held_out->detections_matched, held_out->detections,
+               held_out->iou_mean.value_or(0.0));
+  }
   if (metrics.summary.objects == 0) {
     fmt::print("no observed object has ground truth: nothing to compare with\n");
   } else {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/hold_out.h"
+
+#include <utility>
+#include <vector>
+
+namespace soslam {
+namespace {
+
+// Where a frame of the whole sequence goes.
+struct Destination {
+  bool is_held_out;
+  size_t index;  // into Sequence::held_out or Sequence::frames
+};
+
+}  // namespace
+
+Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out) {
+  if (held_out == HeldOutFrames::kNone) return sequence;
+  const std::vector<Frame> frames = std::exchange(sequence.frames, {});
+  std::vector<Destination> destinations;
+  size_t place = 0;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    place = i > 0 && frames[i].segment == frames[i - 1].segment ? place + 1 : 0;
+    if (place % 2 == 1) {
+      destinations.push_back({true, sequence.held_out.size()});
+      sequence.held_out.push_back({frames[i], {}});
+    } else {
+      destinations.push_back({false, sequence.frames.size()});
+      sequence.frames.push_back(frames[i]);
+    }
+  }
+  for (Detection& detection : std::exchange(sequence.detections, {})) {
+    const auto [is_held_out, index] = destinations[static_cast<size_t>(detection.frame_index)];
+    if (is_held_out) {
+      const std::string& label = sequence.ObjectOf(detection).label;
+      sequence.held_out[index].boxes.push_back({label, detection.score, detection.box});
+    } else {
+      detection.frame_index = static_cast<int>(index);
+      sequence.detections.push_back(std::move(detection));
+    }
+  }
+  return sequence;
+}
+
+}  // namespace soslam

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/held_out.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <limits>
+
+#include "association/assignment.h"
+#include "association/box_likelihood.h"
+#include "evaluation/statistics.h"
+
+namespace soslam {
+namespace {
+
+// What one landmark is compared on.
+struct Judged {
+  int object_index;
+  Landmark landmark_in_world;
+  int in_sight = 0;
+  int in_sight_matched = 0;
+  std::vector<double> ious = {};
+};
+
+std::vector<Judged> JudgedLandmarks(const std::vector<ObjectEstimate>& estimates) {
+  std::vector<Judged> judged;
+  for (const ObjectEstimate& estimate : estimates) {
+    if (estimate.landmark_in_world) {
+      judged.push_back({estimate.object_index, *estimate.landmark_in_world});
+    }
+  }
+  return judged;
+}
+
+// How close to the image border (px) boxes are detected.
+double SmallestDistanceToBorder(const Sequence& sequence) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const HeldOutFrame& held_out : sequence.held_out) {
+    const Camera& camera = sequence.CameraOf(held_out.frame);
+    for (const auto& labelled : held_out.boxes) {
+      smallest = std::min(smallest, DistanceToBorder(labelled.box, camera.width, camera.height));
+    }
+  }
+  return smallest;
+}
+
+// Compares the landmarks with the boxes of one frame.
+void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
+             const Rigid3d& world_from_camera, double border_px, std::vector<Judged>* judged) {
+  const Camera& camera = sequence.CameraOf(held_out.frame);
+  const auto rows = static_cast<Eigen::Index>(judged->size());
+  const auto columns = static_cast<Eigen::Index>(held_out.boxes.size());
+  Eigen::MatrixXd overlaps = Eigen::MatrixXd::Zero(rows, columns);
+  std::vector<bool> is_in_sight(judged->size());
+  for (size_t i = 0; i < judged->size(); ++i) {
+    const Judged& one = (*judged)[i];
+    const auto outline =
+        OutlineBox(camera, Transform(world_from_camera.Inverse(), one.landmark_in_world));
+    if (!outline) continue;
+    is_in_sight[i] = DistanceToBorder(*outline, camera.width, camera.height) >= border_px;
+    const std::string& label = sequence.objects[static_cast<size_t>(one.object_index)].label;
+    for (size_t k = 0; k < held_out.boxes.size(); ++k) {
+      if (held_out.boxes[k].label != label) continue;
+      overlaps(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          BoxOverlap(*outline, held_out.boxes[k].box);
+    }
+  }
+  const Eigen::MatrixXd costs = overlaps.unaryExpr([](double overlap) {
+    return overlap < kMinHeldOutIou ? std::numeric_limits<double>::infinity() : 1.0 - overlap;
+  });
+  const std::vector<int> box_of = Assign(costs, Eigen::VectorXd::Ones(rows));
+  for (size_t i = 0; i < judged->size(); ++i) {
+    const bool is_matched = box_of[i] != kUnassigned;
+    if (is_in_sight[i]) ++(*judged)[i].in_sight;
+    if (is_in_sight[i] && is_matched) ++(*judged)[i].in_sight_matched;
+    if (is_matched) (*judged)[i].ious.push_back(overlaps(static_cast<Eigen::Index>(i), box_of[i]));
+  }
+}
+
+HeldOutMetrics Summarise(const Sequence& sequence, const std::vector<Judged>& judged) {
+  HeldOutMetrics metrics;
+  metrics.frames = static_cast<int>(sequence.held_out.size());
+  for (const HeldOutFrame& held_out : sequence.held_out) {
+    metrics.detections += static_cast<int>(held_out.boxes.size());
+  }
+  std::vector<double> ious;
+  for (const Judged& one : judged) {
+    const auto matched = static_cast<int>(one.ious.size());
+    metrics.detections_matched += matched;
+    metrics.in_sight += one.in_sight;
+    metrics.in_sight_matched += one.in_sight_matched;
+    metrics.objects.push_back(
+        {one.object_index, one.in_sight, one.in_sight_matched, matched, MeanOf(one.ious)});
+    ious.insert(ious.end(), one.ious.begin(), one.ious.end());
+  }
+  metrics.iou_mean = MeanOf(ious);
+  metrics.iou_median = MedianOf(ious);
+  ious.resize(static_cast<size_t>(metrics.detections), 0.0);
+  metrics.iou_mean_of_detections = MeanOf(ious);
+  return metrics;
+}
+
+}  // namespace
+
+std::optional<HeldOutMetrics> EvaluateHeldOut(const Sequence& sequence,
+                                              const std::vector<ObjectEstimate>& estimates,
+                                              const std::vector<Rigid3d>& world_from_camera) {
+  if (sequence.held_out.empty() || estimates.empty()) return std::nullopt;
+  std::vector<Judged> judged = JudgedLandmarks(estimates);
+  const double border_px = SmallestDistanceToBorder(sequence);
+  for (size_t i = 0; i < sequence.held_out.size(); ++i) {
+    Compare(sequence, sequence.held_out[i], world_from_camera[i], border_px, &judged);
+  }
+  return Summarise(sequence, judged);
+}
+
+std::vector<Rigid3d> HeldOutPoses(const Sequence& sequence,
+                                  const std::vector<Rigid3d>& world_from_camera) {
+  std::vector<Rigid3d> poses;
+  for (const HeldOutFrame& held_out : sequence.held_out) {
+    const auto next = std::ranges::upper_bound(sequence.frames, held_out.frame.id, {}, &Frame::id);
+    const bool has_before =
+        next != sequence.frames.begin() && std::prev(next)->segment == held_out.frame.segment;
+    const auto known =
+        static_cast<size_t>((has_before ? std::prev(next) : next) - sequence.frames.begin());
+    poses.push_back(world_from_camera[known] * sequence.frames[known].world_from_camera.Inverse() *
+                    held_out.frame.world_from_camera);
+  }
+  return poses;
+}
+
+}  // namespace soslam
