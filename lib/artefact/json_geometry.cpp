@@ -30,6 +30,18 @@ void RequireUnit(double norm, const char* name, const json& found) {
 
 }  // namespace
 
+json MatrixToJson(const Eigen::Matrix3d& matrix) {
+  json rows = json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(VectorToJson(row));
+  return rows;
+}
+
+Eigen::Matrix3d MatrixFromJson(const json& json) {
+  Eigen::Matrix3d matrix;
+  for (int i = 0; i < 3; ++i) matrix.row(i) = VectorFromJson(json.at(static_cast<size_t>(i)));
+  return matrix;
+}
+
 void to_json(json& json, const Rigid3d& rigid) {
   const Eigen::Quaterniond& q = rigid.rotation;
   json = {{"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}},

@@ -35,6 +35,10 @@ void from_json(const nlohmann::json& json, Box& box);
 void to_json(nlohmann::json& json, const Camera& camera);
 void from_json(const nlohmann::json& json, Camera& camera);
 
+// Rows of three numbers.
+nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);
+Eigen::Matrix3d MatrixFromJson(const nlohmann::json& json);
+
 // {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2};
 // `frame` is "world" or "camera". Schema version 1.0 had no shape exponent: all were ellipsoids.
 nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);

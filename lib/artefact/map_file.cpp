@@ -40,6 +40,35 @@ std::vector<Rigid3d> TrajectoryFromJson(const json& json, const Sequence& sequen
   return world_from_camera;
 }
 
+json PlanesToJson(const std::vector<Plane>& planes_in_world, const Sequence& sequence) {
+  json planes = json::array();
+  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+    planes.push_back({{"plane", sequence.planes[i].id}, {"plane_in_world", planes_in_world.at(i)}});
+  }
+  return planes;
+}
+
+// Before version 1.3 all planes were given.
+std::vector<Plane> PlanesFromJson(const json& map, const Sequence& sequence) {
+  std::vector<Plane> planes;
+  for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
+  if (!map.contains("planes")) return planes;
+  const json& found = map["planes"];
+  if (found.size() != planes.size()) {
+    throw InputError(fmt::format("/planes has {}; expected {}, as the sequence has", found.size(),
+                                 planes.size()));
+  }
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const int id = found[i].at("plane").get<int>();
+    if (id != sequence.planes[i].id) {
+      throw InputError(fmt::format("/planes/{}/plane is {}; expected {}, as in the sequence", i, id,
+                                   sequence.planes[i].id));
+    }
+    planes[i] = found[i].at("plane_in_world").get<Plane>();
+  }
+  return planes;
+}
+
 json SolverToJson(const SolverSummary& solver) {
   return {{"initial_cost", solver.initial_cost},
           {"final_cost", solver.final_cost},
@@ -70,7 +99,7 @@ MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence)
   return ReadArtefactAs(path, "map", [&](const json& json) {
     return MapEstimate{ObjectEstimatesFromJson(json.at("objects"), sequence),
                        TrajectoryFromJson(json.at("trajectory"), sequence),
-                       SolverFromJson(json.at("solver"))};
+                       PlanesFromJson(json, sequence), SolverFromJson(json.at("solver"))};
   });
 }
 
@@ -79,6 +108,7 @@ void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const S
   WriteArtefact(path, "map", info,
                 {{"objects", ObjectEstimatesToJson(map.objects, sequence)},
                  {"trajectory", TrajectoryToJson(map.world_from_camera, sequence)},
+                 {"planes", PlanesToJson(map.planes_in_world, sequence)},
                  {"solver", SolverToJson(map.solver)}});
 }
 

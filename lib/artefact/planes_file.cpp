@@ -27,8 +27,7 @@ json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) 
 json PlaneToJson(const EstimatedPlane& plane) {
   json covariance, tilt_sigma, height_sigma;
   if (plane.covariance) {
-    covariance = json::array();
-    for (const auto& row : plane.covariance->rowwise()) covariance.push_back(VectorToJson(row));
+    covariance = MatrixToJson(*plane.covariance);
     const Eigen::Matrix2d of_turns = plane.covariance->topLeftCorner<2, 2>();
     tilt_sigma = kDegPerRad * std::sqrt(of_turns.trace());
     height_sigma = std::sqrt((*plane.covariance)(2, 2));

@@ -60,6 +60,22 @@ GroundTruth GroundTruthFromJson(const json& json) {
           json.at("rotationally_symmetric").get<bool>()};
 }
 
+json SupportPlaneToJson(const SupportPlane& plane) {
+  json fields = {{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}};
+  if (plane.attitude_information) {
+    fields["attitude_information"] = MatrixToJson(*plane.attitude_information);
+  }
+  return fields;
+}
+
+SupportPlane SupportPlaneFromJson(const json& json) {
+  SupportPlane plane{json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>()};
+  if (json.contains("attitude_information")) {  // since version 1.3
+    plane.attitude_information = MatrixFromJson(json["attitude_information"]);
+  }
+  return plane;
+}
+
 json ObjectToJson(const Object& object, const Sequence& sequence) {
   return {{"object", object.id},
           {"label", object.label},
@@ -208,8 +224,7 @@ Sequence SequenceFromJson(const json& json) {
   for (const auto& frame : json.at("frames")) sequence.frames.push_back(FrameFromJson(frame));
   CheckSegments(sequence.frames);
   for (const auto& plane : json.at("planes")) {
-    sequence.planes.push_back(
-        {plane.at("plane").get<int>(), plane.at("plane_in_world").get<Plane>()});
+    sequence.planes.push_back(SupportPlaneFromJson(plane));
   }
   const IdTable<SupportPlane> planes("plane", sequence.planes);
   for (const auto& object : json.at("objects")) {
@@ -261,7 +276,7 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
     body["image_distortion"] = DistortionToJson(*sequence.image_distortion);
   for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
   for (const SupportPlane& plane : sequence.planes) {
-    body["planes"].push_back({{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}});
+    body["planes"].push_back(SupportPlaneToJson(plane));
   }
   for (const Object& object : sequence.objects) {
     body["objects"].push_back(ObjectToJson(object, sequence));

@@ -3,6 +3,7 @@
 
 #include <ceres/manifold.h>
 #include <ceres/product_manifold.h>
+#include <ceres/sphere_manifold.h>
 
 namespace soslam {
 
@@ -16,5 +17,8 @@ inline ceres::Manifold* NewPoseManifold() {
 inline ceres::Manifold* NewLandmarkManifold() {
   return new ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<6>>;
 }
+
+// The manifold of a plane's normal: 2 tangent dimensions.
+inline ceres::Manifold* NewNormalManifold() { return new ceres::SphereManifold<3>; }
 
 }  // namespace soslam

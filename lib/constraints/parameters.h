@@ -7,21 +7,29 @@
 
 #include "geometry/landmark.h"
 #include "geometry/mirror_mapping.h"
+#include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
 
 // Parameter blocks of the residuals. A pose is (qx, qy, qz, qw, tx, ty, tz); a landmark is its pose
-// followed by the logarithms of its half axes, which so stay positive without bounds.
+// followed by the logarithms of its half axes, which so stay positive without bounds. A plane is
+// two: its unit normal, which parallel planes share, and its offset.
 inline constexpr int kPoseSize = 7;
 inline constexpr int kLandmarkSize = 10;
+inline constexpr int kNormalSize = 3;
+inline constexpr int kOffsetSize = 1;
 using PoseBlock = std::array<double, kPoseSize>;
 using LandmarkBlock = std::array<double, kLandmarkSize>;
+using NormalBlock = std::array<double, kNormalSize>;
 
 PoseBlock Pack(const Rigid3d& pose);
 LandmarkBlock Pack(const Landmark& landmark);
 Rigid3d UnpackPose(const double* block);
 Landmark UnpackLandmark(const double* block);
+inline Plane UnpackPlane(const double* normal, const double* offset) {
+  return {Eigen::Map<const Eigen::Vector3d>(normal), *offset};
+}
 
 // Jacobians are derived for a rotation vector w applied from the left, R -> exp(w) R. Ceres wants
 // them by quaternion coefficients; this 3 x 4 matrix, dw / d(qx, qy, qz, qw), chains one to the

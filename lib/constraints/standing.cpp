@@ -3,33 +3,36 @@
 
 namespace soslam {
 
-StandingResidual::StandingResidual(const Plane& plane_in_world, double angle_sigma_rad,
-                                   double height_sigma_m)
-    : plane_in_world_(plane_in_world),
-      angle_weight_(1.0 / angle_sigma_rad),
-      height_weight_(1.0 / height_sigma_m) {}
-
 bool StandingResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   const Landmark landmark = UnpackLandmark(blocks[0]);
   if (!landmark.half_axes.allFinite()) return false;  // a step too far: the solver shortens it
-  const Eigen::Vector3d& normal = plane_in_world_.normal;
+  const Plane plane = UnpackPlane(blocks[1], blocks[2]);
   const Eigen::Matrix3d object_from_world =
       landmark.frame_from_object.rotation.toRotationMatrix().transpose();
-  const Eigen::Vector3d normal_in_object = object_from_world * normal;
+  const Eigen::Vector3d normal_in_object = object_from_world * plane.normal;
   residuals[0] = angle_weight_ * normal_in_object.x();
   residuals[1] = angle_weight_ * normal_in_object.y();
   residuals[2] =
-      height_weight_ * (plane_in_world_.SignedDistance(landmark.Centre()) - landmark.half_axes.z());
-  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-
-  Eigen::Matrix<double, 3, kLandmarkDof> by_landmark;
-  by_landmark.setZero();
-  by_landmark.topLeftCorner<2, 3>() =
-      angle_weight_ * (object_from_world * Skew(normal)).topRows<2>();
-  by_landmark.block<1, 3>(2, 3) = height_weight_ * normal.transpose();
-  by_landmark(2, 8) = -height_weight_ * landmark.half_axes.z();
-  WriteLandmarkJacobian<3>(blocks[0], by_landmark, jacobians[0]);
+      height_weight_ * (plane.SignedDistance(landmark.Centre()) - landmark.half_axes.z());
+  if (jacobians == nullptr) return true;
+  if (jacobians[0] != nullptr) {
+    Eigen::Matrix<double, 3, kLandmarkDof> by_landmark;
+    by_landmark.setZero();
+    by_landmark.topLeftCorner<2, 3>() =
+        angle_weight_ * (object_from_world * Skew(plane.normal)).topRows<2>();
+    by_landmark.block<1, 3>(2, 3) = height_weight_ * plane.normal.transpose();
+    by_landmark(2, 8) = -height_weight_ * landmark.half_axes.z();
+    WriteLandmarkJacobian<3>(blocks[0], by_landmark, jacobians[0]);
+  }
+  if (jacobians[1] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>> by_normal(jacobians[1]);
+    by_normal.topRows<2>() = angle_weight_ * object_from_world.topRows<2>();
+    by_normal.row(2) = height_weight_ * landmark.Centre().transpose();
+  }
+  if (jacobians[2] != nullptr) {
+    Eigen::Map<Eigen::Vector3d>(jacobians[2]) << 0.0, 0.0, height_weight_;
+  }
   return true;
 }
 

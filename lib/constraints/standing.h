@@ -4,7 +4,6 @@
 #include <ceres/sized_cost_function.h>
 
 #include "constraints/parameters.h"
-#include "geometry/plane.h"
 
 namespace soslam {
 
@@ -13,15 +12,17 @@ namespace soslam {
 // flat body is held as firmly as a high one.
 //
 // Residuals: 3 (cosines of the x and y axis with the normal, height minus c), each divided by its
-// standard deviation. Block: landmark in the world.
-class StandingResidual final : public ceres::SizedCostFunction<3, kLandmarkSize> {
+// standard deviation. Blocks: landmark in the world; unit normal and offset of the plane in the
+// world.
+class StandingResidual final
+    : public ceres::SizedCostFunction<3, kLandmarkSize, kNormalSize, kOffsetSize> {
  public:
-  StandingResidual(const Plane& plane_in_world, double angle_sigma_rad, double height_sigma_m);
+  StandingResidual(double angle_sigma_rad, double height_sigma_m)
+      : angle_weight_(1.0 / angle_sigma_rad), height_weight_(1.0 / height_sigma_m) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
-  Plane plane_in_world_;
   double angle_weight_;
   double height_weight_;
 };

@@ -29,6 +29,16 @@ void CheckFrameNumber(double number, const std::string& place) {
       "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
 }
 
+// Of an image that is called by it, with or without extension: "12.5" has none.
+double TimestampOf(const std::string& name, const std::string& place) {
+  const fs::path file = fs::path(name).filename();
+  const std::string extension = file.extension().string();
+  const bool is_decimals = std::all_of(extension.begin(), extension.end(),
+                                       [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+  return ParseReal((is_decimals ? file : file.stem()).string(), place,
+                   "timestamp as which the image is named");
+}
+
 std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
   std::map<double, ListedImage> images;
   for (const LabelledBox& box : boxes) {
@@ -39,8 +49,7 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
                       "name that is a timestamp",
                       box.place, std::get<int>(box.frame)));
     }
-    const double timestamp = ParseReal(fs::path(*name).filename().replace_extension().string(),
-                                       box.place, "image name without extension, a timestamp,");
+    const double timestamp = TimestampOf(*name, box.place);
     images.try_emplace(timestamp, ListedImage{timestamp, *name});
   }
   if (images.empty()) throw InputError("the detections name no image; expected a list of images");

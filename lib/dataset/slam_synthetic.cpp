@@ -75,8 +75,9 @@ class Problem {
   }
 
   void AddFrames() {
-    const Camera camera =
-        ParseCamera(JsonEntry(entry_.Field("camera"), file_.string() + "#/camera"));
+    const JsonEntry fields(entry_.Field("camera"), file_.string() + "#/camera");
+    fields.Positive("fy");
+    const Camera camera = ParseCamera(fields);
     if (content_->frames.empty()) content_->camera = camera;
     const auto truth = Poses("T_wc");
     const auto odometry = Poses("init_T_wc");

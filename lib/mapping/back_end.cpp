@@ -74,6 +74,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   for (const PoseBlock& pose : problem.poses()) {
     map.world_from_camera.push_back(UnpackPose(pose.data()));
   }
+  map.planes_in_world = problem.Planes();
   const auto detections = DetectionsByObject(input.sequence);
   const std::vector<std::optional<Landmark>> landmarks = problem.Landmarks();
   for (size_t i = 0; i < landmarks.size(); ++i) {

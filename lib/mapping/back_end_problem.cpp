@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "constraints/attitude.h"
 #include "constraints/bias.h"
 #include "constraints/detection.h"
 #include "constraints/manifolds.h"
@@ -57,6 +58,7 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   HoldFirstPoses();
   WeighViews();
   AddOdometry();
+  AddPlanes();
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     if (input.starts[i]) AddLandmark(i);
   }
@@ -121,6 +123,56 @@ void BackEndProblem::AddOdometry() {
   }
 }
 
+// An estimated plane moves with what stands on it, under what is known of its normal besides.
+void BackEndProblem::AddPlanes() {
+  const auto& planes = input_.sequence.planes;
+  offsets_.reserve(planes.size());
+  for (size_t i = 0; i < planes.size(); ++i) {
+    const Plane& plane = planes[i].plane_in_world;
+    offsets_.push_back(plane.offset);
+    const auto is_parallel = [&](size_t other) {
+      return planes[other].attitude_information && planes[i].attitude_information &&
+             planes[other].plane_in_world.normal == plane.normal;
+    };
+    size_t other = 0;
+    while (other < i && !is_parallel(other)) ++other;
+    if (other < i) {
+      normal_of_plane_.push_back(normal_of_plane_[other]);
+      continue;
+    }
+    normal_of_plane_.push_back(normals_.size());
+    normals_.push_back({plane.normal.x(), plane.normal.y(), plane.normal.z()});
+  }
+}
+
+std::vector<Plane> BackEndProblem::Planes() const {
+  std::vector<Plane> planes;
+  for (size_t i = 0; i < offsets_.size(); ++i) {
+    planes.push_back(UnpackPlane(normals_[normal_of_plane_[i]].data(), &offsets_[i]));
+  }
+  return planes;
+}
+
+void BackEndProblem::AddStanding(size_t object_index) {
+  const auto plane_index = static_cast<size_t>(input_.sequence.objects[object_index].plane_index);
+  double* normal = NormalOf(plane_index).data();
+  double* offset = &offsets_[plane_index];
+  const bool is_new_normal = !problem_.HasParameterBlock(normal);
+  // No loss: a body that floats is not an outlier, but wrong.
+  problem_.AddResidualBlock(
+      new StandingResidual(options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
+                           options_.standing_height_sigma_m),
+      nullptr, landmarks_[object_index].data(), normal, offset);
+  const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
+  if (!attitude || !options_.refine_planes) {
+    problem_.SetParameterBlockConstant(normal);
+    problem_.SetParameterBlockConstant(offset);
+  } else if (is_new_normal) {
+    problem_.SetManifold(normal, NewNormalManifold());
+    problem_.AddResidualBlock(new AttitudeResidual(*attitude), nullptr, normal);
+  }
+}
+
 void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
   const Plane& plane =
@@ -129,11 +181,7 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   problem_.AddParameterBlock(landmark, kLandmarkSize, NewLandmarkManifold());
   if (options_.support) {
     if (options_.detection_model == DetectionModel::kTangency) {
-      // No loss: a body that floats is not an outlier, but wrong.
-      problem_.AddResidualBlock(
-          new StandingResidual(plane, options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
-                               options_.standing_height_sigma_m),
-          nullptr, landmark);
+      AddStanding(object_index);
     } else {
       problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
                                                     options_.variances.SupportTangencyM4()),
@@ -311,15 +359,22 @@ std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering(
   return ordering;
 }
 
+// Landmarks are eliminated first.
+std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::Ordering() {
+  auto ordering = LandmarkOrdering();
+  const auto add = [&](double* block) {
+    if (problem_.HasParameterBlock(block)) ordering->AddElementToGroup(block, 1);
+  };
+  for (PoseBlock& pose : poses_) add(pose.data());
+  for (double& bias : detector_bias_px_) add(&bias);
+  for (NormalBlock& normal : normals_) add(normal.data());
+  for (double& offset : offsets_) add(&offset);
+  return ordering;
+}
+
 void BackEndProblem::Solve() {
   ceres::Solver::Options solver = SolverOptions(options_.max_iterations);
-  solver.linear_solver_ordering = LandmarkOrdering();
-  for (PoseBlock& pose : poses_) solver.linear_solver_ordering->AddElementToGroup(pose.data(), 1);
-  for (double& bias : detector_bias_px_) {
-    if (problem_.HasParameterBlock(&bias)) {
-      solver.linear_solver_ordering->AddElementToGroup(&bias, 1);
-    }
-  }
+  solver.linear_solver_ordering = Ordering();
   // A landmark that its boxes hardly determine would shrink the one trust region of them all: after
   // every step each is optimised for itself.
   solver.use_inner_iterations = true;

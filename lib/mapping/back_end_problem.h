@@ -35,12 +35,15 @@ class BackEndProblem {
   // In the world, where the variables are; none for objects without a start.
   std::vector<std::optional<Landmark>> Landmarks() const;
   const std::vector<PoseBlock>& poses() const { return poses_; }
+  std::vector<Plane> Planes() const;
 
  private:
   void HoldFirstPoses();
   void WeighViews();
   void AddOdometry();
+  void AddPlanes();
   void AddLandmark(size_t object_index);
+  void AddStanding(size_t object_index);
   void AddRatio(size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& landmark_in_camera);
@@ -57,10 +60,12 @@ class BackEndProblem {
   PoseBlock& Pose(const Detection& detection) {
     return poses_[static_cast<size_t>(detection.frame_index)];
   }
+  NormalBlock& NormalOf(size_t plane_index) { return normals_[normal_of_plane_[plane_index]]; }
   LandmarkBlock& LandmarkOf(const Detection& detection) {
     return landmarks_[static_cast<size_t>(detection.object_index)];
   }
   std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();
+  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering();
 
   const BackEndInput& input_;
   const OptimiseOptions& options_;
@@ -70,6 +75,9 @@ class BackEndProblem {
   ceres::Problem problem_;
   std::vector<PoseBlock> poses_;
   std::vector<LandmarkBlock> landmarks_;
+  std::deque<NormalBlock> normals_;           // parallel planes share one
+  std::vector<size_t> normal_of_plane_;       // into normals_
+  std::vector<double> offsets_;               // of Sequence::planes
   std::array<double, 4> detector_bias_px_{};  // left, top, right, bottom
   std::vector<ceres::ResidualBlockId> image_terms_;
   SolverSummary summary_;

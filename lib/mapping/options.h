@@ -39,6 +39,7 @@ struct OptimiseOptions {
   double axes_weight = 1.0;
   double standing_angle_sigma_deg = 0.1;
   double standing_height_sigma_m = 0.002;
+  bool refine_planes = true;
   EdgeOptions edges;
   TextureOptions texture;
   double huber_delta = 1.0;
@@ -82,6 +83,8 @@ struct OptimiseOptions {
     visit.Real(
         "standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
         "tangency: standard deviation of the height of a body's foot over its support plane");
+    visit.Flag("refine_planes", &refine_planes,
+               "tangency: estimated support planes are variables; given ones never are");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
     visit.Choice("shape", &shape, kShapeSourceNames,

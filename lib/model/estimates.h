@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/landmark.h"
+#include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
@@ -68,6 +69,7 @@ struct SolverSummary {
 struct MapEstimate {
   std::vector<ObjectEstimate> objects;
   std::vector<Rigid3d> world_from_camera;  // one per Sequence::frames
+  std::vector<Plane> planes_in_world;      // one per Sequence::planes; given ones as they were
   SolverSummary solver;
 };
 

@@ -27,8 +27,7 @@ std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detectio
   std::vector<Box> nearer;
   for (const Detection& other : std::ranges::equal_range(sequence.detections, detection.frame_index,
                                                          {}, &Detection::frame_index)) {
-    if (other.object_index != detection.object_index &&
-        FootDepth(sequence, other) < own_depth) {
+    if (other.object_index != detection.object_index && FootDepth(sequence, other) < own_depth) {
       nearer.push_back(other.box);
     }
   }

@@ -35,6 +35,10 @@ struct Frame {
 struct SupportPlane {
   int id = 0;
   Plane plane_in_world;
+  // Of an estimated plane: what is known of its normal n without the boxes that it comes from, as a
+  // cost half n^T information n (1 / rad^2). None: the plane is given, and exact. Estimated planes
+  // of one normal are parallel.
+  std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
 };
 
 // Exact values of an object: for evaluation, and as a prior where a setting asks for it. Of an

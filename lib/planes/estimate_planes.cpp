@@ -209,6 +209,7 @@ class Estimator {
 
   void Write(PlanesEstimate* estimate) const {
     estimate->cost = 0.0;
+    estimate->attitude_information = attitude_.information;
     for (const RefinedPlanes& refined : refined_) *estimate->cost += refined.cost;
     for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
     estimate->objects.resize(sequence_.objects.size());

@@ -27,6 +27,8 @@ struct PlanesOptions {
   double vertical_sigma_deg = 1.0;
   double vertical_min_length_px = 30.0;
   double odometry_rotation_sigma_deg = 0.2;
+  double odometry_translation_sigma_m = 0.003;
+  bool refine_poses = true;
   bool size_prior = false;
   double height_sigma_fraction = 0.05;
   double new_plane_cost = 10.0;
@@ -54,7 +56,7 @@ struct PlanesOptions {
     visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
                "estimated: how level the cameras' optical axes are held; large: anyhow");
     visit.Flag("verticals", &verticals,
-               "estimated: look for vertical edges in the images; without it they are not read");
+               "estimated: look for vertical edges in the images, where there are any");
     visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
                "verticals: standard deviation of the direction of an edge; those off by more than "
                "three are of other edges");
@@ -64,9 +66,17 @@ struct PlanesOptions {
                "verticals: standard deviation of the odometry between two frames about each "
                "horizontal axis; its drift is taken out before planes are estimated; 0: it has "
                "none");
+    visit.Flag(
+        "refine_poses", &refine_poses,
+        "estimated: in the end the back end optimises planes, poses and bodies together, and "
+        "its poses carry the planes into the frames");
     visit.Flag("size_prior", &size_prior,
                "estimated: bodies are as high as the semantic table says (height_m), give or take "
                "its spread; without it all metres come from the trajectory");
+    visit.Real(
+        "odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e3},
+        "refine_poses: standard deviation of the odometry between two frames, per axis; where "
+        "planes are not given, it alone holds the scale");
     visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
                "estimated: standard deviation of the height of an object's lowest point over its "
                "plane, as a fraction of the object's height, for bodies that are not of their "

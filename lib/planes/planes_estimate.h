@@ -43,8 +43,10 @@ struct ObjectSupport {
 struct PlanesEstimate {
   std::vector<EstimatedPlane> planes;
   std::vector<ObjectSupport> objects;  // of the sequence's
-  // In the world, before boxes are looked at.
+  // What is known of up in the world before boxes are looked at: the best direction, and half
+  // u^T information u, the cost of a unit vector u (1 / rad^2).
   Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
+  std::optional<Eigen::Matrix3d> attitude_information;
   std::optional<double> cost;  // of all boxes, ratios and camera attitudes
   int rounds = 0;              // of deciding who stands where
   bool settled = false;        // the last round decided as the one before

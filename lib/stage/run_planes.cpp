@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "artefact/planes_file.h"
@@ -11,6 +12,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/line_segments.h"
+#include "mapping/back_end.h"
+#include "mapping/choose_starts.h"
 #include "planes/camera_height.h"
 #include "planes/estimate_planes.h"
 #include "planes/level_trajectory.h"
@@ -54,7 +57,9 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& optio
   level.vertical_sigma = options.vertical_sigma_deg * kRadians;
   level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadians;
   level.correlation_rad = options.view_correlation_deg * kRadians;
-  if (!options.verticals) {
+  const bool has_images =
+      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
+  if (!options.verticals || !has_images) {
     return {poses, AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad)};
   }
   return Level(ViewsOfSegments(sequence, options, files, threads), level);
@@ -77,6 +82,29 @@ struct Result {
   Sequence sequence;
 };
 
+// Odometry drifts also along the plane's normal: poses, bodies and planes settle together.
+MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
+                     const PlanesOptions& options) {
+  OptimiseOptions optimise;
+  optimise.detection_model = DetectionModel::kTangency;
+  optimise.detection_sigma_fraction = options.detection_sigma_fraction;
+  optimise.view_correlation_deg = options.view_correlation_deg;
+  optimise.huber_delta = options.huber_delta;
+  optimise.odometry_translation_sigma_m = options.odometry_translation_sigma_m;
+  optimise.covariances = false;
+  BackEndInput input{sequence, {}, priors, {}, {}};
+  input.starts = ChooseUprightStarts(input, {}, optimise);
+  return OptimiseMap(input, optimise);
+}
+
+void Replace(const Plane& plane_in_world, EstimatedPlane* plane) {
+  const Eigen::Vector3d& normal = plane_in_world.normal;
+  plane->plane_in_world = plane_in_world;
+  plane->point_in_world -= plane_in_world.SignedDistance(plane->point_in_world) * normal;
+  plane->x_axis_in_world =
+      (plane->x_axis_in_world - normal.dot(plane->x_axis_in_world) * normal).normalized();
+}
+
 Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,
                  int threads) {
   CheckOneSegment(sequence, files.at("sequence"));
@@ -86,9 +114,18 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   for (size_t i = 0; i < level.frames.size(); ++i) {
     level.frames[i].world_from_camera = trajectory.world_from_camera[i];
   }
+  const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
   Result result;
-  result.estimate = EstimatePlanes(level, ObjectPriors(sequence, table, RatioPrior::kTable),
-                                   trajectory.attitude, options, threads);
+  result.estimate = EstimatePlanes(level, priors, trajectory.attitude, options, threads);
+  if (options.refine_poses) {
+    const MapEstimate map = Adjusted(WithPlanes(level, result.estimate), priors, options);
+    for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
+      Replace(map.planes_in_world[i], &result.estimate.planes[i]);
+    }
+    for (size_t i = 0; i < level.frames.size(); ++i) {
+      level.frames[i].world_from_camera = map.world_from_camera[i];
+    }
+  }
   result.sequence = WithPlanes(std::move(level), result.estimate);
   result.sequence.frames = sequence.frames;  // odometry stays what was measured
   return result;

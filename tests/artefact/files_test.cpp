@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "model/occlusion.h"
 #include "support/dataset_fixture.h"
+#include "support/expect_error.h"
 #include "support/random_estimates.h"
 
 namespace soslam {
@@ -54,6 +55,32 @@ void ExpectSame(const std::vector<ObjectEstimate>& a, const std::vector<ObjectEs
   }
 }
 
+TEST_F(ArtefactFilesTest, SequenceWithoutPlanesComesBackToThoseWhoNeedNone) {
+  sequence.planes.clear();
+  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file, PlaneNeed::kNotNeeded);
+  EXPECT_TRUE(read.planes.empty());
+  EXPECT_EQ(read.objects.at(0).plane_index, kNoPlane);
+  EXPECT_EQ(read.detections.size(), sequence.detections.size());
+  ExpectError<InputError>([&] { ReadSequence(file); }, {file.string(), "no support planes"});
+}
+
+TEST_F(ArtefactFilesTest, PlanesAreKnownForAllOrNone) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json edited = ParseJsonFile(file);
+  edited["detections"][1]["plane_in_camera"] = nullptr;
+  std::ofstream(file) << edited;
+  ExpectError<InputError>([&] { ReadSequence(file); },
+                          {"/detections/1/plane_in_camera is null", "expected a plane"});
+}
+
+TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
+  sequence.image_distortion = Distortion{0.1, -0.2, 0.003, -0.004, 0.5};
+  WriteSequence(file, sequence, {});
+  EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
+}
+
 TEST_F(ArtefactFilesTest, SequenceComesBack) {
   WriteSequence(file, sequence, {});
   const Sequence read = ReadSequence(file);
@@ -79,6 +106,7 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
   for (size_t i = 0; i < read.planes.size(); ++i) {
     EXPECT_EQ(read.planes[i].id, sequence.planes[i].id);
     ExpectSame(read.planes[i].plane_in_world, sequence.planes[i].plane_in_world);
+    EXPECT_EQ(read.planes[i].attitude_information, sequence.planes[i].attitude_information);
   }
   for (size_t i = 0; i < read.objects.size(); ++i) {
     const Object& a = read.objects[i];
@@ -143,6 +171,10 @@ TEST_F(ArtefactFilesTest, MapComesBack) {
   ASSERT_EQ(read.world_from_camera.size(), map.world_from_camera.size());
   for (size_t i = 0; i < map.world_from_camera.size(); ++i) {
     ExpectSame(read.world_from_camera[i], map.world_from_camera[i]);
+  }
+  ASSERT_EQ(read.planes_in_world.size(), map.planes_in_world.size());
+  for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
+    ExpectSame(read.planes_in_world[i], map.planes_in_world[i]);
   }
   const SolverSummary& a = read.solver;
   const SolverSummary& b = map.solver;

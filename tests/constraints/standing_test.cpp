@@ -11,7 +11,11 @@ namespace {
 
 // Sigmas of half a radian and a centimetre.
 Eigen::Vector3d Residuals(const Plane& plane, const Landmark& landmark) {
-  return ResidualsOf(StandingResidual(plane, 0.5, 0.01), landmark);
+  const LandmarkBlock block = Pack(landmark);
+  const double* blocks[] = {block.data(), plane.normal.data(), &plane.offset};
+  Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(StandingResidual(0.5, 0.01).Evaluate(blocks, values.data(), nullptr));
+  return values;
 }
 
 TEST(StandingResidual, IsZeroForAnUprightLandmarkOnThePlane) {
@@ -37,7 +41,9 @@ TEST(StandingResidual, WorkedByHand) {
 TEST(StandingResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 50; ++i) {
     const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
-    ExpectCorrectJacobians(StandingResidual(RandomPlane(), 0.2, 0.5), {block.data()});
+    const Plane plane = RandomPlane();
+    ExpectCorrectJacobians(StandingResidual(0.2, 0.5),
+                           {block.data(), plane.normal.data(), &plane.offset});
   }
 }
 

@@ -108,7 +108,6 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Planes, BadDatasetTest,
     testing::Values(
-        BadCase{"Missing", "planes.json", nullptr, "", "is missing"},
         BadCase{"NotAList", "planes.json", "", "{}", "is not a list"},
         BadCase{"None", "planes.json", "", "[]", "has no plane"},
         BadCase{"NormalZero", "planes.json", "[0, 0, 2]", "[0, 0, 1e-9]",

@@ -3,17 +3,19 @@
 // counts were taken with a few lines of another language.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/options.h"
 #include "dataset/coco_labels.h"
+#include "dataset/import.h"
 #include "dataset/kitti_boxes.h"
 #include "dataset/kitti_trajectory.h"
 #include "dataset/oa_slam_boxes.h"
 #include "dataset/yolo_boxes.h"
 #include "geometry/distortion.h"
 #include "support/real_data.h"
-#include "support/run_command.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -42,12 +44,39 @@ TEST(PublishedFilesTest, OaSlamBoxesOfADistortingCamera) {
 TEST(PublishedFilesTest, YoloBoxesInPixels) {
   const fs::path archive = RealDataset("fr3_long_office") / "yolo_txts.tar.gz";
   if (!fs::exists(archive)) GTEST_SKIP() << archive << " is not there";
-  const TemporaryFolder folder;
-  const auto unpacked = RunCommand({"tar", "xzf", archive.string(), "-C", folder.path().string()});
-  ASSERT_EQ(unpacked.exit_code, 0) << unpacked.errors;
-  const auto boxes = ReadPixelYoloBoxes(folder / "yolo_txts", CocoLabels());
+  const auto boxes = ReadPixelYoloBoxes(archive, CocoLabels());
   EXPECT_EQ(boxes.size(), 17225u);
   EXPECT_EQ(CountImages(boxes), 2585u);
+}
+
+// A whole folder, with the settings that the project has for it.
+Sequence ImportWithItsSettings(const std::string& name) {
+  std::ifstream file(fs::path(SOSLAM_SOURCE_DIR) / "pipelines/datasets" / (name + ".json"));
+  ImportOptions options;
+  OptionsFromJson(nlohmann::json::parse(file).at("import"), name, &options);
+  options.frame_stride = 1;
+  options.min_score = 0.0;
+  options.border_px = 0.0;
+  return ImportDataset(RealDataset(name), options);
+}
+
+TEST(PublishedFilesTest, FolderOfFreiburg2Desk) {
+  if (!fs::exists(RealDataset("fr2_desk"))) GTEST_SKIP() << "fr2_desk is not there";
+  const Sequence sequence = ImportWithItsSettings("fr2_desk");
+  EXPECT_TRUE(sequence.image_distortion);
+  EXPECT_TRUE(sequence.planes.empty());
+  EXPECT_GT(sequence.frames.size(), 2100u);  // of 2893 listed ones: motion capture has gaps
+  EXPECT_LT(sequence.frames.size(), 2300u);
+  EXPECT_GT(sequence.detections.size(), 20000u);
+  EXPECT_EQ(sequence.rejected_detections.count("beyond_lens_model"), 0u);
+}
+
+TEST(PublishedFilesTest, FolderOfFreiburg3LongOffice) {
+  if (!fs::exists(RealDataset("fr3_long_office"))) GTEST_SKIP() << "fr3_long_office is not there";
+  const Sequence sequence = ImportWithItsSettings("fr3_long_office");
+  EXPECT_FALSE(sequence.image_distortion);
+  EXPECT_EQ(sequence.frames.size(), 2486u);
+  EXPECT_GT(sequence.detections.size(), 16000u);
 }
 
 TEST(PublishedFilesTest, KittiBoxes) {

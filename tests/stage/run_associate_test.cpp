@@ -85,6 +85,17 @@ TEST_F(RunAssociateTest, DetectionsWithoutIdsGiveTheSameWithNothingToCompareWith
   EXPECT_TRUE(Associations()["agreement"]["f1"].is_null());
 }
 
+TEST_F(RunAssociateTest, WithoutPlanesItLinksAllTheSameAndLeavesThemUnknown) {
+  Sequence unknown = WithoutIds(sequence_);
+  unknown.planes.clear();
+  for (Object& object : unknown.objects) object.plane_index = kNoPlane;
+  WriteSequence(File("sequence"), unknown, {});
+  Run();
+  const Sequence associated = ReadSequence(File("output"), PlaneNeed::kNotNeeded);
+  EXPECT_TRUE(associated.planes.empty());
+  EXPECT_EQ(associated.objects.size(), sequence_.objects.size());
+}
+
 TEST_F(RunAssociateTest, SameBytesForAnyNumberOfThreads) {
   Run(1);
   const std::string sequence = FileBytes(File("output"));

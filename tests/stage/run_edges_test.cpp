@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -55,6 +56,30 @@ class RunEdgesTest : public testing::Test {
   TemporaryFolder folder_;
   Sequence sequence_;
 };
+
+// Images of a straight line as a lens bends it: without the lens it is straight again.
+TEST_F(RunEdgesTest, UndistortsTheImages) {
+  sequence_.image_distortion = Distortion{-0.3};
+  constexpr double kLine = 12.0;  // px, where the line is without the lens
+  std::vector<Eigen::Vector2d> straight;
+  for (int y = 0; y < 48; ++y) straight.emplace_back(kLine, y);
+  const auto bent = DistortPixels(sequence_.camera, *sequence_.image_distortion, straight);
+  cv::Mat image(48, 64, CV_8UC1, cv::Scalar(50));
+  for (size_t i = 0; i < bent.size(); ++i) {
+    const auto row = static_cast<int>(std::lround(bent[i].y()));
+    if (row < 0 || row >= 48) continue;
+    image.row(row).colRange(0, static_cast<int>(std::lround(bent[i].x()))).setTo(200);
+  }
+  ASSERT_GT(bent[0].x() - bent[24].x(), 0.5);
+  for (const Frame& frame : sequence_.frames) cv::imwrite(folder_ / frame.image, image);
+  RunEdges({}, Files(), 2);
+  const cv::Mat grey = EdgesReader(folder_ / "edges.h5").Read(0).grey;
+  for (const int row : {4, 24, 43}) {
+    int bright = 0;
+    while (grey.at<std::uint8_t>(row, bright) > 125) ++bright;
+    EXPECT_NEAR(bright, kLine, 1.0) << row;
+  }
+}
 
 TEST_F(RunEdgesTest, WritesTheMapsOfEveryFrame) {
   RunEdges({}, Files(), 2);

@@ -13,11 +13,10 @@
 
 namespace soslam {
 
-// Checks a residual's Jacobians, in the tangent spaces of its blocks (poses, landmarks, and vectors
-// of any other size), against
-// fourth-order central differences, whose error here is about 1e-10 of the residual's scale.
-// (Ceres' own checker perturbs quaternion coefficients, which leaves the manifold and loses half of
-// the digits.)
+// Checks a residual's Jacobians, in the tangent spaces of its blocks (poses, landmarks, normals,
+// and vectors of any other size), against fourth-order central differences, whose error here is
+// about 1e-10 of the residual's scale. (Ceres' own checker perturbs quaternion coefficients, which
+// leaves the manifold and loses half of the digits.)
 inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
                                    const std::vector<const double*>& blocks) {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -45,6 +44,7 @@ inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
     const std::unique_ptr<ceres::Manifold> manifold(
         size == kPoseSize       ? NewPoseManifold()
         : size == kLandmarkSize ? NewLandmarkManifold()
+        : size == kNormalSize   ? NewNormalManifold()
                                 : new ceres::EuclideanManifold<ceres::DYNAMIC>(size));
     Matrix plus_jacobian(size, manifold->TangentSize());
     manifold->PlusJacobian(blocks[block], plus_jacobian.data());

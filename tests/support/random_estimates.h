@@ -18,7 +18,7 @@ inline Sequence RandomSequence() {
   Sequence sequence;
   sequence.name = "r\u00f6\u00f6m \"1\"\\";
   sequence.camera = TestCamera();
-  sequence.planes = {{-4, RandomPlane()}, {3, RandomPlane()}};
+  sequence.planes = {{-4, RandomPlane(), Eigen::Matrix3d::Random()}, {3, RandomPlane()}};
   for (int i = 0; i < 5; ++i) {
     Frame frame{10 + 5 * i, RandomUniform(1e9, 2e9), "rgb/a b.jpg", RandomRigid(), {}};
     if (i % 2 == 0) frame.true_world_from_camera = RandomRigid();
@@ -72,6 +72,7 @@ inline MapEstimate RandomMap() {
   MapEstimate map;
   map.objects = RandomObjectEstimates();
   for (int i = 0; i < 5; ++i) map.world_from_camera.push_back(RandomRigid());
+  map.planes_in_world = {RandomPlane(), RandomPlane()};
   map.solver = {12.5,
                 0.1,
                 3,

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/attitude.h"
+
+#include <gtest/gtest.h>
+
+#include "support/jacobians.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+// Of two directions that up is orthogonal to, as far as known: semidefinite.
+Eigen::Matrix3d RandomInformation() {
+  const Eigen::Vector3d one = RandomVector(-3, 3);
+  const Eigen::Vector3d other = RandomVector(-3, 3);
+  return one * one.transpose() + other * other.transpose();
+}
+
+TEST(AttitudeResidual, CostIsTheQuadraticForm) {
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Matrix3d information = RandomInformation();
+    const Eigen::Vector3d normal = RandomPlane().normal;
+    const double* blocks[] = {normal.data()};
+    Eigen::Vector3d residuals;
+    ASSERT_TRUE(AttitudeResidual(information).Evaluate(blocks, residuals.data(), nullptr));
+    EXPECT_NEAR(residuals.squaredNorm(), normal.dot(information * normal), 1e-10);
+  }
+}
+
+TEST(AttitudeResidual, JacobianAgreesWithNumbers) {
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d normal = RandomPlane().normal;
+    ExpectCorrectJacobians(AttitudeResidual(RandomInformation()), {normal.data()});
+  }
+}
+
+}  // namespace
+}  // namespace soslam
