@@ -11,7 +11,7 @@ namespace soslam {
 namespace {
 
 constexpr int kHeightSteps = 20;
-constexpr double kSettledHeight = 1e-6;  // of the body's size
+constexpr double kSettledHeight = 1e-3;  // of the body's size
 // Of the largest: what the boxes say less about than this (the yaw of a round body) stays free.
 constexpr double kMinInformationShare = 1e-9;
 
@@ -42,25 +42,41 @@ Eigen::Matrix<double, 6, 6> InverseOfKnown(const Eigen::Matrix<double, 6, 6>& in
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+StandingBody Raised(StandingBody body, double rise) {
+  const Plane plane = body.observation.plane_in_world;
+  const Eigen::Vector3d centre = body.landmark.Centre();
+  const PlaneMotion motion(0.0, 0.0, rise);
+  body.landmark = Moved(plane, centre, motion, body.landmark);
+  body.observation.plane_in_world = Moved(plane, centre, motion);
+  return body;
+}
+
+// A body raised by `rise`, or half as much, or half of that, ..., with a lower cost than `cost`.
+std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, double rise,
+                                         double least_rise) {
+  for (; std::abs(rise) >= least_rise; rise *= 0.5) {
+    const auto raised = Settled(Raised(body, rise));
+    if (raised && TotalCost(OutlineTerms(raised->observation), raised->landmark) < cost) {
+      return raised;
+    }
+  }
+  return std::nullopt;
+}
+
 // The height that is best near the body's own, all else following it.
-std::optional<StandingBody> AtBestHeight(StandingBody body) {
-  for (int i = 0; i < kHeightSteps; ++i) {
-    const auto settled = Settled(body);
-    if (!settled) return std::nullopt;
-    body = *settled;
-    const Eigen::Vector3d centre = body.landmark.Centre();
-    const PlaneEvidence evidence = EvidenceOf(body, centre);
+std::optional<StandingBody> AtBestHeight(const StandingBody& start) {
+  auto body = Settled(start);
+  for (int i = 0; body && i < kHeightSteps; ++i) {
+    const PlaneEvidence evidence = EvidenceOf(*body, body->landmark.Centre());
     if (!(evidence.information(2, 2) > 0.0)) return std::nullopt;
-    const double size = body.landmark.half_axes.maxCoeff();
+    const double size = body->landmark.half_axes.maxCoeff();
     const double rise =
         std::clamp(-evidence.gradient(2) / evidence.information(2, 2), -0.5 * size, 0.5 * size);
-    if (std::abs(rise) < kSettledHeight * size) break;
-    const PlaneMotion motion(0.0, 0.0, rise);
-    const Plane plane = body.observation.plane_in_world;
-    body.landmark = Moved(plane, centre, motion, body.landmark);
-    body.observation.plane_in_world = Moved(plane, centre, motion);
+    const auto better = BetterRaised(*body, evidence.cost, rise, kSettledHeight * size);
+    if (!better) break;
+    body = better;
   }
-  return Settled(body);
+  return body;
 }
 
 }  // namespace
