@@ -200,9 +200,9 @@ TEST(EstimatePlanes, RefusesWhatOneViewCannotTell) {
                                   {"height of the plane", "several places", "planes = given"});
 }
 
-// One box fits a body on any plane, nearer and smaller or farther and larger: the height of the
-// object's label says on which it stands.
-TEST(EstimatePlanes, AnObjectSeenOnceJoinsTheOthers) {
+// One box fits a body on any plane, nearer and smaller or farther and larger: only the height of
+// the object's label says on which it stands.
+TEST(EstimatePlanes, AnObjectSeenOnceNeedsItsHeight) {
   Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(2, 5), 0.3), false);
   for (const int once : {0, 1}) {
     bool seen = false;
@@ -210,12 +210,13 @@ TEST(EstimatePlanes, AnObjectSeenOnceJoinsTheOthers) {
       return detection.object_index == once && std::exchange(seen, true);
     });
   }
-  const PlanesEstimate estimate = EstimateWithHeights(sequence, 0.05, true);
-  ASSERT_EQ(estimate.planes.size(), 2u);
+  const PlanesEstimate without = EstimateWithHeights(sequence, 0.05, false);
+  const PlanesEstimate with = EstimateWithHeights(sequence, 0.05, true);
+  ASSERT_EQ(with.planes.size(), 2u);
   for (const size_t once : {0, 1}) {
-    EXPECT_EQ(estimate.objects[once].reason, SupportReason::kLowestCost);
-    EXPECT_FALSE(estimate.objects[once].height);
-    EXPECT_EQ(estimate.objects[once].plane_index, static_cast<int>(once));
+    EXPECT_EQ(without.objects[once].reason, SupportReason::kLowestCost);
+    EXPECT_FALSE(without.objects[once].height);
+    EXPECT_EQ(with.objects[once].plane_index, static_cast<int>(once));
   }
 }
 
