@@ -12,7 +12,7 @@ namespace soslam {
 
 // What a variant runs on a dataset.
 struct VariantSettings {
-  std::set<std::string> stages;                   // with those that a setting asks for
+  std::set<std::string> stages;  // with those that a setting asks for
   std::map<std::string, nlohmann::json> options;  // by stage of `stages`: every option, resolved
   std::string semantic_table;                     // path relative to the pipelines folder
 };

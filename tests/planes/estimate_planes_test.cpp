@@ -163,7 +163,8 @@ PlanesEstimate EstimateWithHeights(const Sequence& sequence, double log_sigma, b
 }
 
 // From places so near to each other that rays hardly cross, only known heights say how far the
-// floor is: off by as much as the heights, a hundredth, of the camera's 1.1 m.
+// floor is: off by a few hundredths of the camera's 1.1 m, and all in all, in 99.9 % of cases, by
+// no more than the covariance says.
 TEST(EstimatePlanes, KnownHeightsReplaceParallax) {
   for (int seed = 0; seed < 3; ++seed) {
     SCOPED_TRACE(seed);
@@ -174,7 +175,8 @@ TEST(EstimatePlanes, KnownHeightsReplaceParallax) {
                   [](const Detection& detection) { return detection.frame_index > 2; });
     const PlanesEstimate with = EstimateWithHeights(sequence, 0.01, true);
     ASSERT_EQ(with.planes.size(), 1u);
-    ExpectGiven(sequence, with, 2.0 * kDegrees, 0.05);
+    EXPECT_LT(NormalisedErrorSquared(sequence, with), 16.3);
+    EXPECT_LT(std::abs(CompareWithGiven(sequence, with, 0)->offset), 0.05);
   }
 }
 
