@@ -55,9 +55,9 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   for (PoseBlock& pose : poses_) {
     problem_.AddParameterBlock(pose.data(), kPoseSize, NewPoseManifold());
   }
-  HoldFirstPoses();
+  HoldPoses();
   WeighViews();
-  AddOdometry();
+  if (!options.hold_poses) AddOdometry();
   AddPlanes();
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     if (input.starts[i]) AddLandmark(i);
@@ -99,10 +99,10 @@ void BackEndProblem::WeighViews() {
 }
 
 // The first pose of each segment defines its world.
-void BackEndProblem::HoldFirstPoses() {
+void BackEndProblem::HoldPoses() {
   const auto& frames = input_.sequence.frames;
   for (size_t i = 0; i < frames.size(); ++i) {
-    if (i == 0 || frames[i].segment != frames[i - 1].segment) {
+    if (options_.hold_poses || i == 0 || frames[i].segment != frames[i - 1].segment) {
       problem_.SetParameterBlockConstant(poses_[i].data());
     }
   }

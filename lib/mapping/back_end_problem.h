@@ -38,7 +38,7 @@ class BackEndProblem {
   std::vector<Plane> Planes() const;
 
  private:
-  void HoldFirstPoses();
+  void HoldPoses();
   void WeighViews();
   void AddOdometry();
   void AddPlanes();
