@@ -23,28 +23,26 @@ constexpr double kNoHuber = std::numeric_limits<double>::infinity();
 // any object at all: images of 10^5 x 10^5 px have CostOfAnyBox 91, less than the square of this.
 constexpr double kReach = 10.0;
 
-// How far the body reaches beyond each edge (px / sigma), and the covariance of that.
+// How far the body reaches beyond each edge (px), and the covariance of that.
 struct Innovation {
   Eigen::Vector4d residuals;
   Eigen::Matrix4d covariance;
-  Eigen::Vector4d sigmas_px;
 };
 
-Innovation InnovationOf(const Prediction& prediction, const std::array<BoxEdge, 4>& edges) {
-  const Landmark& landmark = prediction.object->landmark_in_world;
-  const RobustViewTerm term(std::make_unique<BoxTerm>(edges, prediction.landmark_in_camera),
-                            prediction.camera_from_world, kNoHuber, 1.0);
-  Eigen::VectorXd residuals(4);
-  LandmarkTerm::Jacobian by_landmark(4, kLandmarkDof);
-  term.Evaluate(landmark, residuals, &by_landmark);
-  const Eigen::Matrix<double, 4, 3> by_centre = by_landmark.middleCols<3>(3);
-  Innovation innovation;
-  innovation.residuals = residuals;
-  innovation.covariance = Eigen::Matrix4d::Identity() +
-                          by_landmark * prediction.object->covariance * by_landmark.transpose() +
-                          by_centre * prediction.drift_covariance * by_centre.transpose();
+Eigen::Vector4d Outwards(const Box& box) { return {-box.x_min, -box.y_min, box.x_max, box.y_max}; }
+
+Innovation InnovationOf(const Prediction& prediction, const Box& box,
+                        const std::array<BoxEdge, 4>& edges) {
+  Innovation innovation{Outwards(prediction.outline) - Outwards(box),
+                        prediction.outline_covariance};
   for (size_t i = 0; i < edges.size(); ++i) {
-    innovation.sigmas_px[static_cast<Eigen::Index>(i)] = edges[i].sigma_px;
+    const auto row = static_cast<Eigen::Index>(i);
+    if (edges[i].is_bound && innovation.residuals[row] > 0.0) {
+      innovation.residuals[row] = 0.0;
+      innovation.covariance.row(row).setZero();
+      innovation.covariance.col(row).setZero();
+    }
+    innovation.covariance(row, row) += edges[i].sigma_px * edges[i].sigma_px;
   }
   return innovation;
 }
@@ -66,39 +64,32 @@ NormalDensity DensityOf(const Innovation& innovation, const std::vector<int>& ed
   double cost = squared_distance;
   for (size_t i = 0; i < edges.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const double deviation_px = lower(row, row) * innovation.sigmas_px[edges[i]];
-    cost += std::log(2.0 * std::numbers::pi * deviation_px * deviation_px);
+    cost += std::log(2.0 * std::numbers::pi * lower(row, row) * lower(row, row));
   }
   return {cost, std::sqrt(squared_distance)};
 }
 
-// By the sums of all that may move an edge, each at the nearest point of the body.
-double MaxSpread(const Prediction& prediction, const Camera& camera) {
-  const Landmark& landmark = prediction.landmark_in_camera;
-  const Covariance9& covariance = prediction.object->covariance;
-  const double radius = landmark.half_axes.norm();
-  const auto sigma = [](const Eigen::Matrix3d& block) {
-    return std::sqrt(std::max(0.0, block.trace()));
-  };
-  const double sum_m =
-      sigma(prediction.drift_covariance) + sigma(covariance.block<3, 3>(3, 3)) +
-      radius * (sigma(covariance.block<3, 3>(0, 0)) + sigma(covariance.block<3, 3>(6, 6)));
-  const double depth = std::max(landmark.Centre().z() - radius, 0.1 * landmark.Centre().z());
-  return std::max(camera.fx, camera.fy) / depth * sum_m;
+// Of the four edges of the outline (px^2), as far as the landmark moves them. Where the edges are
+// tangent the derivative of Tangency is theirs.
+Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& camera,
+                                  const FittedObject& object) {
+  const auto edges = BoxEdges(camera, prediction.outline, {}, 1.0);
+  const RobustViewTerm term(std::make_unique<BoxTerm>(edges, prediction.landmark_in_camera),
+                            prediction.camera_from_world, kNoHuber, 1.0);
+  Eigen::VectorXd residuals(4);
+  LandmarkTerm::Jacobian by_landmark(4, kLandmarkDof);
+  term.Evaluate(object.landmark_in_world, residuals, &by_landmark);
+  for (size_t i = 0; i < edges.size(); ++i) {
+    by_landmark.row(static_cast<Eigen::Index>(i)) *= edges[i].sigma_px;
+  }
+  Covariance9 covariance = object.covariance;
+  covariance.block<3, 3>(3, 3) += prediction.drift_covariance;
+  return by_landmark * covariance * by_landmark.transpose();
 }
 
-bool IsOutOfReach(const Prediction& prediction, const Detection& detection,
-                  const std::array<BoxEdge, 4>& edges) {
-  const Box& expected = prediction.outline;
-  const Box& box = detection.box;
-  const std::array<double, 4> offsets_px = {expected.x_min - box.x_min, expected.y_min - box.y_min,
-                                            expected.x_max - box.x_max, expected.y_max - box.y_max};
-  int far = 0;
-  for (size_t i = 0; i < edges.size(); ++i) {
-    const double reach_px = kReach * std::hypot(edges[i].sigma_px, prediction.max_spread_px);
-    if (!edges[i].is_bound && std::abs(offsets_px[i]) > reach_px) ++far;
-  }
-  return far > 1;
+bool IsOutOfReach(const Innovation& innovation) {
+  const Eigen::Array4d reach = kReach * innovation.covariance.diagonal().array().sqrt();
+  return (innovation.residuals.array().abs() > reach).count() > 1;
 }
 
 }  // namespace
@@ -121,7 +112,6 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
                                                  int frame_index) const {
   const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
   Prediction prediction;
-  prediction.object = &object;
   prediction.camera_from_world = frame.world_from_camera.Inverse();
   prediction.landmark_in_camera = Transform(prediction.camera_from_world, object.landmark_in_world);
   const Camera& camera = sequence_.CameraOf(frame);
@@ -130,7 +120,7 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
   prediction.outline = *outline;
   prediction.drift_covariance =
       drift_.PointCovariance(known_frame_index, frame_index, object.landmark_in_world.Centre());
-  prediction.max_spread_px = MaxSpread(prediction, camera);
+  prediction.outline_covariance = OutlineCovariance(prediction, camera, object);
   return prediction;
 }
 
@@ -138,8 +128,8 @@ std::optional<Explanation> BoxLikelihood::Explain(const Prediction& prediction,
                                                   const Detection& detection) const {
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_bound,
                               options_.box_sigma_fraction);
-  if (IsOutOfReach(prediction, detection, edges)) return std::nullopt;
-  const Innovation innovation = InnovationOf(prediction, edges);
+  const Innovation innovation = InnovationOf(prediction, detection.box, edges);
+  if (IsOutOfReach(innovation)) return std::nullopt;
   const double p = options_.cut_edge_probability;
   Explanation best;
   best.overlap = BoxOverlap(prediction.outline, detection.box);

@@ -24,12 +24,11 @@ struct Explanation {
 
 // Where an object is expected in a frame.
 struct Prediction {
-  const FittedObject* object = nullptr;
   Rigid3d camera_from_world;
   Landmark landmark_in_camera;
   Box outline;
-  Eigen::Matrix3d drift_covariance;  // of the landmark's centre, m^2, world axes
-  double max_spread_px = 0.0;        // no edge of the outline has a larger standard deviation
+  Eigen::Matrix3d drift_covariance;    // of the landmark's centre, m^2, world axes
+  Eigen::Matrix4d outline_covariance;  // of how far its edges reach outwards, px^2
 };
 
 // The likelihood of boxes. About the outline of an object's landmark the four edges are normally
@@ -41,8 +40,7 @@ class BoxLikelihood {
   BoxLikelihood(const Sequence& sequence, const AssociateOptions& options);
 
   // None when the landmark is not wholly in front of the camera. `known_frame_index`: of a frame of
-  // the same segment in which the object was seen, that its landmark is good for. Keeps a pointer
-  // to the object.
+  // the same segment in which the object was seen, that its landmark is good for.
   std::optional<Prediction> Predict(const FittedObject& object, int known_frame_index,
                                     int frame_index) const;
 

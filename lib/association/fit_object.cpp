@@ -45,7 +45,9 @@ Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark
   Information information = PriorInformation(by_parameters.cols());
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed(by_parameters.cols(), 3);
   mixed.setZero();
-  for (const auto& term : ViewTerms(observation, landmark)) {
+  const LandmarkTerms terms =
+      observation.height_is_free ? OutlineTerms(observation) : ViewTerms(observation, landmark);
+  for (const auto& term : terms) {
     Eigen::VectorXd residuals(term->NumResiduals());
     LandmarkTerm::Jacobian by_landmark(term->NumResiduals(), kLandmarkDof);
     term->Evaluate(landmark, residuals, &by_landmark);

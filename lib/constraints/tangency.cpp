@@ -10,6 +10,9 @@ namespace {
 // Boxes of a few pixels are not that precise.
 constexpr double kMinSigmaPx = 1.0;
 
+constexpr int kMaxNewtonSteps = 20;
+constexpr double kSettledExcess = 1e-10;  // px / sigma
+
 }  // namespace
 
 std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
@@ -47,6 +50,25 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double 
 
 double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera) {
   return Farthest(landmark_in_camera, edge.plane).point.z();
+}
+
+// Newton's method for the edge, moved outwards, that the body is tangent to. Its distance from the
+// tangent plane is convex in the movement, so that steps do not overshoot after the first.
+double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
+                     LandmarkJacobian1* jacobian) {
+  BoxEdge moved = edge;
+  moved.is_bound = false;
+  double excess = 0.0;
+  for (int i = 0; i < kMaxNewtonSteps; ++i) {
+    const double depth_m = TangentDepth(moved, landmark_in_camera);
+    const double step = Tangency(moved, landmark_in_camera, depth_m, 0.0, jacobian);
+    excess += step;
+    moved.plane.z() -= step * edge.sigma_px;
+    if (!(std::abs(step) > kSettledExcess)) break;
+  }
+  if (!edge.is_bound || !(excess > 0.0)) return excess;
+  if (jacobian != nullptr) jacobian->setZero();
+  return 0.0;
 }
 
 TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera)

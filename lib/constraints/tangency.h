@@ -38,6 +38,12 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double 
 // The depth of the point where a body is tangent to the plane behind an edge.
 double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
 
+// How far (px / sigma) the outline of a body reaches outside a box edge: what Tangency is to first
+// order, exactly, so that residual and Jacobian agree wherever the body is. For a body wholly in
+// front of the camera.
+double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
+                     LandmarkJacobian1* jacobian);
+
 // Tangency of one edge of a detection, less a bias of the detector. Residuals: 1, no unit. Blocks:
 // world_from_camera, landmark in the world, bias (px, how far this edge of all boxes has to move
 // outwards). The shape exponent and the depth of the tangent point are those of `start_in_camera`.

@@ -225,6 +225,25 @@ class LinearViews {
   Landmark landmark_;
 };
 
+// What is known of the body without its boxes.
+LandmarkTerms PriorTerms(const MultiViewObservation& observation) {
+  LandmarkTerms terms;
+  const Plane& plane = observation.plane_in_world;
+  if (HasRatio(observation)) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
+  if (HasSize(observation)) {
+    terms.push_back(std::make_unique<HeightTerm>(*observation.prior->height_m));
+  }
+  terms.push_back(std::make_unique<AxisTerm>(plane, WorldAxis(plane), observation.axes_weight));
+  return terms;
+}
+
+std::unique_ptr<const LandmarkTerm> TermOfView(const MultiViewObservation& observation,
+                                               const BoxView& view,
+                                               std::unique_ptr<const LandmarkTerm> box) {
+  return std::make_unique<RobustViewTerm>(std::move(box), view.camera_from_world,
+                                          observation.huber_delta, view.weight);
+}
+
 }  // namespace
 
 MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
@@ -256,19 +275,19 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
 }
 
 LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {
-  LandmarkTerms terms;
-  const Plane& plane = observation.plane_in_world;
-  if (HasRatio(observation)) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
-  if (HasSize(observation)) {
-    terms.push_back(std::make_unique<HeightTerm>(*observation.prior->height_m));
-  }
-  terms.push_back(std::make_unique<AxisTerm>(plane, WorldAxis(plane), observation.axes_weight));
+  LandmarkTerms terms = PriorTerms(observation);
   for (const BoxView& view : observation.views) {
     const Landmark in_camera = Transform(view.camera_from_world, start_in_world);
     if (!IsInFront(in_camera)) continue;
-    terms.push_back(std::make_unique<RobustViewTerm>(
-        std::make_unique<BoxTerm>(view.edges, in_camera), view.camera_from_world,
-        observation.huber_delta, view.weight));
+    terms.push_back(TermOfView(observation, view, std::make_unique<BoxTerm>(view.edges, in_camera)));
+  }
+  return terms;
+}
+
+LandmarkTerms OutlineTerms(const MultiViewObservation& observation) {
+  LandmarkTerms terms = PriorTerms(observation);
+  for (const BoxView& view : observation.views) {
+    terms.push_back(TermOfView(observation, view, std::make_unique<OutlineTerm>(view.edges)));
   }
   return terms;
 }

@@ -45,6 +45,10 @@ MultiViewObservation MakeMultiViewObservation(
 // that it is not wholly in front of are left out.
 LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world);
 
+// The same with exact residuals: nothing depends on a start. A landmark that is not wholly in front
+// of all views has no finite cost.
+LandmarkTerms OutlineTerms(const MultiViewObservation& observation);
+
 // At a given yaw, the tangencies of a cuboid are linear in its foot and its three half axes: the
 // least squares solution over all views with the prior's ratio as soft equations, repeated with
 // each edge's Huber weight (residuals in px / sigma), tangent depth and, for other exponents, the

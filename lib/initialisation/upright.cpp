@@ -4,6 +4,7 @@
 #include <ceres/tiny_solver.h>
 
 #include <cmath>
+#include <limits>
 
 namespace soslam {
 namespace {
@@ -113,6 +114,21 @@ void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
     const auto row = static_cast<Eigen::Index>(i);
     LandmarkJacobian1 by_landmark;
     residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_m_[i], 0.0, &by_landmark);
+    if (jacobian != nullptr) jacobian->row(row) = by_landmark;
+  }
+}
+
+void OutlineTerm::Evaluate(const Landmark& landmark_in_camera,
+                           Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+  if (!IsInFront(landmark_in_camera)) {
+    residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  for (size_t i = 0; i < edges_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    LandmarkJacobian1 by_landmark;
+    residuals[row] = OutlineExcess(edges_[i], landmark_in_camera, &by_landmark);
     if (jacobian != nullptr) jacobian->row(row) = by_landmark;
   }
 }

@@ -56,6 +56,19 @@ class BoxTerm final : public LandmarkTerm {
   std::array<double, 4> depths_m_;
 };
 
+// How far the body's outline reaches outside one detection's four edges. Not finite for a body that
+// is not wholly in front of the camera.
+class OutlineTerm final : public LandmarkTerm {
+ public:
+  explicit OutlineTerm(const std::array<BoxEdge, 4>& edges) : edges_(edges) {}
+  int NumResiduals() const override { return 4; }
+  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  std::array<BoxEdge, 4> edges_;
+};
+
 // The logarithms of a / c and b / c against the prior's: what is left of the second once the first
 // is known (the inverse Cholesky factor of their covariance).
 class RatioTerm final : public LandmarkTerm {

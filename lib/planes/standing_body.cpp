@@ -10,8 +10,6 @@
 namespace soslam {
 namespace {
 
-// Tangent points move with the body: each round fits to those of the body before.
-constexpr int kRounds = 3;
 constexpr int kHeightSteps = 20;
 constexpr double kSettledHeight = 1e-6;  // of the body's size
 // Of the largest: what the boxes say less about than this (the yaw of a round body) stays free.
@@ -81,13 +79,10 @@ Plane PlaneUnder(const Plane& plane, const Landmark& landmark) {
 }
 
 std::optional<StandingBody> Settled(StandingBody body) {
-  const Plane& plane = body.observation.plane_in_world;
-  for (int round = 0; round < kRounds; ++round) {
-    const auto fitted = FitUpright(plane, body.landmark, ViewTerms(body.observation, body.landmark),
-                                   /*yaw_is_free=*/true);
-    if (!fitted) return std::nullopt;
-    body.landmark = fitted->landmark;
-  }
+  const auto fitted = FitUpright(body.observation.plane_in_world, body.landmark,
+                                 OutlineTerms(body.observation), /*yaw_is_free=*/true);
+  if (!fitted) return std::nullopt;
+  body.landmark = fitted->landmark;
   return body;
 }
 
@@ -99,7 +94,7 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   Eigen::Matrix<double, 6, 6> of_body = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 3, 6> mixed = Eigen::Matrix<double, 3, 6>::Zero();
   Eigen::Matrix<double, 6, 1> slope = Eigen::Matrix<double, 6, 1>::Zero();
-  for (const auto& term : ViewTerms(body.observation, body.landmark)) {
+  for (const auto& term : OutlineTerms(body.observation)) {
     Eigen::VectorXd residuals(term->NumResiduals());
     LandmarkTerm::Jacobian jacobian(term->NumResiduals(), kLandmarkDof);
     term->Evaluate(body.landmark, residuals, &jacobian);

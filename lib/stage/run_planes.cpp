@@ -65,6 +65,18 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& optio
   return Level(ViewsOfSegments(sequence, options, files, threads), level);
 }
 
+// Every segment has a world, and so an up and planes, of its own.
+void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
+  const int first = sequence.frames.front().segment;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    if (sequence.frames[i].segment == first) continue;
+    throw InputError(fmt::format(
+        "{}: /frames/{} is of segment {}, the frames before of segment {}; expected one segment "
+        "where planes are estimated, or planes = given or camera_height",
+        path.string(), i, sequence.frames[i].segment, first));
+  }
+}
+
 struct Result {
   PlanesEstimate estimate;
   Sequence sequence;
@@ -95,6 +107,7 @@ void Replace(const Plane& plane_in_world, EstimatedPlane* plane) {
 
 Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,
                  int threads) {
+  CheckOneSegment(sequence, files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const LevelTrajectory trajectory = LevelFrames(sequence, options, files, threads);
   Sequence level = sequence;

@@ -283,5 +283,46 @@ TEST(AssociateTest, ObjectsStayOnTheirPlane) {
   EXPECT_EQ(association.objects.size(), 2u);
 }
 
+// Neither planes nor the height of any label is known.
+TEST(AssociateWithoutPlanesTest, ExactBoxesAreTheirObjects) {
+  double sum = 0.0;
+  for (int seed = 0; seed < kScenes; ++seed) {
+    const Sequence sequence =
+        SyntheticSequence(LabelledScene(seed, kObjects, kFrames, {"thing", "other"}), false);
+    sum += F1(WithoutPlanes(WithoutIds(sequence)), sequence);
+  }
+  EXPECT_GE(sum / kScenes, 0.95);
+}
+
+TEST(AssociateWithoutPlanesTest, NoisyBoxesAreNearlyAllTheirObjects) {
+  double sum = 0.0;
+  for (int seed = 0; seed < kScenes; ++seed) {
+    const Sequence sequence = NoisySequence(seed, {"thing", "other"});
+    const double f1 = F1(WithoutPlanes(WithoutIds(sequence)), sequence);
+    EXPECT_GE(f1, 0.8) << seed;
+    sum += f1;
+  }
+  EXPECT_GE(sum / kScenes, 0.95);
+}
+
+TEST(AssociateWithoutPlanesTest, ObjectsAreOnNoPlane) {
+  const Sequence sequence =
+      WithoutPlanes(WithoutIds(SyntheticSequence(LabelledScene(1, 3, 20, {"thing"}), false)));
+  const Association association = AssociateAll(sequence);
+  const Agreement agreement = CompareWithGiven(sequence, association, 3);
+  const Sequence associated = AssociatedSequence(sequence, association, agreement);
+  EXPECT_TRUE(associated.planes.empty());
+  ASSERT_FALSE(associated.objects.empty());
+  for (const Object& object : associated.objects) EXPECT_EQ(object.plane_index, kNoPlane);
+}
+
+TEST(AssociateWithoutPlanesTest, AMovedWorldChangesNoDecision) {
+  const Sequence sequence = WithoutPlanes(NoisySequence(3, {"thing"}));
+  Sequence moved = sequence;
+  const Rigid3d motion = RandomRigid();
+  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
+  EXPECT_EQ(Partition(AssociateAll(sequence)), Partition(AssociateAll(moved)));
+}
+
 }  // namespace
 }  // namespace soslam

@@ -60,6 +60,57 @@ TEST(Tangency, IsZeroForTheOutlineBoxAndGrowsByPixels) {
   }
 }
 
+// Edges far off are off by as many pixels, which they are to first order only for Tangency.
+TEST(OutlineExcess, IsHowFarTheOutlineReachesOut) {
+  const Camera camera = TestCamera();
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 20; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      const Box outline = *OutlineBox(camera, landmark);
+      const double outwards = RandomUniform(-0.4, 0.4) * outline.Width();
+      Box box = outline;
+      box.x_min -= outwards;
+      box.x_max += outwards;
+      const auto edges = BoxEdges(camera, box, {true, false, false, false}, kSigmaFraction);
+      EXPECT_NEAR(OutlineExcess(edges[2], landmark, nullptr) * edges[2].sigma_px, -outwards, 1e-6);
+      EXPECT_NEAR(OutlineExcess(edges[0], landmark, nullptr) * edges[0].sigma_px,
+                  std::min(0.0, -outwards), 1e-6);
+    }
+  }
+}
+
+// Unlike Tangency's, whose depth is taken as known, the derivative is exact however far off the
+// edge is. Step 1e-6; kinks rounded to a thousandth leave third derivatives of 1e6 px.
+TEST(OutlineExcess, HasExactDerivatives) {
+  constexpr double kStep = 1e-6;
+  for (const double p : {1.5, 2.0}) {
+    for (int i = 0; i < 20; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      const BoxEdge edge = RandomEdge();
+      LandmarkJacobian1 jacobian;
+      jacobian.setConstant(std::numeric_limits<double>::quiet_NaN());
+      OutlineExcess(edge, landmark, &jacobian);
+      for (int k = 0; k < kLandmarkDof; ++k) {
+        const auto at = [&](double step) {
+          Landmark moved = landmark;
+          const Eigen::Vector3d direction = step * Eigen::Vector3d::Unit(k % 3);
+          if (k < 3) {
+            moved.frame_from_object.rotation =
+                ExpRotation(direction) * moved.frame_from_object.rotation;
+          } else if (k < 6) {
+            moved.frame_from_object.translation += direction;
+          } else {
+            moved.half_axes.array() *= direction.array().exp();
+          }
+          return OutlineExcess(edge, moved, nullptr);
+        };
+        const double difference = (at(kStep) - at(-kStep)) / (2.0 * kStep);
+        EXPECT_NEAR(jacobian[k], difference, 1e-4 * (1.0 + std::abs(difference))) << k;
+      }
+    }
+  }
+}
+
 // pi^T Q* pi = h^2 - (n . c + d)^2, so that both vanish together (h + n . c + d > 0 for planes
 // that do not pass the ellipsoid on the wrong side).
 TEST(Tangency, OfAnEllipsoidIsTheDualQuadricForm) {

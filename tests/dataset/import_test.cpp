@@ -47,6 +47,24 @@ TEST_F(ImportTest, ReadsEverything) {
   EXPECT_TRUE(sequence.rejected_detections.empty());
 }
 
+TEST_F(ImportTest, EveryOtherFrameIsHeldOut) {
+  options.held_out = HeldOutFrames::kOdd;
+  options.min_observations = 1;
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.frames[1].id, 2);
+  ASSERT_EQ(sequence.detections.size(), 4u);
+  EXPECT_EQ(sequence.detections[2].frame_index, 1);
+  EXPECT_EQ(sequence.detections[2].box.x_min, 102.0);
+  ASSERT_EQ(sequence.held_out.size(), 2u);
+  EXPECT_EQ(sequence.held_out[0].frame.id, 1);
+  ASSERT_EQ(sequence.held_out[0].boxes.size(), 2u);
+  EXPECT_EQ(sequence.held_out[0].boxes[1].label, "box");
+  EXPECT_EQ(sequence.held_out[0].boxes[1].box.x_min, 301.0);
+  EXPECT_EQ(sequence.held_out[1].frame.id, 3);
+  EXPECT_EQ(sequence.held_out[1].boxes.size(), 1u);
+}
+
 TEST_F(ImportTest, NormalisesPlanesWithTheirOffset) {
   const Plane plane = Import().planes.at(0).plane_in_world;  // 2 z - 1 = 0
   EXPECT_EQ(plane.normal, Eigen::Vector3d(0, 0, 1));

@@ -81,7 +81,7 @@ TEST_F(YoloBoxesTest, BadPixelLinesAreNamed) {
 TEST_F(YoloBoxesTest, FolderWithoutFilesIsNamed) {
   ExpectError<InputError>([&] { Pixels(); }, {folder_.path().string(), "no *.txt"});
   ExpectError<InputError>([&] { ReadPixelYoloBoxes(folder_ / "none", kLabels); },
-                          {"none", "not a folder"});
+                          {"none", "is missing"});
 }
 
 }  // namespace

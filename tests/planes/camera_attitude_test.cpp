@@ -40,7 +40,7 @@ TEST(AttitudeOf, OneCameraHasUpAboveIt) {
 // only, the axes of the other heading hold up 36 times as firmly.
 TEST(AttitudeOf, HeadingsApartFindUpWhereverTheyLookDown) {
   std::vector<Rigid3d> poses;
-  for (int i = 0; i < 8; ++i) poses.push_back(LevelCamera(i * 0.785, 40.0 * kDegrees));
+  for (int i = 0; i < 8; ++i) poses.push_back(LevelCamera(i * 45.0 * kDegrees, 40.0 * kDegrees));
   EXPECT_NEAR(AngleToUp(poses), 0.0, 1e-9);
   poses.resize(3);
   EXPECT_LT(AngleToUp(poses), 3.0 * kDegrees);

@@ -85,11 +85,7 @@ TEST_F(RunAssociateTest, DetectionsWithoutIdsGiveTheSameWithNothingToCompareWith
   EXPECT_TRUE(Associations()["agreement"]["f1"].is_null());
 }
 
-// With the heights of things known, boxes are linked on a rough plane of the stage's own.
 TEST_F(RunAssociateTest, WithoutPlanesItLinksAllTheSameAndLeavesThemUnknown) {
-  WriteBytes(File("table"), R"({"default": {"a_by_c": 1, "a_by_c_log_sigma": 0.5, "b_by_c": 1,
-      "b_by_c_log_sigma": 0.5, "shape_exponent": 1.1, "height_m": 0.6, "height_log_sigma": 0.5,
-      "source": "the test"}, "labels": {}})");
   Sequence unknown = WithoutIds(sequence_);
   unknown.planes.clear();
   for (Object& object : unknown.objects) object.plane_index = kNoPlane;
@@ -98,14 +94,6 @@ TEST_F(RunAssociateTest, WithoutPlanesItLinksAllTheSameAndLeavesThemUnknown) {
   const Sequence associated = ReadSequence(File("output"), PlaneNeed::kNotNeeded);
   EXPECT_TRUE(associated.planes.empty());
   EXPECT_EQ(associated.objects.size(), sequence_.objects.size());
-}
-
-TEST_F(RunAssociateTest, NeitherPlanesNorHeightsAreNotEnough) {
-  Sequence unknown = WithoutIds(sequence_);
-  unknown.planes.clear();
-  for (Object& object : unknown.objects) object.plane_index = kNoPlane;
-  WriteSequence(File("sequence"), unknown, {});
-  ExpectError<NothingUsableError>([&] { Run(); }, {"no planes are known", "planes.json"});
 }
 
 TEST_F(RunAssociateTest, SameBytesForAnyNumberOfThreads) {

@@ -117,6 +117,14 @@ TEST_F(RunPlanesTest, VerticalsNeedImages) {
   ExpectError<SettingsError>([&] { Run(); }, {"--dataset", "verticals = false"});
 }
 
+TEST_F(RunPlanesTest, RefusesSeveralSegments) {
+  for (size_t i = 10; i < sequence_.frames.size(); ++i) sequence_.frames[i].segment = 3;
+  WriteSequence(File("sequence"), sequence_, {});
+  ExpectError<InputError>([&] { Run(); },
+                          {"sequence.json", "/frames/10", "segment 3", "one segment"});
+  EXPECT_FALSE(std::filesystem::exists(File("output")));
+}
+
 TEST_F(RunPlanesTest, RefusesASequenceSeenFromOnePlace) {
   std::erase_if(sequence_.detections, [&](const Detection& detection) {
     return detection.frame_index != sequence_.detections.front().frame_index;

@@ -15,6 +15,7 @@ inline Sequence LevelSequence(const std::vector<Box>& boxes) {
   sequence.camera = {640, 480, 500.0, 500.0, 320.0, 240.0};
   sequence.frames.resize(1);
   const Plane floor_in_camera{-Eigen::Vector3d::UnitY(), 1.0};
+  sequence.planes = {{0, floor_in_camera}};  // the camera's frame is the world's
   for (const Box& box : boxes) {
     const int object_index = static_cast<int>(sequence.objects.size());
     sequence.objects.push_back({object_index, "label", 0, {}});
