@@ -279,7 +279,8 @@ LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark&
   for (const BoxView& view : observation.views) {
     const Landmark in_camera = Transform(view.camera_from_world, start_in_world);
     if (!IsInFront(in_camera)) continue;
-    terms.push_back(TermOfView(observation, view, std::make_unique<BoxTerm>(view.edges, in_camera)));
+    terms.push_back(
+        TermOfView(observation, view, std::make_unique<BoxTerm>(view.edges, in_camera)));
   }
   return terms;
 }

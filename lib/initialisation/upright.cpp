@@ -151,8 +151,8 @@ void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::V
   jacobian->row(1) = (jacobian->row(1) - correlation * jacobian->row(0)) / unexplained;
 }
 
-void HeightTerm::Evaluate(const Landmark& landmark_in_camera,
-                          Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+void HeightTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                          Jacobian* jacobian) const {
   residuals[0] =
       std::log(2.0 * landmark_in_camera.half_axes.z() / height_m_.median) / height_m_.log_sigma;
   if (jacobian == nullptr) return;

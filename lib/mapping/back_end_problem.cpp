@@ -389,7 +389,10 @@ void BackEndProblem::Solve() {
   summary_.converged = summary.termination_type == ceres::CONVERGENCE;
   summary_.detector_bias_px = detector_bias_px_;
   for (const auto& iteration : summary.iterations) {
-    summary_.cost_per_iteration.push_back(iteration.cost);
+    // A rejected step's cost is that of where it would have led.
+    const bool stays = iteration.iteration > 0 && !iteration.step_is_successful;
+    summary_.cost_per_iteration.push_back(stays ? summary_.cost_per_iteration.back()
+                                                : iteration.cost);
   }
 }
 

@@ -31,8 +31,7 @@ double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
 // A walk once around, cameras looking outwards and a little down.
 std::vector<Rigid3d> TrueTrajectory() {
   std::vector<Rigid3d> poses;
-  const Eigen::Quaterniond forward_x(
-      (Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
+  const Eigen::Quaterniond forward_x((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
   for (int i = 0; i < kFrames; ++i) {
     const double heading = 2.0 * std::numbers::pi * i / kFrames;
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
@@ -48,8 +47,7 @@ std::vector<Rigid3d> Drifted(const std::vector<Rigid3d>& truth, double drift) {
   std::vector<Rigid3d> drifted = {truth.front()};
   for (size_t i = 1; i < truth.size(); ++i) {
     Rigid3d motion = truth[i - 1].Inverse() * truth[i];
-    motion.rotation =
-        motion.rotation * ExpRotation(truth[i].rotation.conjugate() * (drift * axis));
+    motion.rotation = motion.rotation * ExpRotation(truth[i].rotation.conjugate() * (drift * axis));
     drifted.push_back(drifted.back() * motion);
   }
   return drifted;
@@ -139,12 +137,13 @@ TEST(Level, MovesWithTheWorld) {
   for (SegmentView& view : views) view.world_from_camera = motion * view.world_from_camera;
   const LevelTrajectory there = Level(views, RoomOptions());
   // The search of up and the iteration stop within 1e-7 rad of the optimum.
-  EXPECT_LT((there.attitude.up_in_world - motion.rotation * here.attitude.up_in_world).norm(), 1e-5);
+  EXPECT_LT((there.attitude.up_in_world - motion.rotation * here.attitude.up_in_world).norm(),
+            1e-5);
   for (size_t i = 0; i < here.world_from_camera.size(); ++i) {
-    EXPECT_LT((motion * here.world_from_camera[i].translation -
-               there.world_from_camera[i].translation)
-                  .norm(),
-              1e-4);
+    EXPECT_LT(
+        (motion * here.world_from_camera[i].translation - there.world_from_camera[i].translation)
+            .norm(),
+        1e-4);
   }
 }
 
