@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -25,6 +26,9 @@ constexpr double kMaxTiltOfCameras = 45.0 * kRadians;
 constexpr double kTiltStep = 7.5 * kRadians;
 // For that search, of each object.
 constexpr size_t kViewsOfSearch = 12;
+// Directions that all the rest is tried from, farther apart than neighbours of the grid.
+constexpr size_t kStarts = 4;
+constexpr double kBetweenStarts = 1.6 * kTiltStep;
 constexpr double kYawStepOfSearch = 6.0 * kRadians;
 // A direction of up in which an object has no body is worse than any in which it has one.
 constexpr double kCostWithoutBody = 1e4;
@@ -70,20 +74,21 @@ class Estimator {
   }
 
   PlanesEstimate Estimate() {
-    PlanesEstimate estimate;
-    estimate.up_of_cameras = attitude_.up_in_world;
-    Plane reference{SearchUp(), 0.0};
-    std::vector<int> before;
-    for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
-      FindOwnHeights(reference.normal);
-      Decide(&reference);
-      RefineAll();
-      estimate.settled = before == deciding_level_;
-      before = deciding_level_;
-      reference = standing_.planes.front();
+    std::optional<PlanesEstimate> best;
+    double lowest = 0.0;
+    for (const Eigen::Vector3d& up : SearchUp()) {
+      auto estimate = EstimateFrom(up);
+      if (!estimate) continue;
+      const double cost = CostOfAll(*estimate);
+      if (best && cost >= lowest) continue;
+      best = std::move(estimate);
+      lowest = cost;
     }
-    Write(&estimate);
-    return estimate;
+    if (best) return *best;
+    throw NothingUsableError(fmt::format(
+        "{}: no object's boxes determine the height of the plane that it stands on; expected an "
+        "object seen from several places, or planes = given",
+        sequence_.name));
   }
 
  private:
@@ -98,9 +103,42 @@ class Estimator {
     return observation;
   }
 
-  // Of the directions that the cameras leave open, the one in which upright bodies of any height
-  // explain the boxes best.
-  Eigen::Vector3d SearchUp() const {
+  // None when no body's views determine the height of its foot, or a body is lost.
+  std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up) {
+    PlanesEstimate estimate;
+    estimate.up_of_cameras = attitude_.up_in_world;
+    Plane reference{up, 0.0};
+    std::vector<int> before;
+    for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
+      FindOwnHeights(reference.normal);
+      if (deciding_.empty()) return std::nullopt;
+      Decide(&reference);
+      if (!RefineAll()) return std::nullopt;
+      estimate.settled = before == deciding_level_;
+      before = deciding_level_;
+      reference = standing_.planes.front();
+    }
+    Write(&estimate);
+    return estimate;
+  }
+
+  // Of every object's boxes, also of those that do not decide, the cameras' attitude and the number
+  // of planes.
+  double CostOfAll(const PlanesEstimate& estimate) const {
+    double cost =
+        *estimate.cost + static_cast<double>(estimate.planes.size()) * options_.new_plane_cost;
+    for (const ObjectSupport& support : estimate.objects) {
+      if (support.reason == SupportReason::kLowestCost) {
+        cost += support.cost.value_or(kCostWithoutBody);
+      }
+    }
+    return cost;
+  }
+
+  // Of the directions that the cameras leave open, those in which upright bodies of any height
+  // explain the boxes best, lowest cost first: where bodies turn over to another of their axes the
+  // cost has several minima.
+  std::vector<Eigen::Vector3d> SearchUp() const {
     const std::vector<Eigen::Vector3d> candidates = UpCandidates(attitude_);
     std::vector<double> costs(candidates.size());
     ParallelFor(static_cast<int>(candidates.size()), threads_, [&](int i) {
@@ -114,8 +152,19 @@ class Estimator {
       }
       costs[static_cast<size_t>(i)] = cost;
     });
-    const auto lowest = std::min_element(costs.begin(), costs.end());
-    return candidates[static_cast<size_t>(lowest - costs.begin())];
+    std::vector<size_t> order(candidates.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t one, size_t other) { return costs[one] < costs[other]; });
+    std::vector<Eigen::Vector3d> starts;
+    for (const size_t i : order) {
+      const bool is_apart = std::all_of(starts.begin(), starts.end(), [&](const auto& start) {
+        return start.dot(candidates[i]) < std::cos(kBetweenStarts);
+      });
+      if (is_apart) starts.push_back(candidates[i]);
+      if (starts.size() == kStarts) break;
+    }
+    return starts;
   }
 
   // The bodies whose own views determine the height of their foot, the normal being given.
@@ -136,12 +185,6 @@ class Estimator {
       if (!found[i]) continue;
       deciding_.push_back(i);
       own_.push_back(*found[i]);
-    }
-    if (deciding_.empty()) {
-      throw NothingUsableError(fmt::format(
-          "{}: no object's boxes determine the height of the plane that it stands on; expected an "
-          "object seen from several places, or planes = given",
-          sequence_.name));
     }
   }
 
@@ -175,12 +218,10 @@ class Estimator {
     }
   }
 
-  void RefineAll() {
+  // False when a body is lost.
+  bool RefineAll() {
     refined_.clear();
-    if (options_.parallel) {
-      refined_.push_back(Refine(&standing_, threads_));
-      return;
-    }
+    if (options_.parallel) return RefineTogether(&standing_);
     for (size_t plane = 0; plane < standing_.planes.size(); ++plane) {
       StandingBodies alone{
           {}, {}, {standing_.planes[plane]}, attitude_, options_.height_sigma_fraction};
@@ -190,9 +231,16 @@ class Estimator {
           alone.plane_of.push_back(0);
         }
       }
-      refined_.push_back(Refine(&alone, threads_));
+      if (!RefineTogether(&alone)) return false;
       standing_.planes[plane] = alone.planes.front();
     }
+    return true;
+  }
+
+  bool RefineTogether(StandingBodies* standing) {
+    auto refined = Refine(standing, threads_);
+    if (refined) refined_.push_back(std::move(*refined));
+    return refined.has_value();
   }
 
   // The covariance of one plane's motion, through refined_'s pivot.

@@ -4,9 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "planes/levels.h"
 
@@ -106,12 +104,12 @@ Eigen::Vector3d MiddleOfFeet(const std::vector<StandingBody>& bodies) {
   return sum / static_cast<double>(bodies.size());
 }
 
-RefinedPlanes Refine(StandingBodies* standing, int threads) {
+std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads) {
   const Eigen::Vector3d pivot = MiddleOfFeet(standing->bodies);
   const Eigen::VectorXd no_step =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing->planes.size()) + 2);
   const auto start = Stepped(*standing, pivot, no_step, threads);
-  if (!start) throw NumericalError("planes: a body does not settle on its plane");
+  if (!start) return std::nullopt;
   *standing = *start;
   Quadratic quadratic = QuadraticOf(*standing, pivot);
   double damping = 1e-4;
@@ -131,7 +129,7 @@ RefinedPlanes Refine(StandingBodies* standing, int threads) {
     damping *= 0.1;
     if (gain < kSettledCost * quadratic.cost) break;
   }
-  return {quadratic.cost, pivot, quadratic.information.inverse()};
+  return RefinedPlanes{quadratic.cost, pivot, quadratic.information.inverse()};
 }
 
 }  // namespace soslam

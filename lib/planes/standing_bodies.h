@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "planes/camera_attitude.h"
@@ -27,13 +28,13 @@ double HeightSigma(const StandingBody& body, double height_sigma_fraction);
 // The point in the middle of the bodies' feet; of at least one.
 Eigen::Vector3d MiddleOfFeet(const std::vector<StandingBody>& bodies);
 
-// Levenberg-Marquardt over the planes' normal and heights and all bodies. Throws NumericalError
-// when a body is lost on the way.
+// Levenberg-Marquardt over the planes' normal and heights and all bodies. None when a body does not
+// settle on its plane.
 struct RefinedPlanes {
   double cost = 0.0;
   Eigen::Vector3d pivot;       // of the covariance's motions
   Eigen::MatrixXd covariance;  // two turns, then the rise of each plane
 };
-RefinedPlanes Refine(StandingBodies* standing, int threads);
+std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads);
 
 }  // namespace soslam

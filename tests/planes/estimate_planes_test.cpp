@@ -54,6 +54,17 @@ void ExpectGiven(const Sequence& sequence, const PlanesEstimate& estimate, doubl
   }
 }
 
+// Of the first plane's three degrees of freedom.
+double NormalisedErrorSquared(const Sequence& sequence, const PlanesEstimate& estimate) {
+  const EstimatedPlane& plane = estimate.planes[0];
+  const Plane& truth = sequence.planes[0].plane_in_world;
+  const Eigen::Vector3d turn = truth.normal.cross(plane.plane_in_world.normal);
+  const Eigen::Vector3d y = plane.plane_in_world.normal.cross(plane.x_axis_in_world);
+  const Eigen::Vector3d error(turn.dot(plane.x_axis_in_world), turn.dot(y),
+                              truth.SignedDistance(plane.point_in_world));
+  return error.dot(plane.covariance->ldlt().solve(error));
+}
+
 // Exact boxes leave the rounding of the cuboids' edges, a thousandth of their size, and the pull of
 // the cameras' attitude, which the boxes outweigh a hundred times.
 TEST(EstimatePlanes, FindsTheFloorUnderExactBoxes) {
@@ -91,13 +102,16 @@ TEST(EstimatePlanes, PlanesNeedNotBeParallel) {
   ExpectGiven(sequence, estimate, 0.3 * kDegrees, 0.01);
 }
 
+// How well one object shows the tilt is another matter: from 0.5 to 11 degrees here. Exact boxes
+// leave only the pull of the cameras' attitude, which is less than what the covariance allows for.
 TEST(EstimatePlanes, OneObjectIsEnough) {
   for (int seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(seed);
     const Sequence sequence = SyntheticSequence(CuboidScene(seed, 1), false);
     const PlanesEstimate estimate = Estimate(sequence);
     ASSERT_EQ(estimate.planes.size(), 1u);
-    ExpectGiven(sequence, estimate, 0.5 * kDegrees, 0.01);
+    EXPECT_LT(NormalisedErrorSquared(sequence, estimate), 0.5);
+    ExpectGiven(sequence, estimate, 5.0 * kDegrees, 0.01);
   }
 }
 
@@ -130,13 +144,7 @@ TEST(EstimatePlanes, ErrorsAreAsLargeAsTheCovarianceSays) {
     options.new_plane_cost = 1e3;  // one floor
     const PlanesEstimate estimate = Estimate(sequence, options);
     ASSERT_EQ(estimate.planes.size(), 1u) << seed;
-    const EstimatedPlane& plane = estimate.planes[0];
-    const Plane& truth = sequence.planes[0].plane_in_world;
-    const Eigen::Vector3d turn = truth.normal.cross(plane.plane_in_world.normal);
-    const Eigen::Vector3d y = plane.plane_in_world.normal.cross(plane.x_axis_in_world);
-    const Eigen::Vector3d error(turn.dot(plane.x_axis_in_world), turn.dot(y),
-                                truth.SignedDistance(plane.point_in_world));
-    sum += error.dot(plane.covariance->ldlt().solve(error));
+    sum += NormalisedErrorSquared(sequence, estimate);
   }
   EXPECT_GT(sum / kScenes, 1.9);
   EXPECT_LT(sum / kScenes, 4.4);
@@ -155,7 +163,8 @@ PlanesEstimate EstimateWithHeights(const Sequence& sequence, double log_sigma, b
 }
 
 // From places so near to each other that rays hardly cross, only known heights say how far the
-// floor is: off by as much as the heights, a hundredth, of the camera's 1.1 m.
+// floor is: off by a few hundredths of the camera's 1.1 m, and all in all, in 99.9 % of cases, by
+// no more than the covariance says.
 TEST(EstimatePlanes, KnownHeightsReplaceParallax) {
   for (int seed = 0; seed < 3; ++seed) {
     SCOPED_TRACE(seed);
@@ -166,7 +175,8 @@ TEST(EstimatePlanes, KnownHeightsReplaceParallax) {
                   [](const Detection& detection) { return detection.frame_index > 2; });
     const PlanesEstimate with = EstimateWithHeights(sequence, 0.01, true);
     ASSERT_EQ(with.planes.size(), 1u);
-    ExpectGiven(sequence, with, 2.0 * kDegrees, 0.05);
+    EXPECT_LT(NormalisedErrorSquared(sequence, with), 16.3);
+    EXPECT_LT(std::abs(CompareWithGiven(sequence, with, 0)->offset), 0.05);
   }
 }
 
@@ -192,8 +202,9 @@ TEST(EstimatePlanes, RefusesWhatOneViewCannotTell) {
                                   {"height of the plane", "several places", "planes = given"});
 }
 
-// An object seen once stands on the plane on which its box is explained best.
-TEST(EstimatePlanes, AnObjectSeenOnceJoinsTheOthers) {
+// One box fits a body on any plane, nearer and smaller or farther and larger: only the height of
+// the object's label says on which it stands.
+TEST(EstimatePlanes, AnObjectSeenOnceNeedsItsHeight) {
   Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(2, 5), 0.3), false);
   for (const int once : {0, 1}) {
     bool seen = false;
@@ -201,12 +212,13 @@ TEST(EstimatePlanes, AnObjectSeenOnceJoinsTheOthers) {
       return detection.object_index == once && std::exchange(seen, true);
     });
   }
-  const PlanesEstimate estimate = Estimate(sequence);
-  ASSERT_EQ(estimate.planes.size(), 2u);
+  const PlanesEstimate without = EstimateWithHeights(sequence, 0.05, false);
+  const PlanesEstimate with = EstimateWithHeights(sequence, 0.05, true);
+  ASSERT_EQ(with.planes.size(), 2u);
   for (const size_t once : {0, 1}) {
-    EXPECT_EQ(estimate.objects[once].reason, SupportReason::kLowestCost);
-    EXPECT_FALSE(estimate.objects[once].height);
-    EXPECT_EQ(estimate.objects[once].plane_index, static_cast<int>(once));
+    EXPECT_EQ(without.objects[once].reason, SupportReason::kLowestCost);
+    EXPECT_FALSE(without.objects[once].height);
+    EXPECT_EQ(with.objects[once].plane_index, static_cast<int>(once));
   }
 }
 
