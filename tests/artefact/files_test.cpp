@@ -81,6 +81,21 @@ TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
   EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
 }
 
+TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
+  HeldOutFrame held_out{sequence.frames.front(), {{"cup", 0.7, {10.5, 20.0, 30.0, 40.25}}}};
+  held_out.frame.id = sequence.frames.back().id + 1;
+  sequence.held_out = {held_out};
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file);
+  ASSERT_EQ(read.held_out.size(), 1u);
+  EXPECT_EQ(read.held_out[0].frame.id, held_out.frame.id);
+  ExpectSame(read.held_out[0].frame.world_from_camera, held_out.frame.world_from_camera);
+  ASSERT_EQ(read.held_out[0].boxes.size(), 1u);
+  EXPECT_EQ(read.held_out[0].boxes[0].label, "cup");
+  EXPECT_EQ(read.held_out[0].boxes[0].score, 0.7);
+  EXPECT_EQ(read.held_out[0].boxes[0].box, held_out.boxes[0].box);
+}
+
 TEST_F(ArtefactFilesTest, SequenceComesBack) {
   WriteSequence(file, sequence, {});
   const Sequence read = ReadSequence(file);

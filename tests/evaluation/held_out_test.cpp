@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/held_out.h"
+
+#include <gtest/gtest.h>
+
+#include "dataset/hold_out.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+// Exact boxes of cuboids, every other frame held out, and the true landmarks.
+class HeldOutTest : public testing::Test {
+ protected:
+  HeldOutTest() {
+    for (size_t i = 0; i < sequence_.objects.size(); ++i) {
+      ObjectEstimate estimate;
+      estimate.object_index = static_cast<int>(i);
+      estimate.landmark_in_world = sequence_.objects[i].ground_truth->landmark_in_world;
+      estimate.landmark_in_world->shape_exponent = kCuboidExponent;
+      estimates_.push_back(estimate);
+    }
+    for (const HeldOutFrame& held_out : sequence_.held_out) {
+      poses_.push_back(*held_out.frame.true_world_from_camera);
+      detections_ += static_cast<int>(held_out.boxes.size());
+    }
+  }
+
+  HeldOutMetrics Evaluate() const { return *EvaluateHeldOut(sequence_, estimates_, poses_); }
+
+  Sequence sequence_ = HoldOutFrames(SyntheticSequence(RandomScene(7, 4, 24, {Shape::kBox}), false),
+                                     HeldOutFrames::kOdd);
+  std::vector<ObjectEstimate> estimates_;
+  std::vector<Rigid3d> poses_;
+  int detections_ = 0;
+};
+
+TEST_F(HeldOutTest, TheTruthExplainsAll) {
+  const HeldOutMetrics metrics = Evaluate();
+  EXPECT_EQ(metrics.frames, 12);
+  EXPECT_GT(metrics.detections, 8);
+  EXPECT_EQ(metrics.detections, detections_);
+  EXPECT_EQ(metrics.detections_matched, detections_);
+  EXPECT_NEAR(*metrics.iou_mean, 1.0, 1e-3);
+  EXPECT_NEAR(*metrics.iou_mean_of_detections, 1.0, 1e-3);
+  EXPECT_GE(metrics.in_sight, metrics.in_sight_matched);
+  EXPECT_EQ(metrics.objects.size(), 4u);
+}
+
+TEST_F(HeldOutTest, DetectionsWithoutALandmarkCount) {
+  const int lost = Evaluate().objects.front().matched;
+  ASSERT_GT(lost, 0);
+  estimates_.front().landmark_in_world.reset();
+  const HeldOutMetrics metrics = Evaluate();
+  EXPECT_EQ(metrics.detections_matched, detections_ - lost);
+  EXPECT_NEAR(*metrics.iou_mean, 1.0, 1e-3);
+  EXPECT_NEAR(*metrics.iou_mean_of_detections,
+              static_cast<double>(detections_ - lost) / detections_, 1e-3);
+  EXPECT_EQ(metrics.objects.size(), 3u);
+}
+
+TEST_F(HeldOutTest, OfTwoLandmarksAtOnePlaceOneMatches) {
+  const HeldOutMetrics before = Evaluate();
+  estimates_.push_back(estimates_.front());
+  const HeldOutMetrics metrics = Evaluate();
+  EXPECT_EQ(metrics.detections_matched, before.detections_matched);
+  EXPECT_EQ(metrics.in_sight, before.in_sight + before.objects.front().in_sight);
+  EXPECT_EQ(metrics.in_sight_matched, before.in_sight_matched);
+}
+
+TEST_F(HeldOutTest, LabelsMustBeEqual) {
+  for (HeldOutFrame& held_out : sequence_.held_out) {
+    for (auto& labelled : held_out.boxes) labelled.label += " of another kind";
+  }
+  const HeldOutMetrics metrics = Evaluate();
+  EXPECT_EQ(metrics.detections_matched, 0);
+  EXPECT_FALSE(metrics.iou_mean);
+  EXPECT_EQ(*metrics.iou_mean_of_detections, 0.0);
+}
+
+// The map is the odometry, moved as a whole.
+TEST_F(HeldOutTest, PosesFollowTheMap) {
+  const Rigid3d motion{Eigen::Quaterniond(0.8, 0.0, 0.6, 0.0), {1.0, 2.0, 3.0}};
+  std::vector<Rigid3d> map;
+  for (const Frame& frame : sequence_.frames) map.push_back(motion * frame.world_from_camera);
+  const std::vector<Rigid3d> poses = HeldOutPoses(sequence_, map);
+  ASSERT_EQ(poses.size(), sequence_.held_out.size());
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const Rigid3d expected = motion * sequence_.held_out[i].frame.world_from_camera;
+    EXPECT_LT((poses[i].translation - expected.translation).norm(), 1e-12);
+    EXPECT_LT(poses[i].rotation.angularDistance(expected.rotation), 1e-7);
+  }
+}
+
+TEST(HeldOutMetricsTest, WithoutHeldOutFramesThereAreNone) {
+  const Sequence sequence = SyntheticSequence(RandomScene(7, 2, 6), false);
+  EXPECT_FALSE(EvaluateHeldOut(sequence, {ObjectEstimate()}, {}));
+}
+
+}  // namespace
+}  // namespace soslam
