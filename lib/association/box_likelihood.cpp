@@ -94,14 +94,6 @@ bool IsOutOfReach(const Innovation& innovation) {
 
 }  // namespace
 
-double BoxOverlap(const Box& one, const Box& other) {
-  const double width = std::min(one.x_max, other.x_max) - std::max(one.x_min, other.x_min);
-  const double height = std::min(one.y_max, other.y_max) - std::max(one.y_min, other.y_min);
-  if (!(width > 0.0) || !(height > 0.0)) return 0.0;
-  const double both = width * height;
-  return both / (one.Width() * one.Height() + other.Width() * other.Height() - both);
-}
-
 BoxLikelihood::BoxLikelihood(const Sequence& sequence, const AssociateOptions& options)
     : sequence_(sequence),
       options_(options),

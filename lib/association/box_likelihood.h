@@ -11,9 +11,6 @@
 
 namespace soslam {
 
-// The intersection over union of two boxes in the image.
-double BoxOverlap(const Box& one, const Box& other);
-
 // How an object explains a detection's box.
 struct Explanation {
   double overlap = 0.0;   // of the box and that of the landmark's outline

@@ -6,7 +6,7 @@
 #include <ranges>
 #include <tuple>
 
-#include "association/assignment.h"
+#include "base/assignment.h"
 #include "base/parallel.h"
 
 namespace soslam {

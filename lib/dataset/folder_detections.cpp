@@ -115,8 +115,8 @@ std::vector<DetectionRow> RowsOfBoxes(const FolderBoxes& boxes, const DatasetFil
                     files.images.value_or(files.detections).filename().string()));
   }
   (*rejected)[RejectReasonName(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
-  fmt::print(stderr, "{}: {} of {} detections are of listed images\n",
-             files.detections.filename().string(), rows.size(), boxes.boxes.size());
+  fmt::print("{}: {} of {} detections are of listed images\n", files.detections.filename().string(),
+             rows.size(), boxes.boxes.size());
   return rows;
 }
 

@@ -25,7 +25,7 @@ FolderBoxes ReadFolderBoxes(const DatasetFiles& files, const ImportOptions& opti
 
 // The boxes as rows of these images. Boxes without object ids are of an object each, with ids from
 // `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and how many
-// these are is said on stderr. Throws InputError for a row number beyond the list, and when no box
+// these are is said on stdout. Throws InputError for a row number beyond the list, and when no box
 // is of a listed image.
 std::vector<DetectionRow> RowsOfBoxes(const FolderBoxes& boxes, const DatasetFiles& files,
                                       const std::vector<ListedImage>& images, int first_free_id,

@@ -92,7 +92,6 @@ ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
     largest_s = std::max(largest_s, std::abs(pose->timestamp - image.timestamp));
   }
   fmt::print(
-      stderr,
       "{}: {} of {} images have a pose, at most {:.1f} ms away; {} have none within {:g} ms\n",
       path.filename().string(), matched, images.size(), 1e3 * largest_s, images.size() - matched,
       1e3 * options.max_time_difference_s);
@@ -176,8 +175,7 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
     frames.push_back({frame, estimates[i].has_value()});
   }
   if (absent > 0) {
-    fmt::print(stderr, "{}: {} of {} image files are not there\n", folder.string(), absent,
-               images.size());
+    fmt::print("{}: {} of {} image files are not there\n", folder.string(), absent, images.size());
   }
   return frames;
 }

@@ -17,7 +17,7 @@ namespace soslam {
 std::vector<ListedImage> ListImages(const DatasetFiles& files, const ImportOptions& options,
                                     const std::vector<LabelledBox>& boxes);
 
-// A frame for each image, with the poses that are nearest in time, and says on stderr how many of
+// A frame for each image, with the poses that are nearest in time, and says on stdout how many of
 // them have one. Only in format soslam the listed image files have to be there. Throws InputError.
 std::vector<ListedFrame> ReadFolderFrames(const std::filesystem::path& folder,
                                           const DatasetFiles& files, const ImportOptions& options,

@@ -6,14 +6,6 @@
 
 namespace soslam {
 
-double OverlapOfBoxes(const Box& one, const Box& other) {
-  const double width = std::min(one.x_max, other.x_max) - std::max(one.x_min, other.x_min);
-  const double height = std::min(one.y_max, other.y_max) - std::max(one.y_min, other.y_min);
-  if (!(width > 0.0) || !(height > 0.0)) return 0.0;
-  const double both = width * height;
-  return both / (one.Width() * one.Height() + other.Width() * other.Height() - both);
-}
-
 std::vector<std::optional<size_t>> MatchBoxes(const std::vector<ScoredBox>& found,
                                               const std::vector<Box>& given, double min_overlap) {
   std::vector<size_t> order(found.size());
@@ -25,7 +17,7 @@ std::vector<std::optional<size_t>> MatchBoxes(const std::vector<ScoredBox>& foun
   for (const size_t i : order) {
     double best = min_overlap;
     for (size_t k = 0; k < given.size(); ++k) {
-      const double overlap = OverlapOfBoxes(found[i].box, given[k]);
+      const double overlap = BoxOverlap(found[i].box, given[k]);
       if (taken[k] || overlap < best || (matches[i] && overlap == best)) continue;
       best = overlap;
       matches[i] = k;

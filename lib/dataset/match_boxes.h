@@ -8,9 +8,6 @@
 
 namespace soslam {
 
-// Intersection over union, in [0, 1].
-double OverlapOfBoxes(const Box& one, const Box& other);
-
 struct ScoredBox {
   Box box;
   double score = 0.0;

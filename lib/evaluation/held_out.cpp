@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "association/assignment.h"
-#include "association/box_likelihood.h"
+#include "base/assignment.h"
 #include "evaluation/statistics.h"
 
 namespace soslam {

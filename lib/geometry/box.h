@@ -37,4 +37,13 @@ inline double DistanceToBorder(const Box& box, int width, int height) {
       {box.x_min + 0.5, box.y_min + 0.5, width - 0.5 - box.x_max, height - 0.5 - box.y_max});
 }
 
+// The intersection over union of two boxes.
+inline double BoxOverlap(const Box& one, const Box& other) {
+  const double width = std::min(one.x_max, other.x_max) - std::max(one.x_min, other.x_min);
+  const double height = std::min(one.y_max, other.y_max) - std::max(one.y_min, other.y_min);
+  if (!(width > 0.0) || !(height > 0.0)) return 0.0;
+  const double both = width * height;
+  return both / (one.Width() * one.Height() + other.Width() * other.Height() - both);
+}
+
 }  // namespace soslam

@@ -55,9 +55,9 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   for (PoseBlock& pose : poses_) {
     problem_.AddParameterBlock(pose.data(), kPoseSize, NewPoseManifold());
   }
-  HoldFirstPoses();
+  HoldPoses();
   WeighViews();
-  AddOdometry();
+  if (!options.hold_poses) AddOdometry();
   AddPlanes();
   for (size_t i = 0; i < landmarks_.size(); ++i) {
     if (input.starts[i]) AddLandmark(i);
@@ -99,10 +99,10 @@ void BackEndProblem::WeighViews() {
 }
 
 // The first pose of each segment defines its world.
-void BackEndProblem::HoldFirstPoses() {
+void BackEndProblem::HoldPoses() {
   const auto& frames = input_.sequence.frames;
   for (size_t i = 0; i < frames.size(); ++i) {
-    if (i == 0 || frames[i].segment != frames[i - 1].segment) {
+    if (options_.hold_poses || i == 0 || frames[i].segment != frames[i - 1].segment) {
       problem_.SetParameterBlockConstant(poses_[i].data());
     }
   }
@@ -126,6 +126,7 @@ void BackEndProblem::AddOdometry() {
 // An estimated plane moves with what stands on it, under what is known of its normal besides.
 void BackEndProblem::AddPlanes() {
   const auto& planes = input_.sequence.planes;
+  normals_.reserve(planes.size());
   offsets_.reserve(planes.size());
   for (size_t i = 0; i < planes.size(); ++i) {
     const Plane& plane = planes[i].plane_in_world;
@@ -359,16 +360,17 @@ std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering(
   return ordering;
 }
 
-// Landmarks are eliminated first.
+// Landmarks are eliminated first. Within a group blocks are sorted by their addresses: a group has
+// those of one array, for identical bytes from run to run.
 std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::Ordering() {
   auto ordering = LandmarkOrdering();
-  const auto add = [&](double* block) {
-    if (problem_.HasParameterBlock(block)) ordering->AddElementToGroup(block, 1);
+  const auto add = [&](double* block, int group) {
+    if (problem_.HasParameterBlock(block)) ordering->AddElementToGroup(block, group);
   };
-  for (PoseBlock& pose : poses_) add(pose.data());
-  for (double& bias : detector_bias_px_) add(&bias);
-  for (NormalBlock& normal : normals_) add(normal.data());
-  for (double& offset : offsets_) add(&offset);
+  for (PoseBlock& pose : poses_) add(pose.data(), 1);
+  for (double& bias : detector_bias_px_) add(&bias, 2);
+  for (NormalBlock& normal : normals_) add(normal.data(), 3);
+  for (double& offset : offsets_) add(&offset, 4);
   return ordering;
 }
 
@@ -389,7 +391,10 @@ void BackEndProblem::Solve() {
   summary_.converged = summary.termination_type == ceres::CONVERGENCE;
   summary_.detector_bias_px = detector_bias_px_;
   for (const auto& iteration : summary.iterations) {
-    summary_.cost_per_iteration.push_back(iteration.cost);
+    // A rejected step's cost is that of where it would have led.
+    const bool stays = iteration.iteration > 0 && !iteration.step_is_successful;
+    summary_.cost_per_iteration.push_back(stays ? summary_.cost_per_iteration.back()
+                                                : iteration.cost);
   }
 }
 

@@ -38,7 +38,7 @@ class BackEndProblem {
   std::vector<Plane> Planes() const;
 
  private:
-  void HoldFirstPoses();
+  void HoldPoses();
   void WeighViews();
   void AddOdometry();
   void AddPlanes();
@@ -75,7 +75,7 @@ class BackEndProblem {
   ceres::Problem problem_;
   std::vector<PoseBlock> poses_;
   std::vector<LandmarkBlock> landmarks_;
-  std::deque<NormalBlock> normals_;           // parallel planes share one
+  std::vector<NormalBlock> normals_;          // parallel planes share one
   std::vector<size_t> normal_of_plane_;       // into normals_
   std::vector<double> offsets_;               // of Sequence::planes
   std::array<double, 4> detector_bias_px_{};  // left, top, right, bottom

@@ -19,6 +19,7 @@ inline constexpr std::array kDetectionModelNames = {"quadric", "tangency"};
 
 struct OptimiseOptions {
   DetectionModel detection_model = DetectionModel::kQuadric;
+  bool hold_poses = false;
   bool support = true;
   bool ratio = true;
   bool symmetry = false;
@@ -53,6 +54,9 @@ struct OptimiseOptions {
         "what a box says about a landmark: the tangent planes of its ellipsoid (eq. 4), or "
         "those of a body of its label's shape, in pixels, with the label's spread of "
         "ratios");
+    visit.Flag("hold_poses", &hold_poses,
+               "the poses of the trajectory stay as they are, as those of motion capture or of "
+               "structure from motion should; otherwise they are odometry, which drifts");
     visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
     visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
     visit.Flag("symmetry", &symmetry,

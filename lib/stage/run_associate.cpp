@@ -34,8 +34,8 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
     throw SettingsError(
         "setting 'association' is 'given', which leaves nothing to do; expected 'estimated'");
   }
-  const SemanticTable table = ReadSemanticTable(files.at("table"));
   Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
   if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
   const Association association = Associate(sequence, table, options, threads);
   if (association.objects.empty()) {

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <set>
 #include <sstream>
@@ -90,6 +91,32 @@ FoundFiles FindFiles(const fs::path& dataset) {
   return found;
 }
 
+bool IsImage(const std::string& file) {
+  static const std::set<std::string> kExtensions = {".png", ".jpg", ".jpeg", ".bmp", ".pgm",
+                                                    ".ppm", ".tif", ".tiff", ".webp"};
+  std::string extension = fs::path(file).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return kExtensions.contains(extension);
+}
+
+// All variants; without images in the dataset those that look at none.
+std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::string& dataset,
+                                          const FoundFiles& files) {
+  std::vector<std::string> variants = VariantNames(pipelines);
+  if (std::ranges::any_of(files.others, IsImage)) return variants;
+  std::vector<std::string> impossible;
+  std::erase_if(variants, [&](const std::string& variant) {
+    const bool needs_images = ReadVariant(pipelines, dataset, variant).stages.contains("edges");
+    if (needs_images) impossible.push_back(variant);
+    return needs_images;
+  });
+  if (!impossible.empty()) {
+    fmt::print("{}: no images; left out are {}\n", dataset, fmt::join(impossible, ", "));
+  }
+  return variants;
+}
+
 // Imports read tables, and some look which images there are.
 std::string DatasetFingerprint(const fs::path& dataset, const FoundFiles& files) {
   return Fingerprint(dataset, files.tables) + fmt::format("{}\n", fmt::join(files.others, "\n"));
@@ -118,8 +145,9 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
   for (const auto& [argument, path] : files) RefuseIfUnfitForMake(path.string(), "--" + argument);
   const PlanFolders folders = {dataset, files.at("pipelines"), files.at("results") / name};
 
+  const FoundFiles found = FindFiles(dataset);
   std::vector<std::string> variants = SplitAtSpaces(options.variants);
-  if (variants.empty()) variants = VariantNames(folders.pipelines);
+  if (variants.empty()) variants = PossibleVariants(folders.pipelines, name, found);
   for (const std::string& variant : variants) RefuseIfNotAFolderName(variant, "variant");
 
   const Plan plan = MakePlan(folders.pipelines, name, variants);
@@ -134,7 +162,6 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
     WriteFile(folders.results / variant.name / "stages.txt",
               fmt::format("{}\n", fmt::join(variant.instances, "\n")));
   }
-  const FoundFiles found = FindFiles(dataset);
   WriteFile(folders.results / "shared" / "dataset.txt", DatasetFingerprint(dataset, found));
   WriteFile(folders.results / "shared" / "images.txt", Fingerprint(dataset, found.others));
   WriteFile(folders.results / "plan.mk", PlanMakefile(plan, name, folders));

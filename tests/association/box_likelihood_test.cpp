@@ -10,13 +10,6 @@
 namespace soslam {
 namespace {
 
-TEST(BoxOverlapTest, IsIntersectionOverUnion) {
-  const Box box{0.0, 0.0, 4.0, 2.0};
-  EXPECT_EQ(BoxOverlap(box, box), 1.0);
-  EXPECT_DOUBLE_EQ(BoxOverlap(box, {2.0, 1.0, 6.0, 3.0}), 2.0 / 14.0);
-  EXPECT_EQ(BoxOverlap(box, {4.0, 0.0, 5.0, 2.0}), 0.0);
-}
-
 // A cuboid known from its first frames, and where it is expected in a later one.
 class BoxLikelihoodTest : public testing::Test {
  protected:

@@ -14,14 +14,6 @@ constexpr Box kUnit{0, 0, 10, 10};
 
 Box Shifted(double x) { return {x, 0, 10 + x, 10}; }
 
-TEST(OverlapOfBoxes, IsIntersectionOverUnion) {
-  EXPECT_EQ(OverlapOfBoxes(kUnit, kUnit), 1.0);
-  EXPECT_DOUBLE_EQ(OverlapOfBoxes(kUnit, Shifted(5)), 50.0 / 150.0);
-  EXPECT_DOUBLE_EQ(OverlapOfBoxes(kUnit, {2, 2, 4, 4}), 0.04);
-  EXPECT_EQ(OverlapOfBoxes(kUnit, Shifted(10)), 0.0);
-  EXPECT_EQ(OverlapOfBoxes(kUnit, {3, 3, 3, 3}), 0.0);
-}
-
 TEST(MatchBoxes, TakesTheLargestOverlap) {
   EXPECT_THAT(MatchBoxes({{kUnit, 0.5}}, {Shifted(4), Shifted(1), Shifted(2)}, 0.1),
               ElementsAre(Optional(1)));

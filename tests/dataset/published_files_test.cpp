@@ -57,6 +57,7 @@ Sequence ImportWithItsSettings(const std::string& name) {
   options.frame_stride = 1;
   options.min_score = 0.0;
   options.border_px = 0.0;
+  options.held_out = HeldOutFrames::kNone;
   return ImportDataset(RealDataset(name), options);
 }
 

@@ -106,6 +106,22 @@ TEST(TangencyBackEnd, PlanesThatAreGivenOrNotToBeRefinedStayAsTheyAre) {
   EXPECT_EQ(OptimiseMap(TruthInput(sequence), options).planes_in_world[0].normal, before.normal);
 }
 
+TEST(TangencyBackEnd, PosesThatAreHeldStayAsTheyAre) {
+  const Sequence sequence = CuboidSequence(4, 12);
+  BackEndInput input = TruthInput(sequence);
+  Disturb(&input);
+  OptimiseOptions options = TangencyOptions();
+  options.hold_poses = true;
+  const MapEstimate map = OptimiseMap(input, options);
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const Rigid3d& given = sequence.frames[i].world_from_camera;
+    EXPECT_EQ(map.world_from_camera[i].translation, given.translation);
+    EXPECT_LT(map.world_from_camera[i].rotation.angularDistance(given.rotation), 1e-12);
+  }
+  EXPECT_EQ(map.solver.residuals.count("odometry"), 0u);
+  ExpectTruth(sequence, map, 0.99);
+}
+
 TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   const Sequence sequence = CuboidSequence(5, 20);
   const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());

@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "import",
                      [](const StageChain& chain) { fs::remove(chain.Dataset("detections.csv")); },
                      3,
-                     {"detections.csv: is missing"}},
+                     {"detections.csv is missing"}},
         RefusedInput{
             "DetectionsEmpty", "import", Content("detections.csv", ""), 3, {"detections.csv"}},
         RefusedInput{"DetectionsMalformed",
@@ -194,12 +194,12 @@ INSTANTIATE_TEST_SUITE_P(
                      ArtefactText("sequence.json", "\"schema_version\": [\n   1,",
                                   "\"schema_version\": [\n   2,"),
                      3,
-                     {"sequence.json", "schema version [2, 2]", "[1, 2]"}},
+                     {"sequence.json", "schema version [2, 3]", "[1, 3]"}},
         RefusedInput{"EdgesNewer",
                      "refine",
                      WriteNewerEdges,
                      3,
-                     {"edges.h5", "schema version [2, 0]", "[1, 2]"}},
+                     {"edges.h5", "schema version [2, 0]", "[1, 3]"}},
         RefusedInput{"ArtefactOfAnotherKind",
                      "optimise",
                      [](const StageChain& chain) {

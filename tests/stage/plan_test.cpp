@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kBase = R"({
   "stages": ["import", "initialise", "evaluate"],
@@ -325,6 +326,18 @@ TEST_F(RunPlanTest, WritesNothingThatDidNotChange) {
   EXPECT_GE(times.size(), 3u + 3u + 9u);  // plan and fingerprints; variants; instances
   Run("", "");
   for (const auto& [path, time] : times) EXPECT_EQ(fs::last_write_time(path), time) << path;
+}
+
+TEST_F(RunPlanTest, AllVariantsOfADatasetWithoutImagesAreThoseThatLookAtNone) {
+  Run("", "");
+  EXPECT_THAT(Read("results/room/plan.mk"), HasSubstr("/Full/"));
+  fs::remove(folder_ / "room/rgb/0.jpg");
+  Run("", "");
+  const std::string plan = Read("results/room/plan.mk");
+  EXPECT_THAT(plan, Not(HasSubstr("/Full/")));
+  EXPECT_THAT(plan, HasSubstr("/Plain/"));
+  Run("", "Full");  // who asks for it gets the message of the stage that finds no image
+  EXPECT_THAT(Read("results/room/plan.mk"), HasSubstr("/Full/"));
 }
 
 TEST_F(RunPlanTest, FingerprintsFollowTheFiles) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/assignment.h"
+#include "base/assignment.h"
 
 #include <limits>
 
