@@ -74,9 +74,9 @@ TEST_F(FolderFormatsTest, TumRgbdWithoutPlanesAndIds) {
 }
 
 TEST_F(FolderFormatsTest, SaysHowManyImagesHaveAPose) {
-  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
   Import();
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
               testing::AllOf(testing::HasSubstr("3 of 4 images have a pose, at most 4.0 ms away"),
                              testing::HasSubstr("1 have none within 20 ms"),
                              testing::HasSubstr("3 of 4 image files are not there")));
