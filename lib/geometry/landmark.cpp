@@ -72,6 +72,12 @@ FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& directio
           direction.dot(landmark.Centre()) + support.extent};
 }
 
+bool HasExtent(const Landmark& landmark) {
+  return landmark.Centre().allFinite() &&
+         landmark.frame_from_object.rotation.coeffs().allFinite() &&
+         landmark.half_axes.allFinite() && landmark.half_axes.minCoeff() > 0.0;
+}
+
 bool IsInFront(const Landmark& landmark_in_camera) {
   return Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
 }

@@ -53,6 +53,9 @@ struct FarthestPoint {
 };
 FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction);
 
+// Whether all of its numbers are finite and its half axes positive.
+bool HasExtent(const Landmark& landmark);
+
 // Whether the whole landmark is in front of the camera.
 bool IsInFront(const Landmark& landmark_in_camera);
 

@@ -81,8 +81,13 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
     ObjectEstimate object;
     object.object_index = static_cast<int>(i);
     object.observations = static_cast<int>(detections[i].size());
-    object.landmark_in_world = landmarks[i];
-    if (!landmarks[i]) object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
+    if (!landmarks[i]) {
+      object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
+    } else if (HasExtent(*landmarks[i])) {
+      object.landmark_in_world = landmarks[i];
+    } else {
+      object.failure = "collapsed";  // as boxes alone may be explained best
+    }
     map.objects.push_back(object);
   }
   if (options.covariances) AddCovariances(&problem, &map);

@@ -35,8 +35,9 @@ struct BackEndInput {
 // of them with detection_model quadric; with tangency those of odometry and boxes, as texture and
 // edges are bounded by themselves and the rest is no outlier. The first pose of each segment is
 // fixed: it defines the segment's world; with hold_poses all are, and odometry has no cost. Objects
-// without a start come back with the failure no_start, moving ones with moving. Throws
-// NumericalError when the solver has no usable solution.
+// without a start come back with the failure no_start, moving ones with moving, and those without
+// HasExtent in the end with collapsed. Throws NumericalError when the solver has no usable
+// solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options);
 
 }  // namespace soslam

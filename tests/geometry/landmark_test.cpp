@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -226,6 +228,21 @@ TEST(YawDifferenceModuloPi, WrapsAtQuarterTurns) {
   EXPECT_NEAR(YawDifferenceModuloPi(0.6 * kPi, 0.0), -0.4 * kPi, 1e-12);
   EXPECT_NEAR(YawDifferenceModuloPi(-0.6 * kPi, 0.0), 0.4 * kPi, 1e-12);
   EXPECT_NEAR(YawDifferenceModuloPi(0.1, 7.0 * kPi), 0.1, 1e-12);
+}
+
+TEST(HasExtent, RefusesFlakesAndWhatIsNowhere) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Landmark landmark{RandomRigid(), {0.1, 0.2, 0.3}};
+  EXPECT_TRUE(HasExtent(landmark));
+  for (const double half_axis : {0.0, -0.1, kInfinity, kNaN}) {
+    Landmark wrong = landmark;
+    wrong.half_axes.y() = half_axis;
+    EXPECT_FALSE(HasExtent(wrong)) << half_axis;
+  }
+  Landmark nowhere = landmark;
+  nowhere.frame_from_object.translation.x() = kNaN;
+  EXPECT_FALSE(HasExtent(nowhere));
 }
 
 }  // namespace
