@@ -198,6 +198,31 @@ void CheckSegments(const std::vector<Frame>& frames) {
   }
 }
 
+// Estimates lead to a held-out frame from its neighbours.
+void CheckHeldOut(const Sequence& sequence) {
+  for (size_t i = 0; i < sequence.held_out.size(); ++i) {
+    const Frame& frame = sequence.held_out[i].frame;
+    if (i > 0 && frame.id <= sequence.held_out[i - 1].frame.id) {
+      throw InputError(
+          fmt::format("/held_out/{}/frame/frame is {} after {}; expected ascending ids", i,
+                      frame.id, sequence.held_out[i - 1].frame.id));
+    }
+    const auto next = std::ranges::lower_bound(sequence.frames, frame.id, {}, &Frame::id);
+    if (next != sequence.frames.end() && next->id == frame.id) {
+      throw InputError(fmt::format(
+          "/held_out/{}/frame/frame is {}; expected a frame that is not in /frames", i, frame.id));
+    }
+    const bool has_neighbour =
+        (next != sequence.frames.begin() && std::prev(next)->segment == frame.segment) ||
+        (next != sequence.frames.end() && next->segment == frame.segment);
+    if (!has_neighbour) {
+      throw InputError(
+          fmt::format("/held_out/{}/frame/segment is {}; expected that of a frame before or after",
+                      i, frame.segment));
+    }
+  }
+}
+
 // Either all planes are known or none.
 void CheckPlanes(const json& json) {
   const bool is_known = !json.at("planes").empty();
@@ -246,6 +271,7 @@ Sequence SequenceFromJson(const json& json) {
        json.value("held_out", nlohmann::json::array())) {  // since version 1.3
     sequence.held_out.push_back(HeldOutFromJson(held_out));
   }
+  CheckHeldOut(sequence);
   json.at("rejected_detections").get_to(sequence.rejected_detections);
   return sequence;
 }

@@ -31,7 +31,7 @@ class TrackMerger {
       : model_(model), threads_(threads), association_(*association) {}
 
   void Run() {
-    for (int round = 1; MergeOnce(); ++round) {
+    while (MergeOnce()) {
     }
   }
 

@@ -15,17 +15,22 @@ namespace {
 struct Judged {
   int object_index;
   Landmark landmark_in_world;
+  int segment;  // whose world that is
   int in_sight = 0;
   int in_sight_matched = 0;
   std::vector<double> ious = {};
 };
 
-std::vector<Judged> JudgedLandmarks(const std::vector<ObjectEstimate>& estimates) {
+std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
+                                    const std::vector<ObjectEstimate>& estimates) {
+  const auto detections = DetectionsByObject(sequence);
   std::vector<Judged> judged;
   for (const ObjectEstimate& estimate : estimates) {
-    if (estimate.landmark_in_world) {
-      judged.push_back({estimate.object_index, *estimate.landmark_in_world});
-    }
+    const std::vector<int>& own = detections[static_cast<size_t>(estimate.object_index)];
+    if (!estimate.landmark_in_world || own.empty()) continue;
+    const Detection& first = sequence.detections[static_cast<size_t>(own.front())];
+    judged.push_back(
+        {estimate.object_index, *estimate.landmark_in_world, sequence.FrameOf(first).segment});
   }
   return judged;
 }
@@ -52,6 +57,7 @@ void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
   std::vector<bool> is_in_sight(judged->size());
   for (size_t i = 0; i < judged->size(); ++i) {
     const Judged& one = (*judged)[i];
+    if (one.segment != held_out.frame.segment) continue;
     const auto outline =
         OutlineBox(camera, Transform(world_from_camera.Inverse(), one.landmark_in_world));
     if (!outline) continue;
@@ -104,7 +110,7 @@ std::optional<HeldOutMetrics> EvaluateHeldOut(const Sequence& sequence,
                                               const std::vector<ObjectEstimate>& estimates,
                                               const std::vector<Rigid3d>& world_from_camera) {
   if (sequence.held_out.empty() || estimates.empty()) return std::nullopt;
-  std::vector<Judged> judged = JudgedLandmarks(estimates);
+  std::vector<Judged> judged = JudgedLandmarks(sequence, estimates);
   const double border_px = SmallestDistanceToBorder(sequence);
   for (size_t i = 0; i < sequence.held_out.size(); ++i) {
     Compare(sequence, sequence.held_out[i], world_from_camera[i], border_px, &judged);

@@ -54,6 +54,20 @@ void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
   for (size_t i = 0; i < objects.size(); ++i) objects[i]->covariance = (*covariances)[i];
 }
 
+void AddPlaneCovariances(const Sequence& sequence, BackEndProblem* problem, MapEstimate* map) {
+  std::vector<int> planes;
+  std::vector<std::pair<const double*, const double*>> blocks;
+  for (const auto& [index, data] : problem->PlaneData()) {
+    if (!sequence.planes[index].attitude_information) continue;
+    planes.push_back(static_cast<int>(index));
+    blocks.push_back(data);
+  }
+  if (planes.empty()) return;
+  const auto covariances = PlaneCovariances(blocks, &problem->problem());
+  if (!covariances) return;
+  for (size_t i = 0; i < planes.size(); ++i) map->plane_covariances[planes[i]] = (*covariances)[i];
+}
+
 }  // namespace
 
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options) {
@@ -90,7 +104,10 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
     }
     map.objects.push_back(object);
   }
-  if (options.covariances) AddCovariances(&problem, &map);
+  if (options.covariances) {
+    AddCovariances(&problem, &map);
+    AddPlaneCovariances(input.sequence, &problem, &map);
+  }
   return map;
 }
 

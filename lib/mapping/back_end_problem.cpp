@@ -154,6 +154,16 @@ std::vector<Plane> BackEndProblem::Planes() const {
   return planes;
 }
 
+std::map<size_t, std::pair<const double*, const double*>> BackEndProblem::PlaneData() const {
+  std::map<size_t, std::pair<const double*, const double*>> blocks;
+  for (size_t i = 0; i < offsets_.size(); ++i) {
+    if (problem_.HasParameterBlock(&offsets_[i])) {
+      blocks[i] = {normals_[normal_of_plane_[i]].data(), &offsets_[i]};
+    }
+  }
+  return blocks;
+}
+
 void BackEndProblem::AddStanding(size_t object_index) {
   const auto plane_index = static_cast<size_t>(input_.sequence.objects[object_index].plane_index);
   double* normal = NormalOf(plane_index).data();

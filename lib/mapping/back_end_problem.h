@@ -4,7 +4,9 @@
 #include <ceres/ceres.h>
 
 #include <deque>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "constraints/parameters.h"
@@ -36,6 +38,8 @@ class BackEndProblem {
   std::vector<std::optional<Landmark>> Landmarks() const;
   const std::vector<PoseBlock>& poses() const { return poses_; }
   std::vector<Plane> Planes() const;
+  // Normal and offset of each plane that something stands on.
+  std::map<size_t, std::pair<const double*, const double*>> PlaneData() const;
 
  private:
   void HoldPoses();

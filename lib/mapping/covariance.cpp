@@ -3,6 +3,7 @@
 
 #include <ceres/covariance.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,34 @@ std::optional<std::vector<Covariance9>> LandmarkCovariances(
     }
     covariances.push_back(scale.asDiagonal() * tangent * scale.asDiagonal());
     if (!covariances.back().allFinite()) return std::nullopt;
+  }
+  return covariances;
+}
+
+std::optional<std::vector<Eigen::Matrix4d>> PlaneCovariances(
+    const std::vector<std::pair<const double*, const double*>>& planes, ceres::Problem* problem) {
+  std::vector<std::pair<const double*, const double*>> pairs;
+  for (const auto& [normal, offset] : planes) {
+    pairs.insert(pairs.end(), {{normal, normal}, {normal, offset}, {offset, offset}});
+  }
+  // Parallel planes share a normal.
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::SPARSE_QR;
+  ceres::Covariance covariance(options);
+  if (!covariance.Compute(pairs, problem)) return std::nullopt;
+  std::vector<Eigen::Matrix4d> covariances;
+  for (const auto& [normal, offset] : planes) {
+    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> of_normal;
+    Eigen::Vector3d mixed;
+    double of_offset = 0.0;
+    covariance.GetCovarianceBlock(normal, normal, of_normal.data());
+    covariance.GetCovarianceBlock(normal, offset, mixed.data());
+    covariance.GetCovarianceBlock(offset, offset, &of_offset);
+    Eigen::Matrix4d whole;
+    whole << of_normal, mixed, mixed.transpose(), of_offset;
+    covariances.push_back(whole);
   }
   return covariances;
 }

@@ -71,6 +71,8 @@ struct MapEstimate {
   std::vector<Rigid3d> world_from_camera;  // one per Sequence::frames
   std::vector<Plane> planes_in_world;      // one per Sequence::planes; given ones as they were
   SolverSummary solver;
+  // By index into Sequence::planes, of estimated ones: over (normal, offset).
+  std::map<int, Eigen::Matrix4d> plane_covariances = {};
 };
 
 }  // namespace soslam

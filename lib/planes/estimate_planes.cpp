@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -68,6 +68,7 @@ class Estimator {
         detections_(DetectionsByObject(sequence)),
         attitude_(attitude) {
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
+      if (!sequence.objects[i].is_static) detections_[i].clear();  // of no one place in the world
       observations_.push_back(Observe(detections_[i], priors[i]));
       sparse_.push_back(Observe(SpreadOver(detections_[i], kViewsOfSearch), priors[i]));
     }
@@ -108,14 +109,14 @@ class Estimator {
     PlanesEstimate estimate;
     estimate.up_of_cameras = attitude_.up_in_world;
     Plane reference{up, 0.0};
-    std::vector<int> before;
+    std::pair<std::vector<size_t>, std::vector<int>> before;
     for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
       FindOwnHeights(reference.normal);
       if (deciding_.empty()) return std::nullopt;
       Decide(&reference);
       if (!RefineAll()) return std::nullopt;
-      estimate.settled = before == deciding_level_;
-      before = deciding_level_;
+      estimate.settled = before == std::pair(deciding_, deciding_level_);
+      before = {deciding_, deciding_level_};
       reference = standing_.planes.front();
     }
     Write(&estimate);
@@ -296,6 +297,7 @@ class Estimator {
     ObjectSupport support;
     if (!observations_[index]) {
       support.plane_index = PlaneOfMost();
+      if (!sequence_.objects[index].is_static) support.reason = SupportReason::kMoving;
       return support;
     }
     const auto deciding = std::find(deciding_.begin(), deciding_.end(), index);
@@ -315,6 +317,10 @@ class Estimator {
       if (!solution || (support.cost && solution->cost >= *support.cost)) continue;
       support.cost = solution->cost;
       support.plane_index = static_cast<int>(i);
+    }
+    if (!decides && !support.cost) {
+      support.plane_index = PlaneOfMost();
+      support.reason = SupportReason::kNoBody;
     }
     return support;
   }

@@ -72,7 +72,7 @@ struct PlanesOptions {
         "its poses carry the planes into the frames");
     visit.Flag("size_prior", &size_prior,
                "estimated: bodies are as high as the semantic table says (height_m), give or take "
-               "its spread; without it all metres come from the trajectory");
+               "its spread; without it all metres come from the trajectory; not with refine_poses");
     visit.Real(
         "odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e3},
         "refine_poses: standard deviation of the odometry between two frames, per axis; where "

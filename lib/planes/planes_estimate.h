@@ -27,9 +27,11 @@ enum class SupportReason {
   kLowestCost,    // they do not: the plane on which its boxes are explained best
   kNoViews,       // it has none: the plane of most objects
   kCameraHeight,  // the ground below the cameras that see it
+  kNoBody,        // its boxes are of a body on none of the planes: the plane of most objects
+  kMoving,        // it is in no one place: the plane of most objects
 };
-inline constexpr std::array kSupportReasonNames = {"own_height", "lowest_cost", "no_views",
-                                                   "camera_height"};
+inline constexpr std::array kSupportReasonNames = {"own_height",    "lowest_cost", "no_views",
+                                                   "camera_height", "no_body",     "moving"};
 
 struct ObjectSupport {
   int plane_index = 0;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <opencv2/core/utility.hpp>
+
 #include "base/error.h"
 #include "dataset/image_path.h"
 #include "image/read_image.h"
@@ -26,6 +28,7 @@ std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& 
 }
 
 FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequence) {
+  cv::setNumThreads(1);  // frames run in parallel; OpenCV's own threads would come on top
   if (sequence.image_distortion) undistorter_.emplace(sequence.camera, *sequence.image_distortion);
 }
 

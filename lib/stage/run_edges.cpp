@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <opencv2/core/utility.hpp>
 #include <vector>
 
 #include "artefact/edges_file.h"
@@ -45,7 +44,6 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});
 
   const FrameImageReader reader(sequence);
-  cv::setNumThreads(1);  // frames run in parallel; OpenCV's own threads would exceed `threads`
   const int frames = static_cast<int>(images.size());
   const int batch = 4 * threads;  // bounds the maps that wait for being written
   for (int begin = 0; begin < frames; begin += batch) {

@@ -23,11 +23,11 @@ namespace soslam {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
-constexpr double kMaxTiltOfVerticals = 12.0 * kRadians;
 
-// Of the dataset's images, in the frames' order.
+// Of the dataset's images, in the frames' order; the images are added to `inputs`.
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesOptions& options,
-                                         const StageFiles& files, int threads) {
+                                         const StageFiles& files, int threads,
+                                         std::vector<std::filesystem::path>* inputs) {
   if (files.count("dataset") == 0) {
     throw SettingsError(
         "verticals is true; expected --dataset with the images, or verticals = false");
@@ -37,6 +37,7 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
     views[i] = {sequence.CameraOf(sequence.frames[i]), {}, sequence.frames[i].world_from_camera};
   }
   const std::vector<FrameImage> images = FrameImages(sequence, files);
+  for (const FrameImage& image : images) inputs->push_back(image.path);
   const FrameImageReader reader(sequence);
   ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
     const FrameImage& image = images[static_cast<size_t>(i)];
@@ -48,7 +49,8 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
 
 // What is known about up, and the sequence's poses with the same up in all frames.
 LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& options,
-                            const StageFiles& files, int threads) {
+                            const StageFiles& files, int threads,
+                            std::vector<std::filesystem::path>* inputs) {
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
   LevelOptions level;
@@ -62,7 +64,7 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& optio
   if (!options.verticals || !has_images) {
     return {poses, AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad)};
   }
-  return Level(ViewsOfSegments(sequence, options, files, threads), level);
+  return Level(ViewsOfSegments(sequence, options, files, threads, inputs), level);
 }
 
 // Every segment has a world, and so an up and planes, of its own.
@@ -80,6 +82,7 @@ void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path
 struct Result {
   PlanesEstimate estimate;
   Sequence sequence;
+  std::vector<std::filesystem::path> inputs;  // beside the sequence
 };
 
 // Odometry drifts also along the plane's normal: poses, bodies and planes settle together.
@@ -91,41 +94,68 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   optimise.view_correlation_deg = options.view_correlation_deg;
   optimise.huber_delta = options.huber_delta;
   optimise.odometry_translation_sigma_m = options.odometry_translation_sigma_m;
-  optimise.covariances = false;
+  if (options.odometry_rotation_sigma_deg > 0.0) {
+    optimise.odometry_rotation_sigma_deg = options.odometry_rotation_sigma_deg;
+  }
+  optimise.axes_weight = 0.0;  // the world's axes mean nothing
   BackEndInput input{sequence, {}, priors, {}, {}};
   input.starts = ChooseUprightStarts(input, {}, optimise);
   return OptimiseMap(input, optimise);
 }
 
-void Replace(const Plane& plane_in_world, EstimatedPlane* plane) {
+// `covariance`: over (normal, offset).
+void Replace(const Plane& plane_in_world, const std::optional<Eigen::Matrix4d>& covariance,
+             EstimatedPlane* plane) {
   const Eigen::Vector3d& normal = plane_in_world.normal;
   plane->plane_in_world = plane_in_world;
   plane->point_in_world -= plane_in_world.SignedDistance(plane->point_in_world) * normal;
-  plane->x_axis_in_world =
+  const Eigen::Vector3d x =
       (plane->x_axis_in_world - normal.dot(plane->x_axis_in_world) * normal).normalized();
+  plane->x_axis_in_world = x;
+  plane->covariance.reset();
+  if (!covariance) return;
+  // Turns about x and y move the normal by -y and x; the plane rises at the point.
+  Eigen::Matrix<double, 3, 4> motion;
+  motion << -normal.cross(x).transpose(), 0.0, x.transpose(), 0.0,
+      -plane->point_in_world.transpose(), -1.0;
+  plane->covariance = motion * *covariance * motion.transpose();
+}
+
+// Poses, planes and bodies where they settle together; the sequence's own poses change with them.
+void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
+                     const PlanesOptions& options, PlanesEstimate* estimate, Sequence* level) {
+  const MapEstimate map = Adjusted(WithPlanes(*level, *estimate), priors, options);
+  for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
+    const auto covariance = map.plane_covariances.find(static_cast<int>(i));
+    Replace(map.planes_in_world[i],
+            covariance == map.plane_covariances.end() ? std::nullopt
+                                                      : std::optional(covariance->second),
+            &estimate->planes[i]);
+  }
+  for (size_t i = 0; i < level->frames.size(); ++i) {
+    level->frames[i].world_from_camera = map.world_from_camera[i];
+  }
+  estimate->cost = map.solver.final_cost;
 }
 
 Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,
                  int threads) {
   CheckOneSegment(sequence, files.at("sequence"));
+  if (options.size_prior && options.refine_poses) {
+    throw SettingsError(
+        "size_prior = true needs refine_poses = false: the back end knows no heights");
+  }
+  Result result;
+  result.inputs = {files.at("table")};
   const SemanticTable table = ReadSemanticTable(files.at("table"));
-  const LevelTrajectory trajectory = LevelFrames(sequence, options, files, threads);
+  const LevelTrajectory trajectory = LevelFrames(sequence, options, files, threads, &result.inputs);
   Sequence level = sequence;
   for (size_t i = 0; i < level.frames.size(); ++i) {
     level.frames[i].world_from_camera = trajectory.world_from_camera[i];
   }
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
-  Result result;
   result.estimate = EstimatePlanes(level, priors, trajectory.attitude, options, threads);
-  if (options.refine_poses) {
-    const MapEstimate map = Adjusted(WithPlanes(level, result.estimate), priors, options);
-    for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
-      Replace(map.planes_in_world[i], &result.estimate.planes[i]);
-    }
-    for (size_t i = 0; i < level.frames.size(); ++i) {
-      level.frames[i].world_from_camera = map.world_from_camera[i];
-    }
-  }
+  if (options.refine_poses) RefineWithPoses(priors, options, &result.estimate, &level);
   result.sequence = WithPlanes(std::move(level), result.estimate);
   result.sequence.frames = sequence.frames;  // odometry stays what was measured
   return result;
@@ -150,10 +180,14 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
         "planes is given; expected estimated or camera_height (given planes need no stage)");
   }
   const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
+  if (sequence.frames.empty()) {
+    throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
+  }
   const Result result = options.planes == PlaneSource::kCameraHeight
                             ? FromCameraHeight(sequence, options)
                             : FromBoxes(sequence, options, files, threads);
-  const ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
+  ArtefactInfo info = {OptionsToJson(options), {files.at("sequence")}};
+  info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
   WritePlanes(files.at("report"), result.estimate, sequence, info);
   WriteSequence(files.at("output"), result.sequence, info);
   fmt::print("{}: {} planes of {} objects\n", sequence.name, result.estimate.planes.size(),

@@ -82,7 +82,7 @@ TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
 }
 
 TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
-  HeldOutFrame held_out{sequence.frames.front(), {{"cup", 0.7, {10.5, 20.0, 30.0, 40.25}}}};
+  HeldOutFrame held_out{sequence.frames.back(), {{"cup", 0.7, {10.5, 20.0, 30.0, 40.25}}}};
   held_out.frame.id = sequence.frames.back().id + 1;
   sequence.held_out = {held_out};
   WriteSequence(file, sequence, {});

@@ -93,6 +93,31 @@ TEST_F(HeldOutTest, PosesFollowTheMap) {
   }
 }
 
+// What the map says of one frame moves the held-out frame after it, and no other.
+TEST_F(HeldOutTest, PosesAreThoseOfTheFrameBeforeAndTheOdometry) {
+  std::vector<Rigid3d> map;
+  for (const Frame& frame : sequence_.frames) map.push_back(frame.world_from_camera);
+  constexpr size_t kFrame = 4;
+  const Eigen::Vector3d shift(0.1, 0.2, 0.3);
+  map[kFrame].translation += shift;
+  const std::vector<Rigid3d> poses = HeldOutPoses(sequence_, map);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const Frame& frame = sequence_.held_out[i].frame;
+    const bool is_after = frame.id == sequence_.frames[kFrame].id + 1;
+    const Eigen::Vector3d moved = poses[i].translation - frame.world_from_camera.translation;
+    EXPECT_LT((moved - (is_after ? shift : Eigen::Vector3d(0, 0, 0))).norm(), 1e-9) << frame.id;
+  }
+}
+
+// Another segment has another world: its landmarks are in sight of no frame of this one.
+TEST_F(HeldOutTest, LandmarksAreComparedInTheirOwnSegment) {
+  for (HeldOutFrame& held_out : sequence_.held_out) held_out.frame.segment = 1;
+  const HeldOutMetrics metrics = Evaluate();
+  EXPECT_EQ(metrics.in_sight, 0);
+  EXPECT_EQ(metrics.detections_matched, 0);
+  EXPECT_EQ(metrics.detections, detections_);
+}
+
 TEST(HeldOutMetricsTest, WithoutHeldOutFramesThereAreNone) {
   const Sequence sequence = SyntheticSequence(RandomScene(7, 2, 6), false);
   EXPECT_FALSE(EvaluateHeldOut(sequence, {ObjectEstimate()}, {}));

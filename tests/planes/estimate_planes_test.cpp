@@ -243,5 +243,21 @@ TEST(EstimatePlanes, DoesNotLookAtTheGivenPlanes) {
   EXPECT_EQ(with.planes[0].plane_in_world.offset, without.planes[0].plane_in_world.offset);
 }
 
+// What moves takes part in nothing.
+TEST(EstimatePlanes, AMovingObjectDoesNotDecide) {
+  const Sequence sequence = SyntheticSequence(CuboidScene(3, 4), false);
+  PlanesOptions options = ModelOptions();
+  Sequence moving = sequence;
+  moving.objects[1].is_static = false;
+  const PlanesEstimate with = Estimate(moving, options);
+  EXPECT_EQ(with.objects[1].reason, SupportReason::kMoving);
+  for (Detection& detection : moving.detections) {
+    if (detection.object_index == 1) detection.box.y_max += 40.0;
+  }
+  const PlanesEstimate again = Estimate(moving, options);
+  EXPECT_EQ(with.planes[0].plane_in_world.normal, again.planes[0].plane_in_world.normal);
+  EXPECT_EQ(with.planes[0].plane_in_world.offset, again.planes[0].plane_in_world.offset);
+}
+
 }  // namespace
 }  // namespace soslam

@@ -70,6 +70,36 @@ TEST_F(RunPlanesTest, LaterStagesReadTheEstimatedPlanes) {
   }
 }
 
+// Odometry that sinks by a millimetre a frame: bodies are seen where they are once poses follow.
+TEST_F(RunPlanesTest, PosesAreRefinedWithThePlanes) {
+  for (size_t i = 0; i < sequence_.frames.size(); ++i) {
+    sequence_.frames[i].world_from_camera.translation.z() -= 1e-3 * static_cast<double>(i);
+  }
+  WriteSequence(File("sequence"), sequence_, {});
+  const auto error_in_last_frames = [&](bool refine_poses) {
+    options_.refine_poses = refine_poses;
+    Run();
+    const Sequence output = ReadSequence(File("output"));
+    double sum = 0.0;
+    int count = 0;
+    for (size_t i = 0; i < output.detections.size(); ++i) {
+      const Detection& found = output.detections[i];
+      if (2 * found.frame_index < static_cast<int>(output.frames.size())) continue;
+      const Plane& exact = sequence_.detections[i].plane_in_camera;
+      const Eigen::Vector3d foot = TrueLandmarkInCamera(sequence_, found)->Centre();
+      sum += std::abs(found.plane_in_camera.SignedDistance(foot) - exact.SignedDistance(foot));
+      ++count;
+    }
+    return sum / count;
+  };
+  EXPECT_LT(error_in_last_frames(true), 0.7 * error_in_last_frames(false));
+}
+
+TEST_F(RunPlanesTest, SizePriorNeedsPosesThatAreNotRefined) {
+  options_.size_prior = true;
+  ExpectError<SettingsError>([&] { Run(); }, {"size_prior", "refine_poses = false"});
+}
+
 TEST_F(RunPlanesTest, ReportSaysWhyAndHowSure) {
   Run();
   const json report = ReadArtefact(File("report"), "planes");
