@@ -298,7 +298,10 @@ TEST(AssociateWithoutPlanesTest, NoisyBoxesAreNearlyAllTheirObjects) {
   double sum = 0.0;
   for (int seed = 0; seed < kScenes; ++seed) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
-    const double f1 = F1(WithoutPlanes(WithoutIds(sequence)), sequence);
+    Sequence seen = WithoutPlanes(WithoutIds(sequence));
+    const Rigid3d motion = RandomRigid();  // the axes of the world mean nothing
+    for (Frame& frame : seen.frames) frame.world_from_camera = motion * frame.world_from_camera;
+    const double f1 = F1(seen, sequence);
     EXPECT_GE(f1, 0.8) << seed;
     sum += f1;
   }
@@ -314,14 +317,6 @@ TEST(AssociateWithoutPlanesTest, ObjectsAreOnNoPlane) {
   EXPECT_TRUE(associated.planes.empty());
   ASSERT_FALSE(associated.objects.empty());
   for (const Object& object : associated.objects) EXPECT_EQ(object.plane_index, kNoPlane);
-}
-
-TEST(AssociateWithoutPlanesTest, AMovedWorldChangesNoDecision) {
-  const Sequence sequence = WithoutPlanes(NoisySequence(3, {"thing"}));
-  Sequence moved = sequence;
-  const Rigid3d motion = RandomRigid();
-  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
-  EXPECT_EQ(Partition(AssociateAll(sequence)), Partition(AssociateAll(moved)));
 }
 
 }  // namespace
