@@ -21,7 +21,6 @@ inline constexpr int kNormalSize = 3;
 inline constexpr int kOffsetSize = 1;
 using PoseBlock = std::array<double, kPoseSize>;
 using LandmarkBlock = std::array<double, kLandmarkSize>;
-using NormalBlock = std::array<double, kNormalSize>;
 
 PoseBlock Pack(const Rigid3d& pose);
 LandmarkBlock Pack(const Landmark& landmark);

@@ -126,48 +126,43 @@ void BackEndProblem::AddOdometry() {
 // An estimated plane moves with what stands on it, under what is known of its normal besides.
 void BackEndProblem::AddPlanes() {
   const auto& planes = input_.sequence.planes;
-  normals_.reserve(planes.size());
-  offsets_.reserve(planes.size());
+  const auto are_parallel = [&](size_t one, size_t other) {
+    return planes[one].attitude_information && planes[other].attitude_information &&
+           planes[one].plane_in_world.normal == planes[other].plane_in_world.normal;
+  };
   for (size_t i = 0; i < planes.size(); ++i) {
-    const Plane& plane = planes[i].plane_in_world;
-    offsets_.push_back(plane.offset);
-    const auto is_parallel = [&](size_t other) {
-      return planes[other].attitude_information && planes[i].attitude_information &&
-             planes[other].plane_in_world.normal == plane.normal;
-    };
-    size_t other = 0;
-    while (other < i && !is_parallel(other)) ++other;
-    if (other < i) {
-      normal_of_plane_.push_back(normal_of_plane_[other]);
-      continue;
-    }
-    normal_of_plane_.push_back(normals_.size());
-    normals_.push_back({plane.normal.x(), plane.normal.y(), plane.normal.z()});
+    size_t first = 0;
+    while (first < i && !are_parallel(first, i)) ++first;
+    normal_of_plane_.push_back(first);
+  }
+  plane_blocks_.resize((kNormalSize + kOffsetSize) * planes.size());
+  for (size_t i = 0; i < planes.size(); ++i) {
+    Eigen::Map<Eigen::Vector3d> normal(NormalOf(i));
+    normal = planes[i].plane_in_world.normal;
+    *OffsetOf(i) = planes[i].plane_in_world.offset;
   }
 }
 
-std::vector<Plane> BackEndProblem::Planes() const {
+std::vector<Plane> BackEndProblem::Planes() {
   std::vector<Plane> planes;
-  for (size_t i = 0; i < offsets_.size(); ++i) {
-    planes.push_back(UnpackPlane(normals_[normal_of_plane_[i]].data(), &offsets_[i]));
+  for (size_t i = 0; i < normal_of_plane_.size(); ++i) {
+    planes.push_back(UnpackPlane(NormalOf(i), OffsetOf(i)));
   }
   return planes;
 }
 
-std::map<size_t, std::pair<const double*, const double*>> BackEndProblem::PlaneData() const {
+std::map<size_t, std::pair<const double*, const double*>> BackEndProblem::PlaneData() {
   std::map<size_t, std::pair<const double*, const double*>> blocks;
-  for (size_t i = 0; i < offsets_.size(); ++i) {
-    if (problem_.HasParameterBlock(&offsets_[i])) {
-      blocks[i] = {normals_[normal_of_plane_[i]].data(), &offsets_[i]};
-    }
+  for (size_t i = 0; i < normal_of_plane_.size(); ++i) {
+    if (problem_.HasParameterBlock(OffsetOf(i))) blocks[i] = {NormalOf(i), OffsetOf(i)};
   }
   return blocks;
 }
 
 void BackEndProblem::AddStanding(size_t object_index) {
   const auto plane_index = static_cast<size_t>(input_.sequence.objects[object_index].plane_index);
-  double* normal = NormalOf(plane_index).data();
-  double* offset = &offsets_[plane_index];
+  double* normal = NormalOf(plane_index);
+  double* offset = OffsetOf(plane_index);
   const bool is_new_normal = !problem_.HasParameterBlock(normal);
   // No loss: a body that floats is not an outlier, but wrong.
   problem_.AddResidualBlock(
@@ -379,8 +374,10 @@ std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::Ordering() {
   };
   for (PoseBlock& pose : poses_) add(pose.data(), 1);
   for (double& bias : detector_bias_px_) add(&bias, 2);
-  for (NormalBlock& normal : normals_) add(normal.data(), 3);
-  for (double& offset : offsets_) add(&offset, 4);
+  for (size_t i = 0; i < normal_of_plane_.size(); ++i) {
+    add(NormalOf(i), 3);
+    add(OffsetOf(i), 3);
+  }
   return ordering;
 }
 

@@ -37,9 +37,9 @@ class BackEndProblem {
   // In the world, where the variables are; none for objects without a start.
   std::vector<std::optional<Landmark>> Landmarks() const;
   const std::vector<PoseBlock>& poses() const { return poses_; }
-  std::vector<Plane> Planes() const;
+  std::vector<Plane> Planes();
   // Normal and offset of each plane that something stands on.
-  std::map<size_t, std::pair<const double*, const double*>> PlaneData() const;
+  std::map<size_t, std::pair<const double*, const double*>> PlaneData();
 
  private:
   void HoldPoses();
@@ -64,7 +64,12 @@ class BackEndProblem {
   PoseBlock& Pose(const Detection& detection) {
     return poses_[static_cast<size_t>(detection.frame_index)];
   }
-  NormalBlock& NormalOf(size_t plane_index) { return normals_[normal_of_plane_[plane_index]]; }
+  double* NormalOf(size_t plane_index) {
+    return &plane_blocks_[kNormalSize * normal_of_plane_[plane_index]];
+  }
+  double* OffsetOf(size_t plane_index) {
+    return &plane_blocks_[kNormalSize * normal_of_plane_.size() + plane_index];
+  }
   LandmarkBlock& LandmarkOf(const Detection& detection) {
     return landmarks_[static_cast<size_t>(detection.object_index)];
   }
@@ -79,9 +84,9 @@ class BackEndProblem {
   ceres::Problem problem_;
   std::vector<PoseBlock> poses_;
   std::vector<LandmarkBlock> landmarks_;
-  std::vector<NormalBlock> normals_;          // parallel planes share one
-  std::vector<size_t> normal_of_plane_;       // into normals_
-  std::vector<double> offsets_;               // of Sequence::planes
+  std::vector<size_t> normal_of_plane_;  // parallel planes share the normal of the first
+  // Of Sequence::planes: all normals, then all offsets. One array, as the solver sorts by address.
+  std::vector<double> plane_blocks_;
   std::array<double, 4> detector_bias_px_{};  // left, top, right, bottom
   std::vector<ceres::ResidualBlockId> image_terms_;
   SolverSummary summary_;
