@@ -27,10 +27,12 @@ json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) 
 json PlaneToJson(const EstimatedPlane& plane) {
   json covariance, tilt_sigma, height_sigma;
   if (plane.covariance) {
-    covariance = MatrixToJson(*plane.covariance);
-    const Eigen::Matrix2d of_turns = plane.covariance->topLeftCorner<2, 2>();
-    tilt_sigma = kDegPerRad * std::sqrt(of_turns.trace());
-    height_sigma = std::sqrt((*plane.covariance)(2, 2));
+    // Solvers order covariances by addresses, which the last digits show: bytes are the same from
+    // run to run without them.
+    const Eigen::Matrix3d rounded = plane.covariance->cast<float>().cast<double>();
+    covariance = MatrixToJson(rounded);
+    tilt_sigma = kDegPerRad * std::sqrt(rounded(0, 0) + rounded(1, 1));
+    height_sigma = std::sqrt(rounded(2, 2));
   }
   return {{"plane_in_world", plane.plane_in_world},
           {"point_in_world", VectorToJson(plane.point_in_world)},

@@ -118,10 +118,7 @@ void Replace(const Plane& plane_in_world, const std::optional<Eigen::Matrix4d>& 
   Eigen::Matrix<double, 3, 4> motion;
   motion << -normal.cross(x).transpose(), 0.0, x.transpose(), 0.0,
       -plane->point_in_world.transpose(), -1.0;
-  // The solver orders covariances by addresses, which the last digits show: without them, bytes are
-  // the same from run to run.
-  const Eigen::Matrix3d exact = motion * *covariance * motion.transpose();
-  plane->covariance = exact.cast<float>().cast<double>();
+  plane->covariance = motion * *covariance * motion.transpose();
 }
 
 // Poses, planes and bodies where they settle together; the sequence's own poses change with them.
