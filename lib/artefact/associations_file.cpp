@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/associations_file.h"
 
-#include <array>
+#include "artefact/json_geometry.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
-
-// In the order of Detection::is_bound.
-constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
-
-template <typename T>
-json OrNull(const std::optional<T>& value) {
-  return value ? json(*value) : json();
-}
 
 json IdOrNull(int index, int first_id) { return index >= 0 ? json(index + first_id) : json(); }
 

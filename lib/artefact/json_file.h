@@ -3,12 +3,19 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 
 namespace soslam {
+
+// What is not there is null in every artefact.
+template <typename Value>
+nlohmann::json OrNull(const std::optional<Value>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
 
 // What shaped an artefact.
 struct ArtefactInfo {

@@ -16,8 +16,6 @@ using nlohmann::json;
 // Rounding while poses are composed stays far below; a number typed by hand does not.
 constexpr double kUnitTolerance = 1e-6;
 
-json VectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
 Eigen::Vector3d VectorFromJson(const json& json) {
   return Eigen::Vector3d(json.get<std::array<double, 3>>().data());
 }
@@ -29,6 +27,8 @@ void RequireUnit(double norm, const char* name, const json& found) {
 }
 
 }  // namespace
+
+json VectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 json MatrixToJson(const Eigen::Matrix3d& matrix) {
   json rows = json::array();

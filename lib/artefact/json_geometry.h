@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -34,6 +35,11 @@ void from_json(const nlohmann::json& json, Box& box);
 // {"width", "height", "fx", "fy", "cx", "cy"} in pixels.
 void to_json(nlohmann::json& json, const Camera& camera);
 void from_json(const nlohmann::json& json, Camera& camera);
+
+// The edges of a box in the order of Box::EdgeLines.
+inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
+
+nlohmann::json VectorToJson(const Eigen::Vector3d& vector);
 
 // Rows of three numbers.
 nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);

@@ -4,10 +4,6 @@
 namespace soslam {
 namespace {
 
-nlohmann::json OrNull(const std::optional<double>& value) {
-  return value ? nlohmann::json(*value) : nlohmann::json();
-}
-
 nlohmann::json ToJson(const MetricsSummary& summary) {
   return {{"objects", summary.objects},
           {"observations", summary.observations},

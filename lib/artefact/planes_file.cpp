@@ -13,10 +13,6 @@ using nlohmann::json;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-json VectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
-json OrNull(const std::optional<double>& value) { return value ? json(*value) : json(); }
-
 json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) {
   if (!error) return {};
   return {{"plane", given.planes[static_cast<size_t>(error->given_plane_index)].id},
@@ -27,12 +23,9 @@ json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) 
 json PlaneToJson(const EstimatedPlane& plane) {
   json covariance, tilt_sigma, height_sigma;
   if (plane.covariance) {
-    // Solvers order covariances by addresses, which the last digits show: bytes are the same from
-    // run to run without them.
-    const Eigen::Matrix3d rounded = plane.covariance->cast<float>().cast<double>();
-    covariance = MatrixToJson(rounded);
-    tilt_sigma = kDegPerRad * std::sqrt(rounded(0, 0) + rounded(1, 1));
-    height_sigma = std::sqrt(rounded(2, 2));
+    covariance = MatrixToJson(*plane.covariance);
+    tilt_sigma = kDegPerRad * std::sqrt((*plane.covariance)(0, 0) + (*plane.covariance)(1, 1));
+    height_sigma = std::sqrt((*plane.covariance)(2, 2));
   }
   return {{"plane_in_world", plane.plane_in_world},
           {"point_in_world", VectorToJson(plane.point_in_world)},

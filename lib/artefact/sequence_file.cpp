@@ -18,9 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-// In the order of Detection::is_bound.
-constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
-
 json FrameToJson(const Frame& frame) {
   const auto& truth = frame.true_world_from_camera;
   json fields = {{"frame", frame.id},

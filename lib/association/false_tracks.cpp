@@ -21,22 +21,6 @@ double CoveredShare(const Box& box, const Box& by) {
   return std::max(0.0, width) * std::max(0.0, height) / (box.Width() * box.Height());
 }
 
-// The plane that a landmark stands on.
-Plane PlaneUnder(const Landmark& landmark) {
-  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
-  return {up, landmark.half_axes.z() - up.dot(landmark.Centre())};
-}
-
-// How close to the image border (px) boxes are still used.
-double SmallestDistanceToBorder(const Sequence& sequence) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const Detection& detection : sequence.detections) {
-    const Camera& camera = sequence.CameraOf(detection);
-    smallest = std::min(smallest, DistanceToBorder(detection.box, camera.width, camera.height));
-  }
-  return smallest;
-}
-
 // In how many frames the track was detected, or should have been: wholly in the image, as far from
 // its border as all detections are, as large as the smallest of its boxes, and not behind what was
 // detected.

@@ -35,18 +35,6 @@ std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
   return judged;
 }
 
-// How close to the image border (px) boxes are detected.
-double SmallestDistanceToBorder(const Sequence& sequence) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const HeldOutFrame& held_out : sequence.held_out) {
-    const Camera& camera = sequence.CameraOf(held_out.frame);
-    for (const auto& labelled : held_out.boxes) {
-      smallest = std::min(smallest, DistanceToBorder(labelled.box, camera.width, camera.height));
-    }
-  }
-  return smallest;
-}
-
 // Compares the landmarks with the boxes of one frame.
 void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
              const Rigid3d& world_from_camera, double border_px, std::vector<Judged>* judged) {

@@ -72,6 +72,11 @@ FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& directio
           direction.dot(landmark.Centre()) + support.extent};
 }
 
+Plane PlaneUnder(const Landmark& landmark) {
+  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+  return {up, landmark.half_axes.z() - up.dot(landmark.Centre())};
+}
+
 bool HasExtent(const Landmark& landmark) {
   return landmark.Centre().allFinite() &&
          landmark.frame_from_object.rotation.coeffs().allFinite() &&

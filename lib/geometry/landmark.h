@@ -53,6 +53,9 @@ struct FarthestPoint {
 };
 FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction);
 
+// The plane that it stands on: where its -z axis leaves it, across that axis.
+Plane PlaneUnder(const Landmark& landmark);
+
 // Whether all of its numbers are finite and its half axes positive.
 bool HasExtent(const Landmark& landmark);
 

@@ -22,13 +22,22 @@ double Change(const Landmark& from, const Landmark& to) {
                    to.frame_from_object.rotation.angularDistance(from.frame_from_object.rotation)});
 }
 
+// In the world, where the variables are; none for objects without a start.
+std::vector<std::optional<Landmark>> LandmarksOf(BackEndProblem* problem, size_t objects) {
+  std::vector<std::optional<Landmark>> landmarks;
+  for (size_t i = 0; i < objects; ++i) {
+    landmarks.push_back(problem->variables().LandmarkValue(i));
+  }
+  return landmarks;
+}
+
 // Whether they settled.
-bool SettleWithImages(BackEndProblem* problem) {
+bool SettleWithImages(size_t objects, BackEndProblem* problem) {
   for (int round = 0; round < kMaxImageRounds; ++round) {
-    const std::vector<std::optional<Landmark>> before = problem->Landmarks();
+    const std::vector<std::optional<Landmark>> before = LandmarksOf(problem, objects);
     problem->RenewImageTerms();
     problem->Solve();
-    const std::vector<std::optional<Landmark>> after = problem->Landmarks();
+    const std::vector<std::optional<Landmark>> after = LandmarksOf(problem, objects);
     double change = 0.0;
     for (size_t i = 0; i < before.size(); ++i) {
       if (before[i]) change = std::max(change, Change(*before[i], *after[i]));
@@ -43,7 +52,7 @@ void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
   std::vector<ObjectEstimate*> objects;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
-    blocks.push_back(problem->LandmarkData(static_cast<size_t>(object.object_index)));
+    blocks.push_back(problem->variables().Landmark(static_cast<size_t>(object.object_index)));
     objects.push_back(&object);
   }
   const auto covariances = LandmarkCovariances(blocks, &problem->problem());
@@ -57,10 +66,12 @@ void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
 void AddPlaneCovariances(const Sequence& sequence, BackEndProblem* problem, MapEstimate* map) {
   std::vector<int> planes;
   std::vector<std::pair<const double*, const double*>> blocks;
-  for (const auto& [index, data] : problem->PlaneData()) {
-    if (!sequence.planes[index].attitude_information) continue;
-    planes.push_back(static_cast<int>(index));
-    blocks.push_back(data);
+  BackEndVariables& variables = problem->variables();
+  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+    const bool holds_something = problem->problem().HasParameterBlock(variables.Offset(i));
+    if (!sequence.planes[i].attitude_information || !holds_something) continue;
+    planes.push_back(static_cast<int>(i));
+    blocks.emplace_back(variables.Normal(i), variables.Offset(i));
   }
   if (planes.empty()) return;
   const auto covariances = PlaneCovariances(blocks, &problem->problem());
@@ -77,7 +88,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   bool settled = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
-      settled = SettleWithImages(&problem);
+      settled = SettleWithImages(input.starts.size(), &problem);
     }
   } else if (!input.symmetry_images.empty()) {
     problem.RenewImageTerms();  // the paper's pairs are those of the start
@@ -85,12 +96,15 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   }
   map.solver = problem.summary();
   map.solver.converged = map.solver.converged && settled;
-  for (const PoseBlock& pose : problem.poses()) {
-    map.world_from_camera.push_back(UnpackPose(pose.data()));
+  const BackEndVariables& variables = problem.variables();
+  for (size_t i = 0; i < input.sequence.frames.size(); ++i) {
+    map.world_from_camera.push_back(variables.PoseValue(i));
   }
-  map.planes_in_world = problem.Planes();
+  for (size_t i = 0; i < input.sequence.planes.size(); ++i) {
+    map.planes_in_world.push_back(variables.PlaneValue(i));
+  }
   const auto detections = DetectionsByObject(input.sequence);
-  const std::vector<std::optional<Landmark>> landmarks = problem.Landmarks();
+  const std::vector<std::optional<Landmark>> landmarks = LandmarksOf(&problem, input.starts.size());
   for (size_t i = 0; i < landmarks.size(); ++i) {
     ObjectEstimate object;
     object.object_index = static_cast<int>(i);

@@ -49,40 +49,26 @@ ceres::Solver::Options SolverOptions(int max_iterations) {
 }  // namespace
 
 BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions& options)
-    : input_(input), options_(options), loss_(options.huber_delta), problem_(BorrowLoss()) {
-  for (const Frame& frame : input.sequence.frames) poses_.push_back(Pack(frame.world_from_camera));
-  for (const auto& start : input.starts) landmarks_.push_back(Pack(start.value_or(Landmark())));
-  for (PoseBlock& pose : poses_) {
-    problem_.AddParameterBlock(pose.data(), kPoseSize, NewPoseManifold());
+    : input_(input),
+      options_(options),
+      loss_(options.huber_delta),
+      problem_(BorrowLoss()),
+      variables_(input) {
+  for (size_t i = 0; i < input.sequence.frames.size(); ++i) {
+    problem_.AddParameterBlock(variables_.Pose(i), kPoseSize, NewPoseManifold());
   }
   HoldPoses();
   WeighViews();
   if (!options.hold_poses) AddOdometry();
-  AddPlanes();
-  for (size_t i = 0; i < landmarks_.size(); ++i) {
+  for (size_t i = 0; i < input.starts.size(); ++i) {
     if (input.starts[i]) AddLandmark(i);
   }
   AddDetections();
 }
 
-Landmark BackEndProblem::LandmarkInWorld(size_t object_index) const {
-  Landmark landmark = UnpackLandmark(landmarks_[object_index].data());
-  landmark.shape_exponent = input_.starts[object_index]->shape_exponent;
-  return landmark;
-}
-
-std::vector<std::optional<Landmark>> BackEndProblem::Landmarks() const {
-  std::vector<std::optional<Landmark>> landmarks(landmarks_.size());
-  for (size_t i = 0; i < landmarks.size(); ++i) {
-    if (input_.starts[i]) landmarks[i] = LandmarkInWorld(i);
-  }
-  return landmarks;
-}
-
 Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
-  const PoseBlock& pose = poses_[static_cast<size_t>(detection.frame_index)];
-  return Transform(UnpackPose(pose.data()).Inverse(),
-                   LandmarkInWorld(static_cast<size_t>(detection.object_index)));
+  return Transform(variables_.PoseValue(static_cast<size_t>(detection.frame_index)).Inverse(),
+                   *variables_.LandmarkValue(static_cast<size_t>(detection.object_index)));
 }
 
 void BackEndProblem::WeighViews() {
@@ -103,7 +89,7 @@ void BackEndProblem::HoldPoses() {
   const auto& frames = input_.sequence.frames;
   for (size_t i = 0; i < frames.size(); ++i) {
     if (options_.hold_poses || i == 0 || frames[i].segment != frames[i - 1].segment) {
-      problem_.SetParameterBlockConstant(poses_[i].data());
+      problem_.SetParameterBlockConstant(variables_.Pose(i));
     }
   }
 }
@@ -118,57 +104,22 @@ void BackEndProblem::AddOdometry() {
         new OdometryResidual(first_from_second,
                              options_.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
                              options_.odometry_translation_sigma_m),
-        &loss_, poses_[i - 1].data(), poses_[i].data());
+        &loss_, variables_.Pose(i - 1), variables_.Pose(i));
     ++summary_.residuals["odometry"];
   }
 }
 
 // An estimated plane moves with what stands on it, under what is known of its normal besides.
-void BackEndProblem::AddPlanes() {
-  const auto& planes = input_.sequence.planes;
-  const auto are_parallel = [&](size_t one, size_t other) {
-    return planes[one].attitude_information && planes[other].attitude_information &&
-           planes[one].plane_in_world.normal == planes[other].plane_in_world.normal;
-  };
-  for (size_t i = 0; i < planes.size(); ++i) {
-    size_t first = 0;
-    while (first < i && !are_parallel(first, i)) ++first;
-    normal_of_plane_.push_back(first);
-  }
-  plane_blocks_.resize((kNormalSize + kOffsetSize) * planes.size());
-  for (size_t i = 0; i < planes.size(); ++i) {
-    Eigen::Map<Eigen::Vector3d> normal(NormalOf(i));
-    normal = planes[i].plane_in_world.normal;
-    *OffsetOf(i) = planes[i].plane_in_world.offset;
-  }
-}
-
-std::vector<Plane> BackEndProblem::Planes() {
-  std::vector<Plane> planes;
-  for (size_t i = 0; i < normal_of_plane_.size(); ++i) {
-    planes.push_back(UnpackPlane(NormalOf(i), OffsetOf(i)));
-  }
-  return planes;
-}
-
-std::map<size_t, std::pair<const double*, const double*>> BackEndProblem::PlaneData() {
-  std::map<size_t, std::pair<const double*, const double*>> blocks;
-  for (size_t i = 0; i < normal_of_plane_.size(); ++i) {
-    if (problem_.HasParameterBlock(OffsetOf(i))) blocks[i] = {NormalOf(i), OffsetOf(i)};
-  }
-  return blocks;
-}
-
 void BackEndProblem::AddStanding(size_t object_index) {
   const auto plane_index = static_cast<size_t>(input_.sequence.objects[object_index].plane_index);
-  double* normal = NormalOf(plane_index);
-  double* offset = OffsetOf(plane_index);
+  double* normal = variables_.Normal(plane_index);
+  double* offset = variables_.Offset(plane_index);
   const bool is_new_normal = !problem_.HasParameterBlock(normal);
   // No loss: a body that floats is not an outlier, but wrong.
   problem_.AddResidualBlock(
       new StandingResidual(options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
                            options_.standing_height_sigma_m),
-      nullptr, landmarks_[object_index].data(), normal, offset);
+      nullptr, variables_.Landmark(object_index), normal, offset);
   const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
   if (!attitude || !options_.refine_planes) {
     problem_.SetParameterBlockConstant(normal);
@@ -183,7 +134,7 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
   const Plane& plane =
       input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-  double* landmark = landmarks_[object_index].data();
+  double* landmark = variables_.Landmark(object_index);
   problem_.AddParameterBlock(landmark, kLandmarkSize, NewLandmarkManifold());
   if (options_.support) {
     if (options_.detection_model == DetectionModel::kTangency) {
@@ -209,7 +160,7 @@ void BackEndProblem::AddRatio(size_t object_index) {
     ++summary_.gated["object_without_ratio"];
     return;
   }
-  double* landmark = landmarks_[object_index].data();
+  double* landmark = variables_.Landmark(object_index);
   if (options_.detection_model == DetectionModel::kTangency) {
     // No loss: a ratio far from the prior is as unlikely as its spread says.
     problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<RatioTerm>(*prior)),
@@ -244,8 +195,8 @@ void BackEndProblem::AddDetections() {
 void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.CameraOf(detection);
-  double* pose = Pose(detection).data();
-  double* landmark = LandmarkOf(detection).data();
+  double* pose = Pose(detection);
+  double* landmark = LandmarkOf(detection);
   if (options_.detection_model == DetectionModel::kQuadric) {
     problem_.AddResidualBlock(
         new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()), &loss_,
@@ -262,17 +213,18 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_came
       continue;
     }
     problem_.AddResidualBlock(new TangencyResidual(edges[i], landmark_in_camera),
-                              &view_losses_.back(), pose, landmark, &detector_bias_px_[i]);
+                              &view_losses_.back(), pose, landmark, variables_.Bias(i));
   }
 }
 
 void BackEndProblem::HoldBias() {
-  for (double& bias : detector_bias_px_) {
-    if (!problem_.HasParameterBlock(&bias)) continue;
+  for (size_t i = 0; i < variables_.BiasValues().size(); ++i) {
+    double* bias = variables_.Bias(i);
+    if (!problem_.HasParameterBlock(bias)) continue;
     if (options_.detector_bias_sigma_px > 0.0) {
-      problem_.AddResidualBlock(new BiasResidual(options_.detector_bias_sigma_px), nullptr, &bias);
+      problem_.AddResidualBlock(new BiasResidual(options_.detector_bias_sigma_px), nullptr, bias);
     } else {
-      problem_.SetParameterBlockConstant(&bias);
+      problem_.SetParameterBlockConstant(bias);
     }
   }
 }
@@ -315,8 +267,8 @@ void BackEndProblem::AddAsymmetry(size_t index, const std::shared_ptr<const Symm
   }
   summary_.residuals["symmetry"] += residual->num_residuals();
   // No further loss: a pair's residual is bounded.
-  image_terms_.push_back(problem_.AddResidualBlock(
-      residual.release(), nullptr, Pose(detection).data(), LandmarkOf(detection).data()));
+  image_terms_.push_back(problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection),
+                                                   LandmarkOf(detection)));
 }
 
 void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
@@ -337,7 +289,7 @@ void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const Symmetry
     image_terms_.push_back(problem_.AddResidualBlock(
         new SymmetryResidual(symmetry.descriptor, image, camera, pixel,
                              landmark_in_camera.shape_exponent, options_.symmetry_sigma),
-        &loss_, Pose(detection).data(), LandmarkOf(detection).data()));
+        &loss_, Pose(detection), LandmarkOf(detection)));
   }
   summary_.residuals["symmetry"] += static_cast<int>(visible.size());
 }
@@ -353,30 +305,29 @@ void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImag
   }
   ++summary_.residuals["edges"];
   // No further loss: a point's residual is bounded.
-  image_terms_.push_back(problem_.AddResidualBlock(
-      residual.release(), nullptr, Pose(detection).data(), LandmarkOf(detection).data()));
+  image_terms_.push_back(problem_.AddResidualBlock(residual.release(), nullptr, Pose(detection),
+                                                   LandmarkOf(detection)));
 }
 
 std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (size_t i = 0; i < landmarks_.size(); ++i) {
-    if (input_.starts[i]) ordering->AddElementToGroup(landmarks_[i].data(), 0);
+  for (size_t i = 0; i < input_.starts.size(); ++i) {
+    if (input_.starts[i]) ordering->AddElementToGroup(variables_.Landmark(i), 0);
   }
   return ordering;
 }
 
-// Landmarks are eliminated first. Within a group blocks are sorted by their addresses: a group has
-// those of one array, for identical bytes from run to run.
+// Landmarks are eliminated first.
 std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::Ordering() {
   auto ordering = LandmarkOrdering();
   const auto add = [&](double* block, int group) {
     if (problem_.HasParameterBlock(block)) ordering->AddElementToGroup(block, group);
   };
-  for (PoseBlock& pose : poses_) add(pose.data(), 1);
-  for (double& bias : detector_bias_px_) add(&bias, 2);
-  for (size_t i = 0; i < normal_of_plane_.size(); ++i) {
-    add(NormalOf(i), 3);
-    add(OffsetOf(i), 3);
+  for (size_t i = 0; i < input_.sequence.frames.size(); ++i) add(variables_.Pose(i), 1);
+  for (size_t i = 0; i < variables_.BiasValues().size(); ++i) add(variables_.Bias(i), 2);
+  for (size_t i = 0; i < input_.sequence.planes.size(); ++i) {
+    add(variables_.Normal(i), 3);
+    add(variables_.Offset(i), 3);
   }
   return ordering;
 }
@@ -396,7 +347,7 @@ void BackEndProblem::Solve() {
   summary_.final_cost = summary.final_cost;
   summary_.iterations += static_cast<int>(summary.iterations.size()) - 1;
   summary_.converged = summary.termination_type == ceres::CONVERGENCE;
-  summary_.detector_bias_px = detector_bias_px_;
+  summary_.detector_bias_px = variables_.BiasValues();
   for (const auto& iteration : summary.iterations) {
     // A rejected step's cost is that of where it would have led.
     const bool stays = iteration.iteration > 0 && !iteration.step_is_successful;

@@ -4,13 +4,11 @@
 #include <ceres/ceres.h>
 
 #include <deque>
-#include <map>
 #include <memory>
-#include <utility>
 #include <vector>
 
-#include "constraints/parameters.h"
 #include "mapping/back_end.h"
+#include "mapping/back_end_variables.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
 
@@ -33,13 +31,8 @@ class BackEndProblem {
 
   const SolverSummary& summary() const { return summary_; }
   ceres::Problem& problem() { return problem_; }
-  const double* LandmarkData(size_t object_index) const { return landmarks_[object_index].data(); }
-  // In the world, where the variables are; none for objects without a start.
-  std::vector<std::optional<Landmark>> Landmarks() const;
-  const std::vector<PoseBlock>& poses() const { return poses_; }
-  std::vector<Plane> Planes();
-  // Normal and offset of each plane that something stands on.
-  std::map<size_t, std::pair<const double*, const double*>> PlaneData();
+  // Where Solve has left them.
+  BackEndVariables& variables() { return variables_; }
 
  private:
   void HoldPoses();
@@ -58,20 +51,13 @@ class BackEndProblem {
                     const Landmark& landmark_in_camera);
   void AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image);
   void HoldBias();
-  Landmark LandmarkInWorld(size_t object_index) const;
   // A detection's landmark as its camera sees it, where the variables are.
   Landmark LandmarkInCamera(const Detection& detection) const;
-  PoseBlock& Pose(const Detection& detection) {
-    return poses_[static_cast<size_t>(detection.frame_index)];
+  double* Pose(const Detection& detection) {
+    return variables_.Pose(static_cast<size_t>(detection.frame_index));
   }
-  double* NormalOf(size_t plane_index) {
-    return &plane_blocks_[kNormalSize * normal_of_plane_[plane_index]];
-  }
-  double* OffsetOf(size_t plane_index) {
-    return &plane_blocks_[kNormalSize * normal_of_plane_.size() + plane_index];
-  }
-  LandmarkBlock& LandmarkOf(const Detection& detection) {
-    return landmarks_[static_cast<size_t>(detection.object_index)];
+  double* LandmarkOf(const Detection& detection) {
+    return variables_.Landmark(static_cast<size_t>(detection.object_index));
   }
   std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();
   std::shared_ptr<ceres::ParameterBlockOrdering> Ordering();
@@ -82,12 +68,7 @@ class BackEndProblem {
   std::vector<double> view_weights_;  // one per detection
   std::deque<ceres::ScaledLoss> view_losses_;
   ceres::Problem problem_;
-  std::vector<PoseBlock> poses_;
-  std::vector<LandmarkBlock> landmarks_;
-  std::vector<size_t> normal_of_plane_;  // parallel planes share the normal of the first
-  // Of Sequence::planes: all normals, then all offsets. One array, as the solver sorts by address.
-  std::vector<double> plane_blocks_;
-  std::array<double, 4> detector_bias_px_{};  // left, top, right, bottom
+  BackEndVariables variables_;
   std::vector<ceres::ResidualBlockId> image_terms_;
   SolverSummary summary_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -129,6 +130,22 @@ inline std::optional<Landmark> TrueLandmarkInCamera(const Sequence& sequence,
   const Frame& frame = sequence.FrameOf(detection);
   const Rigid3d world_from_camera = frame.true_world_from_camera.value_or(frame.world_from_camera);
   return Transform(world_from_camera.Inverse(), truth->landmark_in_world);
+}
+
+// How close to the image border (px) boxes come that passed the gates of import.
+inline double SmallestDistanceToBorder(const Sequence& sequence) {
+  double smallest = std::numeric_limits<double>::infinity();
+  const auto add = [&](const Camera& camera, const Box& box) {
+    smallest = std::min(smallest, DistanceToBorder(box, camera.width, camera.height));
+  };
+  for (const Detection& detection : sequence.detections) {
+    add(sequence.CameraOf(detection), detection.box);
+  }
+  for (const HeldOutFrame& held_out : sequence.held_out) {
+    for (const auto& labelled : held_out.boxes)
+      add(sequence.CameraOf(held_out.frame), labelled.box);
+  }
+  return smallest;
 }
 
 // Indices into sequence.detections of each object's detections, in frame order.

@@ -90,10 +90,6 @@ Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMoti
   return Transform(MotionOf(plane, pivot, motion), landmark);
 }
 
-Plane PlaneUnder(const Plane& plane, const Landmark& landmark) {
-  return {plane.normal, landmark.half_axes.z() - plane.normal.dot(landmark.Centre())};
-}
-
 std::optional<StandingBody> Settled(StandingBody body) {
   const auto fitted = FitUpright(body.observation.plane_in_world, body.landmark,
                                  OutlineTerms(body.observation), /*yaw_is_free=*/true);
@@ -138,7 +134,7 @@ std::optional<StandingBody> BodyOfFreeHeight(MultiViewObservation observation,
   std::optional<StandingBody> best;
   double lowest = 0.0;
   for (const UprightSolution& optimum : optima) {
-    observation.plane_in_world = PlaneUnder(observation.plane_in_world, optimum.landmark);
+    observation.plane_in_world.offset = PlaneUnder(optimum.landmark).offset;
     const auto body = AtBestHeight({observation, optimum.landmark});
     if (!body) continue;
     const double cost = EvidenceOf(*body, body->landmark.Centre()).cost;

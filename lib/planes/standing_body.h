@@ -17,9 +17,6 @@ Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion&
 Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
                const Landmark& landmark);
 
-// The plane parallel to `plane` that a landmark stands on.
-Plane PlaneUnder(const Plane& plane, const Landmark& landmark);
-
 // How the cost of an object's boxes changes with the plane that it stands on, when the body is
 // always the best one for the plane: to second order in the plane's motion.
 struct PlaneEvidence {

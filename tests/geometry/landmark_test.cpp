@@ -230,6 +230,16 @@ TEST(YawDifferenceModuloPi, WrapsAtQuarterTurns) {
   EXPECT_NEAR(YawDifferenceModuloPi(0.1, 7.0 * kPi), 0.1, 1e-12);
 }
 
+// Its lowest point is on the plane, and the rest of it above.
+TEST(PlaneUnder, TouchesTheLowestPoint) {
+  for (int i = 0; i < 20; ++i) {
+    const Landmark landmark = Transform(RandomRigid(), RandomLandmarkInCamera());
+    const Plane under = PlaneUnder(landmark);
+    EXPECT_NEAR(under.SignedDistance(Farthest(landmark, -under.normal).point), 0.0, 1e-12);
+    EXPECT_GT(under.SignedDistance(landmark.Centre()), 0.0);
+  }
+}
+
 TEST(HasExtent, RefusesFlakesAndWhatIsNowhere) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -51,17 +51,6 @@ TEST(Moved, TurnsAboutTheLevelAxes) {
   EXPECT_NEAR(moved.normal.dot(floor.normal), std::cos(0.1), 1e-12);
 }
 
-TEST(PlaneUnder, IsParallelAndTouchesTheLowestPoint) {
-  const Plane plane = RandomPlane();
-  UprightVector parameters;
-  parameters << 0.3, 1.0, -1.0, -0.5, -0.6, -0.7;
-  Landmark landmark = UprightLandmark(plane, parameters, kCuboidExponent);
-  landmark.frame_from_object.translation += 0.4 * plane.normal;
-  const Plane under = PlaneUnder(plane, landmark);
-  EXPECT_EQ(under.normal, plane.normal);
-  EXPECT_NEAR(plane.offset - under.offset, 0.4, 1e-12);
-}
-
 // Gradient and curvature of the cost of the best body against differences of that cost. The
 // information leaves out second derivatives of the residuals, which count by their size: it is
 // exact where boxes are. A motion of 1e-3 rad or m changes noisy costs by about 1, and the gradient

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "evaluation/iou.h"
+#include "mapping/choose_starts.h"
+#include "support/cuboid_map.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+class UprightStarts : public testing::Test {
+ protected:
+  UprightStarts() {
+    // Of each observation the truth, and before it a landmark of another yaw, which differs from
+    // observation to observation.
+    for (size_t i = 0; i < sequence_.detections.size(); ++i) {
+      const Detection& detection = sequence_.detections[i];
+      const Landmark truth = *TrueLandmarkInCamera(sequence_, detection);
+      const double turn = RandomUniform(0.5, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
+      estimates_.observations.push_back(
+          {static_cast<int>(i), {{Turned(truth, turn), 0.0}, {truth, 1.0}}, ""});
+    }
+  }
+  std::vector<std::optional<Landmark>> Choose() const {
+    BackEndInput input = TruthInput(sequence_);
+    input.edge_images = edge_images_;
+    return ChooseUprightStarts(input, estimates_, TangencyOptions());
+  }
+
+  Sequence sequence_ = CuboidSequence(4, 12);
+  LandmarkEstimates estimates_;
+  std::map<int, std::shared_ptr<const EdgeImage>> edge_images_;
+};
+
+TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
+  for (const bool edges : {false, true}) {
+    if (edges) edge_images_ = DrawnEdges(sequence_);
+    const auto starts = Choose();
+    for (size_t i = 0; i < starts.size(); ++i) {
+      ASSERT_TRUE(starts[i]);
+      EXPECT_EQ(starts[i]->shape_exponent, kCuboidExponent);
+      EXPECT_GT(BoxIou(*starts[i], sequence_.objects[i].ground_truth->landmark_in_world), 0.98)
+          << "object " << i << ", edges " << edges;
+    }
+  }
+}
+
+TEST_F(UprightStarts, ComeFromSeveralViewsWhereSingleFramesSayNothing) {
+  for (ObservationEstimate& observation : estimates_.observations) {
+    const Detection& detection =
+        sequence_.detections[static_cast<size_t>(observation.detection_index)];
+    if (detection.object_index == 1) observation = {observation.detection_index, {}, "no_solution"};
+  }
+  const auto starts = Choose();
+  ASSERT_TRUE(starts[1]);
+  EXPECT_GT(BoxIou(*starts[1], sequence_.objects[1].ground_truth->landmark_in_world), 0.98);
+}
+
+TEST_F(UprightStarts, AreEmptyForObjectsThatNothingIsKnownOf) {
+  for (ObservationEstimate& observation : estimates_.observations) {
+    observation = {observation.detection_index, {}, "no_solution"};
+  }
+  // One view of it is left, which says nothing by itself.
+  bool seen = false;
+  std::erase_if(sequence_.detections, [&](const Detection& detection) {
+    return detection.object_index == 1 && std::exchange(seen, true);
+  });
+  estimates_.observations.resize(sequence_.detections.size());
+  const auto starts = Choose();
+  ASSERT_EQ(starts.size(), 4u);
+  for (size_t i = 0; i < starts.size(); ++i) EXPECT_EQ(starts[i].has_value(), i != 1) << i;
+}
+
+// A body that reaches behind a camera is not what its box shows, however well others are explained.
+TEST_F(UprightStarts, AreNotBehindTheCamerasThatSeeTheObject) {
+  const Detection& detection = sequence_.detections.front();
+  const Rigid3d& world_from_camera =
+      sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera;
+  Landmark behind = sequence_.objects[static_cast<size_t>(detection.object_index)]
+                        .ground_truth->landmark_in_world;
+  const Eigen::Vector3d backwards = world_from_camera.rotation * Eigen::Vector3d(0.0, 0.0, -1.0);
+  behind.frame_from_object.translation += 30.0 * Eigen::Vector3d(backwards.x(), backwards.y(), 0.0);
+  estimates_.observations.front().hypotheses.front().landmark_in_camera =
+      Transform(world_from_camera.Inverse(), Turned(behind, 0.3));
+  const auto starts = Choose();
+  const auto object_index = static_cast<size_t>(detection.object_index);
+  ASSERT_TRUE(starts[object_index]);
+  EXPECT_GT(BoxIou(*starts[object_index],
+                   sequence_.objects[object_index].ground_truth->landmark_in_world),
+            0.97);
+}
+
+}  // namespace
+}  // namespace soslam

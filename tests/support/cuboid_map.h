@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "mapping/back_end.h"
+#include "support/cuboid_sequence.h"
+#include "support/drawn_cuboids.h"
+
+namespace soslam {
+
+// From the truth, with priors that say nearly the same.
+inline BackEndInput TruthInput(const Sequence& sequence) {
+  BackEndInput input{sequence, {}, {}, {}, {}};
+  for (const Object& object : sequence.objects) {
+    const Landmark& landmark = object.ground_truth->landmark_in_world;
+    input.starts.push_back(landmark);
+    input.priors.push_back(ShapePrior{
+        landmark.half_axes.head<2>() / landmark.half_axes.z(), {0.02, 0.02}, kCuboidExponent});
+  }
+  return input;
+}
+
+// Images in which each object's visible faces are drawn, for all of its detections.
+inline std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& sequence) {
+  std::map<int, std::shared_ptr<const EdgeImage>> images;
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[i];
+    const cv::Mat image =
+        DrawCuboids(sequence.camera, {*TrueLandmarkInCamera(sequence, detection)});
+    const EdgeMaps maps = ComputeEdgeMaps(image, EdgesOptions());
+    images[static_cast<int>(i)] = std::make_shared<const EdgeImage>(
+        EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});
+  }
+  return images;
+}
+
+inline OptimiseOptions TangencyOptions() {
+  OptimiseOptions options;
+  options.detection_model = DetectionModel::kTangency;
+  options.view_correlation_deg = 0.0;  // exact boxes
+  options.axes_weight = 0.0;           // random yaws
+  options.covariances = false;
+  return options;
+}
+
+}  // namespace soslam
