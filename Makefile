@@ -44,9 +44,9 @@ demo: ## Run all variants on the sequence that comes with the project, and print
 	@echo 'This table: $(RESULTS)/tables.md. Every intermediate result: $(RESULTS)/room_a/<variant>/'
 
 .PHONY: run
-run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date
+run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
 	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
-	+@if test -e $(PLAN); then $(MAKE) --output-sync -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
+	+@if test -e $(PLAN); then $(MAKE) --keep-going --output-sync -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
 	else echo '# then the stages that $(PLAN) lists'; fi
 
 .PHONY: ablation

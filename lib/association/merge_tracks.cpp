@@ -28,7 +28,11 @@ struct Merge {
 class TrackMerger {
  public:
   TrackMerger(const AssociationModel& model, int threads, Association* association)
-      : model_(model), threads_(threads), association_(*association) {}
+      : model_(model),
+        threads_(threads),
+        association_(*association),
+        best_(association->tracks.size()),
+        has_changed_(association->tracks.size(), 1) {}
 
   void Run() {
     while (MergeOnce()) {
@@ -53,31 +57,38 @@ class TrackMerger {
     return order;
   }
 
+  bool HasChanged(int track) const { return has_changed_[static_cast<size_t>(track)] != 0; }
+
+  // Of the tracks after this one in the order the one to merge it into. What was found before
+  // still holds for pairs of tracks that have not changed.
+  std::optional<Merge> BestMerge(const std::vector<int>& order, size_t position) const {
+    const int smaller = order[position];
+    std::optional<Merge> best = best_[static_cast<size_t>(smaller)];
+    const bool is_known = !HasChanged(smaller) && !(best && HasChanged(best->into));
+    if (!is_known) best.reset();
+    for (size_t larger = position + 1; larger < order.size(); ++larger) {
+      if (is_known && !HasChanged(order[larger])) continue;
+      const auto merge = TryMerge(order[larger], smaller);
+      if (merge && (!best || merge->IsBetterThan(*best))) best = merge;
+    }
+    return best;
+  }
+
   // Finds for each track the one to merge it into, and merges those pairs of which neither track
   // has changed since. Returns whether any were.
   bool MergeOnce() {
     const std::vector<int> order = SmallestFirst();
     std::vector<std::optional<Merge>> merges(order.size());
     ParallelFor(static_cast<int>(order.size()), threads_, [&](int i) {
-      const auto position = static_cast<size_t>(i);
-      for (size_t larger = position + 1; larger < order.size(); ++larger) {
-        const auto merge = TryMerge(order[larger], order[position]);
-        if (merge && (!merges[position] || merge->IsBetterThan(*merges[position]))) {
-          merges[position] = merge;
-        }
-      }
+      merges[static_cast<size_t>(i)] = BestMerge(order, static_cast<size_t>(i));
     });
-    std::vector<bool> has_changed(association_.tracks.size(), false);
+    std::ranges::fill(has_changed_, 0);
     std::vector<int> grown;
     for (size_t i = 0; i < order.size(); ++i) {
-      const auto& merge = merges[i];
-      if (!merge || has_changed[static_cast<size_t>(order[i])] ||
-          has_changed[static_cast<size_t>(merge->into)]) {
-        continue;
-      }
+      const auto& merge = best_[static_cast<size_t>(order[i])] = merges[i];
+      if (!merge || HasChanged(order[i]) || HasChanged(merge->into)) continue;
       Apply(*merge, order[i]);
-      has_changed[static_cast<size_t>(order[i])] = has_changed[static_cast<size_t>(merge->into)] =
-          true;
+      for (const int track : {order[i], merge->into}) has_changed_[static_cast<size_t>(track)] = 1;
       grown.push_back(merge->into);
     }
     ParallelFor(static_cast<int>(grown.size()), threads_,
@@ -153,6 +164,9 @@ class TrackMerger {
   const AssociationModel& model_;
   int threads_;
   Association& association_;
+  // By track: the merge found last, and whether the track has changed since.
+  std::vector<std::optional<Merge>> best_;
+  std::vector<char> has_changed_;
 };
 
 }  // namespace

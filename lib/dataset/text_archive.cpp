@@ -37,8 +37,11 @@ ArchivePointer Open(const std::filesystem::path& path) {
   return opened;
 }
 
+// More than any detector's boxes of one image: what is larger is packed to fill memory.
+constexpr size_t kMaxEntryBytes = size_t{64} << 20;
+
 // Of the entry that was opened last.
-std::string ReadEntry(const std::filesystem::path& path, archive* opened) {
+std::string ReadEntry(const std::filesystem::path& path, const std::string& name, archive* opened) {
   std::string text;
   std::array<char, 1 << 16> block;
   for (;;) {
@@ -46,6 +49,10 @@ std::string ReadEntry(const std::filesystem::path& path, archive* opened) {
     if (size < 0) Refuse(path, opened);
     if (size == 0) return text;
     text.append(block.data(), static_cast<size_t>(size));
+    if (text.size() > kMaxEntryBytes) {
+      throw InputError(fmt::format("{}: {} has more than {} bytes; expected a text file of boxes",
+                                   path.string(), name, kMaxEntryBytes));
+    }
   }
 }
 
@@ -62,7 +69,7 @@ std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
     if (status < ARCHIVE_WARN) Refuse(path, opened.get());
     const char* name = archive_entry_pathname(entry);
     if (name == nullptr || std::filesystem::path(name).extension() != extension) continue;
-    texts.push_back({name, ReadEntry(path, opened.get())});
+    texts.push_back({name, ReadEntry(path, name, opened.get())});
   }
   std::ranges::sort(texts, {}, &ArchivedText::name);
   return texts;

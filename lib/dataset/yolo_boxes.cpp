@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <sstream>
 
 #include "base/error.h"
@@ -103,6 +104,12 @@ std::vector<ImageText> ReadTexts(const fs::path& path) {
   std::vector<ImageText> texts = fs::is_directory(path) ? ReadFolder(path) : ReadArchive(path);
   if (texts.empty()) {
     throw InputError(path.string() + ": has no *.txt; expected one for each image");
+  }
+  std::set<std::string> images;
+  for (const ImageText& text : texts) {
+    if (images.insert(text.image).second) continue;
+    throw InputError(fmt::format("{}: has several files {}.txt; expected one for each image",
+                                 path.string(), text.image));
   }
   return texts;
 }
