@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/semantic_table_file.h"
 
+#include <algorithm>
 #include <string>
 
 #include "artefact/schema.h"
@@ -16,13 +17,19 @@ constexpr const char* kKind = "semantic_table";
 constexpr double kDefaultLogSigma = 0.3;
 constexpr double kDefaultShapeExponent = 1.1;
 
+// The schema allows no other names.
+Mount MountOf(const std::string& name) {
+  return static_cast<Mount>(std::ranges::find(kMountNames, name) - kMountNames.begin());
+}
+
 ShapePrior Prior(const json& entry) {
   ShapePrior prior = {{entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()},
                       {entry.value("a_by_c_log_sigma", kDefaultLogSigma),
                        entry.value("b_by_c_log_sigma", kDefaultLogSigma)},
                       entry.value("shape_exponent", kDefaultShapeExponent),
                       entry.value("log_correlation", 0.0),
-                      {}};
+                      {},
+                      MountOf(entry.value("mount", std::string(kMountNames.front())))};
   if (entry.contains("height_m")) {
     prior.height_m = {entry.at("height_m").get<double>(),
                       entry.value("height_log_sigma", kDefaultLogSigma)};
@@ -45,6 +52,9 @@ json Entry(const SemanticRow& row) {
                 {"shape_exponent", prior.shape_exponent},
                 {"samples", row.samples},
                 {"source", row.source}};
+  if (prior.mount != Mount::kStanding) {
+    entry["mount"] = kMountNames[static_cast<size_t>(prior.mount)];
+  }
   if (!row.aliases.empty()) entry["aliases"] = row.aliases;
   if (prior.height_m) {
     entry["height_m"] = prior.height_m->median;

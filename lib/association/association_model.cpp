@@ -40,6 +40,7 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
 void AssociationModel::Fit(Track* track) const {
   ShapePrior prior = table_.Find(WinningLabel(track->votes)).value_or(UnknownShape());
   if (!prior.height_m) prior.height_m = {options_.unknown_height_m, kUnknownHeightLogSigma};
+  if (track->plane_index != kNoPlane) prior = TurnedToSupport(prior);
   const auto up = up_of_segments_.find(SegmentOf(*track));
   const auto fit =
       FitObject(sequence_, track->detections, prior, options_,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 
 #include "base/error.h"
@@ -14,7 +15,8 @@ namespace {
 
 std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable& table,
                                       RatioPrior prior) {
-  const std::optional<ShapePrior> entry = table.Find(object.label);
+  std::optional<ShapePrior> entry = table.Find(object.label);
+  if (entry) entry = TurnedToSupport(*entry);
   if (prior == RatioPrior::kTable) return entry;
   ShapePrior shape = entry.value_or(ShapePrior());
   if (prior == RatioPrior::kUnit) {
@@ -30,6 +32,25 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
 }
 
 }  // namespace
+
+ShapePrior TurnedToSupport(const ShapePrior& prior) {
+  if (prior.mount != Mount::kOnWall) return prior;
+  // log(c / a) and log(b / a) of log(a / c) and log(b / c).
+  const Eigen::Matrix2d turn{{-1.0, 0.0}, {-1.0, 1.0}};
+  const double across = prior.log_correlation * prior.log_sigma.prod();
+  const Eigen::Vector2d variances = prior.log_sigma.cwiseAbs2();
+  const Eigen::Matrix2d covariance =
+      turn * Eigen::Matrix2d{{variances.x(), across}, {across, variances.y()}} * turn.transpose();
+  ShapePrior turned = prior;
+  turned.ratio = (turn * prior.ratio.array().log().matrix()).array().exp();
+  turned.log_sigma = covariance.diagonal().cwiseSqrt();
+  turned.log_correlation = covariance(0, 1) / turned.log_sigma.prod();
+  if (prior.height_m) {
+    turned.height_m = {prior.height_m->median * prior.ratio.x(),
+                       std::hypot(prior.height_m->log_sigma, prior.log_sigma.x())};
+  }
+  return turned;
+}
 
 std::string NormalisedLabel(const std::string& label) {
   std::string normalised;

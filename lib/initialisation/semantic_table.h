@@ -19,6 +19,14 @@ struct LogNormal {
   double log_sigma;  // standard deviation of the logarithm
 };
 
+// Which side of an upright thing its support plane is at: an object's frame has z away from there.
+enum class Mount {
+  kStanding,  // below it
+  kHanging,   // above it, as a lamp's
+  kOnWall,    // behind it, as a picture's
+};
+inline constexpr std::array kMountNames = {"standing", "hanging", "on_wall"};
+
 // What is known of an object's size and shape before it is seen. Ratios are log-normal.
 struct ShapePrior {
   Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
@@ -26,13 +34,21 @@ struct ShapePrior {
   double shape_exponent = kEllipsoidExponent;
   double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
   std::optional<LogNormal> height_m = {};  // 2 c; none where the size is anybody's guess
+  Mount mount = Mount::kStanding;
 };
+
+// Between a prior of things as they are upright (a is their depth, b their width, c their height),
+// as tables have it, and one of the object's frame, whose z points away from its support: the
+// prior of what is on a wall has its height along x and its depth along z. Either way. Of
+// heights, ratios are taken to tell nothing.
+ShapePrior TurnedToSupport(const ShapePrior& prior);
 
 // Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the
 // same label.
 std::string NormalisedLabel(const std::string& label);
 
-// SemTable of eq. (11), and how far it is to be trusted: what is known of an object by its label.
+// SemTable of eq. (11), and how far it is to be trusted: what is known of an object by its label,
+// as it is upright.
 struct SemanticTable {
   std::map<std::string, ShapePrior> priors;  // by NormalisedLabel of labels and their aliases
   std::optional<ShapePrior> default_prior;   // for labels that are not in the table
@@ -81,9 +97,9 @@ inline constexpr std::array kShapeSourceNames = {"table", "cuboid", "ellipsoid"}
 // log_sigma of a true ratio: exact up to the annotation, which is taken to be good to 2 %.
 inline constexpr double kTrueRatioLogSigma = 0.02;
 
-// The prior of each object of the sequence; none where there is no ratio. kUnit keeps all but the
-// ratio of the table's prior, kGroundTruth the shape exponent only; of a default ShapePrior where
-// the table has none.
+// The prior of each object of the sequence, in its frame; none where there is no ratio. kUnit keeps
+// all but the ratio of the table's prior, kGroundTruth the shape exponent only; of a default
+// ShapePrior where the table has none.
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
                                                     const SemanticTable& table, RatioPrior prior,
                                                     ShapeSource shape = ShapeSource::kTable);

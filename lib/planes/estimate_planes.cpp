@@ -58,23 +58,30 @@ std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
   return candidates;
 }
 
+Mount MountOf(const std::optional<ShapePrior>& prior) { return prior.value_or(ShapePrior()).mount; }
+
+// The planes of the objects that are mounted in one way, on bodies whose z axes are up as the
+// attitude has it.
 class Estimator {
  public:
   Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-            const CameraAttitude& attitude, const PlanesOptions& options, int threads)
+            Mount mount, const CameraAttitude& attitude, const PlanesOptions& options, int threads)
       : sequence_(sequence),
         options_(options),
         threads_(threads),
         detections_(DetectionsByObject(sequence)),
         attitude_(attitude) {
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
-      if (!sequence.objects[i].is_static) detections_[i].clear();  // of no one place in the world
+      // What moves is in no one place in the world.
+      const bool takes_part = sequence.objects[i].is_static && MountOf(priors[i]) == mount;
+      if (!takes_part) detections_[i].clear();
       observations_.push_back(Observe(detections_[i], priors[i]));
       sparse_.push_back(Observe(SpreadOver(detections_[i], kViewsOfSearch), priors[i]));
     }
   }
 
-  PlanesEstimate Estimate() {
+  // None when no object's boxes determine the height of a plane.
+  std::optional<PlanesEstimate> Estimate() {
     std::optional<PlanesEstimate> best;
     double lowest = 0.0;
     for (const Eigen::Vector3d& up : SearchUp()) {
@@ -85,11 +92,7 @@ class Estimator {
       best = std::move(estimate);
       lowest = cost;
     }
-    if (best) return *best;
-    throw NothingUsableError(fmt::format(
-        "{}: no object's boxes determine the height of the plane that it stands on; expected an "
-        "object seen from several places, or planes = given",
-        sequence_.name));
+    return best;
   }
 
  private:
@@ -349,13 +352,67 @@ class Estimator {
   std::vector<RefinedPlanes> refined_;  // one for all planes where they are parallel
 };
 
+// What is known of down, z of what hangs: ceilings are level where floors are.
+CameraAttitude Down(const CameraAttitude& attitude, const std::optional<PlanesEstimate>& floors) {
+  CameraAttitude down{attitude.information, -attitude.up_in_world};
+  if (!floors) return down;
+  const EstimatedPlane& floor = floors->planes.front();
+  down.up_in_world = -floor.plane_in_world.normal;
+  // Turns about x move the normal by -y, those about y by x.
+  Eigen::Matrix<double, 3, 2> by_turns;
+  by_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
+  by_turns.col(1) = -floor.x_axis_in_world;
+  down.information =
+      by_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * by_turns.transpose();
+  return down;
+}
+
+// Both, with the objects of each on their own planes.
+PlanesEstimate Joined(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
+                      const std::vector<std::optional<ShapePrior>>& priors) {
+  PlanesEstimate joined = floors;
+  joined.planes.insert(joined.planes.end(), ceilings.planes.begin(), ceilings.planes.end());
+  for (size_t i = 0; i < priors.size(); ++i) {
+    if (MountOf(priors[i]) != Mount::kHanging) continue;
+    joined.objects[i] = ceilings.objects[i];
+    joined.objects[i].plane_index += static_cast<int>(floors.planes.size());
+  }
+  joined.cost = *floors.cost + *ceilings.cost;
+  joined.rounds = std::max(floors.rounds, ceilings.rounds);
+  joined.settled = floors.settled && ceilings.settled;
+  return joined;
+}
+
 }  // namespace
 
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
                               const std::vector<std::optional<ShapePrior>>& priors,
                               const CameraAttitude& attitude, const PlanesOptions& options,
                               int threads) {
-  return Estimator(sequence, priors, attitude, options, threads).Estimate();
+  const auto planes_of = [&](Mount mount, const CameraAttitude& up) {
+    return Estimator(sequence, priors, mount, up, options, threads).Estimate();
+  };
+  const auto floors = planes_of(Mount::kStanding, attitude);
+  const auto ceilings = planes_of(Mount::kHanging, Down(attitude, floors));
+  if (!floors && !ceilings) {
+    throw NothingUsableError(fmt::format(
+        "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
+        "expected an object seen from several places, or planes = given",
+        sequence.name));
+  }
+  PlanesEstimate estimate = !ceilings ? *floors
+                            : !floors ? *ceilings
+                                      : Joined(*floors, *ceilings, priors);
+  estimate.up_of_cameras = attitude.up_in_world;
+  estimate.attitude_information = attitude.information;
+  for (size_t i = 0; i < priors.size(); ++i) {
+    const Mount mount = MountOf(priors[i]);
+    const bool has_planes = mount == Mount::kStanding  ? floors.has_value()
+                            : mount == Mount::kHanging ? ceilings.has_value()
+                                                       : false;
+    if (!has_planes) estimate.objects[i].reason = SupportReason::kNone;
+  }
+  return estimate;
 }
 
 }  // namespace soslam

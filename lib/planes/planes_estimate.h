@@ -21,7 +21,7 @@ struct EstimatedPlane {
   std::optional<Eigen::Matrix3d> covariance;
 };
 
-// Why an object stands on the plane that it does.
+// Why an object is mounted on the plane that it is.
 enum class SupportReason {
   kOwnHeight,     // its views determine the height of its lowest point
   kLowestCost,    // they do not: the plane on which its boxes are explained best
@@ -29,9 +29,10 @@ enum class SupportReason {
   kCameraHeight,  // the ground below the cameras that see it
   kNoBody,        // its boxes are of a body on none of the planes: the plane of most objects
   kMoving,        // it is in no one place: the plane of most objects
+  kNone,          // no plane that it could be mounted on was found: its boxes cannot be used
 };
-inline constexpr std::array kSupportReasonNames = {"own_height",    "lowest_cost", "no_views",
-                                                   "camera_height", "no_body",     "moving"};
+inline constexpr std::array kSupportReasonNames = {
+    "own_height", "lowest_cost", "no_views", "camera_height", "no_body", "moving", "none"};
 
 struct ObjectSupport {
   int plane_index = 0;
@@ -54,7 +55,8 @@ struct PlanesEstimate {
   bool settled = false;        // the last round decided as the one before
 };
 
-// The sequence with these planes, carried into each frame with the estimated pose.
+// The sequence with these planes, carried into each frame with the estimated pose. Detections of
+// objects without any are left out, and counted as rejected.
 Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate);
 
 // How far an estimated plane is from the one that the sequence gives most of the objects on it, for

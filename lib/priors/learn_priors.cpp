@@ -209,14 +209,17 @@ class Learner {
 
 }  // namespace
 
-PriorSource SourceOfSequence(const Sequence& sequence, int min_views) {
+PriorSource SourceOfSequence(const Sequence& sequence, const SemanticTable& table, int min_views) {
   PriorSource source{sequence.name, {}};
   const std::map<int, double> exponents = LearnShapeExponents(sequence, min_views);
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     const Object& object = sequence.objects[i];
     if (!object.ground_truth) continue;
     LabelFacts& facts = source.facts[object.label];
-    facts.half_axes.push_back(object.ground_truth->landmark_in_world.half_axes);
+    Eigen::Vector3d half_axes = object.ground_truth->landmark_in_world.half_axes;
+    const bool is_on_wall = table.Find(object.label).value_or(ShapePrior()).mount == Mount::kOnWall;
+    if (is_on_wall) std::swap(half_axes.x(), half_axes.z());
+    facts.half_axes.push_back(half_axes);
     const auto exponent = exponents.find(static_cast<int>(i));
     if (exponent != exponents.end()) facts.shape_exponents.push_back(exponent->second);
   }
@@ -274,8 +277,9 @@ SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource
 std::vector<PriorError> PriorErrors(const Sequence& sequence, const SemanticTable& table) {
   std::vector<PriorError> errors;
   for (const Object& object : sequence.objects) {
-    const std::optional<ShapePrior> prior = table.Find(object.label);
+    std::optional<ShapePrior> prior = table.Find(object.label);
     if (!object.ground_truth || !prior) continue;
+    prior = TurnedToSupport(*prior);
     const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
     PriorError error{object.label, {}, {}};
     error.log_error =

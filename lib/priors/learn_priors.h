@@ -13,8 +13,8 @@
 
 namespace soslam {
 
-// What one data set says about a label: half axes along x (front), y and z (up), in metres, one per
-// object; shape exponents of those objects whose boxes show it.
+// What one data set says about a label: half axes along x (front), y and z (up) of the
+// upright thing, in metres, one per object; shape exponents of those objects whose boxes show it.
 struct LabelFacts {
   std::vector<Eigen::Vector3d> half_axes;
   std::vector<double> shape_exponents;
@@ -24,8 +24,8 @@ struct PriorSource {
   std::map<std::string, LabelFacts> facts;  // by label
 };
 
-// The ground truth of a sequence.
-PriorSource SourceOfSequence(const Sequence& sequence, int min_views);
+// The ground truth of a sequence; the table says how things are mounted.
+PriorSource SourceOfSequence(const Sequence& sequence, const SemanticTable& table, int min_views);
 // The models of a catalogue that have a label.
 PriorSource SourceOfCatalogue(const std::string& name, const std::vector<CatalogueModel>& models,
                               const CatalogueNames& names);

@@ -81,8 +81,9 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
   if (files.count("base") > 0) base = ReadSemanticRows(files.at("base"));
   std::vector<PriorSource> sources;
   if (files.count("furniture") > 0) sources.push_back(ReadCatalogueSource(files, held_out));
+  const SemanticTable base_table = LookUpTable(base);
   for (const Sequence& sequence : sequences) {
-    sources.push_back(SourceOfSequence(sequence, options.min_views));
+    sources.push_back(SourceOfSequence(sequence, base_table, options.min_views));
   }
   const SemanticRows learned = LearnPriors(base, sources, options);
   if (learned.rows.empty()) {

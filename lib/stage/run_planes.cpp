@@ -162,9 +162,18 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
 }
 
 // In every frame it is the ground, whatever the trajectory says.
-Result FromCameraHeight(const Sequence& sequence, const PlanesOptions& options) {
+Result FromCameraHeight(const Sequence& sequence, const PlanesOptions& options,
+                        const StageFiles& files) {
   Result result;
+  result.inputs = {files.at("table")};
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
   result.estimate = PlanesBelowCameras(sequence, options.camera_height_m);
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    const auto prior = table.Find(sequence.objects[i].label);
+    if (prior && prior->mount != Mount::kStanding) {
+      result.estimate.objects[i].reason = SupportReason::kNone;
+    }
+  }
   result.sequence = WithPlanes(sequence, result.estimate);
   for (Detection& detection : result.sequence.detections) {
     detection.plane_in_camera = GroundInCamera(options.camera_height_m);
@@ -184,7 +193,7 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
     throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
   }
   const Result result = options.planes == PlaneSource::kCameraHeight
-                            ? FromCameraHeight(sequence, options)
+                            ? FromCameraHeight(sequence, options, files)
                             : FromBoxes(sequence, options, files, threads);
   ArtefactInfo info = {OptionsToJson(options), {files.at("sequence")}};
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/random.h"
+
 namespace soslam {
 namespace {
 
@@ -38,6 +40,48 @@ TEST(ObjectPriors, TableGivesTheLabelsEntryOrTheDefault) {
               ElementsAre(Is(kCup), Is(kCup), Eq(std::nullopt)));
   EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kTable),
               ElementsAre(Is(kCup), Is(kCup), Is(kDefault)));
+}
+
+// A picture, 0.03 m deep, 0.5 m wide and 0.4 m high, on a wall: its x is up, its z out of the wall.
+TEST(TurnedToSupport, WhatIsOnAWallHasItsDepthAlongZ) {
+  ShapePrior picture{{0.03 / 0.4, 0.5 / 0.4}, {0.3, 0.2}};
+  picture.height_m = LogNormal{0.4, 0.4};
+  picture.mount = Mount::kOnWall;
+  const ShapePrior turned = TurnedToSupport(picture);
+  EXPECT_NEAR(turned.ratio.x(), 0.4 / 0.03, 1e-12);
+  EXPECT_NEAR(turned.ratio.y(), 0.5 / 0.03, 1e-12);
+  EXPECT_NEAR(turned.height_m->median, 0.03, 1e-15);
+  EXPECT_NEAR(turned.height_m->log_sigma, 0.5, 1e-15);
+  picture.mount = Mount::kHanging;
+  EXPECT_EQ(TurnedToSupport(picture).ratio, picture.ratio);
+}
+
+// Squared distance of a body's ratios from the prior's medians, in its spreads.
+double NormalisedSquared(const ShapePrior& prior, const Eigen::Vector3d& half_axes) {
+  const Eigen::Vector2d off =
+      (half_axes.head<2>() / half_axes.z()).cwiseQuotient(prior.ratio).array().log();
+  const Eigen::Vector2d sigmas = off.cwiseQuotient(prior.log_sigma);
+  const double r = prior.log_correlation;
+  return (sigmas.squaredNorm() - 2.0 * r * sigmas.prod()) / (1.0 - r * r);
+}
+
+TEST(TurnedToSupport, ABodyIsAsLikelyEitherWay) {
+  for (int i = 0; i < 100; ++i) {
+    ShapePrior prior{RandomVector(0.1, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>()};
+    prior.log_correlation = RandomUniform(-0.9, 0.9);
+    prior.mount = Mount::kOnWall;
+    const Eigen::Vector3d upright = RandomVector(0.1, 3.0);
+    EXPECT_NEAR(NormalisedSquared(TurnedToSupport(prior), upright.reverse()),
+                NormalisedSquared(prior, upright), 1e-9);
+  }
+}
+
+TEST(ObjectPriors, AreOfTheObjectsFrame) {
+  SemanticTable table = kCupsOnly;
+  table.priors["cup"].mount = Mount::kOnWall;
+  const Eigen::Vector2d expected = TurnedToSupport(table.priors["cup"]).ratio;
+  EXPECT_EQ(ObjectPriors(CupCupWhisk(), table, RatioPrior::kTable)[0]->ratio, expected);
+  EXPECT_EQ(ObjectPriors(CupCupWhisk(), table, RatioPrior::kGroundTruth)[0]->ratio, kTrueRatio);
 }
 
 TEST(ObjectPriors, UnitKeepsSpreadAndShapeOfTheLabel) {

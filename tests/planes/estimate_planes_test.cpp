@@ -92,6 +92,51 @@ TEST(EstimatePlanes, SeparatesAShelfFromTheFloor) {
   }
 }
 
+// Every other object hangs.
+std::vector<std::optional<ShapePrior>> WithHanging(std::vector<std::optional<ShapePrior>> priors) {
+  for (size_t i = 1; i < priors.size(); i += 2) priors[i]->mount = Mount::kHanging;
+  return priors;
+}
+
+TEST(EstimatePlanes, WhatHangsHasCeilings) {
+  for (int seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const Sequence sequence = SyntheticSequence(WithCeiling(CuboidScene(seed, 8), 1.15), false);
+    const PlanesEstimate estimate =
+        EstimatePlanes(sequence, WithHanging(TrueCuboidPriors(sequence, kLogSigma)),
+                       Attitude(sequence), ModelOptions(), 2);
+    ASSERT_EQ(estimate.planes.size(), 2u);
+    ExpectGiven(sequence, estimate, 0.2 * kDegrees, 0.005);
+    for (size_t i = 0; i < sequence.objects.size(); ++i) {
+      EXPECT_EQ(estimate.objects[i].plane_index, static_cast<int>(i % 2)) << i;
+    }
+  }
+}
+
+TEST(EstimatePlanes, WhatHasNoPlaneToBeMountedOnHasNoSupport) {
+  Sequence sequence = SyntheticSequence(CuboidScene(1, 3), false);
+  auto priors = TrueCuboidPriors(sequence, kLogSigma);
+  priors[0]->mount = Mount::kOnWall;
+  priors[1]->mount = Mount::kHanging;  // seen once: no height
+  const auto first = std::ranges::find(sequence.detections, 1, &Detection::object_index);
+  const int frame = first->frame_index;
+  std::erase_if(sequence.detections, [&](const Detection& detection) {
+    return detection.object_index == 1 && detection.frame_index != frame;
+  });
+  const PlanesEstimate estimate =
+      EstimatePlanes(sequence, priors, Attitude(sequence), ModelOptions(), 2);
+  EXPECT_EQ(estimate.planes.size(), 1u);
+  EXPECT_EQ(estimate.objects[0].reason, SupportReason::kNone);
+  EXPECT_EQ(estimate.objects[1].reason, SupportReason::kNone);
+  EXPECT_EQ(estimate.objects[2].reason, SupportReason::kOwnHeight);
+
+  const auto detections_before = sequence.detections.size();
+  const Sequence with_planes = WithPlanes(sequence, estimate);
+  for (const Detection& detection : with_planes.detections) EXPECT_EQ(detection.object_index, 2);
+  EXPECT_EQ(with_planes.rejected_detections.at("no_support"),
+            static_cast<int>(detections_before - with_planes.detections.size()));
+}
+
 TEST(EstimatePlanes, PlanesNeedNotBeParallel) {
   const Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(1, 6), 0.25), false);
   PlanesOptions options = ModelOptions();

@@ -131,11 +131,20 @@ Sequence OneTrueCup() {
 }
 
 TEST(SourceOfSequence, HasTheObjectsWithGroundTruth) {
-  const PriorSource source = SourceOfSequence(OneTrueCup(), 1);
+  const PriorSource source = SourceOfSequence(OneTrueCup(), {}, 1);
   EXPECT_EQ(source.name, "cups");
   EXPECT_THAT(source.facts.at("cup").half_axes,
               testing::ElementsAre(Eigen::Vector3d(0.1, 0.05, 0.2)));
   EXPECT_TRUE(source.facts.at("cup").shape_exponents.empty());  // no boxes
+}
+
+// Their z is out of the wall.
+TEST(SourceOfSequence, TakesThingsOffTheWall) {
+  ShapePrior cup;
+  cup.mount = Mount::kOnWall;
+  const PriorSource source = SourceOfSequence(OneTrueCup(), {{{"cup", cup}}, {}}, 1);
+  EXPECT_THAT(source.facts.at("cup").half_axes,
+              testing::ElementsAre(Eigen::Vector3d(0.2, 0.05, 0.1)));
 }
 
 TEST(WithoutObjectsOf, DropsTheModelsThatAreInTheScene) {

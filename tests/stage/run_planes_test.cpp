@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -24,19 +25,20 @@ class RunPlanesTest : public testing::Test {
   RunPlanesTest() {
     options_.planes = PlaneSource::kEstimated;
     options_.verticals = false;  // there are no images
-    json labels;
     for (const Object& object : sequence_.objects) {
       const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
-      labels[object.label] = {{"a_by_c", half_axes.x() / half_axes.z()},
-                              {"b_by_c", half_axes.y() / half_axes.z()},
-                              {"a_by_c_log_sigma", 0.1},
-                              {"b_by_c_log_sigma", 0.1},
-                              {"shape_exponent", 1.0},
-                              {"source", "the test"}};
+      labels_[object.label] = {{"a_by_c", half_axes.x() / half_axes.z()},
+                               {"b_by_c", half_axes.y() / half_axes.z()},
+                               {"a_by_c_log_sigma", 0.1},
+                               {"b_by_c_log_sigma", 0.1},
+                               {"shape_exponent", 1.0},
+                               {"source", "the test"}};
     }
-    WriteBytes(File("table"), json{{"labels", labels}}.dump());
+    WriteTable();
     WriteSequence(File("sequence"), sequence_, {});
   }
+
+  void WriteTable() const { WriteBytes(File("table"), json{{"labels", labels_}}.dump()); }
 
   std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
   void Run(int threads = 1) const {
@@ -46,6 +48,7 @@ class RunPlanesTest : public testing::Test {
   }
 
   PlanesOptions options_;
+  json labels_;
   Sequence sequence_ =
       SyntheticSequence(WithShelf(RandomScene(1, 4, 16, {Shape::kBox}), 0.3), false);
 
@@ -135,6 +138,27 @@ TEST_F(RunPlanesTest, CameraHeightIsTheGroundOfEveryFrame) {
   const json report = ReadArtefact(File("report"), "planes");
   EXPECT_EQ(report.at("planes").size(), sequence_.objects.size());
   EXPECT_TRUE(report.at("cost").is_null());
+}
+
+TEST_F(RunPlanesTest, WhatIsOnAWallIsLeftOutAndCounted) {
+  const Detection& first = sequence_.detections.front();
+  labels_[sequence_.ObjectOf(first).label]["mount"] = "on_wall";
+  WriteTable();
+  for (const PlaneSource source : {PlaneSource::kEstimated, PlaneSource::kCameraHeight}) {
+    options_.planes = source;
+    Run();
+    const Sequence output = ReadSequence(File("output"));
+    const auto left_out =
+        std::ranges::count(sequence_.detections, first.object_index, &Detection::object_index);
+    EXPECT_EQ(output.rejected_detections.at("no_support"), left_out);
+    EXPECT_EQ(output.detections.size() + static_cast<size_t>(left_out),
+              sequence_.detections.size());
+    EXPECT_EQ(std::ranges::count(output.detections, first.object_index, &Detection::object_index),
+              0);
+    const json report = ReadArtefact(File("report"), "planes");
+    EXPECT_EQ(report.at("objects").at(static_cast<size_t>(first.object_index)).at("reason"),
+              "none");
+  }
 }
 
 TEST_F(RunPlanesTest, RefusesGivenPlanes) {

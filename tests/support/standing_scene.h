@@ -29,6 +29,22 @@ inline Scene WithShelf(Scene scene, double height) {
   return scene;
 }
 
+// The scene with the objects of odd index hanging from a ceiling at this height (m) over where they
+// stood.
+inline Scene WithCeiling(Scene scene, double height) {
+  const Plane floor = scene.planes[0].plane_in_world;
+  const Plane ceiling{-Eigen::Vector3d::UnitZ(), height};
+  const Rigid3d ceiling_from_floor = WorldFromPlane(ceiling).Inverse() * WorldFromPlane(floor);
+  scene.planes.push_back({1, "ceiling", ceiling, std::nullopt});
+  for (size_t i = 1; i < scene.objects.size(); i += 2) {
+    SceneObject& object = scene.objects[i];
+    object.plane_index = 1;
+    const Eigen::Vector3d place(object.position_on_plane.x(), object.position_on_plane.y(), 0.0);
+    object.position_on_plane = (ceiling_from_floor * place).head<2>();
+  }
+  return scene;
+}
+
 // The sequence in another world.
 inline Sequence Moved(const Rigid3d& new_from_old, Sequence sequence) {
   for (Frame& frame : sequence.frames) {
