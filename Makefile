@@ -57,13 +57,17 @@ ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RE
 tables: build ## Compare all variants of all datasets in RESULTS
 	@$(BIN)/soslam-report --results $(RESULTS) --output $(RESULTS)/tables.md
 
+.PHONY: report
+report: tables ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset
+	@$(BIN)/soslam-pages --results $(RESULTS)
+
 .PHONY: status
 status: ## Say for each dataset, variant and stage whether its result is done, stale or missing
 	@BIN=$(BIN) RESULTS=$(RESULTS) pipelines/status.sh $(DATASET)
 
 .PHONY: setup
 setup: ## Install the packages that are missing (apt, as root or through sudo)
-	@pipelines/install-packages.sh
+	@pipelines/install-packages.sh pipelines/packages.txt
 
 .PHONY: build
 build: $(BUILD)/build.ninja ## Build the executables of the stages
@@ -74,6 +78,7 @@ $(BUILD)/build.ninja: | setup
 
 .PHONY: test
 test: $(BUILD)/build.ninja ## Build everything and run all tests
+	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
 	@cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2
 
@@ -87,7 +92,7 @@ format-check: | setup ## Fail when a source is not formatted
 
 .PHONY: clean
 clean: ## Delete what runs wrote to RESULTS
-	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(RESULTS)/tables.md $(RESULTS)/timing.json
+	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(RESULTS)/tables.md $(RESULTS)/timing.json $(RESULTS)/report.html
 
 .PHONY: distclean
 distclean: clean ## Delete the build as well

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs what is missing of pipelines/packages.txt through apt, as root or through sudo. Says
-# nothing when nothing is missing.
+# install-packages.sh LIST: installs what is missing of the packages in the file LIST through apt, as
+# root or through sudo. Says nothing when nothing is missing.
 set -euo pipefail
 
-list="$(dirname "$0")/packages.txt"
+list=$1
 mapfile -t wanted < <(grep -v '^#' "$list")
 
 if ! command -v dpkg-query > /dev/null || ! command -v apt-get > /dev/null; then

@@ -38,4 +38,9 @@ cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
   return undistorter_ ? undistorter_->Undistort(grey) : grey;
 }
 
+cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
+  const cv::Mat colour = ReadColourImage(image.path);
+  return undistorter_ ? undistorter_->Undistort(colour) : colour;
+}
+
 }  // namespace soslam

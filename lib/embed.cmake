@@ -1,0 +1,15 @@
+# Writes a C++ file with a function that has the texts of files by name: HEADER, which declares it,
+# FUNCTION, FILES and a SUFFIX that names leave out.
+set(text "#include <map>\n#include <string>\n#include <string_view>\n\n#include \"${HEADER}\"\n\n")
+string(APPEND text "namespace soslam {\n\nconst std::map<std::string, std::string_view>& ${FUNCTION}() {\n")
+string(APPEND text "  static const std::map<std::string, std::string_view> texts = {\n")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  if(SUFFIX)
+    string(REPLACE "${SUFFIX}" "" name ${name})
+  endif()
+  file(READ ${file} content)
+  string(APPEND text "      {\"${name}\", R\"embedded(${content})embedded\"},\n")
+endforeach()
+string(APPEND text "  };\n  return texts;\n}\n\n}  // namespace soslam\n")
+file(WRITE ${OUTPUT} "${text}")

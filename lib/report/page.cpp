@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "report/page_sequence.h"
+#include "report/page_variant.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// Base 64 of all images of a page: with libraries and data it stays below 8 MB.
+constexpr size_t kMaxImageBytes = 4'500'000;
+
+std::vector<fs::path> VariantsOf(const fs::path& results_of_dataset) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(results_of_dataset)) {
+    if (fs::exists(entry.path() / "metrics.json") && fs::exists(entry.path() / "sequence.json")) {
+      folders.push_back(entry.path());
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+// Of frames in which something was detected, where there are too many.
+std::vector<int> ShownFrames(const Sequence& sequence) {
+  std::set<int> with_detections;
+  for (const Detection& detection : sequence.detections) {
+    with_detections.insert(detection.frame_index);
+  }
+  std::vector<int> all;
+  const bool all_fit = sequence.frames.size() <= kMaxPageFrames;
+  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
+    if (all_fit || with_detections.count(i) > 0) all.push_back(i);
+  }
+  return SpreadOver(all, kMaxPageFrames);
+}
+
+json PageImages(const Sequence& sequence, const ImageSourceOf& images, int threads) {
+  const std::vector<int> frames = ShownFrames(sequence);
+  const auto encoded = EncodeImages(frames, images(sequence), kMaxImageBytes, threads);
+  json by_frame = json::object();
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (encoded[i].empty()) continue;
+    const int id = sequence.frames[static_cast<size_t>(frames[i])].id;
+    by_frame[std::to_string(id)] = "data:image/jpeg;base64," + encoded[i];
+  }
+  return by_frame;
+}
+
+void Replace(const std::string& placeholder, std::string_view by, std::string* text) {
+  const size_t at = text->find(placeholder);
+  if (at == std::string::npos) throw std::logic_error("page.html has no " + placeholder);
+  text->replace(at, placeholder.size(), by);
+}
+
+std::string Escaped(std::string text, const std::string& what, const std::string& by) {
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+}  // namespace
+
+json PageData(const fs::path& results_of_dataset, const ImageSourceOf& images, int threads) {
+  const std::vector<fs::path> folders = VariantsOf(results_of_dataset);
+  if (folders.empty()) {
+    throw NothingUsableError(
+        fmt::format("{}: no <variant>/metrics.json with its sequence.json; expected at least one",
+                    results_of_dataset.string()));
+  }
+  json data = {{"dataset", results_of_dataset.filename().string()},
+               {"sequences", json::array()},
+               {"variants", json::array()}};
+  std::map<fs::path, size_t> index_of_sequence;  // by the file that links lead to
+  for (const fs::path& folder : folders) {
+    const fs::path file = folder / "sequence.json";
+    const Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+    const auto [entry, is_new] =
+        index_of_sequence.emplace(fs::canonical(file), data["sequences"].size());
+    if (is_new) data["sequences"].push_back(PageSequence(sequence));
+    if (!data.contains("images")) data["images"] = PageImages(sequence, images, threads);
+    json variant = PageVariant(folder, sequence);
+    variant["sequence"] = entry->second;
+    data["variants"].push_back(std::move(variant));
+  }
+  data["differences"] = json::array();
+  return data;
+}
+
+json OverviewData(const std::vector<json>& pages) {
+  json datasets = json::array();
+  for (const json& page : pages) {
+    json variants = json::array();
+    for (const json& variant : page.at("variants")) {
+      variants.push_back({{"name", variant.at("name")},
+                          {"kind", variant.at("kind")},
+                          {"metrics", variant.at("metrics")}});
+    }
+    const json& sequence = page.at("sequences").front();
+    datasets.push_back({{"dataset", page.at("dataset")},
+                        {"frames", sequence.at("frames").size()},
+                        {"objects", sequence.at("objects").size()},
+                        {"detections", sequence.at("detections").size()},
+                        {"variants", std::move(variants)}});
+  }
+  return {{"datasets", std::move(datasets)}};
+}
+
+std::string PageHtml(const std::string& title, const std::string& entry, const json& data) {
+  const auto& files = EmbeddedPageFiles();
+  std::string scripts;
+  // Libraries first; of ours the functions that others use.
+  for (const char* name :
+       {"three.min.js", "OrbitControls.js", "chart.min.js", "elements.js", "overlay.js",
+        "charts.js", "map.js", "figures.js", "objects.js", "frames.js", "tables.js", "main.js"}) {
+    scripts += fmt::format("<script>\n{}\n</script>\n", files.at(name));
+  }
+  std::string html(files.at("page.html"));
+  Replace("{{title}}", title, &html);
+  Replace("{{style}}", files.at("page.css"), &html);
+  Replace("{{scripts}}", scripts, &html);
+  Replace("{{entry}}", entry, &html);
+  // "</" would end the element; "<\/" is the same JSON.
+  Replace("{{data}}", Escaped(data.dump(), "</", "<\\/"), &html);
+  return html;
+}
+
+}  // namespace soslam

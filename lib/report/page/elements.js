@@ -1,0 +1,69 @@
+"use strict";
+// Making elements, and numbers as people read them.
+
+function element(tag, attributes, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value != null) made.setAttribute(name, value);
+  }
+  made.append(...children.flat().filter((child) => child != null));
+  return made;
+}
+
+function svgElement(tag, attributes, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes || {})) made.setAttribute(name, value);
+  made.append(...children.flat());
+  return made;
+}
+
+function number(value, decimals) {
+  return value == null || !Number.isFinite(value) ? "–" : value.toFixed(decimals);
+}
+
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+}
+
+function section(id, title, ...children) {
+  return element("section", { id }, element("h2", {}, title), ...children);
+}
+
+// Calls onchoice(index) at once and for every choice.
+function chooser(label, names, chosen, onchoice) {
+  const select = element("select", { onchange: () => onchoice(select.selectedIndex) },
+    names.map((name, i) => element("option", { selected: i === chosen }, name)));
+  onchoice(chosen);
+  return element("label", {}, label, select);
+}
+
+function checkbox(label, key, checked, onchange) {
+  const input = element("input", { type: "checkbox", checked, onchange: () => onchange(input.checked) });
+  return element("label", {}, input,
+    key ? element("span", { class: "key", style: `background: var(--${key})` }) : null, label);
+}
+
+function slider(label, count, chosen, onchange) {
+  const input = element("input",
+    { type: "range", min: 0, max: Math.max(0, count - 1), value: chosen, "aria-label": label,
+      oninput: () => onchange(Number(input.value)) });
+  return input;
+}
+
+// rows: arrays of cells, each a text or {text, best}.
+function table(header, rows, attributesOfRow) {
+  const cell = (content) => typeof content === "object" && content !== null && !(content instanceof Node)
+    ? element("td", { class: content.best ? "best" : null }, content.text)
+    : element("td", {}, content);
+  return element("div", { class: "scroll" }, element("table", {},
+    element("thead", {}, element("tr", {}, header.map((name) => element("th", {}, name)))),
+    element("tbody", {}, rows.map((row, i) =>
+      element("tr", attributesOfRow ? attributesOfRow(i) : {}, row.map(cell))))));
+}
+
+function quantityRows(pairs) {
+  return element("dl", {}, pairs.flatMap(([name, value]) =>
+    [element("dt", {}, name), element("dd", {}, value)]));
+}

@@ -1,0 +1,87 @@
+"use strict";
+// One frame's image with what was detected and estimated in it. Pixels: (0, 0) is the centre of the
+// top-left one, so that the image begins at -0.5.
+
+// Object URLs by frame: the browser then decodes an image once for all of its views.
+const imageUrls = {};
+function imageUrl(page, frameId) {
+  const source = page.images[frameId];
+  if (!source) return null;
+  if (!imageUrls[frameId]) {
+    const bytes = Uint8Array.from(atob(source.split(",")[1]), (letter) => letter.charCodeAt(0));
+    imageUrls[frameId] = URL.createObjectURL(new Blob([bytes], { type: "image/jpeg" }));
+  }
+  return imageUrls[frameId];
+}
+
+function polygon(pixels, name, attributes) {
+  return svgElement("polygon", Object.assign(
+    { points: pixels.join(" "), fill: "none", stroke: `var(--${name})`, "stroke-width": 2 }, attributes));
+}
+
+function line(pixels, name, attributes) {
+  const [x1, y1, x2, y2] = pixels;
+  return svgElement("line", Object.assign(
+    { x1, y1, x2, y2, stroke: `var(--${name})`, "stroke-width": 1.5 }, attributes));
+}
+
+function boxOutline([x1, y1, x2, y2], name) {
+  return polygon([x1, y1, x2, y1, x2, y2, x1, y2], name, { "stroke-dasharray": "5 3", "stroke-width": 1.5 });
+}
+
+// The box around pixels, as OutlineBox has it of the outline.
+function boundsOf(pixels) {
+  const xs = pixels.filter((_, i) => i % 2 === 0);
+  const ys = pixels.filter((_, i) => i % 2 === 1);
+  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+}
+
+// Outline, its box, and axes: the front is thick.
+function estimateShapes(shown, name) {
+  if (!shown || shown.outline.length === 0) return [];
+  const shapes = [polygon(shown.outline, name, { "fill": `var(--${name})`, "fill-opacity": 0.12 })];
+  if (shown.axes) {
+    shapes.push(line(shown.axes[0], "front", { "stroke-width": 3.5, "stroke-linecap": "round" }));
+    for (const axis of shown.axes.slice(1)) shapes.push(line(axis, name, { "stroke-width": 1.5 }));
+  }
+  return shapes;
+}
+
+// crop: [x1, y1, x2, y2] px or null for all of it.
+function imageView(page, frame, crop, shapes, label) {
+  const [x1, y1, x2, y2] = crop || [-0.5, -0.5, frame.width - 0.5, frame.height - 0.5];
+  const view = svgElement("svg",
+    { class: "view", viewBox: `${x1} ${y1} ${x2 - x1} ${y2 - y1}`, role: "img", "aria-label": label });
+  view.style.aspectRatio = `${x2 - x1} / ${y2 - y1}`;
+  const url = imageUrl(page, frame.id);
+  if (url) {
+    view.append(svgElement("image", { href: url, x: -0.5, y: -0.5, width: frame.width, height: frame.height,
+      preserveAspectRatio: "none" }));
+  }
+  view.append(...shapes);
+  return view;
+}
+
+function cropAround(boxes, frame, margin) {
+  const x1 = Math.min(...boxes.map((box) => box[0])), y1 = Math.min(...boxes.map((box) => box[1]));
+  const x2 = Math.max(...boxes.map((box) => box[2])), y2 = Math.max(...boxes.map((box) => box[3]));
+  const width = (1 + 2 * margin) * Math.max(x2 - x1, (y2 - y1) * 4 / 3);
+  const height = width * 3 / 4;
+  const clamp = (value, size, whole) =>
+    Math.min(Math.max(value, -0.5), Math.max(-0.5, whole - 0.5 - size));
+  const left = clamp((x1 + x2 - width) / 2, width, frame.width);
+  const top = clamp((y1 + y2 - height) / 2, height, frame.height);
+  return [left, top, left + width, top + height];
+}
+
+// A detection, cut out, with one variant's estimate and the truth.
+function detectionView(page, variant, index, extra, label) {
+  const sequence = page.sequences[variant.sequence];
+  const detection = sequence.detections[index];
+  const frame = sequence.frames[detection.frame];
+  const crop = cropAround([detection.box], frame, 0.25);
+  const shapes = [boxOutline(detection.box, "detection")];
+  if (detection.truth && detection.truth.outline.length > 0) shapes.push(polygon(detection.truth.outline, "truth"));
+  shapes.push(...estimateShapes(variant.outlines[index], "estimate"), ...(extra || []));
+  return imageView(page, frame, crop, shapes, label);
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_images.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "base/parallel.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kJpegQuality = 75;
+constexpr std::array kWidthsPx = {800, 640, 480, 320, 200};  // tried in turn
+
+std::string EncodeJpeg(const cv::Mat& image, int max_width) {
+  cv::Mat scaled = image;
+  if (image.cols > max_width) {
+    const double scale = static_cast<double>(max_width) / image.cols;
+    cv::resize(image, scaled, {}, scale, scale, cv::INTER_AREA);
+  }
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  return Base64(bytes);
+}
+
+}  // namespace
+
+std::string Base64(const std::vector<unsigned char>& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP ends it with a zero
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(),
+                                   static_cast<int>(bytes.size()));
+  text.resize(static_cast<size_t>(size));
+  return text;
+}
+
+std::vector<std::string> EncodeImages(const std::vector<int>& frames, const ImageSource& image_of,
+                                      size_t max_bytes, int threads) {
+  std::vector<std::string> encoded(frames.size());
+  for (const int width : kWidthsPx) {
+    ParallelFor(static_cast<int>(frames.size()), threads, [&](int i) {
+      const auto index = static_cast<size_t>(i);
+      const auto image = image_of(frames[index]);
+      if (image) encoded[index] = EncodeJpeg(*image, width);
+    });
+    const size_t total =
+        std::accumulate(encoded.begin(), encoded.end(), size_t{0},
+                        [](size_t sum, const std::string& text) { return sum + text.size(); });
+    if (total <= max_bytes) break;
+  }
+  return encoded;
+}
+
+}  // namespace soslam

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+
+namespace soslam {
+
+// Short forms for pages, which are to stay small. Lengths are rounded to a tenth of a millimetre,
+// pixels to a tenth, the rest to five significant digits. What is not finite becomes null.
+
+nlohmann::json PageNumber(double value);
+nlohmann::json PageNumbers(const std::vector<double>& values);
+nlohmann::json PageVector(const Eigen::Vector3d& metres);
+// [x, y, z, qx, qy, qz, qw]
+nlohmann::json PagePose(const Rigid3d& pose);
+// {"pose": world_from_object, "half_axes": [a, b, c], "p": shape exponent}
+nlohmann::json PageLandmark(const Landmark& landmark_in_world);
+// [x, y, x, y, ...] px
+nlohmann::json PagePixels(const std::vector<Eigen::Vector2d>& pixels);
+// {"outline": pixels, "axes": [front, left, up as pixels from centre to face] or null}
+nlohmann::json PageOutline(const Camera& camera, const Landmark& landmark_in_camera);
+
+}  // namespace soslam

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_variant.h"
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "artefact/json_file.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/map_file.h"
+#include "artefact/symmetry_file.h"
+#include "report/page_curves.h"
+#include "report/page_json.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+json SigmasOf(const std::vector<double>& variances) {
+  std::vector<double> sigmas;
+  for (const double variance : variances) sigmas.push_back(std::sqrt(variance));
+  return PageNumbers(sigmas);
+}
+
+// As the order of Covariance9 has it.
+void AddCovariance(const Covariance9& covariance, const Landmark& landmark, json* object) {
+  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d of_centre = covariance.block<3, 3>(3, 3);
+  json rows = json::array();
+  for (int i = 0; i < 3; ++i) {
+    rows.push_back(PageNumbers({of_centre(i, 0), of_centre(i, 1), of_centre(i, 2)}));
+  }
+  (*object)["centre_covariance"] = rows;
+  (*object)["sigma_centre"] = SigmasOf({of_centre(0, 0), of_centre(1, 1), of_centre(2, 2)});
+  (*object)["sigma_log_half_axes"] =
+      SigmasOf({covariance(6, 6), covariance(7, 7), covariance(8, 8)});
+  (*object)["sigma_yaw_deg"] =
+      PageNumber(kDegPerRad * std::sqrt(up.dot(covariance.topLeftCorner<3, 3>() * up)));
+}
+
+json PageObjectEstimate(const ObjectEstimate& estimate) {
+  json object = {{"landmark", nullptr},
+                 {"failure", estimate.failure},
+                 {"observations", estimate.observations}};
+  if (!estimate.landmark_in_world) return object;
+  object["landmark"] = PageLandmark(*estimate.landmark_in_world);
+  if (estimate.covariance) {
+    AddCovariance(*estimate.covariance, *estimate.landmark_in_world, &object);
+  }
+  return object;
+}
+
+// In the order of the sequence's objects.
+json PageObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
+  std::vector<json> objects(sequence.objects.size(), PageObjectEstimate({}));
+  for (const ObjectEstimate& estimate : estimates) {
+    objects[static_cast<size_t>(estimate.object_index)] = PageObjectEstimate(estimate);
+  }
+  return objects;
+}
+
+// How each camera sees the landmarks in the world.
+json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence,
+                       const std::vector<Rigid3d>& world_from_camera) {
+  std::vector<std::optional<Landmark>> landmarks(sequence.objects.size());
+  for (const ObjectEstimate& estimate : estimates) {
+    landmarks[static_cast<size_t>(estimate.object_index)] = estimate.landmark_in_world;
+  }
+  json outlines = json::array();
+  for (const Detection& detection : sequence.detections) {
+    const auto& landmark = landmarks[static_cast<size_t>(detection.object_index)];
+    const Rigid3d& pose = world_from_camera[static_cast<size_t>(detection.frame_index)];
+    outlines.push_back(
+        landmark ? PageOutline(sequence.CameraOf(detection), Transform(pose.Inverse(), *landmark))
+                 : json());
+  }
+  return outlines;
+}
+
+std::vector<Rigid3d> OdometryPoses(const Sequence& sequence) {
+  std::vector<Rigid3d> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  return poses;
+}
+
+json PageSolver(const SolverSummary& solver) {
+  return {{"converged", solver.converged},
+          {"iterations", solver.iterations},
+          {"cost_per_iteration", PageNumbers(solver.cost_per_iteration)},
+          {"residuals", solver.residuals},
+          {"gated", solver.gated}};
+}
+
+void AddMap(const MapEstimate& map, const Sequence& sequence, json* variant) {
+  (*variant)["kind"] = "map";
+  (*variant)["objects"] = PageObjects(map.objects, sequence);
+  (*variant)["outlines"] = OutlinesOfObjects(map.objects, sequence, map.world_from_camera);
+  for (const Rigid3d& pose : map.world_from_camera) {
+    (*variant)["trajectory"].push_back(PagePose(pose));
+  }
+  (*variant)["solver"] = PageSolver(map.solver);
+}
+
+void AddViews(const LandmarkEstimates& estimates, const Sequence& sequence, json* variant) {
+  (*variant)["kind"] = "views";
+  (*variant)["objects"] = PageObjects(estimates.objects, sequence);
+  (*variant)["outlines"] = OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence));
+}
+
+void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence, json* variant) {
+  std::vector<json> outlines(sequence.detections.size());
+  std::vector<ObjectEstimate> first(sequence.objects.size());
+  for (size_t i = 0; i < first.size(); ++i) first[i].object_index = static_cast<int>(i);
+  for (const ObservationEstimate& estimate : estimates.observations) {
+    const auto index = static_cast<size_t>(estimate.detection_index);
+    const Detection& detection = sequence.detections[index];
+    ObjectEstimate& object = first[static_cast<size_t>(detection.object_index)];
+    ++object.observations;
+    if (estimate.hypotheses.empty()) {
+      if (!object.landmark_in_world) object.failure = estimate.failure;
+      continue;
+    }
+    const Landmark& landmark_in_camera = estimate.hypotheses.front().landmark_in_camera;
+    outlines[index] = PageOutline(sequence.CameraOf(detection), landmark_in_camera);
+    if (object.landmark_in_world) continue;
+    object.landmark_in_world =
+        Transform(sequence.FrameOf(detection).world_from_camera, landmark_in_camera);
+    object.failure.clear();
+  }
+  (*variant)["kind"] = "frames";
+  (*variant)["objects"] = PageObjects(first, sequence);
+  (*variant)["outlines"] = outlines;
+}
+
+void AddEstimates(const fs::path& folder, const Sequence& sequence, json* variant) {
+  if (fs::exists(folder / "map.json")) {
+    AddMap(ReadMap(folder / "map.json", sequence), sequence, variant);
+    return;
+  }
+  const char* file = fs::exists(folder / "refined.json") ? "refined.json" : "initial.json";
+  const LandmarkEstimates estimates = ReadLandmarks(folder / file, sequence);
+  if (estimates.observations.empty()) {
+    AddViews(estimates, sequence, variant);
+  } else {
+    AddFrames(estimates, sequence, variant);
+  }
+}
+
+std::vector<std::string> LinesOf(const fs::path& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+json PageVariant(const fs::path& folder, const Sequence& sequence) {
+  json variant = {{"name", folder.filename().string()},
+                  {"stages", LinesOf(folder / "stages.txt")},
+                  {"trajectory", nullptr},
+                  {"solver", nullptr},
+                  {"curves", json::array()},
+                  {"descriptors", json::object()}};
+  variant["metrics"] = ReadArtefact(folder / "metrics.json", "metrics");
+  variant["metrics"].erase("artefact");
+  AddEstimates(folder, sequence, &variant);
+  if (fs::exists(folder / "symmetry.h5")) {
+    const std::vector<SymmetryRecord> records = ReadSymmetry(folder / "symmetry.h5");
+    variant["curves"] = PageCurves(records, sequence);
+    variant["descriptors"] = PageDescriptors(records);
+  }
+  return variant;
+}
+
+}  // namespace soslam

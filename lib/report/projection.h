@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+
+namespace soslam {
+
+using Polygon = std::vector<Eigen::Vector2d>;         // px, closed by its first point
+using LineSegment2 = std::array<Eigen::Vector2d, 2>;  // px
+using LineSegment3 = std::array<Eigen::Vector3d, 2>;  // m
+
+// The outline of the landmark in the image, to half a pixel; empty unless the whole landmark is in
+// front of the camera.
+Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera);
+
+// The axes from the landmark's centre to the middle of its faces x (the front), y and z; none
+// unless all of these are in front of the camera.
+std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
+                                                         const Landmark& landmark_in_camera);
+
+// The part of a segment in front of the camera; none when nothing is.
+std::optional<LineSegment2> ProjectSegment(const Camera& camera, const LineSegment3& in_camera);
+
+// Lines of a square grid on the plane around points on or near it, both ways, half a metre apart
+// or, on planes larger than kMaxGridLines such squares, so many times farther that they are no
+// more. At least one point. In the plane's frame.
+inline constexpr int kMaxGridLines = 12;
+std::vector<LineSegment3> PlaneGrid(const Plane& plane, const std::vector<Eigen::Vector3d>& points);
+
+}  // namespace soslam

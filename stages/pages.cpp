@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_pages.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::PagesOptions>(
+      argc, argv,
+      {.name = "soslam-pages",
+       .purpose =
+           "Makes a page to look at for each dataset in a results folder, and one of them all.",
+       .files = {{"results", "results folder; gets report.html, and one in each dataset's folder"}},
+       .example = "soslam-pages --results results"},
+      &soslam::RunPages);
+}

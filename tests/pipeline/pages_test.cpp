@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pages of a small run, as a browser shows them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/browser.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kMaxPageBytes = 8e6;
+
+class PagesTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    pipeline_ = new SmallPipeline(6);
+    const CommandResult run = pipeline_->Run("InitPT OursPT SVD");
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const CommandResult pages =
+        RunCommand({StageProgram("pages"), "--results", Results().string()});
+    ASSERT_EQ(pages.exit_code, 0) << pages.errors;
+  }
+  static void TearDownTestSuite() { delete pipeline_; }
+  static std::filesystem::path Results() { return pipeline_->Folder() / "results"; }
+
+  static const SmallPipeline* pipeline_;
+};
+const SmallPipeline* PagesTest::pipeline_ = nullptr;
+
+TEST_F(PagesTest, ADatasetIsShownWithoutErrors) {
+  const std::filesystem::path page = Results() / "small/report.html";
+  EXPECT_LT(static_cast<double>(std::filesystem::file_size(page)), kMaxPageBytes);
+  if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";
+  const nlohmann::json found = CheckPage(page);
+  ASSERT_FALSE(found.is_null());
+  EXPECT_EQ(found.at("errors"), nlohmann::json::array());
+  EXPECT_EQ(found.at("variants"), 3);
+  EXPECT_EQ(found.at("broken_images"), 0);
+  // The frame, three objects' evidence, figures.
+  EXPECT_GT(found.at("images"), 10);
+  EXPECT_EQ(found.at("charts"), found.at("canvases"));
+  EXPECT_GT(found.at("charts"), 4);
+  EXPECT_EQ(found.at("rows"), 3);
+  EXPECT_GT(found.at("drawn_pixels"), 10000);
+  EXPECT_THAT(found.at("picked").get<std::string>(),
+              testing::AllOf(testing::ContainsRegex("chest|stool|armchair"),
+                             testing::HasSubstr("sigma of yaw"), testing::HasSubstr("IoU")));
+}
+
+TEST_F(PagesTest, TheOverviewLeadsToTheDataset) {
+  const std::string page = FileBytes(Results() / "report.html");
+  EXPECT_THAT(page, testing::HasSubstr("\"dataset\":\"small\""));
+  if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";
+  const nlohmann::json found = CheckPage(Results() / "report.html");
+  ASSERT_FALSE(found.is_null());
+  EXPECT_EQ(found.at("errors"), nlohmann::json::array());
+}
+
+TEST_F(PagesTest, NeedNothingFromElsewhere) {
+  for (const char* name : {"report.html", "small/report.html"}) {
+    const std::string page = FileBytes(Results() / name);
+    EXPECT_THAT(page, testing::Not(testing::ContainsRegex("src=\"|<link rel=\"stylesheet")))
+        << name;
+  }
+}
+
+TEST_F(PagesTest, HaveTheSameBytesAgain) {
+  const std::filesystem::path page = Results() / "small/report.html";
+  const std::string before = FileBytes(page);
+  const CommandResult again =
+      RunCommand({StageProgram("pages"), "--results", Results().string(), "--threads", "1"});
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(FileBytes(page), before);
+}
+
+TEST_F(PagesTest, AFolderWithoutResultsIsRefused) {
+  const TemporaryFolder empty;
+  const CommandResult result =
+      RunCommand({StageProgram("pages"), "--results", empty.path().string()});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, testing::HasSubstr("no <dataset>/plan.mk"));
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_curves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+
+// A curve over half a turn in steps of 2 degrees with `minima` equal minima, one of them at
+// `lowest_deg`, another cost that knows nothing.
+SymmetryRecord Record(double lowest_deg, int minima, double true_deg) {
+  SymmetryRecord record;
+  const double nan = std::nan("");
+  for (int deg = 0; deg < 180; deg += 2) {
+    record.yaw.push_back(deg * kDegrees);
+    record.cost["wave"].push_back(1.0 - std::cos(2.0 * minima * (deg - lowest_deg) * kDegrees) -
+                                  1e-3 * std::cos(2.0 * (deg - lowest_deg) * kDegrees));
+    record.cost["gap"].push_back(nan);
+  }
+  record.true_yaw = true_deg * kDegrees;
+  return record;
+}
+
+TEST(PageDescriptors, CountErrorsModuloHalfATurnAndMinima) {
+  const auto found = PageDescriptors({Record(40, 1, 44), Record(10, 1, 190), Record(100, 1, 160)});
+  ASSERT_EQ(found.size(), 1u);  // what has no cost anywhere says nothing
+  const auto& wave = found.at("wave");
+  EXPECT_EQ(wave.at("observations"), 3);
+  EXPECT_NEAR(wave.at("median_error_deg").get<double>(), 4.0, 1e-3);
+  EXPECT_NEAR(wave.at("within_10_deg").get<double>(), 2.0 / 3.0, 1e-4);
+  EXPECT_EQ(wave.at("minima"), 1.0);
+  EXPECT_EQ(PageDescriptors({Record(40, 3, 40)}).at("wave").at("minima"), 3.0);
+}
+
+TEST(PageDescriptors, NeedTheTruth) {
+  SymmetryRecord record = Record(40, 1, 44);
+  record.true_yaw.reset();
+  EXPECT_TRUE(PageDescriptors({record}).empty());
+}
+
+Sequence Seen(int frames) {
+  Sequence sequence;
+  sequence.objects = {{7, "cup", kNoPlane, {}}};
+  for (int i = 0; i < frames; ++i) {
+    Frame frame;
+    frame.id = 10 * i;
+    sequence.frames.push_back(frame);
+    Detection detection;
+    detection.frame_index = i;
+    sequence.detections.push_back(detection);
+  }
+  return sequence;
+}
+
+TEST(PageCurves, AreOfObservationsSpreadOverEachObject) {
+  std::vector<SymmetryRecord> records;
+  for (int i = 0; i < 9; ++i) {
+    records.push_back(Record(40, 1, 44));
+    records.back().frame_id = 10 * i;
+    records.back().object_id = 7;
+    records.back().samples.assign(500, {1.0f, 2.0f});
+    records.back().mirrored.assign(500, {3.0f, 4.0f});
+  }
+  const auto curves = PageCurves(records, Seen(9));
+  ASSERT_EQ(curves.size(), kCurvesPerObject);
+  EXPECT_EQ(curves[1].at("detection"), 3);
+  EXPECT_NEAR(curves[0].at("true_yaw_deg").get<double>(), 44.0, 1e-3);
+  EXPECT_TRUE(curves[0].at("refined_yaw_deg").is_null());
+  EXPECT_EQ(curves[0].at("pairs").size(), kPairsOfCurve);
+  EXPECT_EQ(curves[0].at("pairs")[0], nlohmann::json({1.0, 2.0, 3.0, 4.0}));
+  EXPECT_EQ(curves[0].at("pairs_in_all"), 500);
+  EXPECT_TRUE(curves[0].at("cost").at("gap")[0].is_null());
+}
+
+}  // namespace
+}  // namespace soslam

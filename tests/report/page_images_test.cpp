@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_images.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <opencv2/core.hpp>
+
+namespace soslam {
+namespace {
+
+// RFC 4648, section 10.
+TEST(Base64, HasTheStandardsExamples) {
+  const auto encoded = [](const std::string& text) { return Base64({text.begin(), text.end()}); };
+  EXPECT_EQ(encoded(""), "");
+  EXPECT_EQ(encoded("f"), "Zg==");
+  EXPECT_EQ(encoded("fo"), "Zm8=");
+  EXPECT_EQ(encoded("foo"), "Zm9v");
+  EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
+}
+
+cv::Mat Noise() {
+  cv::Mat image(480, 640, CV_8UC3);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 255);
+  return image;
+}
+
+TEST(EncodeImages, AreAsLargeAsThereIsRoom) {
+  const ImageSource source = [](int) { return std::optional(Noise()); };
+  const auto large = EncodeImages({0, 1, 2}, source, 10'000'000, 2);
+  const auto small = EncodeImages({0, 1, 2}, source, 300'000, 2);
+  const auto total = [](const std::vector<std::string>& texts) {
+    return std::accumulate(texts.begin(), texts.end(), size_t{0},
+                           [](size_t sum, const std::string& text) { return sum + text.size(); });
+  };
+  EXPECT_GT(total(large), 300'000u);
+  EXPECT_LE(total(small), 300'000u);
+  EXPECT_GT(total(small), 30'000u);
+  EXPECT_EQ(large, EncodeImages({0, 1, 2}, source, 10'000'000, 1));
+}
+
+TEST(EncodeImages, AreEmptyWhereThereIsNone) {
+  const auto encoded = EncodeImages(
+      {3, 4}, [](int frame) { return frame == 3 ? std::optional(Noise()) : std::nullopt; },
+      10'000'000, 1);
+  EXPECT_FALSE(encoded[0].empty());
+  EXPECT_TRUE(encoded[1].empty());
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,44 @@
+// Ends a page under test: looks at it as a reader would, and leaves what it found as JSON in the
+// element "check".
+(async () => {
+  const found = { errors: window.errorsOfPage, images: 0, broken_images: 0 };
+  try {
+    for (const image of document.querySelectorAll("svg image")) {
+      const loaded = new Image();
+      await new Promise((done) => {
+        loaded.onload = () => { ++found.images; done(); };
+        loaded.onerror = () => { ++found.broken_images; done(); };
+        loaded.src = image.getAttribute("href");
+      });
+    }
+    found.charts = [...document.querySelectorAll(".chart canvas")].filter((canvas) => Chart.getChart(canvas)).length;
+    found.canvases = document.querySelectorAll(".chart canvas").length;
+    found.rows = document.querySelectorAll("tr[data-object]").length;
+    const canvas = document.getElementById("map-canvas");
+    if (canvas) {
+      const view = JSON.parse(document.getElementById("data").textContent);
+      found.variants = view.variants.length;
+      const pixels = document.createElement("canvas");
+      pixels.width = canvas.width;
+      pixels.height = canvas.height;
+      const context = pixels.getContext("2d");
+      context.drawImage(canvas, 0, 0);
+      const { data } = context.getImageData(0, 0, pixels.width, pixels.height);
+      found.drawn_pixels = data.filter((value, i) => i % 4 === 3 && value > 0).length;
+      // Clicks all over the map until an object is hit.
+      const area = canvas.getBoundingClientRect();
+      const picked = document.getElementById("picked");
+      for (let i = 0; i < 400 && !picked.querySelector("dl"); ++i) {
+        const at = { clientX: area.left + area.width * (i % 20 + 0.5) / 20,
+          clientY: area.top + area.height * (Math.floor(i / 20) + 0.5) / 20, bubbles: true };
+        canvas.dispatchEvent(new PointerEvent("pointerdown", at));
+        canvas.dispatchEvent(new PointerEvent("pointerup", at));
+      }
+      found.picked = picked.textContent;
+    }
+  } catch (error) {
+    found.errors.push(String(error));
+  }
+  document.body.append(Object.assign(document.createElement("pre"),
+    { id: "check", textContent: "CHECK" + JSON.stringify(found) + "KCEHC" }));
+})();
