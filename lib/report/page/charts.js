@@ -161,7 +161,6 @@ function topDownChart(page, variant) {
   });
   const poses = variant.trajectory || sequence.frames.map(({ pose }) => pose);
   add("camera", poses.map((pose) => ground.place(pose.slice(0, 3))), "faint", { borderWidth: 1 });
-  const seen = new Set();
   const all = datasets.flatMap(({ data }) => data);
   const range = (of) => {
     const values = all.map(of);
@@ -171,6 +170,7 @@ function topDownChart(page, variant) {
   const size = `aspect-ratio: ${(x2 - x1) / (y2 - y1)}; max-height: 620px`;
   return chart("the map from above", size, { type: "scatter", data: { datasets }, plugins: [kEqualScales], options: {
     scales: { x: axis("m", { min: x1, max: x2 }), y: axis("m", { min: y1, max: y2 }) },
-    plugins: { legend: legend((item) => item.text !== "" && !seen.has(item.text) && seen.add(item.text)),
+    plugins: { legend: legend(({ text, datasetIndex }) =>
+      text !== "" && datasets.findIndex(({ label }) => label === text) === datasetIndex),
       tooltip: { enabled: false } } } });
 }

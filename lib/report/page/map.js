@@ -50,6 +50,10 @@ function frontArrow(landmark) {
   const [a] = landmark.half_axes;
   const arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1.35 * a,
     colour("front"), 0.3 * a, 0.2 * a);
+  for (const part of arrow.children) {  // drawn last: it shows inside the body as well
+    Object.assign(part.material, { depthTest: false, transparent: true });
+    part.renderOrder = 1;
+  }
   return placed(new THREE.Group().add(arrow), landmark.pose);
 }
 
@@ -65,7 +69,7 @@ function uncertaintyBody(object) {
     }
   }
   const mesh = new THREE.Mesh(new THREE.SphereBufferGeometry(3, 24, 16),
-    new THREE.MeshLambertMaterial({ color: colour("other"), transparent: true, opacity: 0.45, depthWrite: false }));
+    new THREE.MeshLambertMaterial({ color: colour("other"), transparent: true, opacity: 0.45, depthTest: false }));
   const [x, y, z] = object.landmark.pose;
   mesh.matrixAutoUpdate = false;
   mesh.matrix.set(l[0][0], 0, 0, x, l[1][0], l[1][1], 0, y, l[2][0], l[2][1], l[2][2], z, 0, 0, 0, 1);
@@ -156,6 +160,7 @@ class MapView {
 
   bounds() {
     const box = new THREE.Box3();
+    for (const { pose } of this.sequence.frames) box.expandByPoint(new THREE.Vector3(...pose.slice(0, 3)));
     const add = (landmark) => box.expandByPoint(new THREE.Vector3(...landmark.pose.slice(0, 3)));
     this.sequence.objects.forEach(({ truth }, i) => {
       if (truth) add(truth);
@@ -169,8 +174,8 @@ class MapView {
     this.camera.up.set(...up);
     const centre = this.bounds().getCenter(new THREE.Vector3());
     const first = new THREE.Vector3(...this.sequence.frames[0].pose.slice(0, 3));
-    const back = first.sub(centre).normalize().add(this.camera.up.clone().multiplyScalar(0.6)).normalize();
-    this.camera.position.copy(centre).addScaledVector(back, 0.9 * this.extent() + 1.5);
+    const back = first.sub(centre).normalize().add(this.camera.up.clone().multiplyScalar(0.8)).normalize();
+    this.camera.position.copy(centre).addScaledVector(back, 0.8 * this.extent() + 0.5);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.target.copy(centre);
     this.controls.update();

@@ -13,8 +13,8 @@ function objectNumbers(page, variant, index) {
   const triple = (values, decimals) => values.map((value) => number(value, decimals)).join(", ");
   const rows = [["variant", variant.name], ["observations", String(estimate.observations)]];
   if (estimate.landmark) {
-    rows.push(["centre, m", triple(estimate.landmark.pose.slice(0, 3), 3)]);
-    rows.push(["half axes, m", triple(estimate.landmark.half_axes, 3)]);
+    rows.push(["centre, m", triple(estimate.landmark.pose.slice(0, 3), 2)]);
+    rows.push(["half axes, m", triple(estimate.landmark.half_axes, 2)]);
     rows.push(["shape exponent", number(estimate.landmark.p, 2)]);
   } else {
     rows.push(["no landmark", estimate.failure]);
@@ -24,7 +24,7 @@ function objectNumbers(page, variant, index) {
     rows.push(["sigma of half axes, %", triple(estimate.sigma_log_half_axes.map((value) => 100 * value), 1)]);
     rows.push(["sigma of yaw, deg", number(estimate.sigma_yaw_deg, 2)]);
   }
-  if (object.truth) rows.push(["true half axes, m", triple(object.truth.half_axes, 3)]);
+  if (object.truth) rows.push(["true half axes, m", triple(object.truth.half_axes, 2)]);
   if (metrics) {
     rows.push(["IoU", number(metrics.iou, 3)], ["Rot, deg", number(metrics.rotation_deg, 2)],
       ["yaw error, deg", number(metrics.yaw_error_deg, 2)], ["centre error, m", number(metrics.centre_m, 3)]);

@@ -65,7 +65,8 @@ function imageView(page, frame, crop, shapes, label) {
 function cropAround(boxes, frame, margin) {
   const x1 = Math.min(...boxes.map((box) => box[0])), y1 = Math.min(...boxes.map((box) => box[1]));
   const x2 = Math.max(...boxes.map((box) => box[2])), y2 = Math.max(...boxes.map((box) => box[3]));
-  const width = (1 + 2 * margin) * Math.max(x2 - x1, (y2 - y1) * 4 / 3);
+  const wanted = (1 + 2 * margin) * Math.max(x2 - x1, (y2 - y1) * 4 / 3);
+  const width = Math.min(wanted, frame.width, frame.height * 4 / 3);
   const height = width * 3 / 4;
   const clamp = (value, size, whole) =>
     Math.min(Math.max(value, -0.5), Math.max(-0.5, whole - 0.5 - size));
