@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -18,8 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Base 64 of all images of a page: with libraries and data it stays below 8 MB.
-constexpr size_t kMaxImageBytes = 4'500'000;
+// Of a page's data, images included as far as there is room: with the libraries it stays below 8
+// MB.
+constexpr size_t kMaxDataBytes = 6'500'000;
+constexpr size_t kMinImageBytes = 1'000'000;
 
 std::vector<fs::path> VariantsOf(const fs::path& results_of_dataset) {
   std::vector<fs::path> folders;
@@ -32,26 +35,26 @@ std::vector<fs::path> VariantsOf(const fs::path& results_of_dataset) {
   return folders;
 }
 
-// Of frames in which something was detected, where there are too many.
-std::vector<int> ShownFrames(const Sequence& sequence) {
+// Those with an image; where they are too many, evenly over those in which something was detected.
+std::vector<int> ShownFrames(const Sequence& sequence, const ImageSource& images) {
+  std::vector<int> frames;
+  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
+    if (images.has(i)) frames.push_back(i);
+  }
+  if (frames.size() <= kMaxPageFrames) return frames;
   std::set<int> with_detections;
   for (const Detection& detection : sequence.detections) {
     with_detections.insert(detection.frame_index);
   }
-  std::vector<int> all;
-  const bool all_fit = sequence.frames.size() <= kMaxPageFrames;
-  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
-    if (all_fit || with_detections.count(i) > 0) all.push_back(i);
-  }
-  return SpreadOver(all, kMaxPageFrames);
+  std::erase_if(frames, [&](int frame) { return with_detections.count(frame) == 0; });
+  return SpreadOver(frames, kMaxPageFrames);
 }
 
-json PageImages(const Sequence& sequence, const ImageSourceOf& images, int threads) {
-  const std::vector<int> frames = ShownFrames(sequence);
-  const auto encoded = EncodeImages(frames, images(sequence), kMaxImageBytes, threads);
+json PageImages(const Sequence& sequence, const std::vector<int>& frames, const ImageSource& images,
+                size_t max_bytes, int threads) {
+  const auto encoded = EncodeImages(frames, images, max_bytes, threads);
   json by_frame = json::object();
   for (size_t i = 0; i < frames.size(); ++i) {
-    if (encoded[i].empty()) continue;
     const int id = sequence.frames[static_cast<size_t>(frames[i])].id;
     by_frame[std::to_string(id)] = "data:image/jpeg;base64," + encoded[i];
   }
@@ -84,17 +87,23 @@ json PageData(const fs::path& results_of_dataset, const ImageSourceOf& images, i
                {"sequences", json::array()},
                {"variants", json::array()}};
   std::map<fs::path, size_t> index_of_sequence;  // by the file that links lead to
+  std::optional<Sequence> first;
   for (const fs::path& folder : folders) {
     const fs::path file = folder / "sequence.json";
     const Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+    const std::vector<int> shown = ShownFrames(sequence, images(sequence));
     const auto [entry, is_new] =
         index_of_sequence.emplace(fs::canonical(file), data["sequences"].size());
-    if (is_new) data["sequences"].push_back(PageSequence(sequence));
-    if (!data.contains("images")) data["images"] = PageImages(sequence, images, threads);
-    json variant = PageVariant(folder, sequence);
+    if (is_new) data["sequences"].push_back(PageSequence(sequence, shown));
+    json variant = PageVariant(folder, sequence, shown);
     variant["sequence"] = entry->second;
     data["variants"].push_back(std::move(variant));
+    if (!first) first = sequence;
   }
+  const size_t without_images = data.dump().size();
+  const size_t room = kMaxDataBytes - std::min(kMaxDataBytes - kMinImageBytes, without_images);
+  const ImageSource source = images(*first);
+  data["images"] = PageImages(*first, ShownFrames(*first, source), source, room, threads);
   data["differences"] = json::array();
   return data;
 }
@@ -128,7 +137,7 @@ std::string PageHtml(const std::string& title, const std::string& entry, const j
     scripts += fmt::format("<script>\n{}\n</script>\n", files.at(name));
   }
   std::string html(files.at("page.html"));
-  Replace("{{title}}", title, &html);
+  Replace("{{title}}", Escaped(Escaped(title, "&", "&amp;"), "<", "&lt;"), &html);
   Replace("{{style}}", files.at("page.css"), &html);
   Replace("{{scripts}}", scripts, &html);
   Replace("{{entry}}", entry, &html);

@@ -13,16 +13,16 @@
 
 namespace soslam {
 
-// How to read the images of a sequence, which outlives the source; a source that has none where the
-// dataset is not there.
+// The images of a sequence, which outlives the source.
 using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 
 // All that the page of a dataset shows: its variants with metrics, in the order of their names,
 // from results/<dataset>. Variants of one sequence share its entry.
-//   dataset; images: "data:" URLs by frame id, of at most kMaxPageFrames frames evenly over all;
+//   dataset; images: "data:" URLs by frame id, of at most kMaxPageFrames frames evenly over all:
+//     the frames that are shown;
 //   sequences: see PageSequence; variants: see PageVariant, each with the index of its sequence
 // Throws NothingUsableError when no variant has metrics.
-inline constexpr size_t kMaxPageFrames = 80;
+inline constexpr size_t kMaxPageFrames = 60;
 nlohmann::json PageData(const std::filesystem::path& results_of_dataset,
                         const ImageSourceOf& images, int threads);
 

@@ -102,13 +102,18 @@ json PageDescriptors(const std::vector<SymmetryRecord>& records) {
   return descriptors;
 }
 
-json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence) {
+json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence,
+                const std::vector<int>& shown) {
   std::map<std::pair<int, int>, const SymmetryRecord*> by_ids;
   for (const SymmetryRecord& record : records) {
     by_ids[{record.frame_id, record.object_id}] = &record;
   }
   json curves = json::array();
-  for (const std::vector<int>& detections : DetectionsByObject(sequence)) {
+  for (std::vector<int> detections : DetectionsByObject(sequence)) {
+    std::erase_if(detections, [&](int index) {
+      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+      return !std::ranges::binary_search(shown, detection.frame_index);
+    });
     for (const int index : SpreadOver(detections, kCurvesPerObject)) {
       const Detection& detection = sequence.detections[static_cast<size_t>(index)];
       const auto record =

@@ -9,13 +9,14 @@
 
 namespace soslam {
 
-// Cost over yaw of up to kCurvesPerObject observations of each object, evenly over all of them:
-// detection (index); yaw_deg: the grid; cost: by name; true_yaw_deg, initial_yaw_deg,
-// refined_yaw_deg, yaw_sigma_deg or null; pairs: up to kPairsOfCurve pixels with their mirror
-// pixels [x, y, x, y].
+// Cost over yaw of up to kCurvesPerObject observations of each object, evenly over those in frames
+// that are `shown` (indices, ascending): detection (index); yaw_deg: the grid; cost: by name;
+// true_yaw_deg, initial_yaw_deg, refined_yaw_deg, yaw_sigma_deg or null; pairs: up to kPairsOfCurve
+// pixels with their mirror pixels [x, y, x, y].
 inline constexpr size_t kCurvesPerObject = 3;
 inline constexpr size_t kPairsOfCurve = 120;
-nlohmann::json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence);
+nlohmann::json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence,
+                          const std::vector<int>& shown);
 
 // How well each cost finds the true yaw modulo half a turn, over all observations with ground
 // truth, by name: observations; median_error_deg of its lowest minimum; within_10_deg: share of

@@ -38,14 +38,13 @@ std::string Base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-std::vector<std::string> EncodeImages(const std::vector<int>& frames, const ImageSource& image_of,
+std::vector<std::string> EncodeImages(const std::vector<int>& frames, const ImageSource& images,
                                       size_t max_bytes, int threads) {
   std::vector<std::string> encoded(frames.size());
   for (const int width : kWidthsPx) {
     ParallelFor(static_cast<int>(frames.size()), threads, [&](int i) {
       const auto index = static_cast<size_t>(i);
-      const auto image = image_of(frames[index]);
-      if (image) encoded[index] = EncodeJpeg(*image, width);
+      encoded[index] = EncodeJpeg(images.read(frames[index]), width);
     });
     const size_t total =
         std::accumulate(encoded.begin(), encoded.end(), size_t{0},

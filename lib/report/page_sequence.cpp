@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/page_sequence.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "report/page_json.h"
@@ -47,22 +50,29 @@ std::vector<std::vector<LineSegment3>> GridsInWorld(const Sequence& sequence) {
 }
 
 // Given planes are where the true camera sees them, estimated ones where the estimated one does.
-json GridInImage(const Sequence& sequence, const Frame& frame,
-                 const std::vector<std::vector<LineSegment3>>& grids) {
-  json lines = json::array();
-  for (size_t i = 0; i < grids.size(); ++i) {
-    const bool is_given = !sequence.planes[i].attitude_information;
-    const Rigid3d camera_from_world =
-        (is_given ? frame.true_world_from_camera.value_or(frame.world_from_camera)
-                  : frame.world_from_camera)
-            .Inverse();
-    for (const LineSegment3& line : grids[i]) {
-      const auto segment = ProjectSegment(
-          sequence.CameraOf(frame), {camera_from_world * line[0], camera_from_world * line[1]});
-      if (segment) lines.push_back(PagePixels({(*segment)[0], (*segment)[1]}));
-    }
+void AddGrid(const Sequence& sequence, const Frame& frame, size_t plane_index,
+             const std::vector<LineSegment3>& grid, json* lines) {
+  const bool is_given = !sequence.planes[plane_index].attitude_information;
+  const Rigid3d camera_from_world =
+      (is_given ? frame.true_world_from_camera.value_or(frame.world_from_camera)
+                : frame.world_from_camera)
+          .Inverse();
+  for (const LineSegment3& line : grid) {
+    const auto segment = ProjectSegment(sequence.CameraOf(frame),
+                                        {camera_from_world * line[0], camera_from_world * line[1]});
+    if (segment) lines->push_back(PagePixels({(*segment)[0], (*segment)[1]}));
   }
-  return lines;
+}
+
+// By frame: the planes of what was detected there.
+std::vector<std::set<size_t>> PlanesOfFrames(const Sequence& sequence) {
+  std::vector<std::set<size_t>> planes(sequence.frames.size());
+  if (sequence.planes.empty()) return planes;
+  for (const Detection& detection : sequence.detections) {
+    planes[static_cast<size_t>(detection.frame_index)].insert(
+        static_cast<size_t>(sequence.ObjectOf(detection).plane_index));
+  }
+  return planes;
 }
 
 // As evaluation compares landmarks: the cuboid around the object.
@@ -71,8 +81,7 @@ Landmark AsCuboid(Landmark landmark) {
   return landmark;
 }
 
-json PageFrame(const Sequence& sequence, const Frame& frame,
-               const std::vector<std::vector<LineSegment3>>& grids) {
+json PageFrame(const Sequence& sequence, const Frame& frame) {
   const Camera& camera = sequence.CameraOf(frame);
   return {{"id", frame.id},
           {"timestamp", frame.timestamp},
@@ -82,13 +91,14 @@ json PageFrame(const Sequence& sequence, const Frame& frame,
           {"pose", PagePose(frame.world_from_camera)},
           {"true_pose",
            frame.true_world_from_camera ? PagePose(*frame.true_world_from_camera) : json()},
-          {"grid", GridInImage(sequence, frame, grids)}};
+          {"grid", json::array()}};
 }
 
 json PageObject(const Sequence& sequence, const Object& object) {
   const auto& truth = object.ground_truth;
   return {{"id", object.id},
           {"label", object.label},
+          {"segment", nullptr},
           {"plane", sequence.planes.empty()
                         ? json()
                         : json(sequence.planes[static_cast<size_t>(object.plane_index)].id)},
@@ -96,8 +106,8 @@ json PageObject(const Sequence& sequence, const Object& object) {
           {"rotationally_symmetric", truth && truth->rotationally_symmetric}};
 }
 
-json PageDetection(const Sequence& sequence, const Detection& detection) {
-  const auto truth = TrueLandmarkInCamera(sequence, detection);
+json PageDetection(const Sequence& sequence, const Detection& detection, bool is_shown) {
+  const auto truth = is_shown ? TrueLandmarkInCamera(sequence, detection) : std::nullopt;
   const Box& box = detection.box;
   return {{"frame", detection.frame_index},
           {"object", detection.object_index},
@@ -123,21 +133,30 @@ json PagePlane(const SupportPlane& plane, const std::vector<LineSegment3>& grid)
 
 }  // namespace
 
-json PageSequence(const Sequence& sequence) {
+json PageSequence(const Sequence& sequence, const std::vector<int>& shown) {
   const auto grids = GridsInWorld(sequence);
+  const auto planes_of_frames = PlanesOfFrames(sequence);
   json page = {{"frames", json::array()},
                {"objects", json::array()},
                {"detections", json::array()},
                {"planes", json::array()},
                {"rejected", sequence.rejected_detections}};
-  for (const Frame& frame : sequence.frames) {
-    page["frames"].push_back(PageFrame(sequence, frame, grids));
+  for (const Frame& frame : sequence.frames) page["frames"].push_back(PageFrame(sequence, frame));
+  for (const int index : shown) {
+    const auto frame = static_cast<size_t>(index);
+    for (const size_t plane : planes_of_frames[frame]) {
+      AddGrid(sequence, sequence.frames[frame], plane, grids[plane],
+              &page["frames"][frame]["grid"]);
+    }
   }
   for (const Object& object : sequence.objects) {
     page["objects"].push_back(PageObject(sequence, object));
   }
   for (const Detection& detection : sequence.detections) {
-    page["detections"].push_back(PageDetection(sequence, detection));
+    const bool is_shown = std::ranges::binary_search(shown, detection.frame_index);
+    page["detections"].push_back(PageDetection(sequence, detection, is_shown));
+    page["objects"][static_cast<size_t>(detection.object_index)]["segment"] =
+        sequence.FrameOf(detection).segment;
   }
   for (size_t i = 0; i < grids.size(); ++i) {
     page["planes"].push_back(PagePlane(sequence.planes[i], grids[i]));

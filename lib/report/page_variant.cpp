@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/page_variant.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -68,7 +69,8 @@ json PageObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& s
 
 // How each camera sees the landmarks in the world.
 json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence,
-                       const std::vector<Rigid3d>& world_from_camera) {
+                       const std::vector<Rigid3d>& world_from_camera,
+                       const std::vector<int>& shown) {
   std::vector<std::optional<Landmark>> landmarks(sequence.objects.size());
   for (const ObjectEstimate& estimate : estimates) {
     landmarks[static_cast<size_t>(estimate.object_index)] = estimate.landmark_in_world;
@@ -77,9 +79,10 @@ json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Seque
   for (const Detection& detection : sequence.detections) {
     const auto& landmark = landmarks[static_cast<size_t>(detection.object_index)];
     const Rigid3d& pose = world_from_camera[static_cast<size_t>(detection.frame_index)];
-    outlines.push_back(
-        landmark ? PageOutline(sequence.CameraOf(detection), Transform(pose.Inverse(), *landmark))
-                 : json());
+    const bool is_shown = std::ranges::binary_search(shown, detection.frame_index);
+    outlines.push_back(landmark && is_shown ? PageOutline(sequence.CameraOf(detection),
+                                                          Transform(pose.Inverse(), *landmark))
+                                            : json());
   }
   return outlines;
 }
@@ -98,23 +101,27 @@ json PageSolver(const SolverSummary& solver) {
           {"gated", solver.gated}};
 }
 
-void AddMap(const MapEstimate& map, const Sequence& sequence, json* variant) {
+void AddMap(const MapEstimate& map, const Sequence& sequence, const std::vector<int>& shown,
+            json* variant) {
   (*variant)["kind"] = "map";
   (*variant)["objects"] = PageObjects(map.objects, sequence);
-  (*variant)["outlines"] = OutlinesOfObjects(map.objects, sequence, map.world_from_camera);
+  (*variant)["outlines"] = OutlinesOfObjects(map.objects, sequence, map.world_from_camera, shown);
   for (const Rigid3d& pose : map.world_from_camera) {
     (*variant)["trajectory"].push_back(PagePose(pose));
   }
   (*variant)["solver"] = PageSolver(map.solver);
 }
 
-void AddViews(const LandmarkEstimates& estimates, const Sequence& sequence, json* variant) {
+void AddViews(const LandmarkEstimates& estimates, const Sequence& sequence,
+              const std::vector<int>& shown, json* variant) {
   (*variant)["kind"] = "views";
   (*variant)["objects"] = PageObjects(estimates.objects, sequence);
-  (*variant)["outlines"] = OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence));
+  (*variant)["outlines"] =
+      OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence), shown);
 }
 
-void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence, json* variant) {
+void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
+               const std::vector<int>& shown, json* variant) {
   std::vector<json> outlines(sequence.detections.size());
   std::vector<ObjectEstimate> first(sequence.objects.size());
   for (size_t i = 0; i < first.size(); ++i) first[i].object_index = static_cast<int>(i);
@@ -128,7 +135,9 @@ void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence, jso
       continue;
     }
     const Landmark& landmark_in_camera = estimate.hypotheses.front().landmark_in_camera;
-    outlines[index] = PageOutline(sequence.CameraOf(detection), landmark_in_camera);
+    if (std::ranges::binary_search(shown, detection.frame_index)) {
+      outlines[index] = PageOutline(sequence.CameraOf(detection), landmark_in_camera);
+    }
     if (object.landmark_in_world) continue;
     object.landmark_in_world =
         Transform(sequence.FrameOf(detection).world_from_camera, landmark_in_camera);
@@ -139,17 +148,18 @@ void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence, jso
   (*variant)["outlines"] = outlines;
 }
 
-void AddEstimates(const fs::path& folder, const Sequence& sequence, json* variant) {
+void AddEstimates(const fs::path& folder, const Sequence& sequence, const std::vector<int>& shown,
+                  json* variant) {
   if (fs::exists(folder / "map.json")) {
-    AddMap(ReadMap(folder / "map.json", sequence), sequence, variant);
+    AddMap(ReadMap(folder / "map.json", sequence), sequence, shown, variant);
     return;
   }
   const char* file = fs::exists(folder / "refined.json") ? "refined.json" : "initial.json";
   const LandmarkEstimates estimates = ReadLandmarks(folder / file, sequence);
   if (estimates.observations.empty()) {
-    AddViews(estimates, sequence, variant);
+    AddViews(estimates, sequence, shown, variant);
   } else {
-    AddFrames(estimates, sequence, variant);
+    AddFrames(estimates, sequence, shown, variant);
   }
 }
 
@@ -162,7 +172,7 @@ std::vector<std::string> LinesOf(const fs::path& path) {
 
 }  // namespace
 
-json PageVariant(const fs::path& folder, const Sequence& sequence) {
+json PageVariant(const fs::path& folder, const Sequence& sequence, const std::vector<int>& shown) {
   json variant = {{"name", folder.filename().string()},
                   {"stages", LinesOf(folder / "stages.txt")},
                   {"trajectory", nullptr},
@@ -171,10 +181,10 @@ json PageVariant(const fs::path& folder, const Sequence& sequence) {
                   {"descriptors", json::object()}};
   variant["metrics"] = ReadArtefact(folder / "metrics.json", "metrics");
   variant["metrics"].erase("artefact");
-  AddEstimates(folder, sequence, &variant);
+  AddEstimates(folder, sequence, shown, &variant);
   if (fs::exists(folder / "symmetry.h5")) {
     const std::vector<SymmetryRecord> records = ReadSymmetry(folder / "symmetry.h5");
-    variant["curves"] = PageCurves(records, sequence);
+    variant["curves"] = PageCurves(records, sequence, shown);
     variant["descriptors"] = PageDescriptors(records);
   }
   return variant;

@@ -3,12 +3,14 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "model/sequence.h"
 
 namespace soslam {
 
-// What a page shows of one variant, from its results folder; `sequence` is the one that it has.
+// What a page shows of one variant, from its results folder; `sequence` is the one that it has. No
+// outlines and curves of frames that are not among `shown` (indices, ascending).
 //   name; kind: "map", "views" (one landmark from all frames, without a back end) or "frames" (one
 //     for each observation)
 //   metrics: metrics.json without its header; stages: runs that it is made of
@@ -18,6 +20,7 @@ namespace soslam {
 //   outlines, one per detection: see PageOutline, or null
 //   trajectory: poses of the map; solver: iterations, costs, what was used and left out
 //   curves, descriptors: see PageCurves and PageDescriptors
-nlohmann::json PageVariant(const std::filesystem::path& folder, const Sequence& sequence);
+nlohmann::json PageVariant(const std::filesystem::path& folder, const Sequence& sequence,
+                           const std::vector<int>& shown);
 
 }  // namespace soslam

@@ -39,17 +39,18 @@ fs::path DatasetOf(const fs::path& results_of_dataset) {
   return folder;
 }
 
-// Frames whose image is not there have none on the page.
+// Frames whose file is not there have no image.
 ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
-  const auto reader = std::make_shared<const FrameImageReader>(sequence);
-  return [dataset, reader, &sequence](int frame_index) -> std::optional<cv::Mat> {
+  const auto image_of = [dataset, &sequence](int frame_index) -> FrameImage {
     const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
-    if (frame.image.empty()) return std::nullopt;
-    const FrameImage image{&frame,
-                           ImagePath(dataset, frame.image, fmt::format("frame {}", frame.id))};
-    if (!fs::exists(image.path)) return std::nullopt;
-    return reader->ReadColour(image);
+    return {&frame, ImagePath(dataset, frame.image, fmt::format("frame {}", frame.id))};
   };
+  const auto reader = std::make_shared<const FrameImageReader>(sequence);
+  return {[=, &sequence](int frame_index) {
+            const bool is_named = !sequence.frames[static_cast<size_t>(frame_index)].image.empty();
+            return is_named && fs::exists(image_of(frame_index).path);
+          },
+          [=](int frame_index) { return reader->ReadColour(image_of(frame_index)); }};
 }
 
 }  // namespace

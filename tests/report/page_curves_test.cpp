@@ -66,9 +66,12 @@ TEST(PageCurves, AreOfObservationsSpreadOverEachObject) {
     records.back().samples.assign(500, {1.0f, 2.0f});
     records.back().mirrored.assign(500, {3.0f, 4.0f});
   }
-  const auto curves = PageCurves(records, Seen(9));
+  const auto curves = PageCurves(records, Seen(9), {0, 1, 2, 4, 5, 6});
   ASSERT_EQ(curves.size(), kCurvesPerObject);
-  EXPECT_EQ(curves[1].at("detection"), 3);
+  EXPECT_EQ(curves[0].at("detection"), 0);
+  EXPECT_EQ(curves[1].at("detection"), 2);
+  EXPECT_EQ(curves[2].at("detection"), 5);
+  EXPECT_TRUE(PageCurves(records, Seen(9), {}).empty());
   EXPECT_NEAR(curves[0].at("true_yaw_deg").get<double>(), 44.0, 1e-3);
   EXPECT_TRUE(curves[0].at("refined_yaw_deg").is_null());
   EXPECT_EQ(curves[0].at("pairs").size(), kPairsOfCurve);

@@ -138,12 +138,13 @@ const kEqualScales = {
   },
 };
 
-function topDownChart(page, variant) {
+function topDownChart(page, variant, segment) {
   const sequence = page.sequences[variant.sequence];
   const ground = groundAxes(sequence);
   const datasets = [];
   const add = (label, points, name, more) => datasets.push(curve(label, points, colour(name), more));
   sequence.objects.forEach((object, i) => {
+    if (object.segment !== segment) return;
     if (object.truth) {
       const { outline, front } = footprint(object.truth, ground);
       add("ground truth", outline, "truth", { borderWidth: 1.5 });
@@ -160,7 +161,8 @@ function topDownChart(page, variant) {
     }
   });
   const poses = variant.trajectory || sequence.frames.map(({ pose }) => pose);
-  add("camera", poses.map((pose) => ground.place(pose.slice(0, 3))), "faint", { borderWidth: 1 });
+  const here = poses.filter((_, i) => sequence.frames[i].segment === segment);
+  add("camera", here.map((pose) => ground.place(pose.slice(0, 3))), "faint", { borderWidth: 1 });
   const all = datasets.flatMap(({ data }) => data);
   const range = (of) => {
     const values = all.map(of);

@@ -106,11 +106,13 @@ class MapView {
     new ResizeObserver(() => this.resize()).observe(this.canvas);
   }
 
+  // Every segment has a world of its own: that of the frame is shown.
   show(variant, frameIndex) {
-    const isNew = this.variant !== variant;
     this.variant = variant;
     this.frameIndex = frameIndex;
     this.sequence = this.page.sequences[variant.sequence];
+    const isNew = this.segment !== this.sequence.frames[frameIndex].segment;
+    this.segment = this.sequence.frames[frameIndex].segment;
     this.scene.remove(this.content);
     this.content = new THREE.Group();
     this.pickable = [];
@@ -118,13 +120,14 @@ class MapView {
     if (this.shows.grid) this.addGrid();
     if (this.shows.trajectory) this.addTrajectory();
     this.scene.add(this.content);
-    if (isNew && !this.controls) this.lookAtAll();
+    if (isNew) this.lookAtAll();
     this.draw();
   }
 
   addObjects() {
     this.variant.objects.forEach((estimate, i) => {
-      const { truth } = this.sequence.objects[i];
+      const { truth, segment } = this.sequence.objects[i];
+      if (segment !== this.segment) return;
       if (this.shows.truth && truth) this.content.add(bodyMesh(truth, "truth", 0.18));
       if (!estimate || !estimate.landmark) return;
       const mesh = bodyMesh(estimate.landmark, "estimate", i === this.picked ? 0.85 : 0.55);
@@ -136,7 +139,8 @@ class MapView {
   }
 
   addGrid() {
-    for (const plane of this.sequence.planes) {
+    const here = new Set(this.sequence.objects.filter(({ segment }) => segment === this.segment).map(({ plane }) => plane));
+    for (const plane of this.sequence.planes.filter(({ id }) => here.has(id))) {
       for (const [a, b, c, d, e, f] of plane.grid) {
         this.content.add(threeLine([[a, b, c], [d, e, f]], "faint", 0.35));
       }
@@ -146,9 +150,11 @@ class MapView {
   addTrajectory() {
     const { frames } = this.sequence;
     const poses = this.variant.trajectory || frames.map(({ pose }) => pose);
-    this.content.add(threeLine(poses.map((pose) => pose.slice(0, 3)), "detection", 1));
-    if (this.shows.truth && frames.every((frame) => frame.true_pose)) {
-      this.content.add(threeLine(frames.map(({ true_pose }) => true_pose.slice(0, 3)), "truth", 0.8));
+    const isHere = (_, i) => frames[i].segment === this.segment;
+    this.content.add(threeLine(poses.filter(isHere).map((pose) => pose.slice(0, 3)), "detection", 1));
+    const truth = frames.map(({ true_pose }) => true_pose).filter(isHere);
+    if (this.shows.truth && truth.every((pose) => pose)) {
+      this.content.add(threeLine(truth.map((pose) => pose.slice(0, 3)), "truth", 0.8));
     }
     const pose = poses[this.frameIndex];
     if (pose) this.content.add(placed(cameraFrustum(frames[this.frameIndex], 0.06 * this.extent() + 0.1), pose));
@@ -160,9 +166,12 @@ class MapView {
 
   bounds() {
     const box = new THREE.Box3();
-    for (const { pose } of this.sequence.frames) box.expandByPoint(new THREE.Vector3(...pose.slice(0, 3)));
+    for (const { pose, segment } of this.sequence.frames) {
+      if (segment === this.segment) box.expandByPoint(new THREE.Vector3(...pose.slice(0, 3)));
+    }
     const add = (landmark) => box.expandByPoint(new THREE.Vector3(...landmark.pose.slice(0, 3)));
-    this.sequence.objects.forEach(({ truth }, i) => {
+    this.sequence.objects.forEach(({ truth, segment }, i) => {
+      if (segment !== this.segment) return;
       if (truth) add(truth);
       else if (this.variant.objects[i] && this.variant.objects[i].landmark) add(this.variant.objects[i].landmark);
     });
@@ -173,9 +182,11 @@ class MapView {
     const up = this.sequence.planes.length > 0 ? this.sequence.planes[0].normal : [0, 0, 1];
     this.camera.up.set(...up);
     const centre = this.bounds().getCenter(new THREE.Vector3());
-    const first = new THREE.Vector3(...this.sequence.frames[0].pose.slice(0, 3));
+    const first = new THREE.Vector3(
+      ...this.sequence.frames.find(({ segment }) => segment === this.segment).pose.slice(0, 3));
     const back = first.sub(centre).normalize().add(this.camera.up.clone().multiplyScalar(0.8)).normalize();
     this.camera.position.copy(centre).addScaledVector(back, 0.8 * this.extent() + 0.5);
+    if (this.controls) this.controls.dispose();
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.target.copy(centre);
     this.controls.update();
@@ -232,16 +243,27 @@ function mapSection(page, variants) {
   }
   page.map = view;
   let variant = variants[0], frame = 0;
-  const draw = () => view.show(variant, frame);
+  const above = element("div");
+  const draw = () => {
+    const { segment } = view;
+    view.show(variant, frame);
+    if (above.variant !== variant || segment !== view.segment) {
+      above.replaceChildren(topDownChart(page, variant, view.segment));
+      above.variant = variant;
+    }
+  };
   const controls = element("div", { class: "bar" },
-    chooser("variant", variants.map(({ name }) => name), 0, (i) => { variant = variants[i]; view.picked = null; explain(); draw(); }),
+    chooser("variant", variants.map(({ name }) => name), 0, (i) => {
+      variant = variants[i];
+      frame = Math.min(frame, page.sequences[variant.sequence].frames.length - 1);
+      view.picked = null;
+      explain();
+      draw();
+    }),
     slider("camera", page.sequences[variants[0].sequence].frames.length, 0, (i) => { frame = i; draw(); }),
     checkbox("ground truth", "truth", true, (on) => { view.shows.truth = on; draw(); }),
     checkbox("planes", "faint", true, (on) => { view.shows.grid = on; draw(); }),
     checkbox("camera", "detection", true, (on) => { view.shows.trajectory = on; draw(); }));
-  const above = element("div");
-  const drawAbove = (i) => above.replaceChildren(topDownChart(page, variants[i]));
   return section("map", "Map", controls, element("div", { class: "map" }, view.canvas, panel),
-    element("h3", {}, "From above"),
-    element("div", { class: "bar" }, chooser("variant", variants.map(({ name }) => name), 0, drawAbove)), above);
+    element("h3", {}, "From above"), above);
 }
