@@ -15,6 +15,7 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/machine.h"
 #include "stage/settings_file.h"
 
 namespace soslam::internal {
@@ -124,12 +125,14 @@ double Seconds(const timeval& time) {
 void WriteTiming(const fs::path& output, const std::string& stage, double wall_s, int threads) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
+  const Machine machine = ThisMachine();
   const nlohmann::ordered_json timing = {
       {"stage", stage},
       {"wall_s", wall_s},
       {"cpu_s", Seconds(usage.ru_utime) + Seconds(usage.ru_stime)},
       {"peak_memory_mb", static_cast<double>(usage.ru_maxrss) / 1024.0},  // ru_maxrss is in KiB
-      {"threads", threads}};
+      {"threads", threads},
+      {"machine", {{"cpu", machine.cpu}, {"cores", machine.cores}}}};
   const fs::path folder = fs::is_directory(output) ? output : output.parent_path();
   WriteTextFile(folder / "timing.json", timing.dump(2) + "\n");
 }

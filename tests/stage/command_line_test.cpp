@@ -11,6 +11,7 @@
 #include <new>
 
 #include "artefact/json_file.h"
+#include "artefact/schema.h"
 #include "base/error.h"
 #include "support/temporary_folder.h"
 
@@ -228,6 +229,9 @@ TEST_F(CommandLineTest, WritesTimingBesideTheOutput) {
   EXPECT_GE(timing["wall_s"].get<double>(), 0.0);
   EXPECT_GT(timing["cpu_s"].get<double>(), 0.0);
   EXPECT_GT(timing["peak_memory_mb"].get<double>(), 1.0);
+  EXPECT_NE(timing["machine"]["cpu"], "");
+  EXPECT_GE(timing["machine"]["cores"], 1);
+  EXPECT_EQ(SchemaViolation(timing, "timing"), std::nullopt);
 }
 
 TEST_F(CommandLineTest, TimingOfAnOutputFolderLiesInIt) {

@@ -38,8 +38,12 @@ class RunReportTest : public testing::Test {
     EXPECT_EQ(printed, FileBytes(results_ / "tables.md"));
     return printed;
   }
+  // What the report says of single datasets comes last.
+  static std::string DatasetTables(const std::string& report) {
+    return report.substr(report.find("\n| variant "));
+  }
   static std::vector<std::string> Cells(const std::string& report, const std::string& variant) {
-    std::istringstream lines(report);
+    std::istringstream lines(DatasetTables(report));
     for (std::string line; std::getline(lines, line);) {
       if (line.rfind("| " + variant + " ", 0) != 0) continue;
       std::vector<std::string> cells;
@@ -54,7 +58,7 @@ class RunReportTest : public testing::Test {
   // First cells of the rows below the heads.
   static std::vector<std::string> Variants(const std::string& report) {
     std::vector<std::string> names;
-    std::istringstream lines(report);
+    std::istringstream lines(DatasetTables(report));
     for (std::string line; std::getline(lines, line);) {
       std::istringstream words(line);
       std::string bar;
@@ -116,7 +120,7 @@ TEST_F(RunReportTest, OnlyPaperVariantsHaveRowsWithoutMetrics) {
 
 TEST_F(RunReportTest, LinesOfATableAreEquallyLong) {
   Write("room", "a_variant_with_a_rather_long_name", kMap);
-  std::istringstream lines(Report());
+  std::istringstream lines(DatasetTables(Report()));
   std::set<size_t> lengths;
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind('|', 0) == 0) lengths.insert(line.size());

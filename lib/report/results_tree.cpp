@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/results_tree.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "artefact/json_file.h"
+#include "artefact/schema.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::vector<std::string> SubfoldersOf(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Place in the order of variants; equal for all that are neither the paper's nor ours.
+size_t VariantRank(const std::string& name) {
+  const auto paper = std::find(kPaperVariants.begin(), kPaperVariants.end(), name);
+  if (paper != kPaperVariants.end()) return static_cast<size_t>(paper - kPaperVariants.begin());
+  const auto shape = std::find(kShapeVariants.begin(), kShapeVariants.end(), name);
+  return kPaperVariants.size() + static_cast<size_t>(shape - kShapeVariants.begin());
+}
+
+std::optional<StageTiming> ReadTiming(const fs::path& file) {
+  if (!fs::exists(file)) return std::nullopt;
+  const json document = ParseJsonFile(file);
+  ValidateAgainstSchema(document, "timing", file.string());
+  StageTiming timing = {document["wall_s"], document["cpu_s"], document["threads"], std::nullopt};
+  if (document.contains("machine")) {
+    timing.machine = Machine{document["machine"]["cpu"], document["machine"]["cores"]};
+  }
+  return timing;
+}
+
+// Lines of stages.txt are <stage>-<key>.
+std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& variant) {
+  std::vector<StageRun> stages;
+  std::ifstream lines(variant / "stages.txt");
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    const fs::path folder = dataset / "shared" / line;
+    stages.push_back({line.substr(0, line.rfind('-')), folder, ReadTiming(folder / "timing.json")});
+  }
+  return stages;
+}
+
+std::vector<VariantResult> ReadVariants(const fs::path& dataset) {
+  std::vector<VariantResult> variants;
+  for (const std::string& name : SubfoldersOf(dataset)) {
+    const fs::path folder = dataset / name;
+    const bool has_metrics = fs::exists(folder / "metrics.json");
+    if (!has_metrics && !fs::exists(folder / "stages.txt")) continue;
+    variants.push_back({name, folder,
+                        has_metrics ? ReadArtefact(folder / "metrics.json", "metrics") : json(),
+                        ReadStages(dataset, folder)});
+  }
+  std::stable_sort(variants.begin(), variants.end(), [](const auto& a, const auto& b) {
+    return VariantRank(a.name) < VariantRank(b.name);
+  });
+  return variants;
+}
+
+}  // namespace
+
+const VariantResult* DatasetResult::Evaluated(const std::string& variant) const {
+  const auto found =
+      std::find_if(variants.begin(), variants.end(), [&](const VariantResult& candidate) {
+        return candidate.name == variant && !candidate.metrics.is_null();
+      });
+  return found == variants.end() ? nullptr : &*found;
+}
+
+std::vector<DatasetResult> ReadResults(const fs::path& results) {
+  std::vector<DatasetResult> datasets;
+  for (const std::string& name : SubfoldersOf(results)) {
+    DatasetResult dataset = {name, ReadVariants(results / name)};
+    if (!dataset.variants.empty()) datasets.push_back(std::move(dataset));
+  }
+  return datasets;
+}
+
+std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer) {
+  const json::json_pointer place(pointer);
+  if (!variant.metrics.contains(place) || variant.metrics.at(place).is_null()) return std::nullopt;
+  return variant.metrics.at(place).get<double>();
+}
+
+std::vector<ObjectValue> ObjectValues(const VariantResult& variant, const Quantity& quantity) {
+  std::vector<ObjectValue> values;
+  if (variant.metrics.is_null()) return values;
+  for (const json& object : variant.metrics.at("objects")) {
+    const json& value = object.at(quantity.key);
+    if (!value.is_null()) values.push_back({object.at("object"), value});
+  }
+  return values;
+}
+
+}  // namespace soslam

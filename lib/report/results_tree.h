@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/machine.h"
+
+namespace soslam {
+
+// The methods that the paper compares, in its order.
+inline constexpr std::array kPaperVariants = {"SVD",     "Init1-1", "InitP", "InitPT",
+                                              "Quadric", "OursP",   "OursPT"};
+// Those that this project adds: the same steps for bodies of any shape.
+inline constexpr std::array kShapeVariants = {"MultiView", "InitS",  "InitST", "InitSTE",
+                                              "OursS",     "OursST", "OursSTE"};
+
+// An error that metrics.json has for each object and, as a mean over objects, in its summaries.
+struct Quantity {
+  const char* title;      // "Rot deg"
+  const char* key;        // of an object, "rotation_deg"; its mean has "_mean" at the end
+  const char* file_name;  // as part of the name of a table's files
+  int decimals;
+  bool higher_is_better;
+};
+inline constexpr Quantity kIou = {"IoU", "iou", "iou", 3, true};
+inline constexpr Quantity kRotation = {"Rot deg", "rotation_deg", "rotation", 2, false};
+inline constexpr Quantity kYawError = {"yaw error deg", "yaw_error_deg", "yaw_error", 2, false};
+
+// How long a run of a stage took: its timing.json.
+struct StageTiming {
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+  int threads = 1;
+  std::optional<Machine> machine;  // none in files from before it was recorded
+};
+
+// One run of a stage that a variant is made of.
+struct StageRun {
+  std::string stage;                  // "initialise"
+  std::filesystem::path folder;       // <dataset>/shared/<stage>-<key>
+  std::optional<StageTiming> timing;  // none when there is no timing.json
+};
+
+// <dataset>/<variant>/: a folder with metrics.json, stages.txt or both.
+struct VariantResult {
+  std::string name;
+  std::filesystem::path folder;
+  nlohmann::json metrics;        // metrics.json (schemas/metrics.schema.json); null without one
+  std::vector<StageRun> stages;  // in the order in which they run; empty without stages.txt
+};
+
+// <results>/<dataset>/: at least one variant.
+struct DatasetResult {
+  std::string name;
+  std::vector<VariantResult> variants;  // the paper's in its order, ours, then others by name
+
+  // The variant of that name that has metrics; null when there is none.
+  const VariantResult* Evaluated(const std::string& variant) const;
+};
+
+// All datasets in a results folder by name, those without metrics too; empty when the folder does
+// not exist. Throws InputError, naming file and field, for a metrics.json or timing.json that is
+// not valid.
+std::vector<DatasetResult> ReadResults(const std::filesystem::path& results);
+
+// A number of metrics.json by its JSON pointer, "/summary/iou_mean"; none when it is null or
+// absent.
+std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer);
+
+// A quantity of one object, by its id in the dataset; objects that do not have it are left out.
+struct ObjectValue {
+  int object_id = 0;
+  double value = 0.0;
+};
+std::vector<ObjectValue> ObjectValues(const VariantResult& variant, const Quantity& quantity);
+
+}  // namespace soslam

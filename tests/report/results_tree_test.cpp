@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/results_tree.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/expect_error.h"
+#include "support/results_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+std::vector<std::string> VariantNames(const DatasetResult& dataset) {
+  std::vector<std::string> names;
+  for (const VariantResult& variant : dataset.variants) names.push_back(variant.name);
+  return names;
+}
+
+TEST(ReadResults, DatasetsByNameAndVariantsInTheirOrder) {
+  const ResultsFolder results;
+  for (const char* variant : {"zeta", "OursSTE", "alpha", "MultiView", "OursPT", "SVD"}) {
+    results.WriteMetrics("room", variant, {{.id = 1, .iou = 0.5}});
+  }
+  results.WriteStages("desk", "SVD", {"import-12"});
+  results.VariantFolder("room", "shared");
+  results.VariantFolder("tables", "nothing");
+  const std::vector<DatasetResult> datasets = ReadResults(results.path());
+  ASSERT_EQ(datasets.size(), 2u);
+  EXPECT_EQ(datasets[0].name, "desk");
+  EXPECT_EQ(datasets[1].name, "room");
+  EXPECT_THAT(VariantNames(datasets[1]),
+              ElementsAre("SVD", "OursPT", "MultiView", "OursSTE", "alpha", "zeta"));
+}
+
+TEST(ReadResults, FolderThatDoesNotExistHoldsNothing) {
+  const ResultsFolder results;
+  EXPECT_TRUE(ReadResults(results.path() / "none").empty());
+}
+
+TEST(ReadResults, MetricsBelongToEvaluatedVariantsOnly) {
+  const ResultsFolder results;
+  results.WriteMetrics("room", "InitP", {{.id = 1, .iou = 0.25}, {.id = 2, .iou = 0.75}});
+  results.WriteStages("room", "SVD", {"import-12"});
+  const DatasetResult room = ReadResults(results.path()).front();
+  EXPECT_EQ(room.Evaluated("SVD"), nullptr);
+  EXPECT_EQ(room.Evaluated("InitS"), nullptr);
+  const VariantResult* const variant = room.Evaluated("InitP");
+  ASSERT_NE(variant, nullptr);
+  EXPECT_EQ(MetricsNumber(*variant, "/summary/iou_mean"), 0.5);
+  EXPECT_EQ(MetricsNumber(*variant, "/summary/rotation_deg_mean"), std::nullopt);
+  EXPECT_EQ(MetricsNumber(*variant, "/first_observation/iou_mean"), std::nullopt);
+  EXPECT_EQ(MetricsNumber(room.variants.front(), "/summary/iou_mean"), std::nullopt);
+}
+
+TEST(ReadResults, StageRunsWithTheirTimings) {
+  const ResultsFolder results;
+  results.WriteStages("room", "InitP", {"import-12", "initialise-34"});
+  results.WriteTiming("room", "initialise-34", 2.0, 3.0);
+  const DatasetResult room = ReadResults(results.path()).front();
+  const std::vector<StageRun>& stages = room.variants.front().stages;
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0].stage, "import");
+  EXPECT_FALSE(stages[0].timing);
+  EXPECT_EQ(stages[1].stage, "initialise");
+  ASSERT_TRUE(stages[1].timing);
+  EXPECT_EQ(stages[1].timing->wall_s, 2.0);
+  EXPECT_EQ(stages[1].timing->cpu_s, 3.0);
+  EXPECT_EQ(stages[1].timing->threads, 2);
+  EXPECT_EQ(stages[1].timing->machine->cpu, "A CPU");
+}
+
+TEST(ReadResults, TimingsFromBeforeMachinesWereRecorded) {
+  const ResultsFolder results;
+  results.WriteStages("room", "InitP", {"import-12"});
+  WriteBytes(results.VariantFolder("room", "shared/import-12") / "timing.json",
+             R"({"stage": "soslam-import", "wall_s": 1, "cpu_s": 1, "peak_memory_mb": 1,
+                 "threads": 1})");
+  const DatasetResult room = ReadResults(results.path()).front();
+  ASSERT_TRUE(room.variants.front().stages.front().timing);
+  EXPECT_FALSE(room.variants.front().stages.front().timing->machine);
+}
+
+TEST(ReadResults, RefusesBrokenFilesByName) {
+  const ResultsFolder results;
+  results.WriteStages("room", "InitP", {"import-12"});
+  const fs::path timing = results.VariantFolder("room", "shared/import-12") / "timing.json";
+  WriteBytes(timing, R"({"wall_s": "long"})");
+  ExpectError<InputError>([&] { ReadResults(results.path()); }, {"import-12/timing.json"});
+  fs::remove(timing);
+  WriteBytes(results.VariantFolder("room", "InitP") / "metrics.json", "{");
+  ExpectError<InputError>([&] { ReadResults(results.path()); }, {"room/InitP/metrics.json"});
+}
+
+TEST(ObjectValues, LeaveOutObjectsWithoutTheQuantity) {
+  const ResultsFolder results;
+  results.WriteMetrics("room", "InitP",
+                       {{.id = 7, .iou = 0.25, .rotation_deg = 4.0}, {.id = 9, .iou = 0.75}});
+  const DatasetResult room = ReadResults(results.path()).front();
+  const VariantResult& variant = room.variants.front();
+  EXPECT_EQ(ObjectValues(variant, kIou).size(), 2u);
+  const std::vector<ObjectValue> rotations = ObjectValues(variant, kRotation);
+  ASSERT_EQ(rotations.size(), 1u);
+  EXPECT_EQ(rotations[0].object_id, 7);
+  EXPECT_EQ(rotations[0].value, 4.0);
+}
+
+}  // namespace
+}  // namespace soslam
