@@ -54,8 +54,9 @@ ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RE
 	+@$(MAKE) run PIPELINES=pipelines/ablation RESULTS=$(RESULTS)/ablation
 
 .PHONY: tables
-tables: build ## Compare all variants of all datasets in RESULTS
-	@$(BIN)/soslam-report --results $(RESULTS) --output $(RESULTS)/tables.md
+tables: build ## Compare all variants of all datasets in RESULTS: tables.md, tables/*.csv, tables/*.tex
+	@$(BIN)/soslam-report --results $(RESULTS) --published pipelines/published.json \
+	  $(addprefix --settings ,$(wildcard $(PIPELINES)/report.json)) --output $(RESULTS)/tables.md
 
 .PHONY: report
 report: tables ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset
@@ -92,7 +93,7 @@ format-check: | setup ## Fail when a source is not formatted
 
 .PHONY: clean
 clean: ## Delete what runs wrote to RESULTS
-	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(RESULTS)/tables.md $(RESULTS)/timing.json $(RESULTS)/report.html
+	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json report.html)
 
 .PHONY: distclean
 distclean: clean ## Delete the build as well

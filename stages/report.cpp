@@ -6,9 +6,16 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::ReportOptions>(
       argc, argv,
       {.name = "soslam-report",
-       .purpose = "Puts the metrics of all datasets and variants in a results folder into tables.",
+       .purpose =
+           "Puts the metrics and times of all datasets and variants in a results folder into "
+           "tables:\nthose of the paper, paired differences between variants, and one for "
+           "each dataset.",
        .files = {{"results", "results folder, with <dataset>/<variant>/metrics.json"},
-                 {"output", "tables.md to write; the tables are printed as well"}},
-       .example = "soslam-report --results results --output results/tables.md"},
+                 {"published", "values to show beside the measured ones", false},
+                 {"output",
+                  "tables.md to write, which is printed as well; tables/*.csv and *.tex go beside "
+                  "it"}},
+       .example = "soslam-report --results results --published pipelines/published.json \\\n"
+                  "    --output results/tables.md"},
       &soslam::RunReport);
 }

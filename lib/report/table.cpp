@@ -152,7 +152,8 @@ std::string ToLatex(const Table& table) {
   const std::string columns = std::string(table.left_columns, 'l') +
                               std::string(table.header.size() - table.left_columns, 'r');
   std::string text = fmt::format(
-      "% Needs \\usepackage{{booktabs}}.\n\\begin{{table*}}\n\\centering\\footnotesize\n"
+      "% Needs \\usepackage{{booktabs}}.\n\\begin{{table*}}\n\\centering\\footnotesize"
+      "\\setlength{{\\tabcolsep}}{{3pt}}\n"
       "\\caption{{{}}}\n\\label{{tab:{}}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n",
       LatexText(table.title), table.name, columns);
   text += format_row(table.header) + "\\midrule\n";

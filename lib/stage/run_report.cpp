@@ -10,8 +10,12 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "report/dataset_table.h"
+#include "report/paired_differences.h"
+#include "report/paper_tables.h"
+#include "report/published.h"
 #include "report/results_tree.h"
 #include "report/table.h"
+#include "report/timing_table.h"
 
 namespace soslam {
 namespace {
@@ -35,7 +39,8 @@ std::vector<DatasetResult> ReadEvaluated(const fs::path& results) {
 // Markdown.
 std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdown_file) {
   const fs::path folder = markdown_file.parent_path() / "tables";
-  fs::create_directories(folder);
+  std::error_code error;  // where it cannot be made, it cannot be written to
+  fs::create_directory(folder, error);
   std::string text;
   for (const Table& table : tables) {
     text += (text.empty() ? "" : "\n") + ToMarkdown(table);
@@ -46,13 +51,28 @@ std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdo
   return text;
 }
 
+// In the order of the report: the paper's tables, paired differences, single datasets.
+std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const Published& published,
+                             const std::vector<Comparison>& comparisons) {
+  std::vector<Table> tables = PaperTables(datasets, published);
+  tables.push_back(TimeTable(datasets, published));
+  tables.push_back(StageTimeTable(datasets));
+  for (const Quantity& quantity : {kIou, kRotation, kYawError}) {
+    tables.push_back(DifferencesTable(datasets, comparisons, quantity));
+  }
+  for (const DatasetResult& dataset : datasets) tables.push_back(DatasetTable(dataset));
+  std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
+  return tables;
+}
+
 }  // namespace
 
-void RunReport(const ReportOptions& /*options*/, const StageFiles& files, int /*threads*/) {
+void RunReport(const ReportOptions& options, const StageFiles& files, int /*threads*/) {
+  const std::vector<Comparison> comparisons = ParseComparisons(options.compare);
+  const Published published =
+      files.contains("published") ? ReadPublished(files.at("published")) : Published();
   const std::vector<DatasetResult> datasets = ReadEvaluated(files.at("results"));
-  std::vector<Table> tables;
-  for (const DatasetResult& dataset : datasets) tables.push_back(DatasetTable(dataset));
-  fmt::print("{}", WriteTables(tables, files.at("output")));
+  fmt::print("{}", WriteTables(AllTables(datasets, published, comparisons), files.at("output")));
 }
 
 }  // namespace soslam

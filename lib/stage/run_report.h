@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "base/options.h"
 #include "stage/stage_files.h"
 
 namespace soslam {
 
-// A table always shows everything there is, so that tables from different runs can be compared.
+// A report always shows every dataset and variant, so that those from different runs can be
+// compared.
 struct ReportOptions {
-  void Describe(OptionVisitor&) {}
+  std::string compare =
+      "InitPT InitSTE, InitS InitST InitSTE, OursPT OursSTE, OursS OursST OursSTE";
+
+  void Describe(OptionVisitor& visit) {
+    visit.Text("compare", &compare,
+               "paired differences: lists of variants, divided by commas; in each list, every "
+               "variant is compared with those before it");
+  }
 };
 
-// Collects <dataset>/<variant>/metrics.json from folder "results" into one Markdown table per
-// dataset, printed and written to file "output". The variants of the paper come first and always
-// have a row; what is not there is "-". Throws NothingUsableError when there are no metrics at all,
-// InputError for a metrics file that is not JSON or has something else where a number should be.
+// Collects <dataset>/<variant>/metrics.json and the timing.json of the stages from folder "results"
+// into tables: those of the paper, beside the values in file "published" if there is one; paired
+// differences between variants; all metrics of each dataset. Prints them and writes them to file
+// "output" as Markdown, and each to the folder "tables" beside it as CSV and LaTeX. Throws
+// NothingUsableError when there are no metrics at all, InputError for a file that is not valid,
+// SettingsError for comparisons that are none.
 void RunReport(const ReportOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

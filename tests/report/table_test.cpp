@@ -62,7 +62,7 @@ TEST(TableLatex, IsATableWithRulesOfBooktabs) {
   EXPECT_EQ(ToLatex(table),
             "% Needs \\usepackage{booktabs}.\n"
             "\\begin{table*}\n"
-            "\\centering\\footnotesize\n"
+            "\\centering\\footnotesize\\setlength{\\tabcolsep}{3pt}\n"
             "\\caption{50 \\% of\\_all}\n"
             "\\label{tab:numbers}\n"
             "\\begin{tabular}{llr}\n"

@@ -27,6 +27,16 @@ class RunReportTest : public testing::Test {
     fs::create_directories(results_.path() / dataset / variant);
     nlohmann::json body = {{"dataset", dataset}, {"objects", nlohmann::json::array()}};
     body.update(nlohmann::json::parse(text));
+    for (int id = 1; id <= body["summary"]["objects"]; ++id) {
+      body["objects"].push_back({{"object", id},
+                                 {"label", "box"},
+                                 {"observations", 30},
+                                 {"estimates", 30},
+                                 {"iou", 0.5},
+                                 {"centre_m", 0.1},
+                                 {"rotation_deg", 1.0},
+                                 {"yaw_error_deg", 2.0}});
+    }
     WriteArtefact(results_.path() / dataset / variant / "metrics.json", "metrics", {}, body);
   }
   // The report; what is printed is the same as what is written.
@@ -143,6 +153,51 @@ TEST_F(RunReportTest, DanglingLinkCountsAsMissing) {
   fs::create_symlink("../shared/none/metrics.json",
                      results_.path() / "room" / "InitP" / "metrics.json");
   EXPECT_EQ(Cells(Report(), "InitP")[3], "-");
+}
+
+TEST_F(RunReportTest, TablesOfThePaperAndDifferencesComeBeforeThoseOfDatasets) {
+  for (const char* variant : {"OursS", "OursST"}) Write("room", variant, kMap);
+  const std::string report = Report();
+  EXPECT_LT(report.find("## Map, IoU (Table III)"),
+            report.find("## Map, Rot (degrees) (Table IV)"));
+  EXPECT_LT(report.find("(Table IV)"), report.find("## room"));
+  EXPECT_THAT(report, Not(HasSubstr("(Table I)")));
+}
+
+TEST_F(RunReportTest, EachTableIsAFileForProgramsAndForLatex) {
+  Write("room", "OursS", kMap);
+  Report();
+  EXPECT_THAT(FileBytes(results_ / "tables/table_3_map_iou.csv"),
+              HasSubstr("\nroom,measured,8,247,-,-,-,0.500,-,-\n"));
+  EXPECT_THAT(FileBytes(results_ / "tables/dataset_room.csv"), HasSubstr("\nOursS,8,247,0.500,"));
+  EXPECT_THAT(FileBytes(results_ / "tables/table_3_map_iou.tex"), HasSubstr("\\textbf{0.500}"));
+}
+
+TEST_F(RunReportTest, PublishedValuesAreThoseOfTheFile) {
+  Write("fr3_cabinet", "OursP", kMap);
+  const fs::path published = fs::path(SOSLAM_SOURCE_DIR) / "pipelines" / "published.json";
+  testing::internal::CaptureStdout();
+  RunReport(
+      {},
+      {{"results", results_.path()}, {"published", published}, {"output", results_ / "tables.md"}},
+      1);
+  std::fflush(stdout);
+  testing::internal::GetCapturedStdout();
+  EXPECT_THAT(FileBytes(results_ / "tables/table_3_map_iou.csv"),
+              HasSubstr("fr3_cabinet,measured,8,247,-,0.500,-,-,-,-\n"
+                        "fr3_cabinet,published,1,-,0.255,0.316,0.317,-,-,-\n"));
+}
+
+TEST_F(RunReportTest, RefusesComparisonsOfOneVariant) {
+  Write("room", "OursP", kMap);
+  ReportOptions options;
+  options.compare = "OursP";
+  ExpectError<SettingsError>(
+      [&] {
+        RunReport(options, {{"results", results_.path()}, {"output", results_ / "tables.md"}}, 1);
+      },
+      {"compare", "OursP"});
+  EXPECT_FALSE(fs::exists(results_ / "tables.md"));
 }
 
 TEST_F(RunReportTest, NoMetricsIsNothingUsable) {

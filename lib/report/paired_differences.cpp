@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/paired_differences.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include "base/error.h"
+#include "evaluation/statistics.h"
+
+namespace soslam {
+namespace {
+
+// The probability that the absolute value of a Student variable is below t = sqrt(dof) tan(theta):
+// finite series, Abramowitz and Stegun 26.7.3 and 26.7.4.
+double StudentProbability(int dof, double theta) {
+  const double cosine = std::cos(theta);
+  const bool is_odd = dof % 2 == 1;
+  const int first = is_odd ? 1 : 0;
+  double term = is_odd ? cosine : 1.0;
+  double sum = 0.0;
+  for (int k = first; k <= dof - 2; k += 2) {
+    if (k > first) term *= (k - 1.0) / k * cosine * cosine;
+    sum += term;
+  }
+  const double probability = std::sin(theta) * sum;
+  return is_odd ? 2.0 / std::numbers::pi * (theta + probability) : probability;
+}
+
+std::string Signed(double value, const Quantity& quantity) {
+  return fmt::format("{:+.{}f}", value, quantity.decimals);
+}
+
+std::vector<Cell> RowOf(const Comparison& comparison, const std::string& dataset,
+                        const std::vector<double>& differences, const Quantity& quantity) {
+  const PairedDifference difference = MeanDifference(differences);
+  const auto& interval = difference.confidence_95;
+  const bool is_clear = interval && (interval->low > 0.0 || interval->high < 0.0);
+  return {dataset,
+          comparison.variant,
+          comparison.baseline,
+          std::to_string(difference.objects),
+          Cell(Signed(difference.mean, quantity), is_clear),
+          interval ? Signed(interval->low, quantity) : kNoValue,
+          interval ? Signed(interval->high, quantity) : kNoValue};
+}
+
+}  // namespace
+
+std::vector<Comparison> ParseComparisons(const std::string& lists) {
+  std::vector<Comparison> comparisons;
+  std::istringstream list_stream(lists);
+  for (std::string list; std::getline(list_stream, list, ',');) {
+    std::vector<std::string> variants;
+    std::istringstream words(list);
+    for (std::string word; words >> word;) variants.push_back(word);
+    if (variants.size() < 2) {
+      throw SettingsError(fmt::format("compare: found '{}'; expected two or more variants", list));
+    }
+    for (size_t i = 1; i < variants.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) comparisons.push_back({variants[i], variants[j]});
+    }
+  }
+  return comparisons;
+}
+
+double StudentT95(int degrees_of_freedom) {
+  // Bisection in the angle theta, in which the probability grows from 0 to 1.
+  double low = 0.0;
+  double high = std::numbers::pi / 2.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (StudentProbability(degrees_of_freedom, middle) < 0.95 ? low : high) = middle;
+  }
+  return std::sqrt(static_cast<double>(degrees_of_freedom)) * std::tan(low);
+}
+
+PairedDifference MeanDifference(const std::vector<double>& differences) {
+  const int count = static_cast<int>(differences.size());
+  PairedDifference difference = {count, MeanOf(differences).value(), std::nullopt};
+  if (count < 2) return difference;
+  double squares = 0.0;
+  for (const double d : differences) squares += (d - difference.mean) * (d - difference.mean);
+  const double standard_error = std::sqrt(squares / (count - 1) / count);
+  const double half_width = StudentT95(count - 1) * standard_error;
+  difference.confidence_95 = {difference.mean - half_width, difference.mean + half_width};
+  return difference;
+}
+
+std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
+                                        const Quantity& quantity) {
+  std::map<int, double> baseline_values;
+  for (const ObjectValue& object : ObjectValues(baseline, quantity)) {
+    baseline_values[object.object_id] = object.value;
+  }
+  std::vector<double> differences;
+  for (const ObjectValue& object : ObjectValues(variant, quantity)) {
+    const auto other = baseline_values.find(object.object_id);
+    if (other != baseline_values.end()) differences.push_back(object.value - other->second);
+  }
+  return differences;
+}
+
+Table DifferencesTable(const std::vector<DatasetResult>& datasets,
+                       const std::vector<Comparison>& comparisons, const Quantity& quantity) {
+  Table table = {std::string("differences_") + quantity.file_name,
+                 fmt::format("Paired differences: {} ({} is better)", quantity.title,
+                             quantity.higher_is_better ? "more" : "less"),
+                 {"dataset", "variant", "minus", "objects", "difference", "from", "to"},
+                 {},
+                 3,
+                 {"Mean over objects with 95 % t interval; bold where it excludes 0."}};
+  for (const Comparison& comparison : comparisons) {
+    std::vector<double> of_all;
+    int compared_datasets = 0;
+    for (const DatasetResult& dataset : datasets) {
+      const VariantResult* const variant = dataset.Evaluated(comparison.variant);
+      const VariantResult* const baseline = dataset.Evaluated(comparison.baseline);
+      if (!variant || !baseline) continue;
+      const std::vector<double> differences = DifferencesByObject(*variant, *baseline, quantity);
+      if (differences.empty()) continue;
+      table.rows.push_back(RowOf(comparison, dataset.name, differences, quantity));
+      of_all.insert(of_all.end(), differences.begin(), differences.end());
+      ++compared_datasets;
+    }
+    if (compared_datasets > 1) {
+      table.rows.push_back(RowOf(comparison, "all datasets", of_all, quantity));
+    }
+  }
+  return table;
+}
+
+}  // namespace soslam

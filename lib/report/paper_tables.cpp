@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/paper_tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace soslam {
+namespace {
+
+// Which observations a row of measured values is over, and what it is called.
+struct RowKind {
+  Observations observations;
+  const char* title;
+};
+
+struct Layout {
+  const char* number;
+  const char* name;
+  const char* title;
+  Quantity quantity;
+  std::vector<std::string> variants;  // columns; one that is not ours has published values only
+  std::vector<RowKind> row_kinds;
+};
+
+constexpr const char* kBoldNote =
+    "Bold: the best measured value of a row, if over all of its objects. Values over fewer objects "
+    "have their number in brackets.";
+
+const std::vector<RowKind> kSingleFrameRows = {{Observations::kAll, "all observations"},
+                                               {Observations::kFirst, "first observation"}};
+const std::vector<RowKind> kMapRows = {{Observations::kAll, "measured"}};
+
+std::vector<Layout> Layouts() {
+  return {{"I",
+           "table_1_initial_iou",
+           "Initialisation, IoU",
+           kIou,
+           {"SVD", "Cube", "Init1-1", "InitP", "InitPT", "MultiView", "InitS", "InitST", "InitSTE"},
+           kSingleFrameRows},
+          {"II",
+           "table_2_initial_rotation",
+           "Initialisation, Rot (degrees)",
+           kRotation,
+           {"SVD", "Init1-1", "InitP", "InitPT", "MultiView", "InitS", "InitST", "InitSTE"},
+           kSingleFrameRows},
+          {"III",
+           "table_3_map_iou",
+           "Map, IoU",
+           kIou,
+           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE"},
+           kMapRows},
+          {"IV",
+           "table_4_map_rotation",
+           "Map, Rot (degrees)",
+           kRotation,
+           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE"},
+           kMapRows}};
+}
+
+// One per column.
+using Means = std::vector<std::optional<ObjectMean>>;
+
+bool HasAny(const Means& means) {
+  return std::any_of(means.begin(), means.end(), [](const auto& mean) { return mean.has_value(); });
+}
+
+Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
+  Means means;
+  for (const std::string& name : layout.variants) {
+    const VariantResult* const variant = dataset.Evaluated(name);
+    means.push_back(variant ? MeanOverObjects(*variant, layout.quantity, kind.observations)
+                            : std::nullopt);
+  }
+  return means;
+}
+
+std::string ValueText(const ObjectMean& mean, const Quantity& quantity) {
+  return fmt::format("{:.{}f}", mean.mean, quantity.decimals);
+}
+
+// The best value as it is shown, so that values that look equal are equally good.
+std::string BestText(const Means& means, const Quantity& quantity) {
+  const ObjectMean* best = nullptr;
+  for (const auto& mean : means) {
+    if (!mean) continue;
+    const bool is_better =
+        !best || (quantity.higher_is_better ? mean->mean > best->mean : mean->mean < best->mean);
+    if (is_better) best = &*mean;
+  }
+  return best ? ValueText(*best, quantity) : kNoValue;
+}
+
+std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kind,
+                              const Means& means, const Quantity& quantity) {
+  int objects = 0;
+  int observations = 0;
+  for (const auto& mean : means) {
+    objects = std::max(objects, mean ? mean->objects : 0);
+    observations = std::max(observations, mean ? mean->observations : 0);
+  }
+  const std::string best = BestText(means, quantity);
+  std::vector<Cell> row = {dataset, kind, std::to_string(objects), std::to_string(observations)};
+  for (const auto& mean : means) {
+    if (!mean) {
+      row.emplace_back(kNoValue);
+    } else if (mean->objects < objects) {
+      row.emplace_back(fmt::format("{} ({})", ValueText(*mean, quantity), mean->objects));
+    } else {
+      const std::string text = ValueText(*mean, quantity);
+      row.emplace_back(text, text == best);
+    }
+  }
+  return row;
+}
+
+std::vector<Cell> PublishedRowOf(const PublishedRow& published, const Layout& layout) {
+  std::vector<Cell> row = {published.dataset, "published", std::to_string(published.objects),
+                           kNoValue};
+  for (const std::string& variant : layout.variants) {
+    const auto value = published.values.find(variant);
+    row.emplace_back(value == published.values.end()
+                         ? kNoValue
+                         : fmt::format("{:.{}f}", value->second, layout.quantity.decimals));
+  }
+  return row;
+}
+
+// Means of the datasets that have a value in each column where any has one.
+struct Complete {
+  std::vector<std::string> datasets;
+  std::vector<Means> means;
+};
+
+Complete CompleteDatasets(const std::vector<DatasetResult>& datasets, const Layout& layout,
+                          const RowKind& kind) {
+  std::vector<bool> is_used(layout.variants.size(), false);
+  std::vector<Means> means;
+  for (const DatasetResult& dataset : datasets) {
+    means.push_back(MeansOf(dataset, layout, kind));
+    for (size_t i = 0; i < is_used.size(); ++i) {
+      if (means.back()[i]) is_used[i] = true;
+    }
+  }
+  Complete complete;
+  for (size_t k = 0; k < datasets.size(); ++k) {
+    bool is_complete = HasAny(means[k]);
+    for (size_t i = 0; i < is_used.size(); ++i) {
+      if (is_used[i] && !means[k][i]) is_complete = false;
+    }
+    if (!is_complete) continue;
+    complete.datasets.push_back(datasets[k].name);
+    complete.means.push_back(means[k]);
+  }
+  return complete;
+}
+
+Means Averages(const Complete& complete) {
+  Means averages;
+  for (size_t i = 0; i < complete.means.front().size(); ++i) {
+    std::vector<ObjectMean> column;
+    for (const Means& means : complete.means) {
+      if (means[i]) column.push_back(*means[i]);
+    }
+    averages.push_back(column.empty() ? std::nullopt : std::optional(WeightedMean(column)));
+  }
+  return averages;
+}
+
+// One row per dataset and kind, for each dataset followed by what is published of it: the published
+// datasets in their order, then the others.
+void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedTable* published,
+                    const Layout& layout, Table* table) {
+  const auto add_measured = [&](const DatasetResult& dataset) {
+    for (const RowKind& kind : layout.row_kinds) {
+      const Means means = MeansOf(dataset, layout, kind);
+      if (!HasAny(means)) continue;
+      table->rows.push_back(MeasuredRow(dataset.name, kind.title, means, layout.quantity));
+    }
+  };
+  std::vector<PublishedRow> published_rows;
+  if (published) published_rows = published->rows;
+  for (const PublishedRow& row : published_rows) {
+    for (const DatasetResult& dataset : datasets) {
+      if (dataset.name == row.dataset) add_measured(dataset);
+    }
+    table->rows.push_back(PublishedRowOf(row, layout));
+  }
+  for (const DatasetResult& dataset : datasets) {
+    const bool is_published =
+        std::any_of(published_rows.begin(), published_rows.end(),
+                    [&](const PublishedRow& row) { return row.dataset == dataset.name; });
+    if (!is_published) add_measured(dataset);
+  }
+}
+
+void AddAverages(const std::vector<DatasetResult>& datasets, const PublishedTable* published,
+                 const Layout& layout, Table* table) {
+  for (const RowKind& kind : layout.row_kinds) {
+    const Complete complete = CompleteDatasets(datasets, layout, kind);
+    if (complete.datasets.size() < 2) continue;
+    table->rows.push_back(MeasuredRow("average", kind.title, Averages(complete), layout.quantity));
+    table->notes.push_back(fmt::format(
+        "Average ({}): weighted by objects, over the datasets in which no variant lacks a value: "
+        "{}.",
+        kind.title, fmt::join(complete.datasets, ", ")));
+  }
+  if (published) {
+    table->rows.push_back(PublishedRowOf(published->average, layout));
+    table->notes.push_back("Published: " + published->source + ".");
+  }
+}
+
+}  // namespace
+
+std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
+                                          Observations observations) {
+  const std::string summary =
+      observations == Observations::kAll ? "/summary/" : "/first_observation/";
+  const auto mean = MetricsNumber(variant, summary + quantity.key + "_mean");
+  const auto count = MetricsNumber(variant, summary + "observations");
+  const int objects = static_cast<int>(ObjectValues(variant, quantity).size());
+  if (!mean || !count || objects == 0) return std::nullopt;
+  return ObjectMean{*mean, objects, static_cast<int>(*count)};
+}
+
+ObjectMean WeightedMean(const std::vector<ObjectMean>& means) {
+  ObjectMean total;
+  for (const ObjectMean& mean : means) {
+    total.mean += mean.objects * mean.mean;
+    total.objects += mean.objects;
+    total.observations += mean.observations;
+  }
+  total.mean /= total.objects;
+  return total;
+}
+
+std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
+                               const Published& published) {
+  std::vector<Table> tables;
+  for (const Layout& layout : Layouts()) {
+    const bool is_measured =
+        std::any_of(datasets.begin(), datasets.end(), [&](const DatasetResult& dataset) {
+          return HasAny(MeansOf(dataset, layout, layout.row_kinds.front()));
+        });
+    if (!is_measured) continue;
+    Table table = {layout.name,
+                   fmt::format("{} (Table {})", layout.title, layout.number),
+                   {"dataset", "values", "objects", "observations"},
+                   {},
+                   2,
+                   {kBoldNote}};
+    table.header.insert(table.header.end(), layout.variants.begin(), layout.variants.end());
+    const PublishedTable* const paper = published.Find(layout.number, layout.quantity);
+    AddDatasetRows(datasets, paper, layout, &table);
+    AddAverages(datasets, paper, layout, &table);
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace soslam

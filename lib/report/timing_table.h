@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "report/published.h"
+#include "report/results_tree.h"
+#include "report/table.h"
+
+namespace soslam {
+
+// What one landmark takes. Single-frame variants: edges, initialisation and refinement, per
+// observation; SVD and MultiView: the same, per object; maps: the back end alone, per object.
+struct LandmarkTime {
+  double wall_ms = 0.0;
+  double cpu_ms = 0.0;
+  double observations = 0.0;  // mean number per landmark
+};
+
+// Of a sequence.json.
+struct SequenceCounts {
+  int observations = 0;
+  int objects = 0;  // that were observed
+};
+
+// Throws InputError for a file that cannot be read or has no detections of objects.
+SequenceCounts CountObservations(const std::filesystem::path& sequence_file);
+
+// None without metrics, observations, or the timing of one of these stages.
+std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
+                                            const SequenceCounts& counts);
+
+// Table V of the paper: datasets by variants, with the published times; without rows when no
+// variant has a time. Throws InputError as CountObservations.
+Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published);
+
+// Wall and CPU seconds of each stage that a variant is made of, and their sums. A run that variants
+// share counts in each; what has no timing is "-", and then so is the sum.
+Table StageTimeTable(const std::vector<DatasetResult>& datasets);
+
+}  // namespace soslam
