@@ -24,7 +24,7 @@ PLAN_COMMAND = $(BIN)/soslam-plan --dataset $(DATA_ROOT)/$(DATASET) --name $(DAT
 
 one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
 $(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
-ifneq ($(filter run ablation,$(MAKECMDGOALS)),)
+ifneq ($(filter run ablation export,$(MAKECMDGOALS)),)
 $(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
 endif
 
@@ -61,6 +61,18 @@ tables: build ## Compare all variants of all datasets in RESULTS: tables.md, tab
 .PHONY: report
 report: tables ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset
 	@$(BIN)/soslam-pages --results $(RESULTS)
+
+MAPS = $(wildcard $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT))))
+
+.PHONY: export
+export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats of other programs
+	$(if $(MAPS),,$(error no map.json of VARIANT='$(VARIANT)' in $(RESULTS)/$(DATASET); make run writes it))
+	@status=0; for map in $(MAPS); do \
+	  from=$${map%/map.json}; to=$$from/export; mkdir -p $$to; \
+	  $(BIN)/soslam-export --sequence $$from/sequence.json --map $$map \
+	    --trajectory $$to/trajectory.txt --ply $$to/landmarks.ply --gltf $$to/map.glb \
+	    --coco $$to/boxes.json --coco_dataset $$to/images.json --csv $$to/landmarks.csv || status=$$?; \
+	done; exit $$status
 
 .PHONY: status
 status: ## Say for each dataset, variant and stage whether its result is done, stale or missing

@@ -12,14 +12,6 @@ namespace {
 using nlohmann::json;
 using CovarianceRows = std::array<std::array<double, 9>, 9>;
 
-json CovarianceToJson(const Covariance9& covariance) {
-  json rows = json::array();
-  for (const auto& row : covariance.rowwise()) {
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
-
 Covariance9 CovarianceFromJson(const json& json) {
   const auto rows = json.get<CovarianceRows>();
   return Eigen::Map<const Eigen::Matrix<double, 9, 9, Eigen::RowMajor>>(rows[0].data());
@@ -37,6 +29,14 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
 }
 
 }  // namespace
+
+json CovarianceToJson(const Covariance9& covariance) {
+  json rows = json::array();
+  for (const auto& row : covariance.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
 
 json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
   json rows = json::array();

@@ -9,6 +9,9 @@
 
 namespace soslam {
 
+// Nine rows of nine numbers.
+nlohmann::json CovarianceToJson(const Covariance9& covariance);
+
 // The "objects" of the landmarks and map artefacts: what all observations of each object say.
 nlohmann::json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates,
                                      const Sequence& sequence);

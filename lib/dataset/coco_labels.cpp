@@ -5,6 +5,11 @@
 #include <array>
 
 namespace soslam {
+namespace {
+
+constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};  // and 91
+
+}  // namespace
 
 const std::vector<std::string>& CocoLabels() {
   static const std::vector<std::string> labels = {"person",        "bicycle",      "car",
@@ -39,11 +44,18 @@ const std::vector<std::string>& CocoLabels() {
 
 std::optional<int> CocoClassIndex(int category_id) {
   constexpr int kLastId = 90;
-  constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};  // and 91
   if (category_id < 1 || category_id > kLastId) return std::nullopt;
   const auto unused_from = std::lower_bound(kUnusedIds.begin(), kUnusedIds.end(), category_id);
   if (unused_from != kUnusedIds.end() && *unused_from == category_id) return std::nullopt;
   return category_id - 1 - static_cast<int>(unused_from - kUnusedIds.begin());
+}
+
+int CocoCategoryId(int class_index) {
+  int category_id = class_index + 1;
+  for (const int unused_id : kUnusedIds) {
+    if (category_id >= unused_id) ++category_id;
+  }
+  return category_id;
 }
 
 }  // namespace soslam

@@ -15,4 +15,7 @@ const std::vector<std::string>& CocoLabels();
 // 90 and leave out eleven numbers, whose categories were dropped; none for these and beyond.
 std::optional<int> CocoClassIndex(int category_id);
 
+// The category id of a position in CocoLabels.
+int CocoCategoryId(int class_index);
+
 }  // namespace soslam

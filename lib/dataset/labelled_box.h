@@ -26,5 +26,8 @@ struct LabelledBox {
 inline Box FromCornerOrigin(const Box& box) {
   return {box.x_min - 0.5, box.y_min - 0.5, box.x_max - 0.5, box.y_max - 0.5};
 }
+inline Box ToCornerOrigin(const Box& box) {
+  return {box.x_min + 0.5, box.y_min + 0.5, box.x_max + 0.5, box.y_max + 0.5};
+}
 
 }  // namespace soslam

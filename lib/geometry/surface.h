@@ -13,6 +13,9 @@ class BodySurface {
  public:
   BodySurface(const Eigen::Vector3d& half_axes, double shape_exponent);
 
+  // Edges too sharp to tell from a cuboid's are a cuboid's.
+  bool IsCuboid() const { return is_cuboid_; }
+
   // Where a ray first meets the surface: origin + depth * direction, depth > 0. None when the ray
   // misses, or the surface is behind the origin or around it.
   std::optional<double> Entry(const Eigen::Vector3d& origin,

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/page_images.h"
 
-#include <openssl/evp.h>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/base64.h"
 #include "base/parallel.h"
 
 namespace soslam {
@@ -25,18 +24,10 @@ std::string EncodeJpeg(const cv::Mat& image, int max_width) {
   }
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  return Base64(bytes);
+  return Base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace
-
-std::string Base64(const std::vector<unsigned char>& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP ends it with a zero
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(),
-                                   static_cast<int>(bytes.size()));
-  text.resize(static_cast<size_t>(size));
-  return text;
-}
 
 std::vector<std::string> EncodeImages(const std::vector<int>& frames, const ImageSource& images,
                                       size_t max_bytes, int threads) {

@@ -8,9 +8,6 @@
 
 namespace soslam {
 
-// The bytes as RFC 4648 has them in base 64.
-std::string Base64(const std::vector<unsigned char>& bytes);
-
 // The images of frames (indices into Sequence::frames) in colour, as their cameras would have taken
 // them without their lenses.
 struct ImageSource {

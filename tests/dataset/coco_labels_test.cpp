@@ -43,7 +43,10 @@ TEST(CocoLabelsTest, EachClassHasOneCategoryId) {
     if (const auto index = CocoClassIndex(id)) indices.push_back(*index);
   }
   ASSERT_EQ(indices.size(), 80u);
-  for (int i = 0; i < 80; ++i) EXPECT_EQ(indices[static_cast<size_t>(i)], i);
+  for (int i = 0; i < 80; ++i) {
+    EXPECT_EQ(indices[static_cast<size_t>(i)], i);
+    EXPECT_EQ(CocoClassIndex(CocoCategoryId(i)), i);
+  }
 }
 
 TEST(CocoLabelsTest, UnusedIdsHaveNoClass) {

@@ -9,16 +9,6 @@
 namespace soslam {
 namespace {
 
-// RFC 4648, section 10.
-TEST(Base64, HasTheStandardsExamples) {
-  const auto encoded = [](const std::string& text) { return Base64({text.begin(), text.end()}); };
-  EXPECT_EQ(encoded(""), "");
-  EXPECT_EQ(encoded("f"), "Zg==");
-  EXPECT_EQ(encoded("fo"), "Zm8=");
-  EXPECT_EQ(encoded("foo"), "Zm9v");
-  EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
-}
-
 cv::Mat Noise() {
   cv::Mat image(480, 640, CV_8UC3);
   cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 255);

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace soslam {
+
+// The bytes as RFC 4648 has them in base 64.
+std::string Base64(std::string_view bytes);
+
+}  // namespace soslam

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exchange/body_mesh.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "geometry/surface.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kCellsAcrossFace = 16;
+
+// A grid on the surface of the cube |x_i| <= 1, carried along the rays from the centre to the body.
+class SurfaceGrid {
+ public:
+  // A node is (i, j, k), 0 to cells() each; one of them at an end.
+  using Node = std::array<int, 3>;
+
+  SurfaceGrid(const Eigen::Vector3d& half_axes, double shape_exponent)
+      : half_axes_(half_axes),
+        is_cuboid_(BodySurface(half_axes, shape_exponent).IsCuboid()),
+        q_(shape_exponent / (shape_exponent - 1.0)) {
+    const int cells = is_cuboid_ ? 1 : kCellsAcrossFace;
+    // Equally spaced angles of superquadrics, which lie close where the body is curved (Barr,
+    // "Superquadrics and angle-preserving transformations", 1981): x / z = tan(angle)^(2 / q).
+    for (int i = 0; i <= cells; ++i) {
+      const double tangent = std::tan((2.0 * i / cells - 1.0) * std::numbers::pi / 4.0);
+      lines_.push_back(std::copysign(std::pow(std::abs(tangent), 2.0 / q_), tangent));
+    }
+  }
+
+  int cells() const { return static_cast<int>(lines_.size()) - 1; }
+
+  Eigen::Vector3d Point(const Node& node) const {
+    const Eigen::Vector3d on_cube(Line(node[0]), Line(node[1]), Line(node[2]));
+    const Eigen::Array3d size = on_cube.array().abs();
+    const double norm = is_cuboid_ ? size.maxCoeff() : std::pow(size.pow(q_).sum(), 1.0 / q_);
+    return half_axes_.cwiseProduct(on_cube / norm);
+  }
+
+ private:
+  double Line(int i) const { return lines_[static_cast<size_t>(i)]; }
+
+  Eigen::Vector3d half_axes_;
+  bool is_cuboid_;
+  double q_;
+  std::vector<double> lines_;
+};
+
+}  // namespace
+
+TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, double shape_exponent) {
+  const SurfaceGrid grid(half_axes, shape_exponent);
+  TriangleMesh mesh;
+  std::map<SurfaceGrid::Node, std::uint32_t> vertices;
+  const auto vertex = [&](const SurfaceGrid::Node& node) {
+    const auto [found, is_new] =
+        vertices.try_emplace(node, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.push_back(grid.Point(node));
+    return found->second;
+  };
+  const auto add_cell = [&](size_t axis, int side, int i, int j) {
+    const auto corner = [&](int di, int dj) {
+      SurfaceGrid::Node node;
+      node[axis] = side;
+      node[(axis + 1) % 3] = i + di;
+      node[(axis + 2) % 3] = j + dj;
+      return vertex(node);
+    };
+    // Counter-clockwise about the axis, so seen from outside where the axis leads outside.
+    std::array<std::uint32_t, 4> quad = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+    if (side == 0) std::swap(quad[1], quad[3]);
+    mesh.triangles.push_back({quad[0], quad[1], quad[2]});
+    mesh.triangles.push_back({quad[0], quad[2], quad[3]});
+  };
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (const int side : {0, grid.cells()}) {
+      for (int i = 0; i < grid.cells(); ++i) {
+        for (int j = 0; j < grid.cells(); ++j) add_cell(axis, side, i, j);
+      }
+    }
+  }
+  return mesh;
+}
+
+}  // namespace soslam

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exchange/world.h"
+
+namespace soslam {
+
+// Red, green, blue, 0 to 1, in sRGB.
+using Colour = Eigen::Vector3d;
+using LabelColours = std::map<std::string, Colour>;
+
+// A colour for each label of the worlds' objects, far from those of its neighbours in the alphabet.
+LabelColours ColoursOfLabels(const std::vector<World>& worlds);
+
+}  // namespace soslam

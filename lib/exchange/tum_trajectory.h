@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "exchange/world.h"
+
+namespace soslam {
+
+// The poses in the text format of the TUM RGB-D benchmark: a line "timestamp tx ty tz qx qy qz qw"
+// per frame, world_from_camera, below a comment that says so. Numbers read back bit for bit.
+std::string TumTrajectoryText(const World& world);
+
+}  // namespace soslam

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exchange/world.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace soslam {
+namespace {
+
+// The frames that have a pose, in worlds of their segments.
+std::vector<World> WorldsOfFrames(const Sequence& sequence,
+                                  const std::vector<std::optional<Rigid3d>>& world_from_camera) {
+  std::vector<World> worlds;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const Frame& frame = sequence.frames[i];
+    if (worlds.empty() || worlds.back().segment != frame.segment) {
+      worlds.push_back({frame.segment, {}, {}});
+    }
+    if (!world_from_camera[i]) continue;
+    worlds.back().frames.push_back(
+        {frame.id, frame.timestamp, frame.image, sequence.CameraOf(frame), *world_from_camera[i]});
+  }
+  return worlds;
+}
+
+// The segment of an object that these detections are of: the only one, or that of the first
+// detection; none when nobody knows.
+std::optional<int> SegmentOf(const Sequence& sequence, const std::vector<int>& detections) {
+  const int first_segment = sequence.frames.front().segment;
+  if (sequence.frames.back().segment == first_segment) return first_segment;
+  if (detections.empty()) return std::nullopt;
+  return sequence.FrameOf(sequence.detections[static_cast<size_t>(detections.front())]).segment;
+}
+
+double MeanScore(const Sequence& sequence, const std::vector<int>& detections) {
+  if (detections.empty()) return 1.0;
+  double sum = 0.0;
+  for (const int i : detections) sum += sequence.detections[static_cast<size_t>(i)].score;
+  return sum / static_cast<double>(detections.size());
+}
+
+void AddObjects(const Sequence& sequence, const std::vector<ObjectEstimate>& estimates,
+                const std::vector<Plane>& planes_in_world, std::vector<World>* worlds) {
+  if (worlds->empty()) return;
+  const std::vector<std::vector<int>> detections_by_object = DetectionsByObject(sequence);
+  for (const ObjectEstimate& estimate : estimates) {
+    const auto index = static_cast<size_t>(estimate.object_index);
+    const Object& object = sequence.objects[index];
+    const std::vector<int>& detections = detections_by_object[index];
+    const std::optional<int> segment = SegmentOf(sequence, detections);
+    World& world =
+        segment ? *std::ranges::find(*worlds, *segment, &World::segment) : worlds->front();
+    world.objects.push_back({object.id, object.label, segment,
+                             planes_in_world[static_cast<size_t>(object.plane_index)].normal,
+                             MeanScore(sequence, detections), estimate});
+    if (!segment && estimate.landmark_in_world) {
+      world.objects.back().estimate.landmark_in_world.reset();
+      world.objects.back().estimate.failure = "unknown_segment";
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map) {
+  const std::vector<std::optional<Rigid3d>> poses(map.world_from_camera.begin(),
+                                                  map.world_from_camera.end());
+  std::vector<World> worlds = WorldsOfFrames(sequence, poses);
+  AddObjects(sequence, map.objects, map.planes_in_world, &worlds);
+  return worlds;
+}
+
+std::vector<World> WorldsOfOdometry(const Sequence& sequence) {
+  std::vector<std::optional<Rigid3d>> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  return WorldsOfFrames(sequence, poses);
+}
+
+std::vector<World> WorldsOfTruth(const Sequence& sequence) {
+  std::vector<std::optional<Rigid3d>> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.true_world_from_camera);
+  std::vector<World> worlds = WorldsOfFrames(sequence, poses);
+
+  std::vector<ObjectEstimate> truths;
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    const Object& object = sequence.objects[i];
+    ObjectEstimate truth{static_cast<int>(i), 0, {}, {}, {}};
+    if (!object.is_static) {
+      truth.failure = "moving";
+    } else if (!object.ground_truth) {
+      truth.failure = "no_ground_truth";
+    } else {
+      truth.landmark_in_world = object.ground_truth->landmark_in_world;
+      truth.landmark_in_world->shape_exponent = kCuboidExponent;
+    }
+    truths.push_back(truth);
+  }
+  std::vector<Plane> planes_in_world;
+  for (const SupportPlane& plane : sequence.planes) planes_in_world.push_back(plane.plane_in_world);
+  AddObjects(sequence, truths, planes_in_world, &worlds);
+  return worlds;
+}
+
+Eigen::Vector3d UpOf(const World& world) {
+  constexpr double kMinCosine = 0.9;
+  std::vector<Eigen::Vector3d> normals;
+  for (const WorldObject& object : world.objects) {
+    if (object.estimate.landmark_in_world) normals.push_back(object.support_normal);
+  }
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  std::ptrdiff_t most_shared = 0;
+  for (const Eigen::Vector3d& normal : normals) {
+    const auto shared = std::ranges::count_if(
+        normals, [&](const Eigen::Vector3d& other) { return normal.dot(other) > kMinCosine; });
+    if (shared > most_shared) up = normal;
+    most_shared = std::max(most_shared, shared);
+  }
+  return up;
+}
+
+double YawOf(const WorldObject& object) {
+  return Yaw(object.support_normal, object.estimate.landmark_in_world->frame_from_object.rotation);
+}
+
+}  // namespace soslam

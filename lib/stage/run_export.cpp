@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "artefact/atomic_file.h"
+#include "artefact/map_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "exchange/coco_boxes.h"
+#include "exchange/gltf.h"
+#include "exchange/landmarks_csv.h"
+#include "exchange/ply.h"
+#include "exchange/tum_trajectory.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kOutputs = {"trajectory", "ply", "gltf", "coco", "coco_dataset", "csv"};
+
+struct Output {
+  fs::path path;
+  std::string bytes;
+};
+
+bool OnlyTrajectory(const StageFiles& files) {
+  return std::ranges::none_of(kOutputs, [&](const std::string& output) {
+    return output != "trajectory" && files.count(output) > 0;
+  });
+}
+
+void CheckFiles(const ExportOptions& options, const StageFiles& files) {
+  if (std::ranges::none_of(kOutputs, [&](const char* output) { return files.count(output) > 0; })) {
+    throw SettingsError(fmt::format("nothing to write; expected at least one of --{}",
+                                    fmt::join(kOutputs, ", --")));
+  }
+  const bool has_map = files.count("map") > 0;
+  if (options.truth && has_map) {
+    throw SettingsError("truth is true and --map is given; expected one of them");
+  }
+  if (!options.truth && !has_map && !OnlyTrajectory(files)) {
+    throw SettingsError("there are no objects; expected --map, or truth = true");
+  }
+  const auto gltf = files.find("gltf");
+  if (gltf == files.end()) return;
+  const fs::path extension = gltf->second.extension();
+  if (extension != ".glb" && extension != ".gltf") {
+    throw SettingsError(
+        fmt::format("{}: has another extension; expected .glb or .gltf", gltf->second.string()));
+  }
+}
+
+std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& files) {
+  const PlaneNeed need = OnlyTrajectory(files) ? PlaneNeed::kNotNeeded : PlaneNeed::kNeeded;
+  const Sequence sequence = ReadSequence(files.at("sequence"), need);
+  if (options.truth) return WorldsOfTruth(sequence);
+  if (files.count("map") == 0) return WorldsOfOdometry(sequence);
+  return WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
+}
+
+bool HasLandmark(const World& world) {
+  return std::ranges::any_of(world.objects, [](const WorldObject& object) {
+    return object.estimate.landmark_in_world.has_value();
+  });
+}
+
+void CheckWorlds(const std::vector<World>& worlds, const StageFiles& files) {
+  const bool has_frame =
+      std::ranges::any_of(worlds, [](const World& world) { return !world.frames.empty(); });
+  if (files.count("trajectory") > 0 && !has_frame) {
+    throw NothingUsableError(files.at("sequence").string() + ": has no poses of this kind");
+  }
+  if (!OnlyTrajectory(files) && std::ranges::none_of(worlds, HasLandmark)) {
+    throw NothingUsableError(files.at(files.count("map") > 0 ? "map" : "sequence").string() +
+                             ": has no landmarks of this kind");
+  }
+}
+
+// All outputs, so that what cannot be made leaves no part of the rest.
+std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const StageFiles& files) {
+  std::vector<Output> outputs;
+  const auto add = [&](const std::string& name,
+                       const std::function<std::string(const std::vector<World>&)>& text) {
+    if (files.count(name) > 0) outputs.push_back({files.at(name), text(worlds)});
+  };
+  const auto add_each = [&](const std::string& name,
+                            const std::function<std::string(const World&)>& text) {
+    if (files.count(name) == 0) return;
+    const fs::path& path = files.at(name);
+    for (const World& world : worlds) {
+      outputs.push_back(
+          {worlds.size() == 1 ? path : SegmentPath(path, world.segment), text(world)});
+    }
+  };
+  const LabelColours colours = ColoursOfLabels(worlds);
+  add_each("trajectory", TumTrajectoryText);
+  add_each("ply", [&](const World& world) { return PlyText(world, colours); });
+  add_each("gltf", [&](const World& world) {
+    return files.at("gltf").extension() == ".glb" ? GlbBytes(world, colours)
+                                                  : GltfText(world, colours);
+  });
+  add("coco", CocoResultsText);
+  add("coco_dataset", CocoDatasetText);
+  add("csv", LandmarksCsvText);
+  return outputs;
+}
+
+}  // namespace
+
+void RunExport(const ExportOptions& options, const StageFiles& files, int /*threads*/) {
+  CheckFiles(options, files);
+  const std::vector<World> worlds = ReadWorlds(options, files);
+  CheckWorlds(worlds, files);
+  for (const Output& output : MakeOutputs(worlds, files)) {
+    WriteTextFile(output.path, output.bytes);
+    fmt::print("{}\n", output.path.string());
+  }
+}
+
+fs::path SegmentPath(const fs::path& path, int segment) {
+  return path.parent_path() /
+         fmt::format("{}-{}{}", path.stem().string(), segment, path.extension().string());
+}
+
+}  // namespace soslam

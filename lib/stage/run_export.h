@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "base/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+struct ExportOptions {
+  bool truth = false;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Flag("truth", &truth,
+               "Export the ground truth of the sequence, poses and objects, in place of a map");
+  }
+};
+
+// soslam-export: files "sequence" and, unless truth is set, "map" to one or more of "trajectory",
+// "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map there are the sequence's own poses
+// to export, and no objects. Of several segments, each a world of its own, "trajectory", "ply" and
+// "gltf" become a file each, see SegmentPath. Throws SettingsError without an output, for objects
+// without a map or truth, for both, and for an extension that glTF does not have;
+// NothingUsableError when there is no pose or landmark to write. Then nothing is written.
+void RunExport(const ExportOptions& options, const StageFiles& files, int threads);
+
+// map.ply and segment 3: map-3.ply.
+std::filesystem::path SegmentPath(const std::filesystem::path& path, int segment);
+
+}  // namespace soslam

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exchange/coco_boxes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "dataset/coco_results.h"
+#include "support/exported_world.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+class CocoBoxesTest : public testing::Test {
+ protected:
+  std::vector<LabelledBox> ReadBack(bool with_dataset) const {
+    const TemporaryFolder folder;
+    WriteBytes(folder / "results.json", CocoResultsText({world_}));
+    WriteBytes(folder / "dataset.json", CocoDatasetText({world_}));
+    return with_dataset ? ReadCocoResults(folder / "results.json", folder / "dataset.json")
+                        : ReadCocoResults(folder / "results.json");
+  }
+
+  World world_ = ExportedWorld();
+};
+
+TEST_F(CocoBoxesTest, DatasetReaderReadsThemBack) {
+  for (WorldFrame& frame : world_.frames) frame.camera = {10000, 10000, 500.0, 500.0, 5e3, 5e3};
+  const std::vector<LabelledBox> boxes = ReadBack(true);
+  ASSERT_EQ(boxes.size(), 6u);  // three landmarks in the two frames that look at them
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const WorldObject& object = world_.objects[i % 3];
+    const WorldFrame& frame = world_.frames[i / 3];
+    const auto outline = OutlineBox(frame.camera, Transform(frame.world_from_camera.Inverse(),
+                                                            *object.estimate.landmark_in_world));
+    ExpectLabelledBox(boxes[i], frame.image, object.label, 0.25, outline.value());
+  }
+}
+
+TEST_F(CocoBoxesTest, LabelsOfCocoNeedNoDataset) {
+  world_.objects.resize(2);
+  world_.frames.resize(1);
+  const std::vector<LabelledBox> boxes = ReadBack(false);
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes[0].label, "dining table");
+  EXPECT_EQ(boxes[1].label, "cup");
+  EXPECT_EQ(boxes[0].frame, FrameKey(10));
+}
+
+TEST_F(CocoBoxesTest, BoxesAreCutAtTheImageBorder) {
+  world_.objects.resize(1);
+  world_.frames.resize(1);
+  world_.frames[0].camera = {200, 100, 100.0, 100.0, 99.5, 49.5};
+  Landmark& landmark = *world_.objects[0].estimate.landmark_in_world;
+  landmark = {
+      {Eigen::Quaterniond::Identity(), {-2.0, 0.5, 2.0}}, {1.0, 0.25, 1.0}, kCuboidExponent};
+  // Its near face, at a depth of 1 m, spans x from -300 to -100 and y from 25 to 75 px about the
+  // principal point, the outer corner being at (-100, -50); its far face, at 3 m, ends at x = -33.
+  const json result = json::parse(CocoResultsText({world_})).at(0);
+  const auto bbox = result.at("bbox").get<std::vector<double>>();
+  EXPECT_EQ(bbox[0], 0.0);
+  EXPECT_NEAR(bbox[1], 50.0 + 25.0 / 3.0, 0.5);  // edges are rounded by a thousandth
+  EXPECT_NEAR(bbox[2], 100.0 - 100.0 / 3.0, 0.5);
+  EXPECT_EQ(bbox[1] + bbox[3], 100.0);
+
+  landmark.frame_from_object.translation.x() = -6.0;  // beside the image
+  EXPECT_EQ(json::parse(CocoResultsText({world_})), json::array());
+}
+
+TEST_F(CocoBoxesTest, NothingIsSeenFromInsideOrBehind) {
+  world_.frames.erase(world_.frames.begin(), world_.frames.begin() + 2);
+  EXPECT_EQ(json::parse(CocoResultsText({world_})), json::array());
+  world_.frames[0].world_from_camera.translation =
+      world_.objects[0].estimate.landmark_in_world->Centre();
+  EXPECT_EQ(json::parse(CocoResultsText({world_})), json::array());
+}
+
+TEST_F(CocoBoxesTest, LabelsOfOneCategoryOfCocoAreOne) {
+  world_.objects[1].label = "dining table";
+  for (const LabelledBox& box : ReadBack(true)) {
+    EXPECT_TRUE(box.label == "Dining_Table" || box.label == world_.objects[2].label) << box.label;
+  }
+}
+
+TEST_F(CocoBoxesTest, OtherCategoriesAreNumberedInAlphabeticalOrder) {
+  world_.objects[3].label = "zither";
+  const json dataset = json::parse(CocoDatasetText({world_}));
+  EXPECT_EQ(dataset.at("categories"), json::parse(R"([{"id": 47, "name": "cup"},
+      {"id": 67, "name": "Dining_Table"}, {"id": 1001, "name": "a \"b\", c"},
+      {"id": 1002, "name": "zither"}])"));
+  EXPECT_EQ(dataset.at("images").at(1),
+            json::parse(R"({"id": 15, "file_name": "rgb/b.png", "width": 640, "height": 480})"));
+  EXPECT_EQ(dataset["images"].at(2).at("file_name"), "20");
+}
+
+}  // namespace
+}  // namespace soslam

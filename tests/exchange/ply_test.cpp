@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exchange/ply.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+
+#include "support/exported_world.h"
+#include "support/mesh_checks.h"
+
+namespace soslam {
+namespace {
+
+struct PlyFile {
+  std::vector<std::string> header;
+  TriangleMesh mesh;
+  std::vector<std::array<int, 3>> colours;
+};
+
+PlyFile ParsePly(const std::string& text) {
+  PlyFile file;
+  std::istringstream stream(text);
+  size_t vertices = 0;
+  size_t faces = 0;
+  for (std::string line; std::getline(stream, line) && line != "end_header";) {
+    file.header.push_back(line);
+    std::istringstream words(line);
+    std::string keyword, name;
+    size_t count = 0;
+    words >> keyword >> name >> count;
+    if (keyword == "element") (name == "vertex" ? vertices : faces) = count;
+  }
+  for (size_t i = 0; i < vertices; ++i) {
+    Eigen::Vector3d& vertex = file.mesh.vertices.emplace_back();
+    std::array<int, 3>& colour = file.colours.emplace_back();
+    stream >> vertex.x() >> vertex.y() >> vertex.z() >> colour[0] >> colour[1] >> colour[2];
+  }
+  for (size_t i = 0; i < faces; ++i) {
+    int corners = 0;
+    auto& triangle = file.mesh.triangles.emplace_back();
+    stream >> corners >> triangle[0] >> triangle[1] >> triangle[2];
+    EXPECT_EQ(corners, 3);
+  }
+  EXPECT_TRUE(stream);
+  std::string rest;
+  EXPECT_FALSE(stream >> rest) << rest;
+  return file;
+}
+
+TEST(PlyTest, BodiesAreClosedInTheirPlacesWithTheirVolumes) {
+  const World world = ExportedWorld();
+  const PlyFile file = ParsePly(PlyText(world, ColoursOfLabels({world})));
+  EXPECT_EQ(file.header[0], "ply");
+  EXPECT_EQ(file.header[1], "format ascii 1.0");
+  ExpectClosed(file.mesh);
+
+  size_t first_vertex = 0;
+  size_t first_face = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Landmark& landmark = *world.objects[static_cast<size_t>(i)].estimate.landmark_in_world;
+    const TriangleMesh expected = BodyMesh(landmark.half_axes, landmark.shape_exponent);
+    TriangleMesh body;
+    for (size_t v = 0; v < expected.vertices.size(); ++v) {
+      body.vertices.push_back(file.mesh.vertices.at(first_vertex + v));
+      EXPECT_EQ(body.vertices[v], landmark.frame_from_object * expected.vertices[v]);
+    }
+    for (size_t f = 0; f < expected.triangles.size(); ++f) {
+      auto triangle = file.mesh.triangles.at(first_face + f);
+      for (auto& corner : triangle) corner -= static_cast<std::uint32_t>(first_vertex);
+      body.triangles.push_back(triangle);
+    }
+    EXPECT_NEAR(SignedVolume(body) / BodyVolume(landmark.half_axes, landmark.shape_exponent), 1.0,
+                0.01);
+    first_vertex += body.vertices.size();
+    first_face += body.triangles.size();
+  }
+  EXPECT_EQ(first_vertex, file.mesh.vertices.size());
+  EXPECT_EQ(first_face, file.mesh.triangles.size());
+}
+
+TEST(PlyTest, ColoursGoByLabel) {
+  World world = ExportedWorld();
+  world.objects[2].label = "cup";
+  for (WorldObject& object : world.objects) {  // boxes of eight vertices
+    if (object.estimate.landmark_in_world) object.estimate.landmark_in_world->shape_exponent = 1.0;
+  }
+  const PlyFile file = ParsePly(PlyText(world, ColoursOfLabels({world})));
+  ASSERT_EQ(file.colours.size(), 24u);
+  EXPECT_EQ(std::set(file.colours.begin(), file.colours.begin() + 8).size(), 1u);
+  EXPECT_EQ(std::set(file.colours.begin() + 8, file.colours.end()).size(), 1u);
+  EXPECT_NE(file.colours[0], file.colours[8]);
+}
+
+TEST(PlyTest, ColoursAreAllDifferentAndInRange) {
+  World world;
+  for (int i = 0; i < 30; ++i)
+    world.objects.push_back({i, "l" + std::to_string(i), {}, {}, 1.0, {}});
+  const LabelColours colours = ColoursOfLabels({world});
+  std::set<std::vector<int>> rounded;
+  for (const auto& [label, colour] : colours) {
+    EXPECT_GE(colour.minCoeff(), 0.0);
+    EXPECT_LE(colour.maxCoeff(), 1.0);
+    const Eigen::Vector3i rgb = (255.0 * colour).cast<int>();
+    rounded.insert({rgb.x(), rgb.y(), rgb.z()});
+  }
+  EXPECT_EQ(rounded.size(), 30u);
+}
+
+}  // namespace
+}  // namespace soslam

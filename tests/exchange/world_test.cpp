@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exchange/world.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/random_estimates.h"
+
+namespace soslam {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<int> FrameIds(const World& world) {
+  std::vector<int> ids;
+  for (const WorldFrame& frame : world.frames) ids.push_back(frame.id);
+  return ids;
+}
+
+std::vector<int> ObjectIds(const World& world) {
+  std::vector<int> ids;
+  for (const WorldObject& object : world.objects) ids.push_back(object.id);
+  return ids;
+}
+
+// Frames 10, 15, 20 are of segment 0, frames 25, 30 of segment 1; every second frame sees objects
+// -3 and 11, the others 4 and 18.
+class WorldTest : public testing::Test {
+ protected:
+  Sequence sequence_ = RandomSequence();
+  MapEstimate map_ = RandomMap();
+};
+
+TEST_F(WorldTest, EachSegmentHasItsFramesAndObjects) {
+  std::erase_if(sequence_.detections, [](const Detection& detection) {
+    return detection.frame_index < 3 && detection.object_index != 2;
+  });
+  const std::vector<World> worlds = WorldsOfMap(sequence_, map_);
+  ASSERT_EQ(worlds.size(), 2u);
+  EXPECT_EQ(worlds[0].segment, 0);
+  EXPECT_THAT(FrameIds(worlds[0]), ElementsAre(10, 15, 20));
+  EXPECT_THAT(ObjectIds(worlds[0]), ElementsAre(11));
+  EXPECT_EQ(worlds[1].segment, 1);
+  EXPECT_THAT(FrameIds(worlds[1]), ElementsAre(25, 30));
+  EXPECT_THAT(ObjectIds(worlds[1]), ElementsAre(-3, 18));
+  EXPECT_EQ(worlds[1].objects[0].segment, 1);
+  EXPECT_EQ(worlds[1].frames[0].camera, *sequence_.frames[3].camera);
+  EXPECT_EQ(worlds[1].frames[1].camera, sequence_.camera);
+  EXPECT_EQ(worlds[1].frames[0].world_from_camera.translation,
+            map_.world_from_camera[3].translation);
+}
+
+TEST_F(WorldTest, ObjectsWithoutDetectionsBelongToTheOnlySegment) {
+  sequence_.detections.clear();
+  const World first = WorldsOfMap(sequence_, map_)[0];
+  EXPECT_THAT(ObjectIds(first), ElementsAre(-3, 11, 18));
+  EXPECT_FALSE(first.objects[0].segment);
+  EXPECT_FALSE(first.objects[0].estimate.landmark_in_world);
+  EXPECT_EQ(first.objects[0].estimate.failure, "unknown_segment");
+  EXPECT_EQ(first.objects[2].estimate.failure, "too_few_views");
+  for (Frame& frame : sequence_.frames) frame.segment = 7;
+  const std::vector<World> worlds = WorldsOfMap(sequence_, map_);
+  ASSERT_EQ(worlds.size(), 1u);
+  EXPECT_THAT(ObjectIds(worlds[0]), ElementsAre(-3, 11, 18));
+  EXPECT_EQ(worlds[0].objects[0].segment, 7);
+  EXPECT_TRUE(worlds[0].objects[0].estimate.landmark_in_world);
+  EXPECT_EQ(worlds[0].objects[0].score, 1.0);
+}
+
+TEST_F(WorldTest, ScoreIsTheMeanOfTheDetections) {
+  double sum = 0.0;
+  int count = 0;
+  for (Detection& detection : sequence_.detections) {
+    if (detection.object_index != 0) continue;
+    detection.score = 0.1 * ++count;
+    sum += detection.score;
+  }
+  EXPECT_NEAR(WorldsOfMap(sequence_, map_)[0].objects[0].score, sum / count, 1e-12);
+}
+
+TEST_F(WorldTest, PlanesOfTheMapAreItsSupports) {
+  const World world = WorldsOfMap(sequence_, map_)[0];
+  EXPECT_EQ(world.objects[0].support_normal, map_.planes_in_world[0].normal);
+  EXPECT_EQ(WorldsOfTruth(sequence_)[0].objects[0].support_normal,
+            sequence_.planes[0].plane_in_world.normal);
+}
+
+TEST_F(WorldTest, OdometryHasPosesOnly) {
+  const std::vector<World> worlds = WorldsOfOdometry(sequence_);
+  ASSERT_EQ(worlds.size(), 2u);
+  EXPECT_TRUE(worlds[0].objects.empty());
+  EXPECT_EQ(worlds[1].frames[1].world_from_camera.translation,
+            sequence_.frames[4].world_from_camera.translation);
+}
+
+TEST_F(WorldTest, TruthHasWhatIsKnown) {
+  const World world = WorldsOfTruth(sequence_)[0];
+  EXPECT_THAT(FrameIds(world), ElementsAre(10, 20));
+  EXPECT_EQ(world.frames[1].world_from_camera.translation,
+            sequence_.frames[2].true_world_from_camera->translation);
+  sequence_.objects[0].is_static = true;
+  sequence_.objects[2].is_static = false;
+  const World known = WorldsOfTruth(sequence_)[0];
+  ASSERT_THAT(ObjectIds(known), ElementsAre(-3, 4, 11, 18));
+  EXPECT_EQ(known.objects[0].estimate.landmark_in_world->half_axes,
+            sequence_.objects[0].ground_truth->landmark_in_world.half_axes);
+  EXPECT_EQ(known.objects[0].estimate.landmark_in_world->shape_exponent, kCuboidExponent);
+  EXPECT_EQ(known.objects[1].estimate.failure, "no_ground_truth");
+  EXPECT_EQ(known.objects[2].estimate.failure, "moving");
+  EXPECT_FALSE(known.objects[2].estimate.landmark_in_world);
+}
+
+TEST_F(WorldTest, UpIsTheNormalThatMostShare) {
+  World world;
+  EXPECT_EQ(UpOf(world), Eigen::Vector3d::UnitZ());
+  const auto add = [&](const Eigen::Vector3d& normal, bool has_landmark) {
+    world.objects.push_back({0, "", {}, normal, 1.0, {}});
+    if (has_landmark) world.objects.back().estimate.landmark_in_world = RandomLandmark();
+  };
+  const Eigen::Vector3d floor(0.0, -1.0, 0.0);
+  for (int i = 0; i < 4; ++i) add(Eigen::Vector3d::UnitX(), false);
+  add(Eigen::Vector3d::UnitZ(), true);
+  add(floor, true);
+  add(-floor, true);
+  add(Eigen::Vector3d(0.1, -1.0, 0.0).normalized(), true);
+  EXPECT_EQ(UpOf(world), floor);
+}
+
+TEST_F(WorldTest, YawIsAboutTheSupportNormal) {
+  WorldObject object{0, "", {}, RandomPlane().normal, 1.0, {}};
+  object.estimate.landmark_in_world = RandomLandmark();
+  object.estimate.landmark_in_world->frame_from_object.rotation =
+      UprightRotation(object.support_normal, 0.7);
+  EXPECT_NEAR(YawOf(object), 0.7, 1e-12);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_export.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "artefact/map_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "dataset/coco_results.h"
+#include "dataset/tum_list.h"
+#include "support/cuboid_sequence.h"
+#include "support/expect_error.h"
+#include "support/gltf_document.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The stage on a sequence of cuboids, and a map that has all but the last of them.
+class RunExportTest : public testing::Test {
+ protected:
+  RunExportTest() {
+    for (size_t i = 0; i < sequence_.objects.size(); ++i) {
+      map_.objects.push_back({static_cast<int>(i), 5, {}, {}, "no_start"});
+      if (i + 1 == sequence_.objects.size()) break;
+      map_.objects[i].landmark_in_world = sequence_.objects[i].ground_truth->landmark_in_world;
+      map_.objects[i].failure.clear();
+    }
+    for (const Frame& frame : sequence_.frames) {
+      map_.world_from_camera.push_back(frame.world_from_camera);
+      map_.world_from_camera.back().translation.x() += 0.125;
+    }
+    for (const SupportPlane& plane : sequence_.planes) {
+      map_.planes_in_world.push_back(plane.plane_in_world);
+    }
+    Write();
+  }
+
+  void Write() const {
+    WriteSequence(folder_ / "sequence.json", sequence_, {});
+    WriteMap(folder_ / "map.json", map_, sequence_, {});
+  }
+  fs::path File(const std::string& name) const { return folder_ / name; }
+
+  // With the sequence, these further inputs, and the outputs of these arguments.
+  void Run(const std::vector<std::string>& inputs,
+           const std::vector<std::pair<std::string, std::string>>& outputs) const {
+    StageFiles files = {{"sequence", File("sequence.json")}};
+    for (const std::string& input : inputs) files[input] = File(input + ".json");
+    for (const auto& [argument, name] : outputs) files[argument] = File(name);
+    testing::internal::CaptureStdout();
+    try {
+      RunExport(options_, files, 1);
+    } catch (...) {
+      testing::internal::GetCapturedStdout();
+      throw;
+    }
+    testing::internal::GetCapturedStdout();
+  }
+  size_t FilesInFolder() const {
+    return static_cast<size_t>(
+        std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
+  }
+
+  const std::vector<std::pair<std::string, std::string>> kAll = {
+      {"trajectory", "t.txt"}, {"ply", "m.ply"},           {"gltf", "m.glb"},
+      {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"}};
+  ExportOptions options_;
+  Sequence sequence_ = CuboidSequence(4, 9);
+  MapEstimate map_;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunExportTest, WritesWhatIsAskedFor) {
+  Run({"map"}, kAll);
+  const auto poses = ReadTrajectory(File("t.txt"));
+  ASSERT_EQ(poses.size(), sequence_.frames.size());
+  EXPECT_EQ(poses[4].world_from_camera.translation, map_.world_from_camera[4].translation);
+  EXPECT_EQ(FileBytes(File("m.ply")).substr(0, 4), "ply\n");
+  const GltfDocument scene = ParseGlb(FileBytes(File("m.glb")));
+  EXPECT_EQ(scene.json.at("nodes").size(), 1 + 3 + 1u);
+  const std::string table = FileBytes(File("l.csv"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 5);
+  EXPECT_NE(table.find("no_start"), std::string::npos);
+  Run({"map"}, {{"gltf", "m.gltf"}});
+  EXPECT_EQ(nlohmann::json::parse(FileBytes(File("m.gltf"))).at("nodes"), scene.json["nodes"]);
+}
+
+// Detections are exact boxes of the landmarks, seen from the odometry, which is exact, too.
+TEST_F(RunExportTest, CocoBoxesAreThoseOfTheDetections) {
+  for (Rigid3d& pose : map_.world_from_camera) pose.translation.x() -= 0.125;
+  Write();
+  Run({"map"}, {{"coco", "c.json"}, {"coco_dataset", "d.json"}});
+  const auto boxes = nlohmann::json::parse(FileBytes(File("c.json")));
+  const auto read = ReadCocoResults(File("c.json"), File("d.json"));
+  ASSERT_EQ(read.size(), boxes.size());
+  int found = 0;
+  for (const Detection& detection : sequence_.detections) {
+    for (size_t i = 0; i < read.size(); ++i) {
+      if (boxes[i].at("image_id") != sequence_.FrameOf(detection).id ||
+          boxes[i].at("object_id") != sequence_.ObjectOf(detection).id) {
+        continue;
+      }
+      ++found;
+      EXPECT_EQ(read[i].label, sequence_.ObjectOf(detection).label);
+      // Edges of bodies are rounded by a thousandth of their size.
+      EXPECT_GT(BoxOverlap(read[i].box, detection.box), 0.98);
+    }
+  }
+  const auto last = static_cast<int>(sequence_.objects.size()) - 1;
+  EXPECT_EQ(found, std::ranges::count_if(sequence_.detections, [&](const Detection& detection) {
+              return detection.object_index != last;
+            }));
+}
+
+TEST_F(RunExportTest, SameBytesEachTime) {
+  Run({"map"}, kAll);
+  std::vector<std::string> bytes;
+  for (const auto& [argument, name] : kAll) bytes.push_back(FileBytes(File(name)));
+  Run({"map"}, kAll);
+  for (size_t i = 0; i < kAll.size(); ++i) EXPECT_TRUE(FileBytes(File(kAll[i].second)) == bytes[i]);
+}
+
+TEST_F(RunExportTest, WithoutAMapThereAreThePosesOfTheSequence) {
+  Run({}, {{"trajectory", "t.txt"}});
+  EXPECT_EQ(ReadTrajectory(File("t.txt"))[2].world_from_camera.translation,
+            sequence_.frames[2].world_from_camera.translation);
+  ExpectError<SettingsError>(
+      [&] {
+        Run({}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}});
+      },
+      {"no objects", "--map", "truth"});
+}
+
+TEST_F(RunExportTest, TrajectoryNeedsNoPlanes) {
+  sequence_.planes.clear();
+  for (Object& object : sequence_.objects) object.plane_index = kNoPlane;
+  WriteSequence(File("sequence.json"), sequence_, {});
+  Run({}, {{"trajectory", "t.txt"}});
+  EXPECT_EQ(ReadTrajectory(File("t.txt")).size(), sequence_.frames.size());
+}
+
+TEST_F(RunExportTest, TruthIsPosesAndObjects) {
+  for (Frame& frame : sequence_.frames) {
+    frame.true_world_from_camera = frame.world_from_camera;
+    frame.true_world_from_camera->translation.z() += 0.5;
+  }
+  Write();
+  options_.truth = true;
+  Run({}, kAll);
+  EXPECT_EQ(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation,
+            sequence_.frames[3].true_world_from_camera->translation);
+  EXPECT_EQ(ParseGlb(FileBytes(File("m.glb"))).json.at("nodes").size(), 1 + 4 + 1u);
+  ExpectError<SettingsError>([&] { Run({"map"}, kAll); }, {"truth", "--map"});
+}
+
+TEST_F(RunExportTest, NoTruthIsNothingUsable) {
+  for (Frame& frame : sequence_.frames) frame.true_world_from_camera.reset();
+  for (Object& object : sequence_.objects) object.ground_truth.reset();
+  Write();
+  options_.truth = true;
+  ExpectError<NothingUsableError>(
+      [&] {
+        Run({}, {{"trajectory", "t.txt"}});
+      },
+      {"sequence.json", "no poses"});
+  ExpectError<NothingUsableError>(
+      [&] {
+        Run({}, {{"csv", "l.csv"}});
+      },
+      {"sequence.json", "no landmarks"});
+  EXPECT_EQ(FilesInFolder(), 2u);
+}
+
+TEST_F(RunExportTest, SegmentsAreFilesOfTheirOwn) {
+  for (size_t i = 4; i < sequence_.frames.size(); ++i) sequence_.frames[i].segment = 12;
+  Write();
+  Run({"map"}, kAll);
+  EXPECT_EQ(ReadTrajectory(File("t-0.txt")).size(), 4u);
+  EXPECT_EQ(ReadTrajectory(File("t-12.txt")).size(), sequence_.frames.size() - 4);
+  for (const char* name : {"m-0.ply", "m-12.ply", "m-0.glb", "m-12.glb"}) {
+    EXPECT_TRUE(fs::exists(File(name))) << name;
+  }
+  EXPECT_FALSE(fs::exists(File("t.txt")));
+  // Tables name frames and objects by ids that are the sequence's.
+  EXPECT_EQ(nlohmann::json::parse(FileBytes(File("d.json"))).at("images").size(),
+            sequence_.frames.size());
+  EXPECT_TRUE(fs::exists(File("l.csv")));
+}
+
+TEST_F(RunExportTest, RefusesWhatItCannotDo) {
+  ExpectError<SettingsError>([&] { Run({"map"}, {}); }, {"--trajectory", "--csv"});
+  ExpectError<SettingsError>(
+      [&] {
+        Run({"map"}, {{"gltf", "m.obj"}});
+      },
+      {"m.obj", ".glb or .gltf"});
+  for (ObjectEstimate& object : map_.objects) object.landmark_in_world.reset();
+  Write();
+  ExpectError<NothingUsableError>([&] { Run({"map"}, kAll); }, {"map.json", "no landmarks"});
+  EXPECT_EQ(FilesInFolder(), 2u);
+}
+
+TEST_F(RunExportTest, SegmentPathsKeepFolderAndExtension) {
+  EXPECT_EQ(SegmentPath("a/map.v2.ply", 3), fs::path("a/map.v2-3.ply"));
+  EXPECT_EQ(SegmentPath("poses", 0), fs::path("poses-0"));
+}
+
+}  // namespace
+}  // namespace soslam
