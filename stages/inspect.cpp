@@ -17,7 +17,7 @@ namespace {
 // Beside those of all programs, as diff has it.
 constexpr int kDiffer = 1;
 
-constexpr const char* kExample =
+constexpr const char* kExamples =
     "Examples:\n"
     "  soslam-inspect map.json --sequence sequence.json\n"
     "  soslam-inspect map.json --sequence sequence.json --dataset data/room_a --frame 10 --image "
@@ -32,26 +32,31 @@ struct Arguments {
   double tolerance = 1e-9;
 };
 
+std::string HelpFooter(const std::string& examples) {
+  return fmt::format("{}\n\n{};\n1 the two artefacts of diff differ", examples,
+                     soslam::internal::kExitCodes);
+}
+
 bool IsColoured() {
   const char* no_color = std::getenv("NO_COLOR");
   return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
 }
 
 void AddFiles(CLI::App* app, soslam::InspectRequest* request) {
-  app->add_option("file", request->file, "an artefact of any kind: .json or .h5")
-      ->option_text("FILE")
+  app->add_option("FILE", request->file, "an artefact of any kind, JSON or HDF5")
+      ->option_text("PATH")
       ->group("Files");
   const auto add = [&](const char* name, auto* path, const char* doc) {
     app->add_option(name, *path, doc)->option_text("PATH")->group("Files");
   };
   add("--sequence", &request->sequence,
-      "sequence.json that the artefact was made from: for labels "
-      "of objects, and for pictures");
+      "sequence.json that the artefact was made from:\nfor labels of objects, and for pictures");
   add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
   add("--csv", &request->csv, "table to write as CSV, in full precision; - for standard output");
   add("--image", &request->image,
-      "picture to write (.png): of sequence, landmarks and map the boxes, landmarks and ground "
-      "truth of a frame; of edges its maps; of symmetry the pairs of an observation");
+      "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and ground "
+      "truth "
+      "of a frame; of edges\nits maps; of symmetry the pairs of an observation");
 }
 
 void AddOptions(CLI::App* app, Arguments* arguments) {
@@ -71,22 +76,22 @@ void AddOptions(CLI::App* app, Arguments* arguments) {
 }
 
 CLI::App* AddDiff(CLI::App* app, Arguments* arguments) {
-  CLI::App* diff = app->add_subcommand(
-      "diff", "Lists where two artefacts of one kind differ; exit code 1 when they do.");
-  diff->add_option("one", arguments->one, "an artefact")
-      ->option_text("FILE (required)")
+  CLI::App* diff = app->add_subcommand("diff", "Lists where two artefacts of one kind differ.");
+  diff->add_option("ONE", arguments->one, "an artefact")
+      ->option_text("PATH (required)")
       ->required()
       ->group("Files");
-  diff->add_option("two", arguments->two, "another one of its kind")
-      ->option_text("FILE (required)")
+  diff->add_option("TWO", arguments->two, "another one of its kind")
+      ->option_text("PATH (required)")
       ->required()
       ->group("Files");
   diff->add_option("--tolerance", arguments->tolerance,
-                   "numbers are equal that differ by no more, times the larger of the two and 1\n"
+                   "numbers are equal that differ by no more,\ntimes the larger of the two and 1\n"
                    "[default 1e-9; 0 or more]")
       ->check(CLI::NonNegativeNumber)
       ->option_text("number")
       ->group("Options");
+  diff->footer(HelpFooter("Example:\n  soslam-inspect diff one/map.json two/map.json"));
   return diff;
 }
 
@@ -117,8 +122,7 @@ int main(int argc, char** argv) {
     AddFiles(&app, &arguments.request);
     AddOptions(&app, &arguments);
     const CLI::App* diff = AddDiff(&app, &arguments);
-    app.footer(
-        fmt::format("{}\n\n{};\n1 diff: they differ", kExample, soslam::internal::kExitCodes));
+    app.footer(HelpFooter(kExamples));
     app.parse(argc, argv);
     return Run(&arguments, diff->parsed());
   });

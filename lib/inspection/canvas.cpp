@@ -16,7 +16,6 @@ constexpr double kNearestDepth = 0.05;  // m: what is drawn is farther from the 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
 constexpr int kTextMargin = 4;  // px of the picture
-constexpr int kMinWidth = 1200;
 
 std::string AsciiOf(std::string text) {
   std::string ascii;
@@ -156,10 +155,10 @@ cv::Mat WithCaption(const cv::Mat& picture, const std::vector<CaptionEntry>& ent
   return captioned;
 }
 
-cv::Mat DrawingGround(const cv::Mat& image) {
+cv::Mat DrawingGround(const cv::Mat& image, int min_width) {
   cv::Mat colour = image;
   if (image.channels() == 1) cv::cvtColor(image, colour, cv::COLOR_GRAY2BGR);
-  const double factor = std::max(1.0, std::ceil(static_cast<double>(kMinWidth) / image.cols));
+  const double factor = std::max(1.0, std::ceil(static_cast<double>(min_width) / image.cols));
   cv::Mat ground;
   cv::resize(colour, ground, cv::Size(), factor, factor, cv::INTER_CUBIC);
   return ground;

@@ -63,8 +63,12 @@ struct CaptionEntry {
 // The picture (CV_8UC3) with a dark band below that says what it shows.
 cv::Mat WithCaption(const cv::Mat& picture, const std::vector<CaptionEntry>& entries);
 
+// Enough for fine lines and texts (px); for one of two pictures side by side.
+inline constexpr int kPictureWidth = 1200;
+inline constexpr int kTileWidth = kPictureWidth / 2;
+
 // A picture in grey or colour (CV_8UC1, CV_8UC3) in colour, enlarged by the smallest whole factor
-// with which it is wide enough for fine lines and texts.
-cv::Mat DrawingGround(const cv::Mat& image);
+// that makes it so wide.
+cv::Mat DrawingGround(const cv::Mat& image, int min_width = kPictureWidth);
 
 }  // namespace soslam

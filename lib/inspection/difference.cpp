@@ -243,14 +243,14 @@ Differences CompareArtefacts(const std::filesystem::path& one, const std::filesy
 std::string FormatDifferences(const Differences& differences, double tolerance, bool is_coloured) {
   std::string text;
   if (!differences.provenance.empty()) {
-    text += fmt::format("provenance differs in {} places:\n{}\n", differences.provenance.size(),
+    text += fmt::format("provenance differs, places: {}\n{}\n", differences.provenance.size(),
                         FormatPlaces(differences.provenance, is_coloured));
   }
   if (differences.content.empty()) {
     return text +
            fmt::format("content of kind '{}' is equal within {:g}\n", differences.kind, tolerance);
   }
-  return text + fmt::format("content of kind '{}' differs by more than {:g} in {} places:\n{}",
+  return text + fmt::format("content of kind '{}' differs by more than {:g}, places: {}\n{}",
                             differences.kind, tolerance, differences.content.size(),
                             FormatPlaces(differences.content, is_coloured));
 }

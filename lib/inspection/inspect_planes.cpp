@@ -51,9 +51,9 @@ Inspection InspectPlanes(const std::filesystem::path& file) {
     inspection.facts = {
         {"dataset", document.at("dataset")},
         {"found",
-         fmt::format("{} planes below {} objects, after {} rounds, {}",
-                     document.at("planes").size(), objects.size(), document.at("rounds").get<int>(),
-                     document.at("settled").get<bool>() ? "settled" : "NOT settled")},
+         fmt::format("planes: {}, objects: {}; {} after {} rounds", document.at("planes").size(),
+                     objects.size(), document.at("settled").get<bool>() ? "settled" : "NOT settled",
+                     document.at("rounds").get<int>())},
         {"decided by", CountsInWords(reasons)}};
     if (!document.at("cost").is_null()) {
       inspection.facts.push_back(

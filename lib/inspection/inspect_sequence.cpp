@@ -30,10 +30,9 @@ std::string FramesInWords(const Sequence& sequence) {
     return std::ranges::count_if(sequence.frames, holds);
   };
   return fmt::format(
-      "{}, ids {} to {}, in {} segment{}; {} with an image, {} with a true pose; {} held out",
+      "{}, ids {} to {}, segments: {}; {} with an image, {} with a true pose; {} held out",
       sequence.frames.size(), sequence.frames.front().id, sequence.frames.back().id,
-      segments.size(), segments.size() == 1 ? "" : "s",
-      count([](const Frame& frame) { return !frame.image.empty(); }),
+      segments.size(), count([](const Frame& frame) { return !frame.image.empty(); }),
       count([](const Frame& frame) { return bool(frame.true_world_from_camera); }),
       sequence.held_out.size());
 }
@@ -43,7 +42,7 @@ std::string ObjectsInWords(const Sequence& sequence) {
     return std::ranges::count_if(sequence.objects, holds);
   };
   return fmt::format(
-      "{}, {} with ground truth, {} static, on {} support planes", sequence.objects.size(),
+      "{}, {} with ground truth, {} static; support planes: {}", sequence.objects.size(),
       count([](const Object& object) { return bool(object.ground_truth); }),
       count([](const Object& object) { return object.is_static; }), sequence.planes.size());
 }

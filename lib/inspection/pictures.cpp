@@ -15,8 +15,8 @@ namespace {
 // A camera of which only the size matters: for drawing in pixels.
 Camera CameraOfSize(const cv::Mat& image) { return {.width = image.cols, .height = image.rows}; }
 
-cv::Mat WithCorners(const EdgeMaps& maps) {
-  cv::Mat picture = DrawingGround(maps.grey);
+cv::Mat WithCorners(const EdgeMaps& maps, int min_width) {
+  cv::Mat picture = DrawingGround(maps.grey, min_width);
   Canvas canvas(CameraOfSize(maps.grey), &picture);
   for (const Eigen::Vector2f& corner : maps.corners) {
     canvas.Disc(corner.cast<double>(), palette::kYellow);
@@ -30,7 +30,7 @@ cv::Mat DistancePicture(const cv::Mat& distance, double largest) {
   if (largest > 0.0) distance.convertTo(scaled, CV_8U, 255.0 / largest);
   cv::Mat picture;
   cv::applyColorMap(scaled, picture, cv::COLORMAP_VIRIDIS);
-  return DrawingGround(picture);
+  return picture;
 }
 
 // Red for right, then by the angle clockwise, as the image's y axis points down.
@@ -67,21 +67,23 @@ cv::Mat DirectionPicture(const cv::Mat& nearest_edge) {
   DrawColourWheel(&hues);
   cv::Mat picture;
   cv::cvtColor(hues, picture, cv::COLOR_HSV2BGR);
-  return DrawingGround(picture);
+  return picture;
 }
 
-cv::Mat LayerPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title) {
+cv::Mat LayerPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title,
+                     int min_width) {
   const int edges = cv::countNonZero(maps.edges);
   double largest = 0.0;
   if (edges > 0) cv::minMaxLoc(maps.distance, nullptr, &largest);
   const auto captioned = [&](const cv::Mat& picture, const std::string& text) {
-    return WithCaption(picture, {{title}, {text}});
+    return WithCaption(DrawingGround(picture, min_width), {{title}, {text}});
   };
   switch (layer) {
     case EdgeLayer::kGrey:
-      return captioned(WithCorners(maps), fmt::format("{} corners", maps.corners.size()));
+      return captioned(WithCorners(maps, min_width),
+                       fmt::format("{} corners", maps.corners.size()));
     case EdgeLayer::kEdges:
-      return captioned(DrawingGround(maps.edges), fmt::format("{} edge pixels", edges));
+      return captioned(maps.edges, fmt::format("{} edge pixels", edges));
     case EdgeLayer::kDistance:
       return captioned(
           DistancePicture(maps.distance, largest),
@@ -111,10 +113,11 @@ cv::Rect AroundPairs(const SymmetryRecord& record, const cv::Size& size) {
 }  // namespace
 
 cv::Mat EdgesPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title) {
-  if (layer != EdgeLayer::kAll) return LayerPicture(maps, layer, title);
+  if (layer != EdgeLayer::kAll) return LayerPicture(maps, layer, title, kPictureWidth);
   const auto row = [&](EdgeLayer left, EdgeLayer right) {
     cv::Mat tiles;
-    cv::hconcat(LayerPicture(maps, left, title), LayerPicture(maps, right, title), tiles);
+    cv::hconcat(LayerPicture(maps, left, title, kTileWidth),
+                LayerPicture(maps, right, title, kTileWidth), tiles);
     return tiles;
   };
   cv::Mat tiles;
