@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <string>
 
 #include "artefact/hdf5_artefact.h"
@@ -13,7 +15,9 @@ namespace {
 
 constexpr const char* kKind = "edges";
 
-std::string FrameGroup(int frame_id) { return fmt::format("/frames/{:06d}", frame_id); }
+constexpr const char* kFrames = "/frames";
+
+std::string FrameGroup(int frame_id) { return fmt::format("{}/{:06d}", kFrames, frame_id); }
 
 // Values index the maps.
 void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
@@ -54,6 +58,22 @@ void EdgesWriter::Commit() {
 EdgesReader::EdgesReader(const std::filesystem::path& path) : file_(OpenArtefact(path, kKind)) {}
 
 bool EdgesReader::Has(int frame_id) const { return file_.Has(FrameGroup(frame_id)); }
+
+std::vector<int> EdgesReader::FrameIds() const {
+  std::vector<int> ids;
+  if (!file_.Has(kFrames)) return ids;  // no frame has an image
+  for (const std::string& name : file_.Children(kFrames)) {
+    int id = 0;
+    const auto parsed = std::from_chars(name.data(), name.data() + name.size(), id);
+    if (parsed.ec != std::errc() || FrameGroup(id) != fmt::format("{}/{}", kFrames, name)) {
+      throw InputError(fmt::format("{}: {}/{}: expected the id of a frame with at least six digits",
+                                   file_.path().string(), kFrames, name));
+    }
+    ids.push_back(id);
+  }
+  std::ranges::sort(ids);
+  return ids;
+}
 
 EdgeMaps EdgesReader::Read(int frame_id) const {
   const std::string group = FrameGroup(frame_id);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "artefact/atomic_file.h"
 #include "artefact/hdf5_file.h"
@@ -29,6 +30,8 @@ class EdgesReader {
  public:
   explicit EdgesReader(const std::filesystem::path& path);
   bool Has(int frame_id) const;
+  // Ascending. Throws InputError for a group that is not named as a frame is.
+  std::vector<int> FrameIds() const;
   // Throws InputError when the frame is missing, or its maps differ in size.
   EdgeMaps Read(int frame_id) const;
 

@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/hdf5_artefact.h"
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "base/error.h"
 
 namespace soslam {
 namespace {
 
-constexpr const char* kHeaderAttribute = "artefact";
+// Discarded where it is missing or not JSON.
+nlohmann::json HeaderOf(const Hdf5File& file) {
+  constexpr bool kAllowExceptions = false;
+  const std::string text =
+      file.HasAttribute("/", kHeaderAttribute) ? file.ReadText("/", kHeaderAttribute) : "";
+  return nlohmann::json::parse(text, nullptr, kAllowExceptions);
+}
 
 }  // namespace
 
@@ -16,12 +26,30 @@ void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5
 
 Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind) {
   Hdf5File file = Hdf5File::Open(path);
-  // A header that is missing or not JSON is "discarded", which the check refuses.
-  const std::string text =
-      file.HasAttribute("/", kHeaderAttribute) ? file.ReadText("/", kHeaderAttribute) : "";
-  constexpr bool kAllowExceptions = false;
-  CheckArtefactHeader(nlohmann::json::parse(text, nullptr, kAllowExceptions), kind, path.string());
+  CheckArtefactHeader(HeaderOf(file), kind, path.string());
   return file;
+}
+
+bool IsHdf5(const std::filesystem::path& path) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::string begin(kSignature.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<int>(begin.size()));
+  return begin == kSignature;
+}
+
+nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
+  nlohmann::json header;
+  if (IsHdf5(path)) {
+    header = HeaderOf(Hdf5File::Open(path));
+  } else {
+    const nlohmann::json document = ParseJsonFile(path);
+    if (document.is_object()) header = document.value("artefact", nlohmann::json());
+  }
+  if (!header.is_object() || !header.contains("kind") || !header["kind"].is_string()) {
+    throw InputError(path.string() +
+                     ": has no artefact header that names its kind; expected what a stage wrote");
+  }
+  return header;
 }
 
 void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,

@@ -236,6 +236,23 @@ std::vector<std::string> Hdf5File::Children(const std::string& group) const {
   return names;
 }
 
+Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) const {
+  const Hdf5Handle space{H5Dget_space(data_set.id()), &H5Sclose};
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  if (rank < 0) FailReading(name, kDamaged);
+  std::vector<hsize_t> sizes(static_cast<size_t>(rank));
+  H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr);
+  Shape shape(sizes.begin(), sizes.end());
+  std::uint64_t values = 1;
+  for (const std::uint64_t size : shape) {
+    if (size > kMaxValues || (values *= size) > kMaxValues) {
+      FailReading(name, fmt::format("is {}; expected at most {} values", fmt::join(shape, " x "),
+                                    kMaxValues));
+    }
+  }
+  return shape;
+}
+
 Shape Hdf5File::CheckedShape(const std::string& name, int depth,
                              const std::vector<int>& expected) const {
   const Element element = ElementOf(depth);
@@ -243,23 +260,11 @@ Shape Hdf5File::CheckedShape(const std::string& name, int depth,
   if (!Has(name)) FailReading(name, "missing; expected " + wanted);
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
-  const Hdf5Handle space{H5Dget_space(data_set.id()), &H5Sclose};
-  const int rank = H5Sget_simple_extent_ndims(space.id());
-  if (rank < 0) FailReading(name, kDamaged);
-  std::vector<hsize_t> sizes(static_cast<size_t>(rank));
-  H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr);
-  const Shape shape(sizes.begin(), sizes.end());
+  Shape shape = ShapeOf(name, data_set);
   const bool same_type = H5Tequal(type.id(), element.file_type) > 0;
   if (!same_type || !Matches(shape, expected)) {
     FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
                                   same_type ? element.name : "another type", wanted));
-  }
-  std::uint64_t values = 1;
-  for (const std::uint64_t size : shape) {
-    if (size > kMaxValues || (values *= size) > kMaxValues) {
-      FailReading(name, fmt::format("is {}; expected at most {} values", fmt::join(shape, " x "),
-                                    kMaxValues));
-    }
   }
   return shape;
 }
@@ -272,6 +277,21 @@ void Hdf5File::ReadArray(const std::string& name, int depth, void* values) const
   }
 }
 
+bool Hdf5File::IsGroup(const std::string& name) const {
+  const Hdf5Handle group{H5Gopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Gclose};
+  return group.valid();
+}
+
+Hdf5File::Numbers Hdf5File::ReadNumbers(const std::string& name) const {
+  const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
+  if (!data_set.valid()) FailReading(name, "is neither a group nor a data set; expected one");
+  Numbers numbers{ShapeOf(name, data_set), {}};
+  numbers.values.resize(std::accumulate(numbers.shape.begin(), numbers.shape.end(), size_t{1},
+                                        std::multiplies<size_t>()));
+  ReadArray(name, CV_64F, numbers.values.data());
+  return numbers;
+}
+
 cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int columns) const {
   std::vector<int> expected = {rows, columns};
   if (CV_MAT_CN(type) > 1) expected.push_back(CV_MAT_CN(type));
@@ -279,6 +299,27 @@ cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int co
   cv::Mat matrix(static_cast<int>(shape[0]), static_cast<int>(shape[1]), type);
   ReadArray(name, matrix.depth(), matrix.data);
   return matrix;
+}
+
+std::vector<std::string> Hdf5File::Attributes(const std::string& owner) const {
+  std::vector<std::string> names;
+  const auto append = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  if (H5Aiterate_by_name(file_.id(), owner.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append,
+                         &names, H5P_DEFAULT) < 0) {
+    FailReading(owner, kDamaged);
+  }
+  return names;
+}
+
+bool Hdf5File::IsText(const std::string& owner, const std::string& attribute) const {
+  const Hdf5Handle opened{
+      H5Aopen_by_name(file_.id(), owner.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      &H5Aclose};
+  const Hdf5Handle type{H5Aget_type(opened.id()), &H5Tclose};
+  return H5Tget_class(type.id()) == H5T_STRING;
 }
 
 std::string Hdf5File::ReadText(const std::string& owner, const std::string& name) const {

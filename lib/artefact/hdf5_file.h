@@ -77,6 +77,17 @@ class Hdf5File {
   std::string ReadText(const std::string& owner, const std::string& name) const;
   double ReadNumber(const std::string& owner, const std::string& name) const;
 
+  // For readers that do not know the layout.
+  bool IsGroup(const std::string& name) const;
+  std::vector<std::string> Attributes(const std::string& owner) const;  // sorted
+  bool IsText(const std::string& owner, const std::string& attribute) const;
+  // A data set of any of the types above, row by row. Every value of theirs is a double.
+  struct Numbers {
+    std::vector<std::uint64_t> shape;
+    std::vector<double> values;
+  };
+  Numbers ReadNumbers(const std::string& name) const;
+
   const std::filesystem::path& path() const { return path_; }
 
   static constexpr int kAny = -1;
@@ -91,6 +102,8 @@ class Hdf5File {
   // The shape of a data set, once it and the element type are what is expected.
   std::vector<std::uint64_t> CheckedShape(const std::string& name, int depth,
                                           const std::vector<int>& expected) const;
+  // Throws where there are too many values to read.
+  std::vector<std::uint64_t> ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
   void ReadArray(const std::string& name, int depth, void* values) const;
 
   [[noreturn]] void FailWriting(const std::string& name) const;

@@ -77,6 +77,12 @@ json ParseJsonFile(const std::filesystem::path& path) {
   }
 }
 
+std::string Excerpt(const json& value) {
+  constexpr size_t kMaxLength = 60;
+  const std::string text = value.dump(-1, ' ', true);
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
+}
+
 json ArtefactHeader(const std::string& kind, const ArtefactInfo& info) {
   json inputs = json::array();
   for (const auto& input : info.inputs) {

@@ -46,20 +46,24 @@ json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const S
   return rows;
 }
 
+ObjectEstimate ObjectEstimateFromJson(const json& row) {
+  ObjectEstimate estimate;
+  row.at("observations").get_to(estimate.observations);
+  const auto& landmark = row.at("landmark");
+  if (!landmark.is_null()) estimate.landmark_in_world = LandmarkFromJson(landmark, "world");
+  const auto& covariance = row.at("covariance");
+  if (!covariance.is_null()) estimate.covariance = CovarianceFromJson(covariance);
+  row.at("failure").get_to(estimate.failure);
+  row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
+  return estimate;
+}
+
 std::vector<ObjectEstimate> ObjectEstimatesFromJson(const json& json, const Sequence& sequence) {
   const IdTable<Object> objects("object", sequence.objects);
   std::vector<ObjectEstimate> estimates;
   for (const auto& row : json) {
-    ObjectEstimate estimate;
-    estimate.object_index = objects.IndexOf(row.at("object").get<int>());
-    row.at("observations").get_to(estimate.observations);
-    const auto& landmark = row.at("landmark");
-    if (!landmark.is_null()) estimate.landmark_in_world = LandmarkFromJson(landmark, "world");
-    const auto& covariance = row.at("covariance");
-    if (!covariance.is_null()) estimate.covariance = CovarianceFromJson(covariance);
-    row.at("failure").get_to(estimate.failure);
-    row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
-    estimates.push_back(std::move(estimate));
+    estimates.push_back(ObjectEstimateFromJson(row));
+    estimates.back().object_index = objects.IndexOf(row.at("object").get<int>());
   }
   return estimates;
 }

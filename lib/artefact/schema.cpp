@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "artefact/json_file.h"
 #include "base/error.h"
 
 // GCC 12 takes a std::string::replace that it inlines into valijson for an overflow.
@@ -34,13 +35,6 @@ json::json_pointer Place(const std::vector<std::string>& context) {
     place /= context[i].substr(1, context[i].size() - 2);
   }
   return place;
-}
-
-// A value as text, cut to what fits on a line.
-std::string Excerpt(const json& value) {
-  constexpr size_t kMaxLength = 60;
-  const std::string text = value.dump(-1, ' ', true);
-  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 
 }  // namespace

@@ -2,31 +2,40 @@
 #include "model/occlusion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace soslam {
 namespace {
 
-// How far in front of the camera (m, along its axis) a detection's foot is. Infinite when the ray
-// does not meet the plane in front of the camera: the box then ends at or above the plane's
-// horizon. Without planes a value in the same order for things on one plane: what ends lower in the
-// image is nearer.
+// How far in front of the camera (m, along its axis) a detection's foot is; infinite without one.
+// Without planes a value in the same order for things on one plane: what ends lower in the image is
+// nearer.
 double FootDepth(const Sequence& sequence, const Detection& detection) {
-  const Box& box = detection.box;
-  if (sequence.planes.empty()) return -box.y_max;
-  const Camera& camera = sequence.CameraOf(detection);
-  const Plane& plane = detection.plane_in_camera;
-  const double depth = -plane.offset / plane.normal.dot(camera.Ray({box.Centre().x(), box.y_max}));
-  return depth > 0.0 ? depth : std::numeric_limits<double>::infinity();
+  if (sequence.planes.empty()) return -detection.box.y_max;
+  const auto foot =
+      FootInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
+  return foot ? foot->z() : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> FootInCamera(const Camera& camera, const Box& box,
+                                            const Plane& plane_in_camera) {
+  const Eigen::Vector3d ray = camera.Ray({box.Centre().x(), box.y_max});
+  const double depth = -plane_in_camera.offset / plane_in_camera.normal.dot(ray);
+  if (!(depth > 0.0) || !std::isfinite(depth)) return std::nullopt;
+  return depth * ray;
+}
+
+std::span<const Detection> DetectionsIn(const Sequence& sequence, int frame_index) {
+  return std::ranges::equal_range(sequence.detections, frame_index, {}, &Detection::frame_index);
+}
+
 std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detection) {
   const double own_depth = FootDepth(sequence, detection);
   std::vector<Box> nearer;
-  for (const Detection& other : std::ranges::equal_range(sequence.detections, detection.frame_index,
-                                                         {}, &Detection::frame_index)) {
+  for (const Detection& other : DetectionsIn(sequence, detection.frame_index)) {
     if (other.object_index != detection.object_index && FootDepth(sequence, other) < own_depth) {
       nearer.push_back(other.box);
     }

@@ -19,13 +19,14 @@
 #include "stage/settings_file.h"
 
 namespace soslam::internal {
+
+const char* const kExitCodes =
+    "Exit codes: 0 done; 2 wrong usage or setting; 3 input missing or not valid; 4 nothing usable\n"
+    "came out; 5 numerical failure; 70 a bug in this program";
+
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 2 wrong usage or setting; 3 input missing or not valid; 4 nothing usable\n"
-    "came out; 5 numerical failure; 70 a bug in this program";
 
 // What CLI11 stores while it parses.
 struct ParsedArguments {
@@ -73,10 +74,7 @@ void AddCommon(CLI::App* app, ParsedArguments* parsed) {
       ->check(CLI::Range(0, 1024))
       ->group("Common")
       ->option_text("integer");
-  app->set_help_flag("--help", "print this and exit")->group("Common");
-  app->set_version_flag("--version", app->get_name() + " " + SOSLAM_VERSION,
-                        "print the version and exit")
-      ->group("Common");
+  AddHelpAndVersion(app);
 }
 
 // The value of an option's text. What does not look like the type stays a string, which
@@ -143,8 +141,8 @@ std::string OneLine(std::string text) {
   return text;
 }
 
-int Fail(const StageInfo& info, ExitCode exit_code, const std::string& message) {
-  std::cerr << info.name << ": error: " << OneLine(message) << std::endl;
+int Fail(const CLI::App& app, ExitCode exit_code, const std::string& message) {
+  std::cerr << app.get_name() << ": error: " << OneLine(message) << std::endl;
   return static_cast<int>(exit_code);
 }
 
@@ -171,6 +169,28 @@ void ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::
 
 }  // namespace
 
+void AddHelpAndVersion(CLI::App* app) {
+  app->set_help_flag("--help", "print this and exit")->group("Common");
+  app->set_version_flag("--version", app->get_name() + " " + SOSLAM_VERSION,
+                        "print the version and exit")
+      ->group("Common");
+}
+
+int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
+  try {
+    return run();
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app->exit(error);  // --help and --version
+    return Fail(*app, ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
+  } catch (const Error& error) {
+    return Fail(*app, error.exit_code(), error.what());
+  } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
+    return Fail(*app, ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
+  } catch (...) {
+    return Fail(*app, ExitCode::kInternal, "internal error: unknown exception");
+  }
+}
+
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
                  const std::vector<OptionRow>& options,
                  const std::function<void(const StageCall&)>& run) {
@@ -178,19 +198,10 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
   // words.
   FLAGS_minloglevel = google::GLOG_FATAL;
   CLI::App app(info.purpose, info.name);
-  try {
+  return ExitCodeOf(&app, [&] {
     ParseAndRun(argc, argv, info, &app, options, run);
     return static_cast<int>(ExitCode::kDone);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
-    return Fail(info, ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
-  } catch (const Error& error) {
-    return Fail(info, error.exit_code(), error.what());
-  } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
-    return Fail(info, ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
-  } catch (...) {
-    return Fail(info, ExitCode::kInternal, "internal error: unknown exception");
-  }
+  });
 }
 
 }  // namespace soslam::internal

@@ -9,6 +9,10 @@
 #include "base/options.h"
 #include "stage/stage_files.h"
 
+namespace CLI {
+class App;
+}
+
 namespace soslam {
 
 // A file or folder that a stage is called with: --<name> PATH.
@@ -40,6 +44,16 @@ struct StageCall {
   StageFiles files;
   int threads = 1;  // >= 1
 };
+
+// What every --help says of exit codes.
+extern const char* const kExitCodes;
+
+// Options --help and --version of a program.
+void AddHelpAndVersion(CLI::App* app);
+
+// What `run`, which parses the command line first, returns: an exit code. Errors that it throws
+// become one line on stderr and their exit codes; --help and --version are answered.
+int ExitCodeOf(CLI::App* app, const std::function<int()>& run);
 
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
                  const std::vector<OptionRow>& options,

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "inspection/difference.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "artefact/hdf5_artefact.h"
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "inspection/table.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// Compares numbers of two arrays of one length; none when all are equal.
+std::optional<Difference> CompareNumbers(const std::string& place, const std::vector<double>& one,
+                                         const std::vector<double>& two, double tolerance) {
+  Difference found{place, "", "", 0.0, 0.0, 0, one.size()};
+  for (size_t i = 0; i < one.size(); ++i) {
+    if (one[i] == two[i] || (std::isnan(one[i]) && std::isnan(two[i]))) continue;
+    const double absolute = std::abs(one[i] - two[i]);
+    const double size = std::max(std::abs(one[i]), std::abs(two[i]));
+    if (absolute <= tolerance * std::max(size, 1.0)) continue;
+    ++found.differing;
+    // Not a number counts as farther than any.
+    if (found.one.empty() || absolute > *found.absolute || std::isnan(absolute)) {
+      found.absolute = absolute;
+      found.one = fmt::format("{}", one[i]);
+      found.two = fmt::format("{}", two[i]);
+    }
+    found.relative = std::max(*found.relative, absolute / size);
+  }
+  return found.differing > 0 ? std::optional(found) : std::nullopt;
+}
+
+// Appends the numbers of arrays within arrays; false where there is anything else.
+bool Flatten(const json& value, std::vector<double>* numbers) {
+  if (value.is_number()) numbers->push_back(value.get<double>());
+  if (!value.is_array()) return value.is_number();
+  return std::ranges::all_of(value, [&](const json& item) { return Flatten(item, numbers); });
+}
+
+bool HaveOneShape(const json& one, const json& two) {
+  if (!one.is_array() || !two.is_array()) return one.is_array() == two.is_array();
+  return one.size() == two.size() && std::equal(one.begin(), one.end(), two.begin(), &HaveOneShape);
+}
+
+class JsonComparison {
+ public:
+  JsonComparison(double tolerance, std::vector<Difference>* differences)
+      : tolerance_(tolerance), differences_(differences) {}
+
+  void Compare(const json& one, const json& two, const json::json_pointer& place) {
+    std::vector<double> numbers, others;
+    if (HaveOneShape(one, two) && Flatten(one, &numbers) && Flatten(two, &others)) {
+      if (const auto difference = CompareNumbers(place.to_string(), numbers, others, tolerance_)) {
+        differences_->push_back(*difference);
+      }
+    } else if (one.is_object() && two.is_object()) {
+      CompareObjects(one, two, place);
+    } else if (one.is_array() && two.is_array()) {
+      for (size_t i = 0; i < std::max(one.size(), two.size()); ++i) {
+        CompareItems(i < one.size() ? &one[i] : nullptr, i < two.size() ? &two[i] : nullptr,
+                     place / i);
+      }
+    } else if (one != two) {
+      differences_->push_back({place.to_string(), Excerpt(one), Excerpt(two), {}, {}});
+    }
+  }
+
+ private:
+  void CompareObjects(const json& one, const json& two, const json::json_pointer& place) {
+    const auto find = [](const json& object, const std::string& key) {
+      return object.contains(key) ? &object[key] : nullptr;
+    };
+    std::set<std::string> keys;
+    for (const json* object : {&one, &two}) {
+      for (const auto& item : object->items()) keys.insert(item.key());
+    }
+    for (const std::string& key : keys) CompareItems(find(one, key), find(two, key), place / key);
+  }
+
+  // Null: only the other one has it.
+  void CompareItems(const json* one, const json* two, const json::json_pointer& place) {
+    if (one != nullptr && two != nullptr) return Compare(*one, *two, place);
+    const auto text = [](const json* value) { return value == nullptr ? "" : Excerpt(*value); };
+    differences_->push_back({place.to_string(), text(one), text(two), {}, {}});
+  }
+
+  double tolerance_;
+  std::vector<Difference>* differences_;
+};
+
+std::string ShapeInWords(const Hdf5File::Numbers& numbers) {
+  return fmt::format("{} values", fmt::join(numbers.shape, " x "));
+}
+
+class Hdf5Comparison {
+ public:
+  Hdf5Comparison(const Hdf5File& one, const Hdf5File& two, double tolerance,
+                 std::vector<Difference>* differences)
+      : one_(one), two_(two), tolerance_(tolerance), differences_(differences) {}
+
+  // `group` ends in a slash; both have it.
+  void CompareGroup(const std::string& group) {
+    CompareAttributes(group);
+    for (const std::string& name : Union(one_.Children(group), two_.Children(group))) {
+      const std::string place = group + name;
+      if (!one_.Has(place) || !two_.Has(place)) {
+        Report(place, one_.Has(place) ? "present" : "", two_.Has(place) ? "present" : "");
+      } else if (one_.IsGroup(place) != two_.IsGroup(place)) {
+        Report(place, one_.IsGroup(place) ? "group" : "data set",
+               two_.IsGroup(place) ? "group" : "data set");
+      } else if (one_.IsGroup(place)) {
+        CompareGroup(place + "/");
+      } else {
+        CompareDataSet(place);
+      }
+    }
+  }
+
+ private:
+  static std::set<std::string> Union(const std::vector<std::string>& one,
+                                     const std::vector<std::string>& two) {
+    std::set<std::string> all(one.begin(), one.end());
+    all.insert(two.begin(), two.end());
+    return all;
+  }
+
+  // All but the artefact's header.
+  void CompareAttributes(const std::string& owner) {
+    for (const std::string& name : Union(one_.Attributes(owner), two_.Attributes(owner))) {
+      if (owner == "/" && name == kHeaderAttribute) continue;
+      const std::string one = AttributeText(one_, owner, name);
+      const std::string two = AttributeText(two_, owner, name);
+      const bool are_numbers = IsNumber(one_, owner, name) && IsNumber(two_, owner, name);
+      if (are_numbers) {
+        AddNumbers(owner + name, {one_.ReadNumber(owner, name)}, {two_.ReadNumber(owner, name)});
+      } else if (one != two) {
+        Report(owner + name, one, two);
+      }
+    }
+  }
+
+  static bool IsNumber(const Hdf5File& file, const std::string& owner, const std::string& name) {
+    return file.HasAttribute(owner, name) && !file.IsText(owner, name);
+  }
+  static std::string AttributeText(const Hdf5File& file, const std::string& owner,
+                                   const std::string& name) {
+    if (!file.HasAttribute(owner, name)) return "";
+    return file.IsText(owner, name) ? file.ReadText(owner, name)
+                                    : fmt::format("{}", file.ReadNumber(owner, name));
+  }
+
+  void CompareDataSet(const std::string& place) {
+    const Hdf5File::Numbers one = one_.ReadNumbers(place);
+    const Hdf5File::Numbers two = two_.ReadNumbers(place);
+    if (one.shape != two.shape) {
+      Report(place, ShapeInWords(one), ShapeInWords(two));
+    } else {
+      AddNumbers(place, one.values, two.values);
+    }
+  }
+
+  void AddNumbers(const std::string& place, const std::vector<double>& one,
+                  const std::vector<double>& two) {
+    if (const auto difference = CompareNumbers(place, one, two, tolerance_)) {
+      differences_->push_back(*difference);
+    }
+  }
+  void Report(const std::string& place, const std::string& one, const std::string& two) {
+    differences_->push_back({place, one, two, {}, {}});
+  }
+
+  const Hdf5File& one_;
+  const Hdf5File& two_;
+  double tolerance_;
+  std::vector<Difference>* differences_;
+};
+
+void CompareContent(const std::filesystem::path& one, const std::filesystem::path& two,
+                    double tolerance, Differences* differences) {
+  const std::string& kind = differences->kind;
+  if (IsHdf5(one) && IsHdf5(two)) {
+    const Hdf5File file_one = OpenArtefact(one, kind);
+    const Hdf5File file_two = OpenArtefact(two, kind);
+    Hdf5Comparison(file_one, file_two, tolerance, &differences->content).CompareGroup("/");
+    return;
+  }
+  json document_one = ReadArtefact(one, kind);
+  json document_two = ReadArtefact(two, kind);
+  document_one.erase("artefact");
+  document_two.erase("artefact");
+  JsonComparison(tolerance, &differences->content)
+      .Compare(document_one, document_two, json::json_pointer());
+}
+
+Cell NumberCell(const std::optional<double>& number) {
+  return number ? Cell(fmt::format("{:.3g}", *number)) : Cell();
+}
+
+Cell TextCell(const std::string& text) { return text.empty() ? Cell() : Cell(text); }
+
+std::string FormatPlaces(const std::vector<Difference>& places, bool is_coloured) {
+  Table table;
+  table.columns = {{"place", ""},    {"one", ""},      {"two", ""},
+                   {"absolute", ""}, {"relative", ""}, {"numbers", ""}};
+  for (const Difference& place : places) {
+    table.rows.push_back(
+        {place.place, TextCell(place.one), TextCell(place.two), NumberCell(place.absolute),
+         NumberCell(place.relative),
+         place.of > 1 ? Cell(fmt::format("{} of {}", place.differing, place.of)) : Cell()});
+  }
+  return FormatTable(table, is_coloured);
+}
+
+}  // namespace
+
+Differences CompareArtefacts(const std::filesystem::path& one, const std::filesystem::path& two,
+                             double tolerance) {
+  const json header_one = ReadArtefactHeader(one);
+  const json header_two = ReadArtefactHeader(two);
+  if (header_one.at("kind") != header_two.at("kind")) {
+    throw InputError(fmt::format("{}: artefact kind is {}, that of {} is {}; expected one kind",
+                                 one.string(), header_one["kind"].dump(), two.string(),
+                                 header_two["kind"].dump()));
+  }
+  Differences differences{header_one["kind"], {}, {}};
+  constexpr double kExactly = 0.0;
+  JsonComparison(kExactly, &differences.provenance)
+      .Compare(header_one, header_two, json::json_pointer("/artefact"));
+  CompareContent(one, two, tolerance, &differences);
+  return differences;
+}
+
+std::string FormatDifferences(const Differences& differences, double tolerance, bool is_coloured) {
+  std::string text;
+  if (!differences.provenance.empty()) {
+    text += fmt::format("provenance differs, places: {}\n{}\n", differences.provenance.size(),
+                        FormatPlaces(differences.provenance, is_coloured));
+  }
+  if (differences.content.empty()) {
+    return text +
+           fmt::format("content of kind '{}' is equal within {:g}\n", differences.kind, tolerance);
+  }
+  return text + fmt::format("content of kind '{}' differs by more than {:g}, places: {}\n{}",
+                            differences.kind, tolerance, differences.content.size(),
+                            FormatPlaces(differences.content, is_coloured));
+}
+
+}  // namespace soslam

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Landmarks and maps: rows are observations, then objects.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "artefact/json_file.h"
+#include "artefact/json_geometry.h"
+#include "artefact/object_estimate_json.h"
+#include "base/error.h"
+#include "inspection/kinds.h"
+#include "model/estimates.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+std::vector<Column> EstimateColumns() {
+  return {{"frame", ""},
+          {"object", ""},
+          {"label", ""},
+          {"views", ""},
+          {"x", "m", 3},
+          {"y", "m", 3},
+          {"z", "m", 3},
+          {"a", "m", 3},
+          {"b", "m", 3},
+          {"c", "m", 3},
+          {"p", "", 2},
+          {"yaw", "deg", 1},
+          {"sigma_centre", "m", 3},
+          {"sigma_yaw", "deg", 2},
+          {"sigma_size", "%", 1},
+          {"cost", "", 2},
+          {"hypotheses", ""},
+          {"failure", ""}};
+}
+
+// Centre, half axes, shape exponent and yaw about the object's own z axis; empty cells without a
+// landmark.
+std::vector<Cell> CellsOf(const std::optional<Landmark>& landmark) {
+  if (!landmark) return std::vector<Cell>(8);
+  const Eigen::Vector3d& centre = landmark->Centre();
+  const Eigen::Vector3d& half_axes = landmark->half_axes;
+  const Eigen::Quaterniond& rotation = landmark->frame_from_object.rotation;
+  return {centre.x(),
+          centre.y(),
+          centre.z(),
+          half_axes.x(),
+          half_axes.y(),
+          half_axes.z(),
+          landmark->shape_exponent,
+          kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)};
+}
+
+// Standard deviations: of the centre, over all directions; of the yaw; of the half axes, the root
+// mean square of all three.
+std::vector<Cell> SigmasOf(const ObjectEstimate& estimate) {
+  if (!estimate.covariance || !estimate.landmark_in_world) return std::vector<Cell>(3);
+  const Covariance9& covariance = *estimate.covariance;
+  const Eigen::Vector3d up =
+      estimate.landmark_in_world->frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+  const double yaw_variance = up.dot(covariance.topLeftCorner<3, 3>() * up);
+  const double centre_variance = covariance.block<3, 3>(3, 3).trace();
+  const double size_variance = covariance.bottomRightCorner<3, 3>().trace() / 3.0;
+  return {std::sqrt(centre_variance), kDegPerRad * std::sqrt(yaw_variance),
+          100.0 * std::sqrt(size_variance)};
+}
+
+void Append(const std::vector<Cell>& cells, std::vector<Cell>* row) {
+  row->insert(row->end(), cells.begin(), cells.end());
+}
+
+Cell FailureOf(const std::string& failure) { return failure.empty() ? Cell() : Cell(failure); }
+
+std::vector<Cell> ObservationRow(const json& observation, const std::optional<Sequence>& sequence) {
+  const json& hypotheses = observation.at("hypotheses");
+  const int object_id = observation.at("object");
+  std::optional<Landmark> best;
+  Cell cost;
+  if (!hypotheses.empty()) {
+    best = LandmarkFromJson(hypotheses[0].at("landmark"), "camera");
+    cost = hypotheses[0].at("cost").get<double>();
+  }
+  std::vector<Cell> row = {observation.at("frame"), object_id, LabelOf(sequence, object_id), {}};
+  Append(CellsOf(best), &row);
+  Append(std::vector<Cell>(3), &row);
+  Append({cost, hypotheses.size(), FailureOf(observation.at("failure"))}, &row);
+  return row;
+}
+
+std::vector<Cell> ObjectRow(const json& fields, const std::optional<Sequence>& sequence) {
+  const ObjectEstimate estimate = ObjectEstimateFromJson(fields);
+  const int object_id = fields.at("object");
+  std::vector<Cell> row = {{}, object_id, LabelOf(sequence, object_id), estimate.observations};
+  Append(CellsOf(estimate.landmark_in_world), &row);
+  Append(SigmasOf(estimate), &row);
+  const bool is_improper = estimate.landmark_in_world && !estimate.proper_ellipsoid;
+  Append({{}, {}, is_improper ? Cell("not an ellipsoid") : FailureOf(estimate.failure)}, &row);
+  return row;
+}
+
+// How many of the rows have a landmark.
+std::string FoundInWords(const json& rows, const char* name, const char* field) {
+  const auto found = std::ranges::count_if(
+      rows, [&](const json& row) { return !row.at(field).empty() && !row.at(field).is_null(); });
+  return fmt::format("{} of {} {}", found, rows.size(), name);
+}
+
+std::map<std::string, int> FailuresOf(const json& objects) {
+  std::map<std::string, int> failures;
+  for (const json& object : objects) {
+    const std::string failure = object.at("failure");
+    if (!failure.empty()) ++failures[failure];
+  }
+  return failures;
+}
+
+// "20.1 at first, 27.0 at the end, 254 iterations".
+std::vector<Fact> SolverInWords(const json& solver) {
+  const auto counts = [&](const char* field) {
+    return CountsInWords(solver.at(field).get<std::map<std::string, int>>());
+  };
+  std::vector<Fact> facts = {
+      {"solver",
+       fmt::format("{} after {} iterations; cost {:.6g} at first, {:.6g} at the end",
+                   solver.at("converged").get<bool>() ? "converged" : "NOT converged",
+                   solver.at("iterations").get<int>(), solver.at("initial_cost").get<double>(),
+                   solver.at("final_cost").get<double>())},
+      {"residuals", counts("residuals")},
+      {"left out", counts("gated")}};
+  const auto bias = solver.value("detector_bias_px", std::array<double, 4>{});
+  if (std::ranges::any_of(bias, [](double edge) { return edge != 0.0; })) {
+    facts.push_back({"detector", fmt::format("edges {} of boxes have to move outwards by {:.2f} px",
+                                             fmt::join(kEdgeNames, ", "), fmt::join(bias, ", "))});
+  }
+  return facts;
+}
+
+// The length of the way from frame to frame.
+std::string TrajectoryInWords(const json& trajectory) {
+  double length = 0.0;
+  for (size_t i = 1; i < trajectory.size(); ++i) {
+    const auto place = [&](size_t k) {
+      return trajectory[k].at("world_from_camera").get<Rigid3d>().translation;
+    };
+    length += (place(i) - place(i - 1)).norm();
+  }
+  return fmt::format("{} frames, {:.2f} m", trajectory.size(), length);
+}
+
+}  // namespace
+
+Inspection InspectLandmarks(const std::filesystem::path& file,
+                            const std::optional<Sequence>& sequence) {
+  return ReadArtefactAs(file, "landmarks", [&](const json& document) {
+    Inspection inspection;
+    inspection.table.columns = EstimateColumns();
+    const json& observations = document.at("observations");
+    const json& objects = document.at("objects");
+    const auto add = [&](const json& rows, const char* name, const char* field) {
+      if (!rows.empty()) inspection.facts.push_back({"found", FoundInWords(rows, name, field)});
+    };
+    add(observations, "observations have a landmark (camera frame; the best hypothesis)",
+        "hypotheses");
+    add(objects, "objects have a landmark (world frame)", "landmark");
+    inspection.facts.push_back(
+        {"failures", CountsInWords(document.at("failures").get<std::map<std::string, int>>())});
+    for (const json& row : observations) {
+      inspection.table.rows.push_back(ObservationRow(row, sequence));
+    }
+    for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row, sequence));
+    return inspection;
+  });
+}
+
+Inspection InspectMap(const std::filesystem::path& file, const std::optional<Sequence>& sequence) {
+  return ReadArtefactAs(file, "map", [&](const json& document) {
+    Inspection inspection;
+    inspection.table.columns = EstimateColumns();
+    const json& objects = document.at("objects");
+    inspection.facts = {
+        {"found", FoundInWords(objects, "objects have a landmark (world frame)", "landmark")},
+        {"failures", CountsInWords(FailuresOf(objects))}};
+    const std::vector<Fact> solver = SolverInWords(document.at("solver"));
+    inspection.facts.insert(inspection.facts.end(), solver.begin(), solver.end());
+    inspection.facts.push_back({"trajectory", TrajectoryInWords(document.at("trajectory"))});
+    for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row, sequence));
+    return inspection;
+  });
+}
+
+}  // namespace soslam

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "inspection/overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "model/occlusion.h"
+
+namespace soslam {
+namespace {
+
+const Stroke kDetectionStroke{palette::kYellow, 1};
+const Stroke kLandmarkStroke{palette::kSkyBlue, 2};
+const Stroke kLandmarkAxis{palette::kSkyBlue, 1};
+const Stroke kTruthStroke{palette::kVermilion, 2};
+const Stroke kTruthAxis{palette::kVermilion, 1};
+
+constexpr double kGridOpacity = 0.5;
+
+std::string CaptionOf(const Object& object) {
+  return fmt::format("{} {}", object.id, object.label);
+}
+
+// The outline of a body in the image, a convex polygon; empty unless the whole body is in front of
+// the camera.
+std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Landmark& landmark_in_camera) {
+  constexpr int kCorners = 120;
+  std::vector<Eigen::Vector2d> outline;
+  if (!IsInFront(landmark_in_camera)) return outline;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kCorners;
+    const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)});
+    if (end) outline.push_back(*camera.Project(end->point));
+  }
+  return outline;
+}
+
+// A point of a landmark by its coordinates in multiples of the half axes.
+Eigen::Vector3d PointOf(const Landmark& landmark, const Eigen::Vector3d& multiples) {
+  return landmark.frame_from_object * landmark.half_axes.cwiseProduct(multiples);
+}
+
+void DrawAxes(const Landmark& landmark_in_camera, const Stroke& front, const Stroke& others,
+              Canvas* canvas) {
+  const Eigen::Vector3d& centre = landmark_in_camera.Centre();
+  canvas->Segment(centre, PointOf(landmark_in_camera, Eigen::Vector3d::UnitY()), others);
+  canvas->Segment(centre, PointOf(landmark_in_camera, Eigen::Vector3d::UnitZ()), others);
+  canvas->Arrow(centre, PointOf(landmark_in_camera, Eigen::Vector3d::UnitX()), front);
+}
+
+void DrawCircumscribedBox(const Landmark& landmark_in_camera, const Stroke& stroke,
+                          Canvas* canvas) {
+  // Corner i has the sign of axis k in bit k; edges join corners that differ in one bit.
+  const auto corner = [&](int i) {
+    return PointOf(landmark_in_camera,
+                   {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
+  };
+  for (int i = 0; i < 8; ++i) {
+    for (const int bit : {1, 2, 4}) {
+      if ((i & bit) == 0) canvas->Segment(corner(i), corner(i | bit), stroke);
+    }
+  }
+}
+
+void DrawBody(const OverlayInput::Body& body, const Camera& camera, Canvas* canvas) {
+  const std::vector<Eigen::Vector2d> outline = OutlineOf(camera, body.landmark_in_camera);
+  if (outline.empty()) return;
+  canvas->Lines(outline, true, kLandmarkStroke);
+  DrawAxes(body.landmark_in_camera, kLandmarkStroke, kLandmarkAxis, canvas);
+}
+
+// On top of all lines.
+void DrawCaptions(const OverlayInput& input, Canvas* canvas) {
+  for (const auto& [landmark, caption] : input.landmarks) {
+    const auto outline = OutlineBox(input.camera, landmark);
+    if (!outline || caption.empty()) continue;
+    canvas->Text({outline->x_min, outline->y_min}, caption, kLandmarkStroke.colour);
+  }
+  for (const auto& [box, caption] : input.detections) {
+    canvas->Text({box.x_min, box.y_min}, caption, kDetectionStroke.colour);
+  }
+}
+
+// A square grid on a plane. Lines are parallel to its axes, `cell` (m) apart.
+struct Grid {
+  Rigid3d camera_from_plane;
+  double cell;
+  Eigen::Vector2i first, last;  // lines, by their number from the plane's origin
+};
+
+// Around the feet, with as large a cell that there are few lines.
+Grid GridOf(const OverlayInput::Ground& ground) {
+  constexpr std::array kCells = {0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0};
+  constexpr double kMaxCells = 10.0;
+  const Plane& plane = ground.plane_in_camera;
+  const Rigid3d camera_from_plane = {UprightRotation(plane.normal, 0.0),
+                                     -plane.offset * plane.normal};
+  const Rigid3d plane_from_camera = camera_from_plane.Inverse();
+  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Array2d high = -low;
+  for (const Eigen::Vector3d& foot : ground.feet_in_camera) {
+    const Eigen::Array2d place = (plane_from_camera * foot).head<2>();
+    low = low.min(place);
+    high = high.max(place);
+  }
+  const double extent = (high - low).maxCoeff();
+  const auto fits = [&](double cell) { return extent <= kMaxCells * cell; };
+  const auto found = std::ranges::find_if(kCells, fits);
+  const double cell = found == kCells.end() ? extent / kMaxCells : *found;
+  return {camera_from_plane, cell, (low / cell).floor().cast<int>() - 1,
+          (high / cell).ceil().cast<int>() + 1};
+}
+
+void DrawGrid(const Grid& grid, const Camera& camera, cv::Mat* image) {
+  cv::Mat drawn = image->clone();
+  Canvas canvas(camera, &drawn);
+  const auto line = [&](const Eigen::Vector2i& begin, const Eigen::Vector2i& end) {
+    const auto point = [&](const Eigen::Vector2i& crossing) {
+      return grid.camera_from_plane *
+             Eigen::Vector3d(grid.cell * crossing.x(), grid.cell * crossing.y(), 0.0);
+    };
+    canvas.Segment(point(begin), point(end), {palette::kWhite, 1});
+  };
+  for (int x = grid.first.x(); x <= grid.last.x(); ++x) {
+    line({x, grid.first.y()}, {x, grid.last.y()});
+  }
+  for (int y = grid.first.y(); y <= grid.last.y(); ++y) {
+    line({grid.first.x(), y}, {grid.last.x(), y});
+  }
+  *image = (1.0 - kGridOpacity) * *image + kGridOpacity * drawn;
+}
+
+// Feet of detections by plane; `planes_in_camera`, where not empty, replace those of detections.
+std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_index,
+                                            const std::vector<Plane>& planes_in_camera) {
+  std::map<int, OverlayInput::Ground> by_plane;
+  if (sequence.planes.empty()) return {};
+  for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
+    const int plane_index = sequence.ObjectOf(detection).plane_index;
+    const Plane& plane = planes_in_camera.empty()
+                             ? detection.plane_in_camera
+                             : planes_in_camera[static_cast<size_t>(plane_index)];
+    const auto foot = FootInCamera(sequence.CameraOf(detection), detection.box, plane);
+    if (!foot) continue;
+    OverlayInput::Ground& ground = by_plane[plane_index];
+    ground.plane_in_camera = plane;
+    ground.feet_in_camera.push_back(*foot);
+  }
+  std::vector<OverlayInput::Ground> grounds;
+  for (const auto& [plane_index, ground] : by_plane) grounds.push_back(ground);
+  return grounds;
+}
+
+// The landmarks of objects whose outline reaches into the image. Those that are not detected there
+// have captions.
+std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
+                                              const std::vector<ObjectEstimate>& estimates,
+                                              const Rigid3d& camera_from_world, int frame_index) {
+  const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(frame_index)]);
+  std::set<int> detected;
+  for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
+    detected.insert(detection.object_index);
+  }
+  const Box image{-0.5, -0.5, camera.width - 0.5, camera.height - 0.5};
+  std::vector<OverlayInput::Body> bodies;
+  for (const ObjectEstimate& estimate : estimates) {
+    if (!estimate.landmark_in_world) continue;
+    const Landmark in_camera = Transform(camera_from_world, *estimate.landmark_in_world);
+    const auto outline = OutlineBox(camera, in_camera);
+    if (!outline || BoxOverlap(*outline, image) == 0.0) continue;
+    const Object& object = sequence.objects[static_cast<size_t>(estimate.object_index)];
+    bodies.push_back(
+        {in_camera, detected.contains(estimate.object_index) ? "" : CaptionOf(object)});
+  }
+  return bodies;
+}
+
+}  // namespace
+
+OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index) {
+  const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
+  OverlayInput input;
+  input.camera = sequence.CameraOf(frame);
+  input.grounds = GroundsOf(sequence, frame_index, {});
+  for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
+    input.detections.push_back({detection.box, CaptionOf(sequence.ObjectOf(detection))});
+    if (const auto truth = TrueLandmarkInCamera(sequence, detection)) {
+      input.truths_in_camera.push_back(*truth);
+    }
+  }
+  return input;
+}
+
+OverlayInput OverlayOfLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
+                                int frame_index) {
+  OverlayInput input = OverlayOfFrame(sequence, frame_index);
+  for (const ObservationEstimate& estimate : estimates.observations) {
+    const auto& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+    if (detection.frame_index != frame_index || estimate.hypotheses.empty()) continue;
+    input.landmarks.push_back({estimate.hypotheses.front().landmark_in_camera, ""});
+  }
+  if (estimates.observations.empty()) {
+    const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
+    input.landmarks =
+        BodiesInImage(sequence, estimates.objects, frame.world_from_camera.Inverse(), frame_index);
+  }
+  return input;
+}
+
+OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int frame_index) {
+  OverlayInput input = OverlayOfFrame(sequence, frame_index);
+  const Rigid3d camera_from_world =
+      map.world_from_camera[static_cast<size_t>(frame_index)].Inverse();
+  input.landmarks = BodiesInImage(sequence, map.objects, camera_from_world, frame_index);
+  std::vector<Plane> planes_in_camera;
+  for (const Plane& plane : map.planes_in_world) {
+    planes_in_camera.push_back(Transform(camera_from_world, plane));
+  }
+  input.grounds = GroundsOf(sequence, frame_index, planes_in_camera);
+  return input;
+}
+
+void DrawOverlay(const OverlayInput& input, cv::Mat* image) {
+  for (const auto& ground : input.grounds) DrawGrid(GridOf(ground), input.camera, image);
+  Canvas canvas(input.camera, image);
+  for (const Landmark& truth : input.truths_in_camera) {
+    DrawCircumscribedBox(truth, kTruthStroke, &canvas);
+    DrawAxes(truth, kTruthStroke, kTruthAxis, &canvas);
+  }
+  for (const auto& body : input.landmarks) DrawBody(body, input.camera, &canvas);
+  for (const auto& [box, caption] : input.detections) {
+    canvas.Lines({{box.x_min, box.y_min},
+                  {box.x_max, box.y_min},
+                  {box.x_max, box.y_max},
+                  {box.x_min, box.y_max}},
+                 true, kDetectionStroke);
+  }
+  DrawCaptions(input, &canvas);
+}
+
+std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input) {
+  std::vector<CaptionEntry> legend;
+  const auto add = [&](size_t count, const std::string& text, const cv::Scalar& colour) {
+    if (count > 0) legend.push_back({fmt::format("{} {}", count, text), colour, true});
+  };
+  add(input.detections.size(), "detected", kDetectionStroke.colour);
+  add(input.landmarks.size(), "estimated (arrow: front)", kLandmarkStroke.colour);
+  add(input.truths_in_camera.size(), "ground truth (box around it)", kTruthStroke.colour);
+  for (const auto& ground : input.grounds) {
+    const double cell = GridOf(ground).cell;
+    legend.push_back({fmt::format("support plane, cells of {:g} m", cell), palette::kWhite, true});
+  }
+  return legend;
+}
+
+}  // namespace soslam

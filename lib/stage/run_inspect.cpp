@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_inspect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+#include <vector>
+
+#include "artefact/atomic_file.h"
+#include "artefact/edges_file.h"
+#include "artefact/hash.h"
+#include "artefact/hdf5_artefact.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/map_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "dataset/image_path.h"
+#include "inspection/inspection.h"
+#include "inspection/overlay.h"
+#include "stage/frame_images.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Value>
+const Value& Required(const std::optional<Value>& value, const char* option,
+                      const std::string& kind) {
+  if (value) return *value;
+  throw SettingsError(fmt::format("--image of kind '{}' needs {}", kind, option));
+}
+
+[[noreturn]] void RefuseFrame(int frame_id, const fs::path& file, int first, int last) {
+  throw SettingsError(fmt::format("--frame {}: {} has no such frame; expected one of {} to {}",
+                                  frame_id, file.string(), first, last));
+}
+
+// The grey image of a frame as its camera would have taken it without its lens; even grey where
+// there is no image, or no folder is given.
+cv::Mat GreyImage(const InspectRequest& request, const Sequence& sequence, int frame_index) {
+  const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
+  if (!request.dataset || frame.image.empty()) {
+    constexpr int kGrey = 72;
+    const Camera& camera = sequence.CameraOf(frame);
+    return {camera.height, camera.width, CV_8UC1, cv::Scalar(kGrey)};
+  }
+  const std::string place = fmt::format("{}: frame {}", sequence.name, frame.id);
+  const fs::path path = ImagePath(*request.dataset, frame.image, place);
+  return FrameImageReader(sequence).ReadGrey({&frame, path});
+}
+
+// The sequence of a picture and its frame.
+struct FrameOfSequence {
+  Sequence sequence;
+  int frame_index;
+};
+
+FrameOfSequence FrameFor(const InspectRequest& request, const std::string& kind) {
+  const fs::path file =
+      kind == "sequence" ? request.file : Required(request.sequence, "--sequence", kind);
+  const int frame_id = Required(request.frame_id, "--frame", kind);
+  Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+  const auto found = std::ranges::lower_bound(sequence.frames, frame_id, {}, &Frame::id);
+  if (sequence.frames.empty()) throw NothingUsableError(file.string() + ": has no frames");
+  if (found == sequence.frames.end() || found->id != frame_id) {
+    RefuseFrame(frame_id, file, sequence.frames.front().id, sequence.frames.back().id);
+  }
+  const auto frame_index = static_cast<int>(found - sequence.frames.begin());
+  return {std::move(sequence), frame_index};
+}
+
+cv::Mat OverlayPicture(const InspectRequest& request, const std::string& kind) {
+  const auto [sequence, frame_index] = FrameFor(request, kind);
+  OverlayInput input;
+  if (kind == "sequence") {
+    input = OverlayOfFrame(sequence, frame_index);
+  } else if (kind == "landmarks") {
+    input = OverlayOfLandmarks(sequence, ReadLandmarks(request.file, sequence), frame_index);
+  } else {
+    input = OverlayOfMap(sequence, ReadMap(request.file, sequence), frame_index);
+  }
+  cv::Mat picture = DrawingGround(GreyImage(request, sequence, frame_index));
+  DrawOverlay(input, &picture);
+  std::vector<CaptionEntry> caption = OverlayLegend(input);
+  caption.insert(caption.begin(), {fmt::format("{}, frame {}", sequence.name, *request.frame_id)});
+  return WithCaption(picture, caption);
+}
+
+cv::Mat PictureOfEdges(const InspectRequest& request) {
+  const int frame_id = Required(request.frame_id, "--frame", "edges");
+  const EdgesReader reader(request.file);
+  if (!reader.Has(frame_id)) {
+    const std::vector<int> ids = reader.FrameIds();
+    if (ids.empty()) throw NothingUsableError(request.file.string() + ": has no frames");
+    RefuseFrame(frame_id, request.file, ids.front(), ids.back());
+  }
+  return EdgesPicture(reader.Read(frame_id), request.layer, fmt::format("frame {}", frame_id));
+}
+
+cv::Mat PictureOfSymmetry(const InspectRequest& request) {
+  const auto [sequence, frame_index] = FrameFor(request, "symmetry");
+  const int frame_id = *request.frame_id;
+  const int object_id = Required(request.object_id, "--object", "symmetry");
+  const std::vector<SymmetryRecord> records = ReadSymmetry(request.file);
+  const auto found = std::ranges::find_if(records, [&](const SymmetryRecord& record) {
+    return record.frame_id == frame_id && record.object_id == object_id;
+  });
+  if (found == records.end()) {
+    throw SettingsError(fmt::format("--object {}: {} has no observation of it in frame {}",
+                                    object_id, request.file.string(), frame_id));
+  }
+  return SymmetryPicture(
+      *found, GreyImage(request, sequence, frame_index),
+      fmt::format("{}, frame {}, object {}", sequence.name, frame_id, object_id));
+}
+
+cv::Mat PictureOf(const InspectRequest& request) {
+  const std::string kind = ReadArtefactHeader(request.file).at("kind");
+  if (kind == "edges") return PictureOfEdges(request);
+  if (kind == "symmetry") return PictureOfSymmetry(request);
+  if (kind == "sequence" || kind == "landmarks" || kind == "map") {
+    return OverlayPicture(request, kind);
+  }
+  throw SettingsError(
+      fmt::format("{}: there is no picture of kind '{}'; expected sequence, landmarks, map, edges "
+                  "or symmetry",
+                  request.file.string(), kind));
+}
+
+void WritePng(const fs::path& path, const cv::Mat& picture) {
+  if (path.extension() != ".png") {
+    throw SettingsError(
+        fmt::format("--image {}: expected a name that ends in .png", path.string()));
+  }
+  std::vector<uchar> bytes;
+  cv::imencode(".png", picture, bytes);
+  WriteTextFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::optional<Sequence> KnownSequence(const InspectRequest& request) {
+  if (!request.sequence) return std::nullopt;
+  return ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
+}
+
+// Whether the artefact was made from another sequence than the one that is given.
+bool IsOfAnotherSequence(const InspectRequest& request) {
+  if (!request.sequence || *request.sequence == request.file) return false;
+  const std::string sha256 = Sha256OfFile(*request.sequence);
+  const nlohmann::json header = ReadArtefactHeader(request.file);
+  const nlohmann::json inputs = header.value("inputs", nlohmann::json::array());
+  return std::ranges::none_of(inputs, [&](const nlohmann::json& input) {
+    return input.is_object() && input.value("sha256", "") == sha256;
+  });
+}
+
+}  // namespace
+
+std::string RunInspect(const InspectRequest& request, bool is_coloured) {
+  if (request.image) WritePng(*request.image, PictureOf(request));
+  if (request.image && !request.csv) return "";
+  Inspection inspection = Inspect(request.file, KnownSequence(request));
+  if (!request.csv) {
+    if (IsOfAnotherSequence(request)) {
+      inspection.facts.push_back({"note", "--sequence is not the file that this was made from"});
+    }
+    return FormatInspection(inspection, is_coloured);
+  }
+  const std::string csv = FormatCsv(inspection.table);
+  if (*request.csv == "-") return csv;
+  WriteTextFile(*request.csv, csv);
+  return "";
+}
+
+}  // namespace soslam

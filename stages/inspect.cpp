@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "base/error.h"
+#include "inspection/difference.h"
+#include "stage/command_line.h"
+#include "stage/run_inspect.h"
+
+namespace {
+
+// Beside those of all programs, as diff has it.
+constexpr int kDiffer = 1;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  soslam-inspect map.json --sequence sequence.json\n"
+    "  soslam-inspect map.json --sequence sequence.json --dataset data/room_a --frame 10 --image "
+    "frame.png\n"
+    "  soslam-inspect metrics.json --csv -\n"
+    "  soslam-inspect diff one/map.json two/map.json --tolerance 1e-6";
+
+struct Arguments {
+  soslam::InspectRequest request;
+  std::string layer = soslam::kEdgeLayerNames.front();
+  std::string one, two;
+  double tolerance = 1e-9;
+};
+
+std::string HelpFooter(const std::string& examples) {
+  return fmt::format("{}\n\n{};\n1 the two artefacts of diff differ", examples,
+                     soslam::internal::kExitCodes);
+}
+
+bool IsColoured() {
+  const char* no_color = std::getenv("NO_COLOR");
+  return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
+}
+
+void AddFiles(CLI::App* app, soslam::InspectRequest* request) {
+  app->add_option("FILE", request->file, "an artefact of any kind, JSON or HDF5")
+      ->option_text("PATH")
+      ->group("Files");
+  const auto add = [&](const char* name, auto* path, const char* doc) {
+    app->add_option(name, *path, doc)->option_text("PATH")->group("Files");
+  };
+  add("--sequence", &request->sequence,
+      "sequence.json that the artefact was made from:\nfor labels of objects, and for pictures");
+  add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
+  add("--csv", &request->csv, "table to write as CSV, in full precision; - for standard output");
+  add("--image", &request->image,
+      "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and ground "
+      "truth "
+      "of a frame; of edges\nits maps; of symmetry the pairs of an observation");
+}
+
+void AddOptions(CLI::App* app, Arguments* arguments) {
+  app->add_option("--frame", arguments->request.frame_id, "id of the frame of the picture")
+      ->option_text("integer")
+      ->group("Options");
+  app->add_option("--object", arguments->request.object_id, "id of its object, of symmetry")
+      ->option_text("integer")
+      ->group("Options");
+  app->add_option("--layer", arguments->layer,
+                  "what of edges is in the picture\n[default all; one of all, grey, edges, "
+                  "distance, nearest]")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(soslam::kEdgeLayerNames.begin(), soslam::kEdgeLayerNames.end())))
+      ->option_text("string")
+      ->group("Options");
+}
+
+CLI::App* AddDiff(CLI::App* app, Arguments* arguments) {
+  CLI::App* diff = app->add_subcommand("diff", "Lists where two artefacts of one kind differ.");
+  diff->add_option("ONE", arguments->one, "an artefact")
+      ->option_text("PATH (required)")
+      ->required()
+      ->group("Files");
+  diff->add_option("TWO", arguments->two, "another one of its kind")
+      ->option_text("PATH (required)")
+      ->required()
+      ->group("Files");
+  diff->add_option("--tolerance", arguments->tolerance,
+                   "numbers are equal that differ by no more,\ntimes the larger of the two and 1\n"
+                   "[default 1e-9; 0 or more]")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("number")
+      ->group("Options");
+  diff->footer(HelpFooter("Example:\n  soslam-inspect diff one/map.json two/map.json"));
+  return diff;
+}
+
+int Run(Arguments* arguments, bool is_diff) {
+  if (is_diff) {
+    const soslam::Differences differences =
+        soslam::CompareArtefacts(arguments->one, arguments->two, arguments->tolerance);
+    fmt::print("{}", FormatDifferences(differences, arguments->tolerance, IsColoured()));
+    return differences.content.empty() ? static_cast<int>(soslam::ExitCode::kDone) : kDiffer;
+  }
+  if (arguments->request.file.empty()) throw CLI::RequiredError("FILE");
+  const auto layer = std::ranges::find(soslam::kEdgeLayerNames, arguments->layer);
+  arguments->request.layer =
+      static_cast<soslam::EdgeLayer>(layer - soslam::kEdgeLayerNames.begin());
+  fmt::print("{}", RunInspect(arguments->request, IsColoured()));
+  return static_cast<int>(soslam::ExitCode::kDone);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Shows an artefact of the pipeline to a person: in words, as a table, as a picture.",
+               "soslam-inspect");
+  return soslam::internal::ExitCodeOf(&app, [&] {
+    Arguments arguments;
+    app.get_formatter()->column_width(34);
+    soslam::internal::AddHelpAndVersion(&app);
+    AddFiles(&app, &arguments.request);
+    AddOptions(&app, &arguments);
+    const CLI::App* diff = AddDiff(&app, &arguments);
+    app.footer(HelpFooter(kExamples));
+    app.parse(argc, argv);
+    return Run(&arguments, diff->parsed());
+  });
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "inspection/difference.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "artefact/edges_file.h"
+#include "artefact/map_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/random_estimates.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class DifferenceTest : public testing::Test {
+ protected:
+  std::filesystem::path One() const { return folder_ / "one"; }
+  std::filesystem::path Two() const { return folder_ / "two"; }
+  Differences Compare(double tolerance = 0.0) const {
+    return CompareArtefacts(One(), Two(), tolerance);
+  }
+
+  Sequence sequence_ = RandomSequence();
+  MapEstimate map_ = RandomMap();
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(DifferenceTest, TheSameArtefactDiffersNowhere) {
+  WriteMap(One(), map_, sequence_, {});
+  WriteMap(Two(), map_, sequence_, {});
+  const Differences differences = Compare();
+  EXPECT_TRUE(differences.content.empty());
+  EXPECT_TRUE(differences.provenance.empty());
+  EXPECT_EQ(FormatDifferences(differences, 0.0, false),
+            "content of kind 'map' is equal within 0\n");
+}
+
+TEST_F(DifferenceTest, ArraysNameTheirLargestDifference) {
+  map_.objects[0].landmark_in_world->half_axes = {1.0, 2.0, 4.0};
+  WriteMap(One(), map_, sequence_, {});
+  map_.objects[0].landmark_in_world->half_axes = {1.25, 2.0, 5.0};
+  WriteMap(Two(), map_, sequence_, {});
+  const Differences differences = Compare(0.1);
+  ASSERT_EQ(differences.content.size(), 1u);
+  const Difference& found = differences.content[0];
+  EXPECT_EQ(found.place, "/objects/0/landmark/half_axes");
+  EXPECT_EQ(found.one, "4");
+  EXPECT_EQ(found.two, "5");
+  EXPECT_EQ(found.absolute, 1.0);
+  EXPECT_EQ(found.relative, 0.2);
+  EXPECT_EQ(found.differing, 2u);
+  EXPECT_EQ(found.of, 3u);
+  EXPECT_TRUE(Compare(0.2).content.empty()) << "within the tolerance";
+  EXPECT_THAT(
+      FormatDifferences(differences, 0.1, false),
+      testing::HasSubstr("/objects/0/landmark/half_axes  4    5    1         0.2       2 of "
+                         "3"));
+}
+
+TEST_F(DifferenceTest, MatricesAreOnePlace) {
+  WriteMap(One(), map_, sequence_, {});
+  (*map_.objects[0].covariance)(3, 4) += 1.0;
+  WriteMap(Two(), map_, sequence_, {});
+  const Differences differences = Compare();
+  ASSERT_EQ(differences.content.size(), 1u);
+  EXPECT_EQ(differences.content[0].place, "/objects/0/covariance");
+  EXPECT_EQ(differences.content[0].of, 81u);
+}
+
+TEST_F(DifferenceTest, WhatOnlyOneHasIsListed) {
+  WriteMap(One(), map_, sequence_, {});
+  map_.objects.pop_back();
+  map_.objects[0].covariance.reset();
+  map_.solver.converged = false;
+  map_.solver.gated["behind_camera"] = 2;
+  WriteMap(Two(), map_, sequence_, {});
+  std::map<std::string, std::pair<std::string, std::string>> found;
+  for (const Difference& difference : Compare().content) {
+    found[difference.place] = {difference.one, difference.two};
+  }
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found["/objects/2"].second, "");
+  EXPECT_EQ(found["/objects/0/covariance"].second, "null");
+  EXPECT_EQ(found["/solver/converged"].first, "true");
+  EXPECT_EQ(found["/solver/gated/behind_camera"].first, "");
+}
+
+TEST_F(DifferenceTest, ProvenanceIsNamedApart) {
+  WriteMap(One(), map_, sequence_, {{{"max_iterations", 10}}, {}});
+  WriteMap(Two(), map_, sequence_, {{{"max_iterations", 20}}, {}});
+  const Differences differences = Compare(1e9);
+  EXPECT_TRUE(differences.content.empty());
+  ASSERT_EQ(differences.provenance.size(), 1u);
+  EXPECT_EQ(differences.provenance[0].place, "/artefact/settings/max_iterations");
+  EXPECT_EQ(differences.provenance[0].two, "20");
+}
+
+SymmetryRecord Record() {
+  SymmetryRecord record;
+  record.frame_id = 12;
+  record.object_id = 3;
+  record.yaw = {0.0, 1.0, 2.0};
+  record.cost["grey"] = {1.0, std::nan(""), 3.0};
+  record.samples = record.mirrored = {{1.0F, 2.0F}};
+  record.refined_yaw = 0.5;
+  return record;
+}
+
+TEST_F(DifferenceTest, HdfIsComparedThroughout) {
+  SymmetryRecord record = Record();
+  WriteSymmetry(One(), {record}, {});
+  record.cost["grey"][2] = 3.5;
+  record.cost["brief"] = {1.0, 2.0, 3.0};
+  record.samples.push_back({5.0F, 6.0F});
+  record.mirrored = record.samples;
+  record.refined_yaw = 0.25;
+  record.yaw_sigma = 0.1;
+  WriteSymmetry(Two(), {record}, {});
+  const std::string group = "/observations/000012_000003/";
+  std::map<std::string, Difference> found;
+  for (const Difference& difference : Compare().content) found[difference.place] = difference;
+  ASSERT_EQ(found.size(), 6u);
+  EXPECT_EQ(found.at(group + "cost/grey").absolute, 0.5);
+  EXPECT_EQ(found.at(group + "cost/grey").differing, 1u) << "two NaN are equal";
+  EXPECT_EQ(found.at(group + "cost/brief").one, "");
+  EXPECT_EQ(found.at(group + "samples").two, "2 x 2 values");
+  EXPECT_EQ(found.at(group + "mirrored").one, "1 x 2 values");
+  EXPECT_EQ(found.at(group + "refined_yaw").absolute, 0.25);
+  EXPECT_EQ(found.at(group + "yaw_sigma").two, "0.1");
+}
+
+TEST_F(DifferenceTest, InfiniteDistancesAreEqual) {
+  EdgeMaps maps = ComputeEdgeMaps(cv::Mat::zeros(20, 30, CV_8UC1), {});
+  for (const auto& path : {One(), Two()}) {
+    EdgesWriter writer(path, {});
+    writer.Write(0, maps);
+    writer.Commit();
+    maps.grey = maps.grey.clone();
+    maps.grey.at<uchar>(3, 4) = 9;
+  }
+  const Differences differences = Compare();
+  ASSERT_EQ(differences.content.size(), 1u);
+  EXPECT_EQ(differences.content[0].place, "/frames/000000/grey");
+  EXPECT_EQ(differences.content[0].absolute, 9.0);
+}
+
+TEST_F(DifferenceTest, KindsHaveToBeEqual) {
+  WriteMap(One(), map_, sequence_, {});
+  WriteSequence(Two(), sequence_, {});
+  ExpectError<InputError>([&] { Compare(); }, {One().string(), "\"map\"", "\"sequence\""});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every kind of artefact as a person reads it, and what is none.
+#include "inspection/inspection.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "artefact/associations_file.h"
+#include "artefact/edges_file.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/map_file.h"
+#include "artefact/metrics_file.h"
+#include "artefact/planes_file.h"
+#include "artefact/semantic_table_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "initialisation/options.h"
+#include "mapping/options.h"
+#include "support/expect_error.h"
+#include "support/random_estimates.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+
+class InspectionTest : public testing::Test {
+ protected:
+  std::filesystem::path File(const std::string& name = "artefact") const { return folder_ / name; }
+  Inspection Read(const std::optional<Sequence>& sequence = std::nullopt) const {
+    return Inspect(File(), sequence);
+  }
+  // What is said under a name.
+  static std::string Said(const Inspection& inspection, const std::string& name) {
+    const auto found = std::ranges::find(inspection.facts, name, &Fact::name);
+    return found == inspection.facts.end() ? "" : found->text;
+  }
+  static Cell At(const Inspection& inspection, size_t row, const std::string& column) {
+    const auto& columns = inspection.table.columns;
+    const auto found = std::ranges::find(columns, column, &Column::name);
+    if (found == columns.end()) throw std::out_of_range(column);
+    return inspection.table.rows.at(row).at(static_cast<size_t>(found - columns.begin()));
+  }
+
+  Sequence sequence_ = RandomSequence();
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(InspectionTest, SequencesHaveARowPerObject) {
+  WriteSequence(File(), sequence_, {});
+  const Inspection inspection = Read();
+  EXPECT_THAT(inspection.title, HasSubstr("sequence"));
+  EXPECT_EQ(Said(inspection, "dataset"), sequence_.name);
+  EXPECT_EQ(Said(inspection, "detections"), "10 used, 19 rejected: 17 near_border, 2 duplicate");
+  EXPECT_THAT(Said(inspection, "frames"), HasSubstr("5, ids 10 to 30, segments: 2"));
+  ASSERT_EQ(inspection.table.rows.size(), 4u);
+  EXPECT_EQ(At(inspection, 1, "object"), 4);
+  EXPECT_EQ(At(inspection, 1, "plane"), 3);
+  EXPECT_EQ(At(inspection, 1, "views"), 2);
+  EXPECT_EQ(At(inspection, 1, "first_frame"), 15);
+  EXPECT_EQ(At(inspection, 1, "static"), true);
+}
+
+TEST_F(InspectionTest, SequencesWithoutPlanesAndDetectionsAreRead) {
+  sequence_.planes.clear();
+  sequence_.detections.clear();
+  for (Object& object : sequence_.objects) object.plane_index = kNoPlane;
+  WriteSequence(File(), sequence_, {});
+  const Inspection inspection = Read();
+  EXPECT_TRUE(At(inspection, 0, "plane").is_null());
+  EXPECT_TRUE(At(inspection, 0, "mean_score").is_null());
+}
+
+TEST_F(InspectionTest, LandmarksHaveARowPerObservationAndObject) {
+  const LandmarkEstimates estimates = RandomLandmarkEstimates();
+  WriteLandmarks(File(), estimates, sequence_, {OptionsToJson(InitialiseOptions()), {}});
+  const Inspection inspection = Read(sequence_);
+  EXPECT_THAT(Said(inspection, "made by"), HasSubstr("soslam-initialise"));
+  EXPECT_EQ(Said(inspection, "settings"), "all as by default");
+  EXPECT_THAT(Said(inspection, "found"), HasSubstr("2 of 3 observations"));
+  EXPECT_EQ(Said(inspection, "failures"), "1 plane_behind_camera, 1 too_few_views");
+  ASSERT_EQ(inspection.table.rows.size(), 6u);
+  EXPECT_EQ(At(inspection, 0, "x"),
+            estimates.observations[0].hypotheses[0].landmark_in_camera.Centre().x());
+  EXPECT_EQ(At(inspection, 0, "hypotheses"), 2);
+  EXPECT_EQ(At(inspection, 1, "failure"), "plane_behind_camera");
+  EXPECT_TRUE(At(inspection, 1, "x").is_null());
+  EXPECT_EQ(At(inspection, 3, "label"), "label");
+  EXPECT_EQ(At(inspection, 4, "failure"), "not an ellipsoid");
+  EXPECT_TRUE(At(Read(), 3, "label").is_null()) << "nobody knows it without the sequence";
+}
+
+// Yaw, standard deviations and their units of a landmark that stands upright.
+TEST_F(InspectionTest, MapsSayHowSureTheyAre) {
+  MapEstimate map = RandomMap();
+  Landmark upright;
+  upright.frame_from_object.rotation = UprightRotation(Eigen::Vector3d::UnitZ(), 0.5);
+  Covariance9 covariance = Covariance9::Zero();
+  covariance.diagonal() << 9, 9, 4e-4, 1e-2, 1e-2, 2e-2, 1e-2, 4e-2, 4e-2;
+  map.objects[0].landmark_in_world = upright;
+  map.objects[0].covariance = covariance;
+  OptimiseOptions options;
+  options.max_iterations += 1;
+  WriteMap(File(), map, sequence_, {OptionsToJson(options), {}});
+
+  const Inspection inspection = Read();
+  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+  EXPECT_NEAR(At(inspection, 0, "yaw").get<double>(), kDegPerRad * 0.5, 1e-9);
+  EXPECT_NEAR(At(inspection, 0, "sigma_yaw").get<double>(), kDegPerRad * 0.02, 1e-9);
+  EXPECT_NEAR(At(inspection, 0, "sigma_centre").get<double>(), 0.2, 1e-9);
+  EXPECT_NEAR(At(inspection, 0, "sigma_size").get<double>(), 100.0 * std::sqrt(0.03), 1e-9);
+  EXPECT_TRUE(At(inspection, 1, "sigma_yaw").is_null());
+  EXPECT_EQ(Said(inspection, "settings"), fmt::format("max_iterations {}", options.max_iterations));
+  EXPECT_EQ(Said(inspection, "solver"),
+            "converged after 3 iterations; cost 12.5 at first, 0.1 at the end");
+  EXPECT_EQ(Said(inspection, "left out"), "1 no_plane");
+  EXPECT_THAT(Said(inspection, "detector"), HasSubstr("1.50, -0.25, 0.33, 0.00 px"));
+}
+
+TEST_F(InspectionTest, MetricsHaveARowPerObject) {
+  Metrics metrics;
+  metrics.summary = {2, 7, 0.5, 0.625, 3.0, 4.0, std::nullopt, std::nullopt};
+  metrics.objects = {{0, 4, 1, 0.75, 0.1, 2.5, 1.25}, {2, 3, 0, 0.0, {}, {}, {}}};
+  metrics.trajectory = {0.01, 0.02};
+  metrics.held_out = HeldOutMetrics{3, 6, 5, 4, 3, 0.7, 0.8, 0.6, {{2, 4, 3, 5, 0.9}}};
+  WriteMetrics(File(), metrics, sequence_, {});
+  const Inspection inspection = Read();
+  EXPECT_THAT(Said(inspection, "all"), HasSubstr("IoU 0.500 (median 0.625)"));
+  EXPECT_THAT(Said(inspection, "all"), HasSubstr("yaw error - (median -) deg"));
+  EXPECT_THAT(Said(inspection, "trajectory"), HasSubstr("0.0100 m, of the odometry 0.0200 m"));
+  EXPECT_THAT(Said(inspection, "held out"), HasSubstr("in 3 frames: 5 of 6 detections"));
+  EXPECT_EQ(At(inspection, 0, "iou"), 0.75);
+  EXPECT_TRUE(At(inspection, 0, "held_out_iou").is_null());
+  EXPECT_TRUE(At(inspection, 1, "centre_error").is_null());
+  EXPECT_EQ(At(inspection, 1, "held_out_iou"), 0.9);
+}
+
+TEST_F(InspectionTest, PlanesSayWhatStandsOnThem) {
+  PlanesEstimate estimate;
+  estimate.planes.resize(2);
+  estimate.planes[1].covariance = Eigen::Vector3d(0.0, 1e-4, 4e-4).asDiagonal();
+  for (int i = 0; i < 4; ++i)
+    estimate.objects.push_back({1, SupportReason::kOwnHeight, {}, {}, {}});
+  estimate.objects[2].reason = SupportReason::kLowestCost;
+  WritePlanes(File(), estimate, sequence_, {});
+  const Inspection inspection = Read();
+  EXPECT_EQ(Said(inspection, "decided by"), "3 own_height, 1 lowest_cost");
+  EXPECT_THAT(Said(inspection, "found"), HasSubstr("NOT settled"));
+  EXPECT_EQ(At(inspection, 0, "objects"), "none");
+  EXPECT_EQ(At(inspection, 1, "objects"), "-3 label, 4 label, 11 label (lowest_cost), 18 label");
+  EXPECT_NEAR(At(inspection, 1, "sigma_height").get<double>(), 0.02, 1e-12);
+}
+
+TEST_F(InspectionTest, AssociationsHaveARowPerObject) {
+  Association association;
+  association.detections.resize(sequence_.detections.size());
+  Track track;
+  track.detections = {0, 1};
+  track.linked = 2;
+  track.votes = {{"cup", 3}, {"mug", 1}};
+  association.tracks = {track};
+  association.objects = {0};
+  Agreement agreement;
+  agreement.given_of_object = {1};
+  agreement.given_objects = 2;
+  agreement.matched = 1;
+  WriteAssociations(File(), sequence_, association, agreement, {});
+  const Inspection inspection = Read();
+  EXPECT_THAT(Said(inspection, "agreement"), HasSubstr("precision 1.000, recall 0.500"));
+  EXPECT_EQ(Said(inspection, "detections"), "10: 10 new_track");
+  EXPECT_EQ(At(inspection, 0, "given_object"), 4);
+  EXPECT_EQ(At(inspection, 0, "label_votes"), "3 cup, 1 mug");
+}
+
+TEST_F(InspectionTest, SemanticTablesHaveARowPerLabel) {
+  SemanticRow cup{"cup", {"mug", "beaker"}, {}, 5, "a test"};
+  cup.prior.height_m = LogNormal{0.1, 0.2};
+  WriteSemanticRows(File(), {"sizes", std::nullopt, {cup}}, {});
+  const Inspection inspection = Read();
+  EXPECT_EQ(Said(inspection, "what"), "sizes");
+  EXPECT_EQ(At(inspection, 0, "aliases"), "mug, beaker");
+  EXPECT_EQ(At(inspection, 0, "height"), 0.1);
+}
+
+TEST_F(InspectionTest, EdgesHaveARowPerFrame) {
+  cv::Mat grey = cv::Mat::zeros(60, 80, CV_8UC1);
+  grey(cv::Rect(20, 10, 30, 30)).setTo(200);
+  EdgesWriter writer(File(), {});
+  writer.Write(7, ComputeEdgeMaps(grey, {}));
+  writer.Write(1234567, ComputeEdgeMaps(cv::Mat::zeros(60, 80, CV_8UC1), {}));
+  writer.Commit();
+  const Inspection inspection = Read();
+  EXPECT_EQ(At(inspection, 0, "frame"), 7);
+  EXPECT_GT(At(inspection, 0, "edges").get<int>(), 60);
+  EXPECT_GT(At(inspection, 0, "mean_distance").get<double>(), 1.0);
+  EXPECT_EQ(At(inspection, 1, "frame"), 1234567);
+  EXPECT_EQ(At(inspection, 1, "edges"), 0);
+  EXPECT_TRUE(At(inspection, 1, "mean_distance").is_null()) << "there is no edge";
+}
+
+TEST_F(InspectionTest, SymmetryHasARowPerObservation) {
+  SymmetryRecord record;
+  record.frame_id = 10;
+  record.object_id = 4;
+  record.yaw = {0.0, 1.0};
+  record.cost["total"] = {1.0, 2.0};
+  record.samples = record.mirrored = {{1.0F, 2.0F}};
+  record.refined_yaw = 0.1;
+  record.true_yaw = 0.2 + std::numbers::pi;
+  WriteSymmetry(File(), {record}, {});
+  const Inspection inspection = Read(sequence_);
+  EXPECT_EQ(Said(inspection, "curves"), "1 total; up to 2 yaws each");
+  EXPECT_EQ(At(inspection, 0, "label"), "label");
+  EXPECT_EQ(At(inspection, 0, "pairs"), 1);
+  EXPECT_NEAR(At(inspection, 0, "yaw_error").get<double>(), 18.0 / std::numbers::pi, 1e-9);
+  EXPECT_TRUE(At(inspection, 0, "initial_yaw").is_null());
+}
+
+TEST_F(InspectionTest, ManyInputsOfAKindAreCounted) {
+  ArtefactInfo info;
+  for (int i = 0; i < 9; ++i) {
+    info.inputs.push_back(File(fmt::format("{}.jpg", i)));
+    WriteBytes(info.inputs.back(), "image");
+  }
+  info.inputs.push_back(File("camera.json"));
+  WriteBytes(info.inputs.back(), "camera");
+  WriteSequence(File(), sequence_, info);
+  EXPECT_EQ(Said(Read(), "from"), "9 .jpg files, camera.json");
+}
+
+TEST_F(InspectionTest, LongFactsAreWrapped) {
+  const Inspection inspection{
+      "title", {{"name", std::string(60, 'a') + " " + std::string(60, 'b')}}, {}};
+  EXPECT_EQ(FormatInspection(inspection, false),
+            "title\n  name  " + std::string(60, 'a') + "\n        " + std::string(60, 'b') + "\n");
+}
+
+TEST_F(InspectionTest, WhatIsNoArtefactIsRefused) {
+  const auto refuses = [&](const std::string& bytes, const std::vector<std::string>& words) {
+    WriteBytes(File(), bytes);
+    ExpectError<InputError>([&] { Read(); }, words);
+  };
+  refuses("", {File().string(), "empty"});
+  refuses("no JSON", {File().string(), "parse error"});
+  refuses("[1]", {File().string(), "no artefact header"});
+  refuses(R"({"artefact": {"kind": 3}})", {"no artefact header"});
+  refuses(R"({"artefact": {"kind": "soup", "schema_version": [1, 0]}})",
+          {"\"soup\"", "expected one of associations, edges"});
+  refuses(R"({"artefact": {"kind": "map", "schema_version": [99, 0]}})",
+          {"schema version [99, 0]"});
+  refuses(R"({"artefact": {"kind": "map", "schema_version": [1, 0]}})", {File().string()});
+  ExpectError<InputError>([&] { Inspect(File("missing"), std::nullopt); }, {"missing"});
+}
+
+TEST_F(InspectionTest, ADamagedHeaderIsRefused) {
+  Hdf5File file = Hdf5File::Create(File());
+  file.WriteText("/", "artefact",
+                 R"({"kind": "edges", "schema_version": [1, 0], "inputs": [3], "settings": {}})");
+  file.Close();
+  ExpectError<InputError>([&] { Read(); }, {File().string(), "header"});
+}
+
+TEST_F(InspectionTest, HdfCutShortAnywhereIsRefused) {
+  SymmetryRecord record;
+  record.yaw = {0.0, 1.0};
+  record.cost["total"] = {1.0, 2.0};
+  WriteSymmetry(File(), {record}, {});
+  const std::string whole = FileBytes(File());
+  for (size_t size = 0; size < whole.size(); size += 97) {
+    WriteBytes(File(), whole.substr(0, size));
+    ExpectError<InputError>([&] { Read(); }, {File().string()});
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of soslam-inspect: exit codes and what goes to standard output.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "artefact/map_file.h"
+#include "support/random_estimates.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+
+class InspectProgramTest : public testing::Test {
+ protected:
+  InspectProgramTest() {
+    WriteMap(one_, map_, sequence_, {});
+    map_.solver.iterations += 1;
+    WriteMap(two_, map_, sequence_, {});
+  }
+  static CommandResult Run(std::vector<std::string> words) {
+    words.insert(words.begin(), StageProgram("inspect"));
+    return RunCommand(words);
+  }
+
+  TemporaryFolder folder_;
+  Sequence sequence_ = RandomSequence();
+  MapEstimate map_ = RandomMap();
+  std::string one_ = (folder_ / "one.json").string();
+  std::string two_ = (folder_ / "two.json").string();
+};
+
+TEST_F(InspectProgramTest, ShowsAnArtefactWithoutColoursOutsideATerminal) {
+  const CommandResult result = Run({one_});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("one.json: map"));
+  EXPECT_THAT(result.output, testing::Not(HasSubstr("\x1b")));
+  EXPECT_EQ(result.errors, "");
+}
+
+TEST_F(InspectProgramTest, DiffTellsByItsExitCode) {
+  EXPECT_EQ(Run({"diff", one_, one_}).exit_code, 0);
+  const CommandResult different = Run({"diff", one_, two_});
+  EXPECT_EQ(different.exit_code, 1);
+  EXPECT_THAT(different.output, HasSubstr("/solver/iterations"));
+  EXPECT_EQ(Run({"diff", one_, two_, "--tolerance", "0.5"}).exit_code, 0);
+}
+
+TEST_F(InspectProgramTest, ErrorsHaveTheirExitCodesAndOneLine) {
+  const std::string readme = SOSLAM_SOURCE_DIR "/README.md";
+  const std::vector<std::pair<std::vector<std::string>, int>> calls = {
+      {{}, 2},
+      {{one_, "--frame", "x"}, 2},
+      {{one_, "--layer", "x"}, 2},
+      {{"diff", one_}, 2},
+      {{"diff", one_, two_, "--tolerance", "-1"}, 2},
+      {{one_, "--csv", (folder_ / "missing/table.csv").string()}, 2},
+      {{readme}, 3},
+      {{"diff", one_, readme}, 3}};
+  for (const auto& [words, exit_code] : calls) {
+    const CommandResult result = Run(words);
+    EXPECT_EQ(result.exit_code, exit_code) << result.errors;
+    EXPECT_THAT(result.errors, testing::StartsWith("soslam-inspect: error: "));
+    EXPECT_EQ(std::ranges::count(result.errors, '\n'), 1);
+    EXPECT_EQ(result.output, "");
+  }
+}
+
+TEST_F(InspectProgramTest, HelpNamesFilesOptionsAndExitCodes) {
+  const CommandResult help = Run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* word :
+       {"FILE", "--csv", "--image", "--layer", "diff", "Examples:", "70 a bug"}) {
+    EXPECT_THAT(help.output, HasSubstr(word));
+  }
+  EXPECT_THAT(Run({"diff", "--help"}).output, HasSubstr("--tolerance"));
+}
+
+}  // namespace
+}  // namespace soslam

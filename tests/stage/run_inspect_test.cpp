@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_inspect.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "artefact/edges_file.h"
+#include "artefact/landmarks_file.h"
+#include "artefact/metrics_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "inspection/canvas.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+
+class RunInspectTest : public testing::Test {
+ protected:
+  RunInspectTest() {
+    for (Frame& frame : sequence_.frames) frame.image.clear();
+    WriteSequence(File("sequence.json"), sequence_, {});
+    WriteLandmarks(File("initial.json"), {}, sequence_, {{}, {File("sequence.json")}});
+    WriteMetrics(File("metrics.json"), {}, sequence_, {});
+  }
+  std::filesystem::path File(const std::string& name) const { return folder_ / name; }
+  InspectRequest RequestOf(const std::string& name) const {
+    InspectRequest request;
+    request.file = File(name);
+    return request;
+  }
+  InspectRequest PictureOf(const std::string& name) const {
+    InspectRequest request = RequestOf(name);
+    request.image = File("picture.png");
+    request.frame_id = sequence_.frames.front().id;
+    return request;
+  }
+  cv::Mat Picture() const { return cv::imread(File("picture.png").string()); }
+
+  Sequence sequence_ = SyntheticSequence(RandomScene(1, 3, 5), false);
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunInspectTest, WordsAndTableAreReturned) {
+  const std::string text = RunInspect(RequestOf("sequence.json"), false);
+  EXPECT_THAT(text, HasSubstr("sequence.json: sequence"));
+  EXPECT_THAT(text, HasSubstr("\nobject  label"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("\x1b")));
+  EXPECT_THAT(RunInspect(RequestOf("sequence.json"), true), HasSubstr("\x1b["));
+}
+
+TEST_F(RunInspectTest, CsvIsReturnedOrWritten) {
+  InspectRequest request = RequestOf("sequence.json");
+  request.csv = "-";
+  const std::string csv = RunInspect(request, true);
+  EXPECT_THAT(csv, testing::StartsWith("object,label,plane,"));
+  request.csv = File("table.csv");
+  EXPECT_EQ(RunInspect(request, true), "");
+  EXPECT_EQ(FileBytes(File("table.csv")), csv);
+}
+
+TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsNoted) {
+  InspectRequest request = RequestOf("initial.json");
+  request.sequence = File("sequence.json");
+  EXPECT_THAT(RunInspect(request, false), testing::Not(HasSubstr("note")));
+  sequence_.name = "another";
+  WriteSequence(File("sequence.json"), sequence_, {});
+  EXPECT_THAT(RunInspect(request, false), HasSubstr("not the file that this was made from"));
+}
+
+TEST_F(RunInspectTest, FramesWithoutImagesHavePicturesToo) {
+  EXPECT_EQ(RunInspect(PictureOf("sequence.json"), false), "");
+  EXPECT_GE(Picture().cols, kPictureWidth);
+  EXPECT_GT(Picture().rows * sequence_.camera.width, Picture().cols * sequence_.camera.height)
+      << "there is a caption";
+}
+
+TEST_F(RunInspectTest, TheImageOfTheDatasetIsBelow) {
+  const Camera& camera = sequence_.camera;
+  std::filesystem::create_directory(File("data"));
+  cv::imwrite(File("data").string() + "/0.png",
+              cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(200)));
+  sequence_.frames.front().image = "0.png";
+  sequence_.detections.clear();
+  WriteSequence(File("sequence.json"), sequence_, {});
+  InspectRequest request = PictureOf("sequence.json");
+  request.dataset = File("data");
+  RunInspect(request, false);
+  EXPECT_EQ(Picture().at<cv::Vec3b>(50, 50), cv::Vec3b(200, 200, 200));
+}
+
+TEST_F(RunInspectTest, PicturesOfEstimatesNeedTheSequence) {
+  InspectRequest request = PictureOf("initial.json");
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --sequence"});
+  request.sequence = File("sequence.json");
+  RunInspect(request, false);
+  EXPECT_FALSE(Picture().empty());
+}
+
+TEST_F(RunInspectTest, PicturesOfEdgesShowOneLayerOrAll) {
+  EdgesWriter writer(File("edges.h5"), {});
+  writer.Write(3, ComputeEdgeMaps(cv::Mat(90, 120, CV_8UC1, cv::Scalar(7)), {}));
+  writer.Commit();
+  InspectRequest request = PictureOf("edges.h5");
+  request.frame_id = 3;
+  RunInspect(request, false);
+  const cv::Mat all = Picture();
+  request.layer = EdgeLayer::kGrey;
+  RunInspect(request, false);
+  EXPECT_EQ(all.cols, kPictureWidth);
+  EXPECT_EQ(Picture().at<cv::Vec3b>(10, 10), cv::Vec3b(7, 7, 7));
+  request.frame_id = 4;
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--frame 4", "3 to 3"});
+}
+
+TEST_F(RunInspectTest, PicturesOfSymmetryNeedFrameAndObject) {
+  SymmetryRecord record;
+  record.frame_id = sequence_.frames.front().id;
+  record.object_id = 7;
+  WriteSymmetry(File("symmetry.h5"), {record}, {});
+  InspectRequest request = PictureOf("symmetry.h5");
+  request.sequence = File("sequence.json");
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --object"});
+  request.object_id = 8;
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--object 8", "no observation"});
+  request.object_id = 7;
+  RunInspect(request, false);
+  EXPECT_FALSE(Picture().empty());
+}
+
+TEST_F(RunInspectTest, WhatHasNoPictureIsRefused) {
+  ExpectError<SettingsError>([&] { RunInspect(PictureOf("metrics.json"), false); },
+                             {"no picture of kind 'metrics'"});
+  InspectRequest request = PictureOf("sequence.json");
+  request.frame_id = 99;
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--frame 99", "0 to 4"});
+  request.frame_id.reset();
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --frame"});
+  request = PictureOf("sequence.json");
+  request.image = File("picture.jpg");
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {".png"});
+  EXPECT_FALSE(std::filesystem::exists(File("picture.png")));
+}
+
+}  // namespace
+}  // namespace soslam
