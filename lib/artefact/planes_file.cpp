@@ -38,7 +38,7 @@ json PlaneToJson(const EstimatedPlane& plane) {
 json SupportToJson(const ObjectSupport& support, const Object& object) {
   return {{"object", object.id},
           {"label", object.label},
-          {"plane", support.plane_index},
+          {"plane", support.reason == SupportReason::kNone ? json() : json(support.plane_index)},
           {"reason", kSupportReasonNames[static_cast<size_t>(support.reason)]},
           {"height_m", OrNull(support.height)},
           {"height_sigma_m", OrNull(support.height_sigma)},

@@ -7,7 +7,8 @@ bool StandingResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   const Landmark landmark = UnpackLandmark(blocks[0]);
   if (!landmark.half_axes.allFinite()) return false;  // a step too far: the solver shortens it
-  const Plane plane = UnpackPlane(blocks[1], blocks[2]);
+  Plane plane = UnpackPlane(blocks[1], blocks[2]);
+  plane.normal *= side_;
   const Eigen::Matrix3d object_from_world =
       landmark.frame_from_object.rotation.toRotationMatrix().transpose();
   const Eigen::Vector3d normal_in_object = object_from_world * plane.normal;
@@ -27,8 +28,8 @@ bool StandingResidual::Evaluate(double const* const* blocks, double* residuals,
   }
   if (jacobians[1] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>> by_normal(jacobians[1]);
-    by_normal.topRows<2>() = angle_weight_ * object_from_world.topRows<2>();
-    by_normal.row(2) = height_weight_ * landmark.Centre().transpose();
+    by_normal.topRows<2>() = side_ * angle_weight_ * object_from_world.topRows<2>();
+    by_normal.row(2) = side_ * height_weight_ * landmark.Centre().transpose();
   }
   if (jacobians[2] != nullptr) {
     Eigen::Map<Eigen::Vector3d>(jacobians[2]) << 0.0, 0.0, height_weight_;

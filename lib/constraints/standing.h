@@ -13,18 +13,20 @@ namespace soslam {
 //
 // Residuals: 3 (cosines of the x and y axis with the normal, height minus c), each divided by its
 // standard deviation. Blocks: landmark in the world; unit normal and offset of the plane in the
-// world.
+// world. `side` is 1, or -1 where the plane's normal is the opposite of the block's, as a ceiling's
+// is that of the floor.
 class StandingResidual final
     : public ceres::SizedCostFunction<3, kLandmarkSize, kNormalSize, kOffsetSize> {
  public:
-  StandingResidual(double angle_sigma_rad, double height_sigma_m)
-      : angle_weight_(1.0 / angle_sigma_rad), height_weight_(1.0 / height_sigma_m) {}
+  StandingResidual(double angle_sigma_rad, double height_sigma_m, double side = 1.0)
+      : angle_weight_(1.0 / angle_sigma_rad), height_weight_(1.0 / height_sigma_m), side_(side) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
   double angle_weight_;
   double height_weight_;
+  double side_;
 };
 
 }  // namespace soslam

@@ -76,7 +76,11 @@ void AddPlaneCovariances(const Sequence& sequence, BackEndProblem* problem, MapE
   if (planes.empty()) return;
   const auto covariances = PlaneCovariances(blocks, &problem->problem());
   if (!covariances) return;
-  for (size_t i = 0; i < planes.size(); ++i) map->plane_covariances[planes[i]] = (*covariances)[i];
+  for (size_t i = 0; i < planes.size(); ++i) {
+    Eigen::Vector4d sides = Eigen::Vector4d::Ones();
+    sides.head<3>() *= variables.NormalSide(static_cast<size_t>(planes[i]));
+    map->plane_covariances[planes[i]] = sides.asDiagonal() * (*covariances)[i] * sides.asDiagonal();
+  }
 }
 
 }  // namespace

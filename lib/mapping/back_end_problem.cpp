@@ -118,7 +118,7 @@ void BackEndProblem::AddStanding(size_t object_index) {
   // No loss: a body that floats is not an outlier, but wrong.
   problem_.AddResidualBlock(
       new StandingResidual(options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
-                           options_.standing_height_sigma_m),
+                           options_.standing_height_sigma_m, variables_.NormalSide(plane_index)),
       nullptr, variables_.Landmark(object_index), normal, offset);
   const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
   if (!attitude || !options_.refine_planes) {

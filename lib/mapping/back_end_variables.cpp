@@ -10,8 +10,10 @@ constexpr size_t kEdges = 4;
 
 std::vector<size_t> SharedNormals(const std::vector<SupportPlane>& planes) {
   const auto are_parallel = [](const SupportPlane& one, const SupportPlane& other) {
+    const Eigen::Vector3d& normal = one.plane_in_world.normal;
+    const Eigen::Vector3d& other_normal = other.plane_in_world.normal;
     return one.attitude_information && other.attitude_information &&
-           one.plane_in_world.normal == other.plane_in_world.normal;
+           (normal == other_normal || normal == -other_normal);
   };
   std::vector<size_t> normals;
   for (size_t i = 0; i < planes.size(); ++i) {
@@ -41,7 +43,9 @@ BackEndVariables::BackEndVariables(const BackEndInput& input)
   }
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const Plane& plane = sequence.planes[i].plane_in_world;
-    Eigen::Map<Eigen::Vector3d>(Normal(i)) = plane.normal;
+    if (normal_of_plane_[i] == i) Eigen::Map<Eigen::Vector3d>(Normal(i)) = plane.normal;
+    const Eigen::Map<const Eigen::Vector3d> shared(Normal(i));
+    side_of_plane_.push_back(shared == plane.normal ? 1.0 : -1.0);
     *Offset(i) = plane.offset;
   }
 }
@@ -51,8 +55,10 @@ Rigid3d BackEndVariables::PoseValue(size_t frame_index) const {
 }
 
 Plane BackEndVariables::PlaneValue(size_t plane_index) const {
-  return UnpackPlane(&values_[normals_begin_ + kNormalSize * normal_of_plane_[plane_index]],
-                     &values_[offsets_begin_ + plane_index]);
+  Plane plane = UnpackPlane(&values_[normals_begin_ + kNormalSize * normal_of_plane_[plane_index]],
+                            &values_[offsets_begin_ + plane_index]);
+  plane.normal *= NormalSide(plane_index);
+  return plane;
 }
 
 std::optional<soslam::Landmark> BackEndVariables::LandmarkValue(size_t object_index) const {

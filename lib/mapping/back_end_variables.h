@@ -21,10 +21,12 @@ class BackEndVariables {
   double* Landmark(size_t object_index) {
     return &values_[landmarks_begin_ + kLandmarkSize * object_index];
   }
-  // Parallel planes that are estimated share the block of their normal.
+  // Parallel planes that are estimated share the block of their normal; NormalSide is -1 for those
+  // of which it is the opposite, else 1.
   double* Normal(size_t plane_index) {
     return &values_[normals_begin_ + kNormalSize * normal_of_plane_[plane_index]];
   }
+  double NormalSide(size_t plane_index) const { return side_of_plane_[plane_index]; }
   double* Offset(size_t plane_index) { return &values_[offsets_begin_ + plane_index]; }
   double* Bias(size_t edge) { return &values_[biases_begin_ + edge]; }
 
@@ -37,6 +39,7 @@ class BackEndVariables {
  private:
   const BackEndInput& input_;
   std::vector<size_t> normal_of_plane_;
+  std::vector<double> side_of_plane_;
   size_t landmarks_begin_, normals_begin_, offsets_begin_, biases_begin_;
   std::vector<double> values_;
 };

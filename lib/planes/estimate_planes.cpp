@@ -367,11 +367,22 @@ CameraAttitude Down(const CameraAttitude& attitude, const std::optional<PlanesEs
   return down;
 }
 
-// Both, with the objects of each on their own planes.
-PlanesEstimate Joined(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
+// Level where the floor is, through the same point.
+EstimatedPlane Opposite(const EstimatedPlane& floor, EstimatedPlane ceiling) {
+  const Eigen::Vector3d normal = -floor.plane_in_world.normal;
+  ceiling.plane_in_world = {normal, -normal.dot(ceiling.point_in_world)};
+  const Eigen::Vector3d& x = ceiling.x_axis_in_world;
+  ceiling.x_axis_in_world = (x - normal.dot(x) * normal).normalized();
+  return ceiling;
+}
+
+// Both, with the objects of each on their own planes; parallel if they are to be.
+PlanesEstimate Joined(const PlanesEstimate& floors, const PlanesEstimate& ceilings, bool parallel,
                       const std::vector<std::optional<ShapePrior>>& priors) {
   PlanesEstimate joined = floors;
-  joined.planes.insert(joined.planes.end(), ceilings.planes.begin(), ceilings.planes.end());
+  for (const EstimatedPlane& ceiling : ceilings.planes) {
+    joined.planes.push_back(parallel ? Opposite(floors.planes.front(), ceiling) : ceiling);
+  }
   for (size_t i = 0; i < priors.size(); ++i) {
     if (MountOf(priors[i]) != Mount::kHanging) continue;
     joined.objects[i] = ceilings.objects[i];
@@ -402,7 +413,7 @@ PlanesEstimate EstimatePlanes(const Sequence& sequence,
   }
   PlanesEstimate estimate = !ceilings ? *floors
                             : !floors ? *ceilings
-                                      : Joined(*floors, *ceilings, priors);
+                                      : Joined(*floors, *ceilings, options.parallel, priors);
   estimate.up_of_cameras = attitude.up_in_world;
   estimate.attitude_information = attitude.information;
   for (size_t i = 0; i < priors.size(); ++i) {

@@ -36,7 +36,9 @@ std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEs
                                            int plane_index) {
   std::map<int, int> votes;
   for (size_t i = 0; i < given.objects.size(); ++i) {
-    if (estimate.objects[i].plane_index == plane_index) ++votes[given.objects[i].plane_index];
+    const ObjectSupport& support = estimate.objects[i];
+    if (support.reason == SupportReason::kNone) continue;
+    if (support.plane_index == plane_index) ++votes[given.objects[i].plane_index];
   }
   if (votes.empty() || given.planes.empty()) return std::nullopt;
   const auto most = std::max_element(

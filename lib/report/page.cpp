@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "artefact/sequence_file.h"
-#include "base/error.h"
+#include "report/page_differences.h"
 #include "report/page_sequence.h"
 #include "report/page_variant.h"
 
@@ -24,17 +24,6 @@ using nlohmann::json;
 constexpr size_t kMaxDataBytes = 6'500'000;
 constexpr size_t kMinImageBytes = 1'000'000;
 
-std::vector<fs::path> VariantsOf(const fs::path& results_of_dataset) {
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(results_of_dataset)) {
-    if (fs::exists(entry.path() / "metrics.json") && fs::exists(entry.path() / "sequence.json")) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
-}
-
 // Those with an image; where they are too many, evenly over those in which something was detected.
 std::vector<int> ShownFrames(const Sequence& sequence, const ImageSource& images) {
   std::vector<int> frames;
@@ -48,6 +37,15 @@ std::vector<int> ShownFrames(const Sequence& sequence, const ImageSource& images
   }
   std::erase_if(frames, [&](int frame) { return with_detections.count(frame) == 0; });
   return SpreadOver(frames, kMaxPageFrames);
+}
+
+// The frames of these ids, ascending.
+std::vector<int> FramesOfIds(const Sequence& sequence, const std::set<int>& ids) {
+  std::vector<int> frames;
+  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
+    if (ids.count(sequence.frames[static_cast<size_t>(i)].id) > 0) frames.push_back(i);
+  }
+  return frames;
 }
 
 json PageImages(const Sequence& sequence, const std::vector<int>& frames, const ImageSource& images,
@@ -76,35 +74,43 @@ std::string Escaped(std::string text, const std::string& what, const std::string
 
 }  // namespace
 
-json PageData(const fs::path& results_of_dataset, const ImageSourceOf& images, int threads) {
-  const std::vector<fs::path> folders = VariantsOf(results_of_dataset);
-  if (folders.empty()) {
-    throw NothingUsableError(
-        fmt::format("{}: no <variant>/metrics.json with its sequence.json; expected at least one",
-                    results_of_dataset.string()));
-  }
-  json data = {{"dataset", results_of_dataset.filename().string()},
+bool IsComplete(const VariantResult& variant) {
+  return !variant.metrics.is_null() && fs::exists(variant.folder / "sequence.json");
+}
+
+json PageData(const DatasetResult& dataset, const ImageSourceOf& images, int threads) {
+  json data = {{"dataset", dataset.name},
                {"sequences", json::array()},
-               {"variants", json::array()}};
+               {"variants", json::array()},
+               {"images", json::object()},
+               {"differences", PageDifferences(dataset)}};
   std::map<fs::path, size_t> index_of_sequence;  // by the file that links lead to
-  std::optional<Sequence> first;
-  for (const fs::path& folder : folders) {
-    const fs::path file = folder / "sequence.json";
+  std::optional<Sequence> first;                 // whose images are shown
+  std::vector<int> frames_of_first;
+  std::set<int> shown_ids;
+  for (const VariantResult& result : dataset.variants) {
+    if (!IsComplete(result)) continue;
+    const fs::path file = result.folder / "sequence.json";
     const Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
-    const std::vector<int> shown = ShownFrames(sequence, images(sequence));
+    if (!first) {
+      first = sequence;
+      frames_of_first = ShownFrames(sequence, images(sequence));
+      for (const int i : frames_of_first) {
+        shown_ids.insert(sequence.frames[static_cast<size_t>(i)].id);
+      }
+    }
+    const std::vector<int> shown = FramesOfIds(sequence, shown_ids);
     const auto [entry, is_new] =
         index_of_sequence.emplace(fs::canonical(file), data["sequences"].size());
     if (is_new) data["sequences"].push_back(PageSequence(sequence, shown));
-    json variant = PageVariant(folder, sequence, shown);
+    json variant = PageVariant(result, sequence, shown);
     variant["sequence"] = entry->second;
     data["variants"].push_back(std::move(variant));
-    if (!first) first = sequence;
   }
-  const size_t without_images = data.dump().size();
+  if (!first) return data;
+  const size_t without_images = data.dump(-1, ' ', false, json::error_handler_t::replace).size();
   const size_t room = kMaxDataBytes - std::min(kMaxDataBytes - kMinImageBytes, without_images);
-  const ImageSource source = images(*first);
-  data["images"] = PageImages(*first, ShownFrames(*first, source), source, room, threads);
-  data["differences"] = json::array();
+  data["images"] = PageImages(*first, frames_of_first, images(*first), room, threads);
   return data;
 }
 
@@ -141,8 +147,9 @@ std::string PageHtml(const std::string& title, const std::string& entry, const j
   Replace("{{style}}", files.at("page.css"), &html);
   Replace("{{scripts}}", scripts, &html);
   Replace("{{entry}}", entry, &html);
-  // "</" would end the element; "<\/" is the same JSON.
-  Replace("{{data}}", Escaped(data.dump(), "</", "<\\/"), &html);
+  // "<" would begin or end elements. Names that are not UTF-8 are shown as far as they are.
+  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  Replace("{{data}}", Escaped(text, "<", "\\u003c"), &html);
   return html;
 }
 

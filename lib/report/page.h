@@ -1,30 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/sequence.h"
 #include "report/page_images.h"
+#include "report/results_tree.h"
 
 namespace soslam {
 
 // The images of a sequence, which outlives the source.
 using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 
-// All that the page of a dataset shows: its variants with metrics, in the order of their names,
-// from results/<dataset>. Variants of one sequence share its entry.
+// Whether a page can show the variant: it has metrics and its sequence.
+bool IsComplete(const VariantResult& variant);
+
+// All that the page of a dataset shows: its complete variants, in their order. Variants of one
+// sequence share its entry.
 //   dataset; images: "data:" URLs by frame id, of at most kMaxPageFrames frames evenly over all:
-//     the frames that are shown;
-//   sequences: see PageSequence; variants: see PageVariant, each with the index of its sequence
-// Throws NothingUsableError when no variant has metrics.
+//     the frames that are shown; sequences: see PageSequence; variants: see PageVariant, each with
+//     the index of its sequence; differences: see PageDifferences
 inline constexpr size_t kMaxPageFrames = 60;
-nlohmann::json PageData(const std::filesystem::path& results_of_dataset,
-                        const ImageSourceOf& images, int threads);
+nlohmann::json PageData(const DatasetResult& dataset, const ImageSourceOf& images, int threads);
 
 // What the page of all datasets shows: their names, counts and each variant's metrics.
 nlohmann::json OverviewData(const std::vector<nlohmann::json>& pages);

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
 #include "artefact/symmetry_file.h"
@@ -163,27 +161,18 @@ void AddEstimates(const fs::path& folder, const Sequence& sequence, const std::v
   }
 }
 
-std::vector<std::string> LinesOf(const fs::path& path) {
-  std::ifstream file(path);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(file, line);) lines.push_back(line);
-  return lines;
-}
-
 }  // namespace
 
-json PageVariant(const fs::path& folder, const Sequence& sequence, const std::vector<int>& shown) {
-  json variant = {{"name", folder.filename().string()},
-                  {"stages", LinesOf(folder / "stages.txt")},
-                  {"trajectory", nullptr},
-                  {"solver", nullptr},
-                  {"curves", json::array()},
-                  {"descriptors", json::object()}};
-  variant["metrics"] = ReadArtefact(folder / "metrics.json", "metrics");
+json PageVariant(const VariantResult& result, const Sequence& sequence,
+                 const std::vector<int>& shown) {
+  json variant = {{"name", result.name},     {"metrics", result.metrics},
+                  {"trajectory", nullptr},   {"solver", nullptr},
+                  {"curves", json::array()}, {"descriptors", json::object()}};
   variant["metrics"].erase("artefact");
-  AddEstimates(folder, sequence, shown, &variant);
-  if (fs::exists(folder / "symmetry.h5")) {
-    const std::vector<SymmetryRecord> records = ReadSymmetry(folder / "symmetry.h5");
+  AddEstimates(result.folder, sequence, shown, &variant);
+  const fs::path symmetry = result.folder / "symmetry.h5";
+  if (fs::exists(symmetry)) {
+    const std::vector<SymmetryRecord> records = ReadSymmetry(symmetry);
     variant["curves"] = PageCurves(records, sequence, shown);
     variant["descriptors"] = PageDescriptors(records);
   }

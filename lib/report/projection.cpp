@@ -20,12 +20,22 @@ constexpr double kGridMarginM = 0.5;  // around what stands on the plane
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera) {
   if (!IsInFront(landmark_in_camera)) return {};
   std::vector<cv::Point2f> touched;
-  for (int i = 0; i < kOutlineDirections; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-    const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)});
-    const auto pixel = end ? camera.Project(end->point) : std::nullopt;
-    if (!pixel) return {};
-    touched.emplace_back(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
+  const auto touch = [&](const Eigen::Vector3d& point_in_camera) {
+    const auto pixel = camera.Project(point_in_camera);
+    if (pixel) touched.emplace_back(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
+  };
+  if (landmark_in_camera.shape_exponent == kCuboidExponent) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      touch(landmark_in_camera.frame_from_object *
+            Eigen::Vector3d(signs.cwiseProduct(landmark_in_camera.half_axes)));
+    }
+  } else {
+    for (int i = 0; i < kOutlineDirections; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
+      const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)});
+      if (end) touch(end->point);
+    }
   }
   std::vector<cv::Point2f> hull, simple;
   cv::convexHull(touched, hull);

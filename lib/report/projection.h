@@ -15,8 +15,8 @@ using Polygon = std::vector<Eigen::Vector2d>;         // px, closed by its first
 using LineSegment2 = std::array<Eigen::Vector2d, 2>;  // px
 using LineSegment3 = std::array<Eigen::Vector3d, 2>;  // m
 
-// The outline of the landmark in the image, to half a pixel; empty unless the whole landmark is in
-// front of the camera.
+// The outline of the landmark in the image, from its corners or 90 directions; empty unless the
+// whole landmark is in front of the camera.
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera);
 
 // The axes from the landmark's centre to the middle of its faces x (the front), y and z; none

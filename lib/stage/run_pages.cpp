@@ -19,18 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders of datasets; those of other people's runs and tables beside them have no variants.
-std::vector<fs::path> DatasetsOf(const fs::path& results) {
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(results)) {
-    if (entry.is_directory() && fs::exists(entry.path() / "plan.mk")) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
-}
-
 // Where the dataset was when the plan was made: the first line of its list of files.
 fs::path DatasetOf(const fs::path& results_of_dataset) {
   std::ifstream list(results_of_dataset / "shared" / "dataset.txt");
@@ -61,11 +49,13 @@ void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int thre
     throw InputError(results.string() + ": is no folder; expected results of runs");
   }
   std::vector<nlohmann::json> pages;
-  for (const fs::path& folder : DatasetsOf(results)) {
+  for (const DatasetResult& result : ReadResults(results)) {
+    if (std::ranges::none_of(result.variants, &IsComplete)) continue;
+    const fs::path folder = results / result.name;
     const fs::path dataset = DatasetOf(folder);
     nlohmann::json data = PageData(
-        folder, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, threads);
-    const std::string html = PageHtml(data.at("dataset"), "showDataset", data);
+        result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, threads);
+    const std::string html = PageHtml(result.name, "showDataset", data);
     WriteTextFile(folder / "report.html", html);
     fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
                data["variants"].size(), data["images"].size(),
@@ -74,8 +64,9 @@ void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int thre
     pages.push_back(std::move(data));
   }
   if (pages.empty()) {
-    throw NothingUsableError(results.string() +
-                             ": no <dataset>/plan.mk; expected at least one run");
+    throw NothingUsableError(
+        results.string() +
+        ": no <dataset>/<variant>/ with metrics.json and sequence.json; expected at least one");
   }
   WriteTextFile(results / "report.html", PageHtml("Results", "showOverview", OverviewData(pages)));
 }

@@ -42,9 +42,21 @@ TEST(StandingResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 50; ++i) {
     const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
     const Plane plane = RandomPlane();
-    ExpectCorrectJacobians(StandingResidual(0.2, 0.5),
-                           {block.data(), plane.normal.data(), &plane.offset});
+    for (const double side : {1.0, -1.0}) {
+      ExpectCorrectJacobians(StandingResidual(0.2, 0.5, side),
+                             {block.data(), plane.normal.data(), &plane.offset});
+    }
   }
+}
+
+TEST(StandingResidual, OtherSideIsTheOppositeNormal) {
+  const Plane plane = RandomPlane();
+  const Eigen::Vector3d opposite = -plane.normal;
+  const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+  const double* blocks[] = {block.data(), opposite.data(), &plane.offset};
+  Eigen::Vector3d values;
+  ASSERT_TRUE(StandingResidual(0.5, 0.01, -1.0).Evaluate(blocks, values.data(), nullptr));
+  EXPECT_EQ(values, Residuals(plane, UnpackLandmark(block.data())));
 }
 
 TEST(StandingResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(Residuals); }

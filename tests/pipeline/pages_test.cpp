@@ -79,7 +79,7 @@ TEST_F(PagesTest, AFolderWithoutResultsIsRefused) {
   const CommandResult result =
       RunCommand({StageProgram("pages"), "--results", empty.path().string()});
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.errors, testing::HasSubstr("no <dataset>/plan.mk"));
+  EXPECT_THAT(result.errors, testing::HasSubstr("no <dataset>/<variant>/"));
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ function figuresSection(page) {
   const content = [
     ...figure("Samples and mirrored pairs", "Samples are orange, the pixels that the mirror plane of the estimate takes them to blue (fig. 5 of the paper).",
       pairs.length > 0 ? [element("div", { class: "grid" }, pairs)] : []),
-    ...figure("Single-frame initialisation", "The first observation of each object (fig. 6): detection dashed, ground truth green, estimate blue with its front orange.",
+    ...figure("Single-frame initialisation", "The first observations of some objects (fig. 6): detection dashed, ground truth green, estimate blue with its front orange.",
       comparison(page, ["Init1-1", "InitP", "InitS", "InitSTE"], 3)),
     ...figure("Cost over yaw", "Each curve over its own range (fig. 7). A descriptor is good where its lowest minimum is at the true yaw, or half a turn from it, and where it has few others. The tables count all observations: how far the lowest minimum is from the truth, modulo half a turn.",
       curveFigures(page, curved)),

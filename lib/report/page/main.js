@@ -40,6 +40,6 @@ function showOverview(data, holder) {
   holder.append(element("h1", {}, "Results"), ...data.datasets.map((dataset) =>
     section(dataset.dataset, dataset.dataset,
       element("p", {}, `${dataset.frames} frames, ${dataset.objects} objects, ${dataset.detections} detections. `,
-        element("a", { href: `${dataset.dataset}/report.html` }, "Look at it")),
+        element("a", { href: `./${encodeURIComponent(dataset.dataset)}/report.html` }, "Look at it")),
       metricsTable(dataset.variants))));
 }

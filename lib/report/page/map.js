@@ -114,6 +114,10 @@ class MapView {
     const isNew = this.segment !== this.sequence.frames[frameIndex].segment;
     this.segment = this.sequence.frames[frameIndex].segment;
     this.scene.remove(this.content);
+    this.content.traverse((part) => {
+      if (part.geometry) part.geometry.dispose();
+      if (part.material) part.material.dispose();
+    });
     this.content = new THREE.Group();
     this.pickable = [];
     this.addObjects();

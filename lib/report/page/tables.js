@@ -39,17 +39,17 @@ function metricsSection(page) {
   }));
 }
 
-// Ablations: what one more constraint changes, paired by object. Intervals are Student's, 95 %.
+// Ablations: what one more part changes, paired by object.
 function ablationSection(page) {
   if (page.differences.length === 0) return null;
   const signed = (value, decimals) => value == null ? "–" : (value > 0 ? "+" : "") + value.toFixed(decimals);
-  const interval = ({ mean, half_width }, decimals) =>
-    mean == null ? "–" : `${signed(mean, decimals)} ± ${number(half_width, decimals)}`;
+  const interval = ({ mean, low, high }, decimals) => mean == null ? "–"
+    : signed(mean, decimals) + (low == null ? "" : ` (${signed(low, decimals)} to ${signed(high, decimals)})`);
   return section("ablation", "What each part is worth",
-    element("p", {}, "Differences between two variants over the same objects: mean and 95 % confidence interval. Bold where the interval leaves out zero."),
+    element("p", {}, "Differences between two variants over the same objects: mean and, in brackets, 95 % confidence interval (Student's t). Bold where the interval leaves out zero."),
     table(["", "objects", "IoU", "Rot deg", "yaw error deg"], page.differences.map((pair) => {
       const cell = (difference, decimals) => ({ text: interval(difference, decimals),
-        best: difference.mean != null && Math.abs(difference.mean) > difference.half_width });
+        best: difference.low != null && difference.low * difference.high > 0 });
       return [`${pair.with} – ${pair.without}`, String(pair.objects), cell(pair.iou, 3),
         cell(pair.rotation_deg, 2), cell(pair.yaw_error_deg, 2)];
     })));
