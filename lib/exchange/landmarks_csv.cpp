@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "report/table.h"
+#include "base/table.h"
 
 namespace soslam {
 namespace {

@@ -12,7 +12,7 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "inspection/table.h"
+#include "inspection/value_table.h"
 
 namespace soslam {
 namespace {
@@ -202,21 +202,21 @@ void CompareContent(const std::filesystem::path& one, const std::filesystem::pat
       .Compare(document_one, document_two, json::json_pointer());
 }
 
-Cell NumberCell(const std::optional<double>& number) {
-  return number ? Cell(fmt::format("{:.3g}", *number)) : Cell();
+Value NumberCell(const std::optional<double>& number) {
+  return number ? Value(fmt::format("{:.3g}", *number)) : Value();
 }
 
-Cell TextCell(const std::string& text) { return text.empty() ? Cell() : Cell(text); }
+Value TextCell(const std::string& text) { return text.empty() ? Value() : Value(text); }
 
 std::string FormatPlaces(const std::vector<Difference>& places, bool is_coloured) {
-  Table table;
+  ValueTable table;
   table.columns = {{"place", ""},    {"one", ""},      {"two", ""},
                    {"absolute", ""}, {"relative", ""}, {"numbers", ""}};
   for (const Difference& place : places) {
     table.rows.push_back(
         {place.place, TextCell(place.one), TextCell(place.two), NumberCell(place.absolute),
          NumberCell(place.relative),
-         place.of > 1 ? Cell(fmt::format("{} of {}", place.differing, place.of)) : Cell()});
+         place.of > 1 ? Value(fmt::format("{} of {}", place.differing, place.of)) : Value()});
   }
   return FormatTable(table, is_coloured);
 }

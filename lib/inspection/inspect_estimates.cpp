@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-std::vector<Column> EstimateColumns() {
+std::vector<ValueColumn> EstimateColumns() {
   return {{"frame", ""},
           {"object", ""},
           {"label", ""},
@@ -45,8 +45,8 @@ std::vector<Column> EstimateColumns() {
 
 // Centre, half axes, shape exponent and yaw about the object's own z axis; empty cells without a
 // landmark.
-std::vector<Cell> CellsOf(const std::optional<Landmark>& landmark) {
-  if (!landmark) return std::vector<Cell>(8);
+std::vector<Value> CellsOf(const std::optional<Landmark>& landmark) {
+  if (!landmark) return std::vector<Value>(8);
   const Eigen::Vector3d& centre = landmark->Centre();
   const Eigen::Vector3d& half_axes = landmark->half_axes;
   const Eigen::Quaterniond& rotation = landmark->frame_from_object.rotation;
@@ -62,8 +62,8 @@ std::vector<Cell> CellsOf(const std::optional<Landmark>& landmark) {
 
 // Standard deviations: of the centre, over all directions; of the yaw; of the half axes, the root
 // mean square of all three.
-std::vector<Cell> SigmasOf(const ObjectEstimate& estimate) {
-  if (!estimate.covariance || !estimate.landmark_in_world) return std::vector<Cell>(3);
+std::vector<Value> SigmasOf(const ObjectEstimate& estimate) {
+  if (!estimate.covariance || !estimate.landmark_in_world) return std::vector<Value>(3);
   const Covariance9& covariance = *estimate.covariance;
   const Eigen::Vector3d up =
       estimate.landmark_in_world->frame_from_object.rotation * Eigen::Vector3d::UnitZ();
@@ -74,36 +74,37 @@ std::vector<Cell> SigmasOf(const ObjectEstimate& estimate) {
           100.0 * std::sqrt(size_variance)};
 }
 
-void Append(const std::vector<Cell>& cells, std::vector<Cell>* row) {
+void Append(const std::vector<Value>& cells, std::vector<Value>* row) {
   row->insert(row->end(), cells.begin(), cells.end());
 }
 
-Cell FailureOf(const std::string& failure) { return failure.empty() ? Cell() : Cell(failure); }
+Value FailureOf(const std::string& failure) { return failure.empty() ? Value() : Value(failure); }
 
-std::vector<Cell> ObservationRow(const json& observation, const std::optional<Sequence>& sequence) {
+std::vector<Value> ObservationRow(const json& observation,
+                                  const std::optional<Sequence>& sequence) {
   const json& hypotheses = observation.at("hypotheses");
   const int object_id = observation.at("object");
   std::optional<Landmark> best;
-  Cell cost;
+  Value cost;
   if (!hypotheses.empty()) {
     best = LandmarkFromJson(hypotheses[0].at("landmark"), "camera");
     cost = hypotheses[0].at("cost").get<double>();
   }
-  std::vector<Cell> row = {observation.at("frame"), object_id, LabelOf(sequence, object_id), {}};
+  std::vector<Value> row = {observation.at("frame"), object_id, LabelOf(sequence, object_id), {}};
   Append(CellsOf(best), &row);
-  Append(std::vector<Cell>(3), &row);
+  Append(std::vector<Value>(3), &row);
   Append({cost, hypotheses.size(), FailureOf(observation.at("failure"))}, &row);
   return row;
 }
 
-std::vector<Cell> ObjectRow(const json& fields, const std::optional<Sequence>& sequence) {
+std::vector<Value> ObjectRow(const json& fields, const std::optional<Sequence>& sequence) {
   const ObjectEstimate estimate = ObjectEstimateFromJson(fields);
   const int object_id = fields.at("object");
-  std::vector<Cell> row = {{}, object_id, LabelOf(sequence, object_id), estimate.observations};
+  std::vector<Value> row = {{}, object_id, LabelOf(sequence, object_id), estimate.observations};
   Append(CellsOf(estimate.landmark_in_world), &row);
   Append(SigmasOf(estimate), &row);
   const bool is_improper = estimate.landmark_in_world && !estimate.proper_ellipsoid;
-  Append({{}, {}, is_improper ? Cell("not an ellipsoid") : FailureOf(estimate.failure)}, &row);
+  Append({{}, {}, is_improper ? Value("not an ellipsoid") : FailureOf(estimate.failure)}, &row);
   return row;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-std::vector<Cell> FrameRow(int frame_id, const EdgeMaps& maps) {
+std::vector<Value> FrameRow(int frame_id, const EdgeMaps& maps) {
   const int edges = cv::countNonZero(maps.edges);
   const auto pixels = static_cast<double>(maps.edges.total());
   double farthest = 0.0;
@@ -27,16 +27,16 @@ std::vector<Cell> FrameRow(int frame_id, const EdgeMaps& maps) {
           maps.grey.rows,
           edges,
           100.0 * edges / pixels,
-          has_edges ? Cell(cv::mean(maps.distance)[0]) : Cell(),
-          has_edges ? Cell(farthest) : Cell(),
+          has_edges ? Value(cv::mean(maps.distance)[0]) : Value(),
+          has_edges ? Value(farthest) : Value(),
           maps.corners.size()};
 }
 
-Cell Degrees(double angle) { return std::isfinite(angle) ? Cell(kDegPerRad * angle) : Cell(); }
+Value Degrees(double angle) { return std::isfinite(angle) ? Value(kDegPerRad * angle) : Value(); }
 
-std::vector<Cell> ObservationRow(const SymmetryRecord& record,
-                                 const std::optional<Sequence>& sequence) {
-  Cell true_yaw, error;
+std::vector<Value> ObservationRow(const SymmetryRecord& record,
+                                  const std::optional<Sequence>& sequence) {
+  Value true_yaw, error;
   if (record.true_yaw) {
     true_yaw = Degrees(*record.true_yaw);
     error = Degrees(std::abs(YawDifferenceModuloPi(record.refined_yaw, *record.true_yaw)));
@@ -47,7 +47,7 @@ std::vector<Cell> ObservationRow(const SymmetryRecord& record,
           record.samples.size(),
           Degrees(record.initial_yaw),
           Degrees(record.refined_yaw),
-          record.yaw_sigma ? Degrees(*record.yaw_sigma) : Cell(),
+          record.yaw_sigma ? Degrees(*record.yaw_sigma) : Value(),
           true_yaw,
           error,
           OrNull(record.mirror_planes)};

@@ -43,14 +43,14 @@ std::string HeldOutInWords(const json& held_out) {
       OrDash(held_out.at("iou_mean"), 3));
 }
 
-std::vector<Cell> Cells(const json& object, const std::vector<const char*>& fields) {
-  std::vector<Cell> cells;
+std::vector<Value> Cells(const json& object, const std::vector<const char*>& fields) {
+  std::vector<Value> cells;
   for (const char* field : fields) cells.push_back(object.value(field, json()));
   return cells;
 }
 
 // One row per object with ground truth, and per landmark that was looked for in held-out frames.
-Table ObjectTable(const json& document) {
+ValueTable ObjectTable(const json& document) {
   std::map<int, json> by_id;
   for (const json& object : document.at("objects")) by_id[object.at("object")] = object;
   const json held_out = document.value("held_out", json::object());
@@ -58,7 +58,7 @@ Table ObjectTable(const json& document) {
     json& merged = by_id[object.at("object")];
     for (const auto& [name, value] : object.items()) merged[name] = value;
   }
-  Table table;
+  ValueTable table;
   table.columns = {{"object", ""},
                    {"label", ""},
                    {"observations", ""},

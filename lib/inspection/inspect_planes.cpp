@@ -25,7 +25,7 @@ std::string ObjectsOn(const json& plane, const json& objects) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::vector<Cell> PlaneRow(const json& fields, const json& objects) {
+std::vector<Value> PlaneRow(const json& fields, const json& objects) {
   const Plane plane = fields.at("plane_in_world").get<Plane>();
   const json error = fields.at("error").is_null() ? json::object() : fields.at("error");
   return {fields.at("plane"),

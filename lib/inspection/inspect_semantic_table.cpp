@@ -11,7 +11,7 @@
 namespace soslam {
 namespace {
 
-std::vector<Cell> RowOf(const SemanticRow& row) {
+std::vector<Value> RowOf(const SemanticRow& row) {
   const ShapePrior& prior = row.prior;
   const bool has_height = prior.height_m.has_value();
   return {row.label,
@@ -20,12 +20,12 @@ std::vector<Cell> RowOf(const SemanticRow& row) {
           prior.log_sigma.x(),
           prior.log_sigma.y(),
           prior.log_correlation,
-          has_height ? Cell(prior.height_m->median) : Cell(),
-          has_height ? Cell(prior.height_m->log_sigma) : Cell(),
+          has_height ? Value(prior.height_m->median) : Value(),
+          has_height ? Value(prior.height_m->log_sigma) : Value(),
           prior.shape_exponent,
           kMountNames[static_cast<size_t>(prior.mount)],
           row.samples,
-          row.aliases.empty() ? Cell() : Cell(fmt::format("{}", fmt::join(row.aliases, ", "))),
+          row.aliases.empty() ? Value() : Value(fmt::format("{}", fmt::join(row.aliases, ", "))),
           row.source};
 }
 

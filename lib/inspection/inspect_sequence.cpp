@@ -55,15 +55,15 @@ std::string DetectionsInWords(const Sequence& sequence) {
   return text;
 }
 
-std::vector<Cell> ObjectRow(const Sequence& sequence, const Object& object,
-                            const std::vector<int>& detections) {
+std::vector<Value> ObjectRow(const Sequence& sequence, const Object& object,
+                             const std::vector<int>& detections) {
   const bool has_plane = object.plane_index != kNoPlane;
-  std::vector<Cell> row = {
+  std::vector<Value> row = {
       object.id, object.label,
-      has_plane ? Cell(sequence.planes[static_cast<size_t>(object.plane_index)].id) : Cell(),
+      has_plane ? Value(sequence.planes[static_cast<size_t>(object.plane_index)].id) : Value(),
       detections.size()};
   if (detections.empty()) {
-    row.insert(row.end(), 6, Cell());
+    row.insert(row.end(), 6, Value());
   } else {
     const auto of = [&](int i) -> const Detection& {
       return sequence.detections[static_cast<size_t>(i)];

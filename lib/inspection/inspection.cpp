@@ -11,6 +11,7 @@
 
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
+#include "base/table.h"
 #include "inspection/kinds.h"
 #include "inspection/provenance.h"
 
@@ -118,7 +119,7 @@ std::string CountsInWords(const std::map<std::string, int>& counts) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-Cell LabelOf(const std::optional<Sequence>& sequence, int object_id) {
+Value LabelOf(const std::optional<Sequence>& sequence, int object_id) {
   if (!sequence) return {};
   const auto found = std::ranges::lower_bound(sequence->objects, object_id, {}, &Object::id);
   if (found == sequence->objects.end() || found->id != object_id) return {};

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "inspection/table.h"
+#include "inspection/value_table.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -22,7 +22,7 @@ struct Fact {
 struct Inspection {
   std::string title;  // what it is
   std::vector<Fact> facts;
-  Table table;
+  ValueTable table;
 };
 
 // Reads an artefact of any kind. `sequence`, where it is known, gives objects their labels. Throws

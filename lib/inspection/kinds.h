@@ -19,6 +19,6 @@ Inspection InspectSymmetry(const std::filesystem::path& file,
                            const std::optional<Sequence>& sequence);
 
 // The label of an object by its id; nothing without a sequence that has it.
-Cell LabelOf(const std::optional<Sequence>& sequence, int object_id);
+Value LabelOf(const std::optional<Sequence>& sequence, int object_id);
 
 }  // namespace soslam

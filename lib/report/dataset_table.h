@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/table.h"
 #include "report/results_tree.h"
-#include "report/table.h"
 
 namespace soslam {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/table.h"
 #include "report/results_tree.h"
-#include "report/table.h"
 
 namespace soslam {
 

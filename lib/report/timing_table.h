@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/table.h"
 #include "report/published.h"
 #include "report/results_tree.h"
-#include "report/table.h"
 
 namespace soslam {
 

@@ -9,12 +9,12 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/table.h"
 #include "report/dataset_table.h"
 #include "report/paired_differences.h"
 #include "report/paper_tables.h"
 #include "report/published.h"
 #include "report/results_tree.h"
-#include "report/table.h"
 #include "report/timing_table.h"
 
 namespace soslam {

@@ -41,9 +41,9 @@ class InspectionTest : public testing::Test {
     const auto found = std::ranges::find(inspection.facts, name, &Fact::name);
     return found == inspection.facts.end() ? "" : found->text;
   }
-  static Cell At(const Inspection& inspection, size_t row, const std::string& column) {
+  static Value At(const Inspection& inspection, size_t row, const std::string& column) {
     const auto& columns = inspection.table.columns;
-    const auto found = std::ranges::find(columns, column, &Column::name);
+    const auto found = std::ranges::find(columns, column, &ValueColumn::name);
     if (found == columns.end()) throw std::out_of_range(column);
     return inspection.table.rows.at(row).at(static_cast<size_t>(found - columns.begin()));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/table.h"
+#include "base/table.h"
 
 #include <gtest/gtest.h>
 

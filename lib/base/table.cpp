@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/table.h"
+#include "base/table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,12 +12,6 @@ namespace soslam {
 namespace {
 
 using Lines = std::vector<std::vector<std::string>>;
-
-// Characters, not bytes: those of UTF-8 that continue a character do not count.
-size_t Width(const std::string& text) {
-  return static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
 
 std::string MarkdownText(const std::string& text) {
   constexpr std::string_view kSpecial = "\\|*`<";
@@ -37,7 +31,7 @@ std::string MarkdownText(const Cell& cell) {
 std::vector<size_t> Widths(const Lines& lines) {
   std::vector<size_t> widths(lines.front().size(), 0);
   for (const auto& line : lines) {
-    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], Width(line[i]));
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], WidthOf(line[i]));
   }
   return widths;
 }
@@ -47,7 +41,7 @@ std::string MarkdownGrid(const Lines& lines, size_t left_columns) {
   const auto format_line = [&](const std::vector<std::string>& line) {
     std::string text = "|";
     for (size_t i = 0; i < line.size(); ++i) {
-      const std::string padding(widths[i] - Width(line[i]), ' ');
+      const std::string padding(widths[i] - WidthOf(line[i]), ' ');
       text += i < left_columns ? " " + line[i] + padding : " " + padding + line[i];
       text += " |";
     }
@@ -124,6 +118,12 @@ std::vector<std::string> Formatted(const Values& values, const Format& format) {
 }
 
 }  // namespace
+
+size_t WidthOf(const std::string& text) {
+  // Bytes of UTF-8 that continue a character do not count.
+  return static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
 
 std::string ToMarkdown(const Table& table) {
   const auto format = [](const Cell& cell) { return MarkdownText(cell); };

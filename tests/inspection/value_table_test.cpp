@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/table.h"
+#include "inspection/value_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,12 +7,12 @@
 namespace soslam {
 namespace {
 
-Table SmallTable() {
+ValueTable SmallTable() {
   return {{{"label", ""}, {"x", "m", 2}, {"share", "%", 1}, {"count", ""}, {"flag", ""}},
           {{"b\xc3\xa4r", 1.0 / 3.0, nullptr, 12, true}, {"c", -10.0, nullptr, 3, false}}};
 }
 
-TEST(TableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
+TEST(ValueTableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
   EXPECT_EQ(FormatTable(SmallTable(), false),
             "label       x  count  flag\n"
             "            m\n"
@@ -20,12 +20,12 @@ TEST(TableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
             "c      -10.00      3  no\n");
 }
 
-TEST(TableTest, NothingIsADash) {
-  const Table table = {{{"x", "", 1}}, {{nullptr}, {2.0}}};
+TEST(ValueTableTest, NothingIsADash) {
+  const ValueTable table = {{{"x", "", 1}}, {{nullptr}, {2.0}}};
   EXPECT_EQ(FormatTable(table, false), "  x\n  -\n2.0\n");
 }
 
-TEST(TableTest, OnlyTheHeadIsColoured) {
+TEST(ValueTableTest, OnlyTheHeadIsColoured) {
   const std::string plain = FormatTable(SmallTable(), false);
   const std::string coloured = FormatTable(SmallTable(), true);
   EXPECT_THAT(plain, testing::Not(testing::HasSubstr("\x1b")));
@@ -34,15 +34,15 @@ TEST(TableTest, OnlyTheHeadIsColoured) {
   EXPECT_THAT(coloured, testing::EndsWith(plain.substr(rows)));
 }
 
-TEST(TableTest, CsvHasAllColumnsAndAllDigits) {
+TEST(ValueTableTest, CsvHasAllColumnsAndAllDigits) {
   EXPECT_EQ(FormatCsv(SmallTable()),
             "label,x_m,share_percent,count,flag\n"
             "b\xc3\xa4r,0.3333333333333333,,12,true\n"
             "c,-10,,3,false\n");
 }
 
-TEST(TableTest, CsvQuotesWhatNeedsIt) {
-  const Table table = {{{"text", ""}}, {{"a, b"}, {"say \"hi\""}, {"two\nlines"}, {"plain"}}};
+TEST(ValueTableTest, CsvQuotesWhatNeedsIt) {
+  const ValueTable table = {{{"text", ""}}, {{"a, b"}, {"say \"hi\""}, {"two\nlines"}, {"plain"}}};
   EXPECT_EQ(FormatCsv(table), "text\n\"a, b\"\n\"say \"\"hi\"\"\"\n\"two\nlines\"\nplain\n");
 }
 
