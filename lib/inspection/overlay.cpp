@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -95,22 +96,26 @@ struct Grid {
   Eigen::Vector2i first, last;  // lines, by their number from the plane's origin
 };
 
-// Around the feet, with as large a cell that there are few lines.
+// Around the feet, with as large a cell that there are few lines, and wide enough to be seen from
+// the camera.
 Grid GridOf(const OverlayInput::Ground& ground) {
   constexpr std::array kCells = {0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0};
   constexpr double kMaxCells = 10.0;
+  constexpr double kMinExtentPerDepth = 0.3;
   const Plane& plane = ground.plane_in_camera;
   const Rigid3d camera_from_plane = {UprightRotation(plane.normal, 0.0),
                                      -plane.offset * plane.normal};
   const Rigid3d plane_from_camera = camera_from_plane.Inverse();
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array2d high = -low;
+  double extent = 0.0;
   for (const Eigen::Vector3d& foot : ground.feet_in_camera) {
     const Eigen::Array2d place = (plane_from_camera * foot).head<2>();
     low = low.min(place);
     high = high.max(place);
+    extent = std::max(extent, kMinExtentPerDepth * foot.z());
   }
-  const double extent = (high - low).maxCoeff();
+  extent = std::max(extent, (high - low).maxCoeff());
   const auto fits = [&](double cell) { return extent <= kMaxCells * cell; };
   const auto found = std::ranges::find_if(kCells, fits);
   const double cell = found == kCells.end() ? extent / kMaxCells : *found;
@@ -252,10 +257,11 @@ std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input) {
   };
   add(input.detections.size(), "detected", kDetectionStroke.colour);
   add(input.landmarks.size(), "estimated (arrow: front)", kLandmarkStroke.colour);
-  add(input.truths_in_camera.size(), "ground truth (box around it)", kTruthStroke.colour);
-  for (const auto& ground : input.grounds) {
-    const double cell = GridOf(ground).cell;
-    legend.push_back({fmt::format("support plane, cells of {:g} m", cell), palette::kWhite, true});
+  add(input.truths_in_camera.size(), "true (box around it)", kTruthStroke.colour);
+  std::map<double, size_t> grounds_by_cell;
+  for (const auto& ground : input.grounds) ++grounds_by_cell[GridOf(ground).cell];
+  for (const auto& [cell, count] : grounds_by_cell) {
+    add(count, fmt::format("x support plane, cells of {:.3g} m", cell), palette::kWhite);
   }
   return legend;
 }
