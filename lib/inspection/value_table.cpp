@@ -11,7 +11,6 @@
 namespace soslam {
 namespace {
 
-
 std::string ForPeople(const Value& value, int decimals) {
   if (value.is_null()) return kNoValue;
   if (value.is_string()) return value.get<std::string>();
