@@ -70,7 +70,7 @@ TrackFate FateOf(const AssociationModel& model, const Track& track) {
 
 void DropFalseTracks(const AssociationModel& model, int threads, Association* association) {
   const double border_px = SmallestDistanceToBorder(model.sequence());
-  ParallelFor(static_cast<int>(association->tracks.size()), threads, [&](int i) {
+  ParallelFor("tracks", static_cast<int>(association->tracks.size()), threads, [&](int i) {
     Track& track = association->tracks[static_cast<size_t>(i)];
     if (track.fate == TrackFate::kMerged) return;
     const bool is_candidate =

@@ -8,6 +8,7 @@
 
 #include "base/assignment.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 
 namespace soslam {
 namespace {
@@ -24,11 +25,13 @@ class FrameLinker {
 
   Association Run() {
     const int frames = static_cast<int>(model_.sequence().frames.size());
+    Progress progress("frames", frames);
     for (int frame = 0; frame < frames; ++frame) {
       const std::vector<int> detections = WithoutDuplicates(DetectionsIn(frame));
       Predict(frame);
       Link(detections);
       Fit();
+      progress.Step();
     }
     return std::move(association_);
   }

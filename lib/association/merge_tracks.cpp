@@ -79,7 +79,7 @@ class TrackMerger {
   bool MergeOnce() {
     const std::vector<int> order = SmallestFirst();
     std::vector<std::optional<Merge>> merges(order.size());
-    ParallelFor(static_cast<int>(order.size()), threads_, [&](int i) {
+    ParallelFor("tracks", static_cast<int>(order.size()), threads_, [&](int i) {
       merges[static_cast<size_t>(i)] = BestMerge(order, static_cast<size_t>(i));
     });
     std::ranges::fill(has_changed_, 0);

@@ -9,6 +9,8 @@
 #include <exception>
 #include <vector>
 
+#include "base/progress.h"
+
 namespace soslam {
 
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
@@ -27,6 +29,14 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }
+}
+
+void ParallelFor(const char* what, int count, int threads, const std::function<void(int)>& work) {
+  Progress progress(what, count);
+  ParallelFor(count, threads, [&](int i) {
+    work(i);
+    progress.Step();
+  });
 }
 
 }  // namespace soslam

@@ -10,4 +10,7 @@ namespace soslam {
 // tried; of the exceptions thrown, the one of the lowest index is rethrown here.
 void ParallelFor(int count, int threads, const std::function<void(int)>& work);
 
+// The same for what takes long: shows how many of these ("frames") are done, see Progress.
+void ParallelFor(const char* what, int count, int threads, const std::function<void(int)>& work);
+
 }  // namespace soslam

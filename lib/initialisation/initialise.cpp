@@ -37,7 +37,7 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const InitialiseOptions& options, int threads) {
   LandmarkEstimates estimates;
   estimates.observations.resize(sequence.detections.size());
-  ParallelFor(static_cast<int>(sequence.detections.size()), threads, [&](int i) {
+  ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
     const Detection& detection = sequence.detections[static_cast<size_t>(i)];
     ObservationEstimate& estimate = estimates.observations[static_cast<size_t>(i)];
     estimate.detection_index = i;
@@ -62,7 +62,7 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const std::vector<std::optional<YawPrior>>& yaw_priors) {
   LandmarkEstimates estimates;
   estimates.observations.resize(sequence.detections.size());
-  ParallelFor(static_cast<int>(sequence.detections.size()), threads, [&](int i) {
+  ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
     const Detection& detection = sequence.detections[static_cast<size_t>(i)];
     ObservationEstimate& estimate = estimates.observations[static_cast<size_t>(i)];
     estimate.detection_index = i;
@@ -98,7 +98,7 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     estimates.objects.push_back(object);
   }
   constexpr double kRadians = std::numbers::pi / 180.0;
-  ParallelFor(static_cast<int>(estimates.objects.size()), threads, [&](int i) {
+  ParallelFor("objects", static_cast<int>(estimates.objects.size()), threads, [&](int i) {
     ObjectEstimate& object = estimates.objects[static_cast<size_t>(i)];
     const auto index = static_cast<size_t>(object.object_index);
     if (!sequence.objects[index].is_static) {

@@ -135,7 +135,7 @@ std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
   if (options.source == YawPriorSource::kMotion) {
     const MotionPriors motion(sequence, shapes, options, standing);
     const auto neighbours = Neighbours(sequence, options.motion_frames);
-    ParallelFor(static_cast<int>(priors.size()), threads, [&](int i) {
+    ParallelFor("detections", static_cast<int>(priors.size()), threads, [&](int i) {
       priors[static_cast<size_t>(i)] = motion.Find(i, neighbours[static_cast<size_t>(i)]);
     });
   }

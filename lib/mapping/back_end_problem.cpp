@@ -15,6 +15,7 @@
 #include "constraints/tangency.h"
 #include "initialisation/landmark_term_residual.h"
 #include "initialisation/view_weights.h"
+#include "mapping/iteration_progress.h"
 #include "orientation/texture_asymmetry.h"
 #include "symmetry/sampling.h"
 
@@ -339,6 +340,9 @@ void BackEndProblem::Solve() {
   // every step each is optimised for itself.
   solver.use_inner_iterations = true;
   solver.inner_iteration_ordering = LandmarkOrdering();
+
+  IterationProgress progress;
+  solver.callbacks.push_back(&progress);
 
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem_, &summary);

@@ -145,7 +145,7 @@ class Estimator {
   std::vector<Eigen::Vector3d> SearchUp() const {
     const std::vector<Eigen::Vector3d> candidates = UpCandidates(attitude_);
     std::vector<double> costs(candidates.size());
-    ParallelFor(static_cast<int>(candidates.size()), threads_, [&](int i) {
+    ParallelFor("directions of up", static_cast<int>(candidates.size()), threads_, [&](int i) {
       const Eigen::Vector3d& up = candidates[static_cast<size_t>(i)];
       double cost = 0.5 * up.dot(attitude_.information * up);
       for (auto observation : sparse_) {
@@ -174,7 +174,7 @@ class Estimator {
   // The bodies whose own views determine the height of their foot, the normal being given.
   void FindOwnHeights(const Eigen::Vector3d& normal) {
     std::vector<std::optional<StandingBody>> found(observations_.size());
-    ParallelFor(static_cast<int>(found.size()), threads_, [&](int i) {
+    ParallelFor("objects", static_cast<int>(found.size()), threads_, [&](int i) {
       const auto index = static_cast<size_t>(i);
       if (!observations_[index]) return;
       auto body = BodyOfFreeHeight(*observations_[index], normal, kYawStep);
@@ -265,7 +265,7 @@ class Estimator {
     for (const RefinedPlanes& refined : refined_) *estimate->cost += refined.cost;
     for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
     estimate->objects.resize(sequence_.objects.size());
-    ParallelFor(static_cast<int>(estimate->objects.size()), threads_, [&](int i) {
+    ParallelFor("objects", static_cast<int>(estimate->objects.size()), threads_, [&](int i) {
       estimate->objects[static_cast<size_t>(i)] =
           WriteObject(static_cast<size_t>(i), estimate->planes);
     });

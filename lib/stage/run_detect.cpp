@@ -12,6 +12,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "dataset/coco_labels.h"
 #include "dataset/detections_csv.h"
 #include "dataset/image_path.h"
@@ -43,11 +44,13 @@ std::vector<std::vector<YoloDetection>> DetectAll(const std::vector<fs::path>& i
   const int count = static_cast<int>(images.size());
   const int workers = std::min(threads, count);
   std::vector<std::vector<YoloDetection>> detections(images.size());
+  Progress progress("images", count);
   ParallelFor(workers, workers, [&](int worker) {
     YoloDetector detector(network, classes, options);
     for (int i = worker; i < count; i += workers) {
       const auto frame = static_cast<size_t>(i);
       detections[frame] = detector.Detect(ReadColourImage(images[frame]));
+      progress.Step();
     }
   });
   return detections;

@@ -13,6 +13,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "stage/frame_images.h"
 
 namespace soslam {
@@ -45,12 +46,14 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
 
   const FrameImageReader reader(sequence);
   const int frames = static_cast<int>(images.size());
+  Progress progress("frames", frames);
   const int batch = 4 * threads;  // bounds the maps that wait for being written
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
       const cv::Mat grey = reader.ReadGrey(images[static_cast<size_t>(begin + i)]);
       maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
+      progress.Step();
     });
     for (size_t i = 0; i < maps.size(); ++i) {
       writer.Write(images[static_cast<size_t>(begin) + i].frame->id, maps[i]);

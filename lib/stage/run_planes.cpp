@@ -39,7 +39,7 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
   const std::vector<FrameImage> images = FrameImages(sequence, files);
   for (const FrameImage& image : images) inputs->push_back(image.path);
   const FrameImageReader reader(sequence);
-  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
+  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
     const FrameImage& image = images[static_cast<size_t>(i)];
     SegmentView& view = views[static_cast<size_t>(image.frame - sequence.frames.data())];
     view.segments = FindLineSegments(reader.ReadGrey(image), options.vertical_min_length_px);

@@ -14,6 +14,7 @@
 #include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
 
@@ -37,11 +38,21 @@ std::vector<std::vector<const ObservationEstimate*>> GroupByFrame(
   return groups;
 }
 
+int CountOf(const std::vector<std::vector<const ObservationEstimate*>>& groups) {
+  size_t count = 0;
+  for (const auto& group : groups) count += group.size();
+  return static_cast<int>(count);
+}
+
 class Refiner {
  public:
   Refiner(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-          const OrientationOptions& options, int threads)
-      : sequence_(sequence), priors_(priors), options_(options), threads_(threads) {}
+          const OrientationOptions& options, int threads, Progress* progress)
+      : sequence_(sequence),
+        priors_(priors),
+        options_(options),
+        threads_(threads),
+        progress_(progress) {}
 
   // Refines the observations of some frames in parallel; reading stays on this thread.
   std::vector<RefinedObservation> Refine(
@@ -64,6 +75,7 @@ class Refiner {
           sequence_.detections[static_cast<size_t>(observation->detection_index)];
       const auto& prior = priors_[static_cast<size_t>(detection.object_index)];
       refined[static_cast<size_t>(i)] = Refine(*observation, frame, prior);
+      progress_->Step();
     });
     return refined;
   }
@@ -84,6 +96,7 @@ class Refiner {
   const std::vector<std::optional<ShapePrior>>& priors_;
   const OrientationOptions& options_;
   int threads_;
+  Progress* progress_;
 };
 
 }  // namespace
@@ -109,7 +122,8 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
       {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
 
   EdgesReader edges(files.at("edges"));
-  const Refiner refiner(sequence, priors, options, threads);
+  Progress progress("landmarks", CountOf(groups));
+  const Refiner refiner(sequence, priors, options, threads, &progress);
   std::vector<SymmetryRecord> curves;
   int refined_count = 0;
   std::map<int, ObservationEstimate> refined_by_detection;

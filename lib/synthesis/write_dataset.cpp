@@ -193,7 +193,7 @@ void WriteDataset(const Scene& scene, bool noise, const fs::path& folder, int th
   WriteText(temporary / "detections.csv", BoxesText(scene, simulation.detections, true));
   WriteText(temporary / "boxes_exact.csv", BoxesText(scene, simulation.exact_boxes, false));
   fs::create_directory(temporary / "rgb");
-  ParallelFor(scene.trajectory.frames, threads, [&](int i) {
+  ParallelFor("frames", scene.trajectory.frames, threads, [&](int i) {
     WriteImage(scene, noise, i, simulation.true_world_from_camera[i], temporary);
   });
   output.Commit();
