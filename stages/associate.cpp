@@ -7,10 +7,10 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-associate",
        .purpose = "Finds out which detections are of the same object, without their ids.",
-       .files = {{"sequence", "sequence.json of soslam-import"},
-                 {"table", "semantic table with the size ratio of each label"},
-                 {"output", "sequence to write, with the objects found"},
-                 {"associations", "associations.json to write: what was decided, and why"}},
+       .inputs = {{"sequence", "sequence.json of soslam-import"},
+                  {"table", "semantic table with the size ratio of each label"}},
+       .outputs = {{"output", "sequence to write, with the objects found"},
+                   {"associations", "associations.json to write: what was decided, and why"}},
        .example = "soslam-associate --association estimated --sequence sequence.json --table "
                   "pipelines/priors/semantic_table.json --output associated.json "
                   "--associations associations.json"},

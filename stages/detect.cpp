@@ -7,10 +7,10 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-detect",
        .purpose = "Runs a YOLO network on every image of a dataset.",
-       .files = {{"dataset", "dataset folder with rgb.txt and the images"},
-                 {"network", "ONNX file of a YOLO network"},
-                 {"labels", "names of its classes, one a line; COCO's 80 when absent", false},
-                 {"output", "detections.csv to write, without object ids"}},
+       .inputs = {{"dataset", "dataset folder with rgb.txt and the images"},
+                  {"network", "ONNX file of a YOLO network"},
+                  {"labels", "names of its classes, one a line; COCO's 80 when absent", false}},
+       .outputs = {{"output", "detections.csv to write, without object ids"}},
        .example = "soslam-detect --dataset data/room_a --network yolov5s.onnx --output "
                   "detections.csv"},
       &soslam::RunDetect);

@@ -7,9 +7,9 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-edges",
        .purpose = "Computes edges, distance transform, nearest edges and corners of every image.",
-       .files = {{"dataset", "dataset folder with the images"},
-                 {"sequence", "sequence.json of soslam-import"},
-                 {"output", "edges.h5 to write"}},
+       .inputs = {{"dataset", "dataset folder with the images"},
+                  {"sequence", "sequence.json of soslam-import"}},
+       .outputs = {{"output", "edges.h5 to write"}},
        .example = "soslam-edges --dataset data/room_a --sequence sequence.json --output edges.h5"},
       &soslam::RunEdges);
 }

@@ -7,9 +7,9 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-evaluate",
        .purpose = "Compares landmarks with the ground truth of the dataset.",
-       .files = {{"sequence", "sequence.json of soslam-import"},
-                 {"landmarks", "initial.json, refined.json or map.json"},
-                 {"output", "metrics.json to write"}},
+       .inputs = {{"sequence", "sequence.json of soslam-import"},
+                  {"landmarks", "initial.json, refined.json or map.json"}},
+       .outputs = {{"output", "metrics.json to write"}},
        .example =
            "soslam-evaluate --sequence sequence.json --landmarks map.json --output metrics.json"},
       &soslam::RunEvaluate);

@@ -7,8 +7,8 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-import",
        .purpose = "Reads a dataset folder, checks it and keeps the usable detections.",
-       .files = {{"dataset", "dataset folder, in the format that the settings name"},
-                 {"output", "sequence.json to write"}},
+       .inputs = {{"dataset", "dataset folder, in the format that the settings name"}},
+       .outputs = {{"output", "sequence.json to write"}},
        .example = "soslam-import --dataset data/room_a --output sequence.json"},
       &soslam::RunImport);
 }

@@ -8,9 +8,9 @@ int main(int argc, char** argv) {
       {.name = "soslam-initialise",
        .purpose =
            "Estimates landmarks from single observations, or from all boxes of an object by SVD.",
-       .files = {{"sequence", "sequence.json of soslam-import"},
-                 {"table", "semantic table with the size ratio of each label"},
-                 {"output", "initial.json to write"}},
+       .inputs = {{"sequence", "sequence.json of soslam-import"},
+                  {"table", "semantic table with the size ratio of each label"}},
+       .outputs = {{"output", "initial.json to write"}},
        .example = "soslam-initialise --sequence sequence.json --table "
                   "pipelines/priors/semantic_table.json --output initial.json"},
       &soslam::RunInitialise);

@@ -7,14 +7,14 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-optimise",
        .purpose = "The back end: optimises all landmarks and camera poses together.",
-       .files =
+       .inputs =
            {{"sequence", "sequence.json of soslam-import"},
             {"landmarks", "initial.json or refined.json to start from"},
             {"table", "semantic table with the size ratio of each label"},
             {"edges",
              "edges.h5 of soslam-edges; needed when the setting symmetry or edge_alignment is true",
-             false},
-            {"output", "map.json to write"}},
+             false}},
+       .outputs = {{"output", "map.json to write"}},
        .example = "soslam-optimise --sequence sequence.json --landmarks initial.json --table "
                   "pipelines/priors/semantic_table.json --output map.json"},
       &soslam::RunOptimise);

@@ -8,7 +8,9 @@ int main(int argc, char** argv) {
       {.name = "soslam-pages",
        .purpose =
            "Makes a page to look at for each dataset in a results folder, and one of them all.",
-       .files = {{"results", "results folder; gets report.html, and one in each dataset's folder"}},
+       .inputs = {},
+       .outputs = {{"results",
+                    "results folder; gets report.html, and one in each dataset's folder"}},
        .example = "soslam-pages --results results"},
       &soslam::RunPages);
 }

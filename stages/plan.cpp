@@ -8,10 +8,10 @@ int main(int argc, char** argv) {
       {.name = "soslam-plan",
        .purpose =
            "Works out which stages the variants of a dataset need and writes them as a makefile.",
-       .files = {{"dataset", "dataset folder"},
-                 {"pipelines", "folder with base.json, variants/ and datasets/"},
-                 {"results",
-                  "results folder; writes <results>/<dataset>/plan.mk and what it needs"}},
+       .inputs = {{"dataset", "dataset folder"},
+                  {"pipelines", "folder with base.json, variants/ and datasets/"}},
+       .outputs = {{"results",
+                    "results folder; writes <results>/<dataset>/plan.mk and what it needs"}},
        .example = "soslam-plan --dataset data/room_a --pipelines pipelines --results results"},
       &soslam::RunPlan);
 }

@@ -9,12 +9,12 @@ int main(int argc, char** argv) {
        .purpose =
            "Estimates the planes that objects stand on, and which stands on which, from their "
            "boxes; or takes the ground from the height of the camera.",
-       .files = {{"sequence", "sequence.json of soslam-import"},
-                 {"table", "semantic table with the size ratio of each label"},
-                 {"dataset", "dataset folder with the images, where verticals are looked for",
-                  false},
-                 {"output", "sequence.json to write, with the estimated planes"},
-                 {"report", "planes.json to write: the planes, how sure they are, and why"}},
+       .inputs = {{"sequence", "sequence.json of soslam-import"},
+                  {"table", "semantic table with the size ratio of each label"},
+                  {"dataset", "dataset folder with the images, where verticals are looked for",
+                   false}},
+       .outputs = {{"output", "sequence.json to write, with the estimated planes"},
+                   {"report", "planes.json to write: the planes, how sure they are, and why"}},
        .example = "soslam-planes --dataset data/room_a --sequence sequence.json --table "
                   "pipelines/priors/semantic_table.json --planes estimated --output "
                   "with_planes.json --report planes.json"},

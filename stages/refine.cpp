@@ -9,12 +9,12 @@ int main(int argc, char** argv) {
        .purpose =
            "Refines each landmark: its yaw by the symmetry of its texture, or all of it by its "
            "orientation profile.",
-       .files = {{"sequence", "sequence.json of soslam-import"},
-                 {"table", "semantic table with the size ratio of each label"},
-                 {"initial", "initial.json of soslam-initialise"},
-                 {"edges", "edges.h5 of soslam-edges"},
-                 {"output", "refined.json to write"},
-                 {"curves", "symmetry.h5 to write: the cost over yaw of every observation"}},
+       .inputs = {{"sequence", "sequence.json of soslam-import"},
+                  {"table", "semantic table with the size ratio of each label"},
+                  {"initial", "initial.json of soslam-initialise"},
+                  {"edges", "edges.h5 of soslam-edges"}},
+       .outputs = {{"output", "refined.json to write"},
+                   {"curves", "symmetry.h5 to write: the cost over yaw of every observation"}},
        .example =
            "soslam-refine --sequence sequence.json --table pipelines/priors/semantic_table.json "
            "--initial initial.json --edges edges.h5 --output refined.json --curves symmetry.h5"},

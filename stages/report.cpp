@@ -8,14 +8,15 @@ int main(int argc, char** argv) {
       {.name = "soslam-report",
        .purpose =
            "Puts the metrics and times of all datasets and variants in a results folder into "
-           "tables:\nthose of the paper, paired differences between variants, and one for "
+           "tables: those of the paper, paired differences between variants, and one for "
            "each dataset.",
-       .files = {{"results", "results folder, with <dataset>/<variant>/metrics.json"},
-                 {"published", "values to show beside the measured ones", false},
-                 {"output",
-                  "tables.md to write, which is printed as well; tables/*.csv and *.tex go beside "
-                  "it"}},
-       .example = "soslam-report --results results --published pipelines/published.json \\\n"
-                  "    --output results/tables.md"},
+       .inputs = {{"results", "results folder, with <dataset>/<variant>/metrics.json"},
+                  {"published", "values to show beside the measured ones", false}},
+       .outputs =
+           {{"output",
+             "tables.md to write, which is printed as well; tables/*.csv and *.tex go beside "
+             "it"}},
+       .example = "soslam-report --results results --published pipelines/published.json "
+                  "--output results/tables.md"},
       &soslam::RunReport);
 }

@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-synthesise",
        .purpose = "Renders a scene description into a dataset folder with exact ground truth.",
-       .files = {{"scene", "scene description, JSON"}, {"output", "dataset folder to write"}},
+       .inputs = {{"scene", "scene description, JSON"}},
+       .outputs = {{"output", "dataset folder to write"}},
        .example = "soslam-synthesise --scene scene.json --output data/my_scene"},
       &soslam::RunSynthesise);
 }

@@ -39,10 +39,7 @@ json::json_pointer Place(const std::vector<std::string>& context) {
 
 }  // namespace
 
-std::optional<std::string> SchemaViolation(const json& document, const std::string& kind) {
-  const auto text = EmbeddedSchemas().find(kind);
-  if (text == EmbeddedSchemas().end()) throw std::logic_error("no schema of kind " + kind);
-  const json schema_document = json::parse(text->second);
+std::optional<std::string> ViolationOf(const json& document, const json& schema_document) {
   valijson::Schema schema;
   valijson::SchemaParser(valijson::SchemaParser::kDraft7)
       .populateSchema(Adapter(schema_document), schema);
@@ -55,6 +52,12 @@ std::optional<std::string> SchemaViolation(const json& document, const std::stri
   const json::json_pointer place = Place(error.context);
   return fmt::format("{} is {}: {}", place.empty() ? "the document" : place.to_string(),
                      Excerpt(document.at(place)), error.description);
+}
+
+std::optional<std::string> SchemaViolation(const json& document, const std::string& kind) {
+  const auto text = EmbeddedSchemas().find(kind);
+  if (text == EmbeddedSchemas().end()) throw std::logic_error("no schema of kind " + kind);
+  return ViolationOf(document, json::parse(text->second));
 }
 
 void ValidateAgainstSchema(const json& document, const std::string& kind, const std::string& file) {

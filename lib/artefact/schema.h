@@ -13,6 +13,10 @@ namespace soslam {
 // build.
 const std::map<std::string, std::string_view>& EmbeddedSchemas();
 
+// The first way in which `document` breaks a JSON schema (draft 7), as SchemaViolation.
+std::optional<std::string> ViolationOf(const nlohmann::json& document,
+                                       const nlohmann::json& schema_document);
+
 // The first way in which `document` breaks the schema of `kind`, as "/objects/0/half_axes: what is
 // wrong"; none when it is valid. Throws std::logic_error when there is no such schema.
 std::optional<std::string> SchemaViolation(const nlohmann::json& document, const std::string& kind);

@@ -37,9 +37,42 @@ struct AssociateOptions {
   double yaw_grid_deg = 10.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Association");
     visit.Choice("association", &association, kAssociationSourceNames,
                  "whether the dataset says which detection is of which object, or this stage finds "
                  "it out; the stage runs only in the latter case");
+    visit.Real("label_confusion", &label_confusion, {0.0, 0.5},
+               "the share of detections with another label than their object's; 0: a detection is "
+               "linked to an object of its own label only");
+    visit.Text("interchangeable_labels", &interchangeable_labels,
+               "labels that count as the same, groups of comma-separated labels, separated by "
+               "semicolons: 'cup, bowl; tv, monitor'");
+    visit.Real("new_object_probability", &new_object_probability, {1e-6, 0.5},
+               "the share of detections that are of no object seen before");
+    visit.Real("duplicate_overlap", &duplicate_overlap, {0.0, 1.0},
+               "of two boxes in one frame whose intersection over union is at least this, the one "
+               "with the lower score is dropped");
+    visit.Group("Boxes");
+    visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
+               "standard deviation of a box edge about that of the object's body, as a fraction of "
+               "the box's width or height, at least 1 px: the detector's error, and what a body of "
+               "the label's shape cannot explain");
+    visit.Real("cut_edge_probability", &cut_edge_probability, {0.0, 0.2},
+               "how often an edge of a box is not the object's, because something unknown hides "
+               "that side or adds to it; for each of the four edges");
+    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+               "boxes from viewpoints closer than this angle at the object share what the label's "
+               "shape cannot explain, so that they count as one; 0: all boxes are independent");
+    visit.Integer("max_views", &max_views, {1, 100000},
+                  "how many of its detections, evenly over all, an object's landmark is fitted to");
+    visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0},
+               "grid of the sweep over half a turn when a landmark is fitted");
+    visit.Group("Odometry");
+    visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 180.0},
+               "standard deviation of the odometry between two frames");
+    visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {0.0, 1e3},
+               "standard deviation of the odometry between two frames, per axis");
+    visit.Group("Support planes");
     visit.Flag("use_planes", &use_planes,
                "boxes are linked on the support planes of the dataset, where it has any; without "
                "planes objects stand at any height, and the result has no planes");
@@ -49,47 +82,19 @@ struct AssociateOptions {
                "without planes: how level the cameras' optical axes are held; large: anyhow");
     visit.Real("unknown_height_m", &unknown_height_m, {1e-6, 1e6},
                "without planes: how high things are, give or take a factor of e, whose label has "
-               "no height in the semantic table (in the trajectory's metres)");
-    visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
-               "standard deviation of a box edge about that of the object's body, as a fraction of "
-               "the box's width or height, at least 1 px: the detector's error, and what a body of "
-               "the label's shape cannot explain");
-    visit.Real("cut_edge_probability", &cut_edge_probability, {0.0, 0.2},
-               "how often an edge of a box is not the object's, because something unknown hides "
-               "that side or adds to it; for each of the four edges");
-    visit.Real("new_object_probability", &new_object_probability, {1e-6, 0.5},
-               "the share of detections that are of no object seen before");
-    visit.Real("label_confusion", &label_confusion, {0.0, 0.5},
-               "the share of detections with another label than their object's; 0: a detection is "
-               "linked to an object of its own label only");
-    visit.Text("interchangeable_labels", &interchangeable_labels,
-               "labels that count as the same, groups of comma-separated labels, separated by "
-               "semicolons: 'cup, bowl; tv, monitor'");
-    visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 180.0},
-               "standard deviation of the odometry between two frames");
-    visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {0.0, 1e3},
-               "standard deviation of the odometry between two frames, per axis");
-    visit.Real("duplicate_overlap", &duplicate_overlap, {0.0, 1.0},
-               "of two boxes in one frame whose intersection over union is at least this, the one "
-               "with the lower score is dropped");
+               "no height in the semantic table");
+    visit.Group("Merged and false objects");
     visit.Real("merge_share", &merge_share, {0.0, 1.0},
                "two tracks are one object when the larger one explains at least this share of the "
                "other's boxes");
     visit.Real("max_shared_frames", &max_shared_frames, {0.0, 1.0},
-               "but not when both are detected together in more than this share of the smaller "
-               "one's frames");
+               "two tracks are not one object when both are detected together in more than this "
+               "share of the smaller one's frames");
     visit.Integer("min_observations", &min_observations, {1, 1000000},
                   "objects with fewer detections are false");
     visit.Real("min_detection_share", &min_detection_share, {0.0, 1.0},
                "objects that are detected in a smaller share of the frames that should show them "
                "are false");
-    visit.Integer("max_views", &max_views, {1, 100000},
-                  "how many of its detections, evenly over all, an object's landmark is fitted to");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "boxes from viewpoints closer than this angle at the object share what the label's "
-               "shape cannot explain, so that they count as one; 0: all boxes are independent");
-    visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0},
-               "grid of the sweep over half a turn when a landmark is fitted");
   }
 };
 

@@ -47,7 +47,10 @@ class Reader : public OptionVisitor {
   }
   void Integer(const char* name, int* value, Range range, const char*) override {
     if (const auto* found = Find(name)) {
-      if (!found->is_number_integer()) Refuse(name, *found, "an integer");
+      // 5.0 is an integer too, as JSON schemas have it.
+      if (!found->is_number() || std::trunc(found->get<double>()) != found->get<double>()) {
+        Refuse(name, *found, "an integer");
+      }
       *value = static_cast<int>(InRange(name, found->get<double>(), range));
     }
   }
@@ -110,31 +113,56 @@ class Reader : public OptionVisitor {
   std::set<std::string> known_;
 };
 
+// The end of an option's name that says its unit, and the unit.
+struct UnitSuffix {
+  const char* suffix;
+  const char* unit;
+};
+constexpr UnitSuffix kUnitSuffixes[] = {{"_px", "px"}, {"_deg", "deg"},    {"_m", "m"},
+                                        {"_s", "s"},   {"_deg2", "deg^2"}, {"_dm4", "dm^4"}};
+
+std::string UnitOf(const std::string& name) {
+  for (const auto& [suffix, unit] : kUnitSuffixes) {
+    if (name.ends_with(suffix)) return unit;
+  }
+  return "";
+}
+
 class Lister : public OptionVisitor {
  public:
   std::vector<OptionRow> rows;
 
+  void Group(const char* heading) override { group_ = heading; }
   void Real(const char* name, double* value, Range range, const char* doc) override {
-    rows.push_back({name, "number", fmt::format("{}", *value), Domain(range), doc});
+    OptionRow& row = Add(name, "number", *value, doc);
+    row.range = range;
+    row.unit = UnitOf(name);
   }
   void Integer(const char* name, int* value, Range range, const char* doc) override {
-    rows.push_back({name, "integer", fmt::format("{}", *value), Domain(range), doc});
+    OptionRow& row = Add(name, "integer", *value, doc);
+    row.range = range;
+    row.unit = UnitOf(name);
   }
   void Flag(const char* name, bool* value, const char* doc) override {
-    rows.push_back({name, "boolean", *value ? "true" : "false", "true | false", doc});
+    Add(name, "boolean", *value, doc);
   }
   void Text(const char* name, std::string* value, const char* doc) override {
-    rows.push_back({name, "string", '"' + *value + '"', "", doc});
+    Add(name, "string", *value, doc);
   }
 
  protected:
   void ChoiceIndex(const char* name, int* index, std::span<const char* const> names,
                    const char* doc) override {
-    rows.push_back({name, "string", names[static_cast<size_t>(*index)], JoinNames(names), doc});
+    OptionRow& row = Add(name, "string", names[static_cast<size_t>(*index)], doc);
+    row.choices.assign(names.begin(), names.end());
   }
 
  private:
-  static std::string Domain(Range range) { return fmt::format("{} to {}", range.min, range.max); }
+  OptionRow& Add(const char* name, const char* type, const nlohmann::json& value, const char* doc) {
+    return rows.emplace_back(OptionRow{name, type, value, {}, {}, {}, group_, doc});
+  }
+
+  std::string group_;
 };
 
 }  // namespace
@@ -159,3 +187,29 @@ std::vector<OptionRow> Rows(void* options, DescribeFunction describe) {
 }
 
 }  // namespace soslam::internal
+
+namespace soslam {
+
+nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows,
+                                      const std::string& title) {
+  nlohmann::ordered_json properties = nlohmann::ordered_json::object();
+  for (const OptionRow& row : rows) {
+    nlohmann::ordered_json& property = properties[row.name];
+    property = {{"type", row.type}, {"default", row.default_value}};
+    if (row.range) {
+      property["minimum"] = row.range->min;
+      property["maximum"] = row.range->max;
+    }
+    if (!row.choices.empty()) property["enum"] = row.choices;
+    if (!row.unit.empty()) property["unit"] = row.unit;
+    if (!row.group.empty()) property["group"] = row.group;
+    property["description"] = row.doc;
+  }
+  return {{"$schema", "http://json-schema.org/draft-07/schema#"},
+          {"title", title},
+          {"type", "object"},
+          {"properties", properties},
+          {"additionalProperties", false}};
+}
+
+}  // namespace soslam

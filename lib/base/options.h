@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -15,7 +16,9 @@ namespace soslam {
 //   void Describe(OptionVisitor& visit) { visit.Real("border_px", &border_px, {0, 1e4}, "doc"); ...
 //   }
 //
-// and everything else follows from it: reading and writing JSON, the command line, --help.
+// and everything else follows from it: reading and writing JSON, the command line, --help, the
+// JSON schema of the settings. The unit of a number is the end of its name (_px, _deg, _m, ...);
+// other numbers have none. A doc names the equation of the paper that an option stands for.
 class OptionVisitor {
  public:
   struct Range {
@@ -24,6 +27,10 @@ class OptionVisitor {
   };
 
   virtual ~OptionVisitor() = default;
+
+  // Options that follow are listed under this heading, up to the next one; a heading may come back.
+  virtual void Group(const char* /*heading*/) {}
+
   virtual void Real(const char* name, double* value, Range range, const char* doc) = 0;
   virtual void Integer(const char* name, int* value, Range range, const char* doc) = 0;
   virtual void Flag(const char* name, bool* value, const char* doc) = 0;
@@ -43,14 +50,21 @@ class OptionVisitor {
                            const char* doc) = 0;
 };
 
-// One option, as a person reads it.
+// One option, for --help and the settings schema.
 struct OptionRow {
   std::string name;
-  std::string type;           // "number", "integer", "boolean", "string"
-  std::string default_value;  // as written in JSON
-  std::string domain;         // range or choices; empty when free
+  std::string type;  // as in JSON schemas: "number", "integer", "boolean", "string"
+  nlohmann::json default_value;
+  std::optional<OptionVisitor::Range> range;  // of numbers
+  std::vector<std::string> choices;           // of enumerations
+  std::string unit;                           // "px"; empty for none
+  std::string group;                          // heading; empty before the first one
   std::string doc;
 };
+
+// The JSON schema (draft 7) of a settings file with these options: it takes what OptionsFromJson
+// takes. Units and groups are there as keywords "unit" and "group".
+nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows, const std::string& title);
 
 namespace internal {
 
@@ -82,7 +96,7 @@ void OptionsFromJson(const nlohmann::json& values, const std::string& where, Opt
   internal::FromJson(options, &internal::DescribeErased<Options>, values, where);
 }
 
-// The options with defaults, domains and documentation, in order of declaration.
+// The options in order of declaration.
 template <typename Options>
 std::vector<OptionRow> OptionRows() {
   Options options;

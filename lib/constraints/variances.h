@@ -18,13 +18,14 @@ struct ConstraintVariances {
   double ratio = 1.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Covariances of the constraints of the paper");
     visit.Real("detection_variance_dm4", &detection_dm4, {1e-12, 1e12},
-               "Sigma_det of eq. (4), of squared lengths in decimetres");
+               "Sigma_det of eq. (4): of squared lengths");
     visit.Real("support_angle_variance_deg2", &support_angle_deg2, {1e-12, 1e12},
-               "Sigma_theta of eq. (8), in degrees squared");
+               "Sigma_theta of eq. (8): of angles");
     visit.Real("support_tangency_variance_dm4", &support_tangency_dm4, {1e-12, 1e12},
-               "Sigma_pi of eq. (8), of squared lengths in decimetres");
-    visit.Real("ratio_variance", &ratio, {1e-12, 1e12}, "Sigma_ssc of eq. (11), no unit");
+               "Sigma_pi of eq. (8): of squared lengths");
+    visit.Real("ratio_variance", &ratio, {1e-12, 1e12}, "Sigma_ssc of eq. (11): of ratios");
   }
 
   // In the units of the residuals.

@@ -51,30 +51,28 @@ struct FolderOptions {
   std::string class_names;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Files of a folder of images (format = soslam, tum_rgbd, icl_nuim)");
     visit.Text("images", &images,
-               "soslam, tum_rgbd, icl_nuim: the list of images, lines \"timestamp filename\"; of "
+               "the list of images, lines \"timestamp filename\"; of "
                "the latter two also pairs of colour and depth images; empty: the images are those "
                "that the detections name by their timestamps");
-    visit.Text("odometry", &odometry,
-               "soslam, tum_rgbd, icl_nuim: the file with the pose estimates");
-    visit.Text("groundtruth", &groundtruth,
-               "soslam, tum_rgbd, icl_nuim: the file with the true poses");
-    visit.Choice(
-        "trajectory_format", &trajectory_format, kTrajectoryFormatNames,
-        "soslam, tum_rgbd, icl_nuim: how both files say poses: timestamp tx ty tz qx qy qz "
-        "qw (tum), or 12 numbers, one line for each listed image (kitti)");
+    visit.Text("odometry", &odometry, "the file with the pose estimates");
+    visit.Text("groundtruth", &groundtruth, "the file with the true poses");
+    visit.Choice("trajectory_format", &trajectory_format, kTrajectoryFormatNames,
+                 "how both files say poses: timestamp tx ty tz qx qy qz "
+                 "qw (tum), or 12 numbers, one line for each listed image (kitti)");
     visit.Flag("align_odometry", &align_odometry,
-               "soslam, tum_rgbd, icl_nuim: the odometry has a world of its own: it is moved as a "
+               "the odometry has a world of its own: it is moved as a "
                "whole so that its first pose that has a true one is that");
     visit.Text("camera", &camera,
-               "soslam, tum_rgbd, icl_nuim: \"width height fx fy cx cy\" (px); empty: camera.json "
+               "\"width height fx fy cx cy\" in pixels; empty: camera.json "
                "says it");
     visit.Text("distortion", &distortion,
                "soslam, tum_rgbd: what the lens did to images and boxes: \"k1 k2 p1 p2 k3\" as "
                "OpenCV has them; empty: camera.json says it, or nothing");
     visit.Choice(
         "detections_format", &detections_format, kDetectionsFormatNames,
-        "soslam, tum_rgbd, icl_nuim: how `detections` says boxes: detections.csv with or "
+        "how `detections` says boxes: detections.csv with or "
         "without object ids (csv); a folder or archive of text files with fractions of the "
         "image (yolo) or pixels from the upper left corner (yolo_pixels); COCO's results "
         "(coco); OA-SLAM's JSON (oa_slam); <class>/<name>.txt, or a folder of such class "
@@ -97,6 +95,7 @@ struct KittiOptions {
   int static_min_views = 10;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Recordings (format = kitti_tracking, slam_synthetic)");
     visit.Text("sequences", &sequences,
                "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; slam_synthetic: "
                "the names of the problems; empty: all");
@@ -107,12 +106,13 @@ struct KittiOptions {
     visit.Text("translation_scale", &translation_scale,
                "kitti_tracking: what the poses' translations are multiplied by; by recording as in "
                "\"0000-0013:0.969 0020:0.988\", or one number for all");
-    visit.Text("image_size", &image_size,
-               "kitti: width and height of recordings without any image (px), by recording as in "
-               "\"0000-0013:1242x375\", or one for all");
+    visit.Text(
+        "image_size", &image_size,
+        "kitti: width and height of recordings without any image in pixels, by recording as in "
+        "\"0000-0013:1242x375\", or one for all");
     visit.Real("static_radius_m", &static_radius_m, {0, 1e6},
                "kitti_tracking: an object is static when, seen often enough, most of its labelled "
-               "positions in the world are at most this far from their median (m)");
+               "positions in the world are at most this far from their median");
     visit.Real("static_share", &static_share, {0, 1},
                "kitti_tracking: how many of a static object's positions have to be that near");
     visit.Integer("static_min_views", &static_min_views, {1, 1000000},
@@ -142,17 +142,21 @@ struct ImportOptions {
   KittiOptions kitti;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Dataset");
     visit.Choice("format", &format, kDatasetFormatNames, "what the dataset folder holds");
     visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
                  "soslam, tum_rgbd, icl_nuim, slam_synthetic: which poses are the estimates; the "
                  "others when a folder does not have them");
+    visit.Choice("camera_planes", &camera_planes, kPlanePosesNames,
+                 "the poses that carry annotated world planes into each frame; the trajectory when "
+                 "there is no ground truth");
     visit.Text("detections", &detections,
                "the file or folder with the boxes; empty: detections.csv, of kitti_tracking the "
                "boxes of its labels (\"labels\"). For kitti_tracking the folder of a detector, "
                "whose boxes take the objects of the labels that they match");
-    visit.Choice("camera_planes", &camera_planes, kPlanePosesNames,
-                 "the poses that carry annotated world planes into each frame; the trajectory when "
-                 "there is no ground truth");
+    visit.Real("max_time_difference_s", &max_time_difference_s, {0, 1e6},
+               "an image takes the pose nearest in time, at most this far away");
+    visit.Group("Frames");
     visit.Integer("first_frame", &first_frame, {0, 1000000},
                   "images before this one, counted from 0 in each segment, are not used");
     visit.Integer("frame_stride", &frame_stride, {1, 1000000},
@@ -161,24 +165,23 @@ struct ImportOptions {
                  "which of the used frames no estimate gets to see; what was detected there is "
                  "kept to judge landmarks by (odd: the second, the fourth, ... of each segment)");
     visit.Flag("images_only", &images_only, "frames whose image the dataset lacks are not used");
+    visit.Group("Detections that are used");
     visit.Text("labels", &labels,
                "detections of other labels are dropped; commas between several, empty: all are "
                "used");
+    visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
+    visit.Real("border_px", &border_px, {0, 1e5},
+               "boxes closer to the image border than this are dropped");
+    visit.Real("min_box_height_px", &min_box_height_px, {0, 1e5}, "lower boxes are dropped");
     visit.Real("max_truncation", &max_truncation, {0, 100},
                "detections whose label says that more is outside the image are dropped; in the "
                "dataset's measure (kitti_tracking: 0, 1, 2; kitti_object: share)");
     visit.Integer("max_occlusion", &max_occlusion, {0, 100},
                   "detections whose label says that more is hidden are dropped; in the dataset's "
                   "measure (kitti: 0 visible, 1 partly, 2 largely hidden, 3 unknown)");
-    visit.Real("min_box_height_px", &min_box_height_px, {0, 1e5}, "lower boxes are dropped (px)");
-    visit.Real("border_px", &border_px, {0, 1e5},
-               "boxes closer to the image border than this are dropped (px)");
     visit.Integer("min_observations", &min_observations, {1, 1000000},
                   "objects with fewer usable detections lose them all; of no effect where "
                   "detections do not say which object they are of");
-    visit.Real("max_time_difference_s", &max_time_difference_s, {0, 1e6},
-               "an image takes the pose nearest in time, at most this far away (s)");
-    visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
     visit.Real(
         "hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
         "the share of a box's lower edge that must lie inside boxes of nearer objects for it "

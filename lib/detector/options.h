@@ -29,14 +29,16 @@ struct DetectorOptions {
   double max_overlap = 0.45;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Network");
     visit.Choice("output_layout", &output_layout, kYoloLayoutNames,
                  "the network's output: v5 [1, N, 5 + classes] or v8 [1, 4 + classes, N]");
     visit.Choice("pixel_values", &pixel_values, kPixelValuesNames,
                  "what the network takes: rgb_0_1 (Ultralytics) or bgr_0_255 (YOLOX)");
-    visit.Integer("input_width", &input_width, {1, 8192},
-                  "width of the network's input, as it was exported (px)");
-    visit.Integer("input_height", &input_height, {1, 8192},
-                  "height of the network's input, as it was exported (px)");
+    visit.Integer("input_width_px", &input_width, {1, 8192},
+                  "width of the network's input, as it was exported");
+    visit.Integer("input_height_px", &input_height, {1, 8192},
+                  "height of the network's input, as it was exported");
+    visit.Group("Detections that are kept");
     visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
     visit.Real("max_overlap", &max_overlap, {0, 1},
                "of two boxes of one class with a larger IoU, the one with the lower score is "

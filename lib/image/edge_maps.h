@@ -20,17 +20,19 @@ struct EdgesOptions {
   double corner_min_distance_px = 4.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Edges");
     visit.Real("blur_sigma_px", &blur_sigma_px, {0, 100},
-               "Gaussian blur before the edge detector, pixels; 0 for none");
+               "Gaussian blur before the edge detector; 0 for none");
     visit.Real("canny_low", &canny_low, {0, 1e4},
                "Canny: gradient that continues an edge (3 x 3 Sobel, grey values 0 to 255)");
     visit.Real("canny_high", &canny_high, {0, 1e4},
                "Canny: gradient that starts an edge; not below canny_low");
+    visit.Group("Corners");
     visit.Integer("max_corners", &max_corners, {1, 1e6}, "Corners kept per image, strongest first");
     visit.Real("corner_quality", &corner_quality, {1e-6, 1},
                "Weakest corner kept, as a fraction of the strongest one's smaller eigenvalue");
     visit.Real("corner_min_distance_px", &corner_min_distance_px, {0, 1e4},
-               "Smallest distance between two corners, pixels");
+               "Smallest distance between two corners");
   }
   // Throws SettingsError when canny_low is above canny_high.
   void Check() const;

@@ -44,6 +44,7 @@ struct InitialiseOptions {
   double view_correlation_deg = 20.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Landmarks");
     visit.Choice(
         "method", &method, kInitialisationMethodNames,
         "one landmark per observation: an ellipsoid as in section IV (single_frame), or a body of "
@@ -51,11 +52,9 @@ struct InitialiseOptions {
         "observations: such a body (multi_view), or an ellipsoid by SVD (svd)");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
-    visit.Choice("shape", &shape, kShapeSourceNames,
-                 "yaw_sweep, multi_view: where the shape exponent comes from");
-    variances.Describe(visit);
+    visit.Group("Ellipsoids (method = single_frame)");
     visit.Integer("yaw_starts", &yaw_starts, {1, 360},
-                  "starting yaws over half a turn of the single-frame solve, eq. (12)");
+                  "starting yaws over half a turn of the solve, eq. (12)");
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations per start");
     visit.Real("tie_edge_px", &tie_edge_px, {0.0, 1000.0},
@@ -64,13 +63,15 @@ struct InitialiseOptions {
     visit.Choice("tie_break", &tie_break, kTieBreakNames,
                  "which yaw is chosen where several explain the box: nearest to the world's axes "
                  "(modulo quarter turns), or with the front facing the camera most");
-    upright.Describe(visit);
+    variances.Describe(visit);
+    upright.Describe(visit);  // the next two come under its heading
+    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
+    visit.Real(
+        "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+        "multi_view, and yaw_prior = motion: boxes from viewpoints closer than this angle at "
+        "the object share what the label's shape cannot explain, so that they count as one; 0: all "
+        "boxes are independent");
     yaw_prior.Describe(visit);
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "multi_view, yaw_prior motion: boxes from viewpoints closer than this angle at the "
-               "object share what "
-               "the label's shape cannot explain, so that they count as one; 0: all boxes are "
-               "independent");
   }
 };
 

@@ -12,6 +12,7 @@ struct UprightOptions {
   double yaw_grid_deg = 3.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Upright bodies (any shape, on a grid of yaws)");
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
                "standard deviation of a detector's box edge, as a fraction of the box's width or "
                "height; at least 1 px");

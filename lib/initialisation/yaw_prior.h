@@ -27,19 +27,20 @@ struct YawPriorOptions {
   double standing_sigma_deg = 5.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Prior of the yaw (method = yaw_sweep)");
     visit.Choice("yaw_prior", &source, kYawPriorSourceNames,
-                 "yaw_sweep: what is known of the yaw besides the box: nothing; what the object's "
+                 "what is known of the yaw besides the box: nothing; what the object's "
                  "boxes in the frames before and after say: along its motion, or, when it stands, "
                  "what suits them all; or, for ablations, the truth");
     visit.Integer("motion_frames", &motion_frames, {1, 100000},
-                  "yaw_prior motion: how many frames before and as many after");
+                  "motion: how many frames before and as many after");
     visit.Real("motion_min_m", &motion_min_m, {0.0, 1e6},
-               "yaw_prior motion: what moves less over these frames stands (m)");
+               "motion: what moves less over these frames stands");
     visit.Real("motion_foot_sigma_m", &motion_foot_sigma_m, {1e-6, 1e6},
-               "yaw_prior motion: standard deviation, across the motion, of how far the middle of "
-               "a box's lower edge seems to move on the support plane (m)");
+               "motion: standard deviation, across the motion, of how far the middle of "
+               "a box's lower edge seems to move on the support plane");
     visit.Real("standing_sigma_deg", &standing_sigma_deg, {1e-3, 180.0},
-               "yaw_prior motion: standard deviation of the yaw of what stands");
+               "motion: standard deviation of the yaw of what stands");
   }
 };
 

@@ -49,64 +49,65 @@ struct OptimiseOptions {
   int max_iterations = 500;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Constraints");
     visit.Choice(
         "detection_model", &detection_model, kDetectionModelNames,
         "what a box says about a landmark: the tangent planes of its ellipsoid (eq. 4), or "
         "those of a body of its label's shape, in pixels, with the label's spread of "
         "ratios");
+    visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
+    visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
+    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
+                 "where the size ratio of eq. (11) comes from");
+    visit.Flag("symmetry", &symmetry,
+               "use the texture symmetry of some of each object's observations, eq. (16)");
+    visit.Flag("edge_alignment", &edge_alignment,
+               "use the alignment of the bodies' edges with the images'");
+    visit.Integer(
+        "symmetry_views", &symmetry_views, {1, 100000},
+        "for symmetry: how many observations of each object, evenly over all from the first on");
+    visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
+               "weighted residuals beyond this count linearly (Huber loss H of eq. (1)); with "
+               "tangency, those of odometry and boxes");
+    visit.Group("Poses and odometry");
     visit.Flag("hold_poses", &hold_poses,
                "the poses of the trajectory stay as they are, as those of motion capture or of "
                "structure from motion should; otherwise they are odometry, which drifts");
-    visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
-    visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
-    visit.Flag("symmetry", &symmetry,
-               "use the texture symmetry of some of each object's observations, eq. (16)");
-    visit.Integer(
-        "symmetry_views", &symmetry_views, {1, 100000},
-        "how many observations of each object, evenly over all of them from the first on");
-    visit.Flag("edge_alignment", &edge_alignment,
-               "use the alignment of the bodies' edges with the images'");
-    edges.Describe(visit);
-    texture.Describe(visit);
-    visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
-               "tangency: standard deviation of a detector's box edge, as a fraction of the box's "
-               "width or height; at least 1 px");
-    visit.Real(
-        "detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
-        "tangency: standard deviation of a bias that each of the four edges has in all boxes "
-        "of the sequence, estimated along; 0: no bias");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "tangency: what a body of the label's shape cannot explain in a box, boxes from "
-               "viewpoints closer than this angle at the object share, so that they count as one; "
-               "0: all boxes are independent");
-    visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
-               "tangency: cost (negative logarithm of a likelihood) of a yaw half-way between the "
-               "world's horizontal axes; 0 for objects that stand anyhow");
-    visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
-               "tangency: standard deviation of the tilt of a body on its support plane");
-    visit.Real(
-        "standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
-        "tangency: standard deviation of the height of a body's foot over its support plane");
-    visit.Flag("refine_planes", &refine_planes,
-               "tangency: estimated support planes are variables; given ones never are");
-    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
-                 "where the size ratio of eq. (11) comes from");
-    visit.Choice("shape", &shape, kShapeSourceNames,
-                 "tangency: where the shape exponent comes from");
-    variances.Describe(visit);
     visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
                "standard deviation of the odometry between two frames");
     visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
                "standard deviation of the odometry between two frames, per axis");
+    visit.Group("Bodies of any shape (detection_model = tangency)");
+    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
+    visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
+               "standard deviation of a detector's box edge, as a fraction of the box's "
+               "width or height; at least 1 px");
+    visit.Real("detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
+               "standard deviation of a bias that each of the four edges has in all boxes "
+               "of the sequence, estimated along; 0: no bias");
+    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+               "what a body of the label's shape cannot explain in a box, boxes from "
+               "viewpoints closer than this angle at the object share, so that they count as one; "
+               "0: all boxes are independent");
+    visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
+               "cost (negative logarithm of a likelihood) of a yaw half-way between the "
+               "world's horizontal axes; 0 for objects that stand anyhow");
+    visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
+               "standard deviation of the tilt of a body on its support plane");
+    visit.Real("standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
+               "standard deviation of the height of a body's foot over its support plane");
+    visit.Flag("refine_planes", &refine_planes,
+               "estimated support planes are variables; given ones never are");
+    variances.Describe(visit);
+    symmetry_options.Describe(visit);  // the next one comes under its heading
     visit.Real(
         "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
         "quadric: standard deviation of a pair's descriptor difference, in the descriptor's unit");
-    visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
-               "weighted residuals beyond this count linearly (Huber loss H of eq. (1)); with "
-               "tangency, those of odometry and boxes");
-    symmetry_options.Describe(visit);
-    visit.Flag("covariances", &covariances, "compute the covariance of every landmark");
+    edges.Describe(visit);
+    texture.Describe(visit);
+    visit.Group("Solver");
     visit.Integer("max_iterations", &max_iterations, {1, 10000}, "Levenberg-Marquardt iterations");
+    visit.Flag("covariances", &covariances, "compute the covariance of every landmark");
   }
 };
 

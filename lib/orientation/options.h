@@ -19,6 +19,7 @@ struct EdgeOptions {
   double edge_correlation_px = 60.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Edge alignment (edges of a body and of the image)");
     visit.Real("edge_sigma_px", &edge_sigma_px, {0.1, 100.0},
                "standard deviation of the distance between an edge of the body and its image");
     visit.Real("edge_truncation_px", &edge_truncation_px, {0.1, 1000.0},
@@ -41,6 +42,7 @@ struct TextureOptions {
   double mirror_plane_range = 0.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Texture asymmetry and mirror planes");
     visit.Real("asymmetry_cost", &asymmetry_cost, {0.0, 1e6},
                "negative log likelihood of a texture that is not symmetric");
     visit.Real("asymmetry_scale", &asymmetry_scale, {1e-6, 1e6},
@@ -66,11 +68,11 @@ struct ProfileOptions {
   TextureOptions texture;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Orientation profile (method = profile)");
     visit.Flag("edge_alignment", &edge_alignment,
-               "profile: use the alignment of the body's edges with the image's");
-    visit.Flag("texture_symmetry", &texture_symmetry, "profile: use the symmetry of the texture");
-    visit.Choice("shape", &shape, kShapeSourceNames,
-                 "profile: where the shape exponent comes from");
+               "use the alignment of the body's edges with the image's");
+    visit.Flag("texture_symmetry", &texture_symmetry, "use the symmetry of the texture");
+    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
     upright.Describe(visit);
     edges.Describe(visit);
     texture.Describe(visit);
@@ -89,6 +91,7 @@ struct OrientationOptions {
   ProfileOptions profile;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Landmarks");
     visit.Choice("method", &method, kRefinementMethodNames,
                  "turn the initial landmark by the symmetry of its texture (section V), or find it "
                  "anew from its orientation profile");

@@ -23,11 +23,13 @@ struct LearnPriorsOptions {
   int min_views = 10;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Table");
     visit.Choice("base_rows", &base_rows, kBaseRowsNames,
                  "keep: ratios, spreads and shapes of the base table stay, what it lacks is "
                  "learned; update: its ratios and heights count as so many objects as they were "
                  "learned from, at least one, its correlations as correlation_weight, its shapes "
                  "where none is learned");
+    visit.Group("Ratios, heights and shapes");
     visit.Real("min_log_sigma", &min_log_sigma, {1e-3, 1.0},
                "Robust spread of a label's logarithms is taken to be at least this");
     visit.Real("spread_weight", &spread_weight, {0.1, 1e3},

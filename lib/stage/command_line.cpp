@@ -10,12 +10,16 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/machine.h"
+#include "base/progress.h"
+#include "stage/help.h"
 #include "stage/settings_file.h"
 
 namespace soslam::internal {
@@ -28,16 +32,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kFailureRecord = "--failure_record";
+
 // What CLI11 stores while it parses.
 struct ParsedArguments {
   StageFiles files;
   std::string settings_file;
   int threads = 0;
+  bool quiet = false;
   std::map<std::string, std::string> option_texts;  // by option name
 };
 
-void AddFiles(const StageInfo& info, CLI::App* app, ParsedArguments* parsed) {
-  for (const FileArgument& file : info.files) {
+void AddFiles(const std::vector<FileArgument>& files, const std::string& group, CLI::App* app,
+              ParsedArguments* parsed) {
+  for (const FileArgument& file : files) {
     const std::string paths = file.repeatable ? "PATH ..." : "PATH";
     CLI::Option* option = app->add_option_function<std::vector<std::string>>(
         "--" + file.name,
@@ -45,7 +53,7 @@ void AddFiles(const StageInfo& info, CLI::App* app, ParsedArguments* parsed) {
           for (size_t i = 0; i < paths.size(); ++i) parsed->files[RepeatedName(name, i)] = paths[i];
         },
         file.doc);
-    option->group("Files")
+    option->group(group)
         ->required(file.required)
         ->option_text(file.required ? paths + " (required)" : paths);
     if (!file.repeatable) option->expected(1);
@@ -54,17 +62,16 @@ void AddFiles(const StageInfo& info, CLI::App* app, ParsedArguments* parsed) {
 
 void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
   for (const OptionRow& row : options) {
-    const std::string domain = row.domain.empty() ? "" : "; " + row.domain;
     CLI::Option* option = app->add_option_function<std::string>(
         "--" + row.name,
         [parsed, name = row.name](const std::string& text) { parsed->option_texts[name] = text; },
-        fmt::format("{}\n[default {}{}]", row.doc, row.default_value, domain));
-    option->group("Options")->option_text(row.type);
+        OptionHelp(row));
+    option->group(row.group.empty() ? "Options" : row.group)->option_text(row.type);
     if (row.type == "boolean") option->expected(0, 1);
   }
 }
 
-void AddCommon(CLI::App* app, ParsedArguments* parsed) {
+void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
   app->add_option("--settings", parsed->settings_file,
                   "JSON object of options; those on the command line win")
       ->group("Common")
@@ -74,6 +81,18 @@ void AddCommon(CLI::App* app, ParsedArguments* parsed) {
       ->check(CLI::Range(0, 1024))
       ->group("Common")
       ->option_text("integer");
+  app->add_option(kFailureRecord, "file to write when the stage fails: exit code and error")
+      ->group("Common")
+      ->option_text("PATH");
+  app->add_flag("--quiet", parsed->quiet, "show no progress on stderr")->group("Common");
+  app->add_flag_callback(
+         "--settings_schema",
+         [&options, app] {
+           std::cout << SettingsSchema(options, "Settings of " + app->get_name()).dump(2) << "\n";
+           throw CLI::Success();
+         },
+         "print the JSON schema of the settings and exit")
+      ->group("Common");
   AddHelpAndVersion(app);
 }
 
@@ -142,7 +161,14 @@ std::string OneLine(std::string text) {
 }
 
 int Fail(const CLI::App& app, ExitCode exit_code, const std::string& message) {
-  std::cerr << app.get_name() << ": error: " << OneLine(message) << std::endl;
+  const std::string line = OneLine(message);
+  std::cerr << app.get_name() << ": error: " << line << std::endl;
+  const CLI::Option* record = app.get_option_no_throw(kFailureRecord);
+  if (record != nullptr && record->count() > 0) {
+    // Where the record cannot be written, stderr has to do.
+    std::ofstream(record->as<std::string>())
+        << fmt::format("exit code {}: {}\n", static_cast<int>(exit_code), line);
+  }
   return static_cast<int>(exit_code);
 }
 
@@ -150,12 +176,15 @@ void ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::
                  const std::vector<OptionRow>& options,
                  const std::function<void(const StageCall&)>& run) {
   ParsedArguments parsed;
-  app->get_formatter()->column_width(34);
-  app->footer(fmt::format("Example:\n  {}\n\n{}", info.example, kExitCodes));
-  AddFiles(info, app, &parsed);
+  app->formatter(std::make_shared<HelpFormatter>());
+  app->footer(fmt::format("Example:\n  {}\n\n{}", ExampleHelp(info.example), kExitCodes));
+  AddFiles(info.inputs, "Inputs", app, &parsed);
+  AddFiles(info.outputs, "Outputs", app, &parsed);
   AddOptions(options, app, &parsed);
-  AddCommon(app, &parsed);
+  AddCommon(options, app, &parsed);
   app->parse(argc, argv);
+  std::optional<ProgressOnStderr> progress;
+  if (!parsed.quiet) progress.emplace(info.name);
 
   const auto start = std::chrono::steady_clock::now();
   const StageCall call = MakeCall(parsed, options);
@@ -180,7 +209,7 @@ int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
   try {
     return run();
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app->exit(error);  // --help and --version
+    if (error.get_exit_code() == 0) return app->exit(error);  // --help and its like
     return Fail(*app, ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
   } catch (const Error& error) {
     return Fail(*app, error.exit_code(), error.what());

@@ -27,7 +27,8 @@ struct FileArgument {
 struct StageInfo {
   std::string name;     // of the executable: "soslam-edges"
   std::string purpose;  // one sentence
-  std::vector<FileArgument> files;
+  std::vector<FileArgument> inputs;
+  std::vector<FileArgument> outputs;
   std::string example;  // one command
 };
 

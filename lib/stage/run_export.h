@@ -10,6 +10,7 @@ struct ExportOptions {
   bool truth = false;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Objects");
     visit.Flag("truth", &truth,
                "Export the ground truth of the sequence, poses and objects, in place of a map");
   }

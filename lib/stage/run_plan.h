@@ -13,6 +13,7 @@ struct PlanOptions {
   std::string variants;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Plan");
     visit.Text("name", &name, "name of the dataset in results and settings; empty: its folder's");
     visit.Text("variants", &variants, "names of variants, separated by spaces; empty: all");
   }

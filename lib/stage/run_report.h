@@ -15,6 +15,7 @@ struct ReportOptions {
       "InitPT InitSTE, InitS InitST InitSTE, OursPT OursSTE, OursS OursST OursSTE";
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Tables");
     visit.Text("compare", &compare,
                "paired differences: lists of variants, divided by commas; in each list, every "
                "variant is compared with those before it");

@@ -11,6 +11,7 @@ struct SynthesiseOptions {
   int seed = -1;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Noise");
     visit.Flag("noise", &noise, "add the scene's noise; without it every measurement is exact");
     visit.Integer("seed", &seed, {-1, 2147483647}, "seed of the noise; -1: the scene's own");
   }

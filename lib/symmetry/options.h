@@ -30,6 +30,7 @@ struct SymmetryOptions {
   double min_pair_fraction = 0.25;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Texture symmetry: pairs of mirrored pixels");
     visit.Choice("descriptor", &descriptor, kDescriptorNames,
                  "what is compared between a pixel and its mirror pixel, eq. (16)-(24)");
     visit.Choice("sampling", &sampling, kSamplingNames, "which pixels are compared, section V-D");
@@ -68,7 +69,10 @@ struct RefineOptions {
   int max_iterations = 50;
 
   void Describe(OptionVisitor& visit) {
-    symmetry.Describe(visit);
+    visit.Group("Landmarks");
+    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
+                 "where the size ratio of eq. (11) comes from");
+    visit.Group("Turned landmarks (method = turn)");
     visit.Choice("parameters", &parameters, kRefinementParametersNames,
                  "what the refinement moves: the yaw, or then all nine parameters as well");
     visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
@@ -85,11 +89,10 @@ struct RefineOptions {
         "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
         "standard deviation of a pair's descriptor difference, in the descriptor's unit; for "
         "parameters = all");
-    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
-                 "where the size ratio of eq. (11) comes from");
-    variances.Describe(visit);
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations; for parameters = all");
+    symmetry.Describe(visit);
+    variances.Describe(visit);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "artefact/schema.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 
@@ -25,6 +26,7 @@ struct TestOptions {
   void Describe(OptionVisitor& visit) {
     visit.Real("size_m", &size_m, {0, 10}, "a size");
     visit.Integer("count", &count, {1, 5}, "a count");
+    visit.Group("Others");
     visit.Flag("on", &on, "a flag");
     visit.Text("name", &name, "a name");
     visit.Choice("colour", &colour, kColours, "a colour");
@@ -46,6 +48,12 @@ TEST(Options, KeepWhatIsNotNamed) {
   EXPECT_EQ(options.size_m, 0.1);
 }
 
+TEST(Options, TakeAnIntegerWrittenAsANumber) {
+  TestOptions options;
+  OptionsFromJson({{"count", 5.0}}, "test", &options);
+  EXPECT_EQ(options.count, 5);
+}
+
 TEST(Options, RefuseWhatTheyCannotTake) {
   const nlohmann::json cases = nlohmann::json::parse(R"([
     {"siz_m": 1}, {"size_m": "1"}, {"size_m": 11}, {"size_m": null}, {"count": 2.5}, {"count": 0},
@@ -61,13 +69,43 @@ TEST(Options, RefuseWhatTheyCannotTake) {
       SettingsError);
 }
 
-TEST(Options, ListEveryOptionWithItsDomain) {
+TEST(Options, RowsSayTypeDefaultDomainUnitAndGroup) {
   const auto rows = OptionRows<TestOptions>();
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[0].name, "size_m");
-  EXPECT_EQ(rows[0].default_value, "0.1");
-  EXPECT_EQ(rows[0].domain, "0 to 10");
-  EXPECT_EQ(rows[4].domain, "red | blue");
+  EXPECT_EQ(rows[0].type, "number");
+  EXPECT_EQ(rows[0].default_value, 0.1);
+  EXPECT_EQ(rows[0].range->max, 10.0);
+  EXPECT_EQ(rows[0].unit, "m");
+  EXPECT_EQ(rows[0].group, "");
+  EXPECT_EQ(rows[0].doc, "a size");
+  EXPECT_EQ(rows[1].unit, "");
+  EXPECT_EQ(rows[2].group, "Others");
+  EXPECT_FALSE(rows[3].range);
+  EXPECT_EQ(rows[4].choices, (std::vector<std::string>{"red", "blue"}));
+}
+
+// Both sides of every border, and every type in place of every other.
+TEST(Options, TheSchemaTakesWhatTheyTake) {
+  const nlohmann::json schema = SettingsSchema(OptionRows<TestOptions>(), "Settings");
+  const nlohmann::json values = nlohmann::json::parse(
+      R"([0, 1, 5, 6, 10, 10.5, -0.001, 2.5, 1e300, true, null, "", "red", "green", [], {}])");
+  int taken = 0;
+  for (const char* name : {"size_m", "count", "on", "name", "colour", "unheard_of"}) {
+    for (const nlohmann::json& value : values) {
+      const nlohmann::json settings = {{name, value}};
+      bool is_taken = true;
+      try {
+        TestOptions options;
+        OptionsFromJson(settings, "test", &options);
+      } catch (const SettingsError&) {
+        is_taken = false;
+      }
+      taken += is_taken ? 1 : 0;
+      EXPECT_EQ(!ViolationOf(settings, schema), is_taken) << settings;
+    }
+  }
+  EXPECT_EQ(taken, 13);  // size_m 6, count 2, on 1, name 3, colour 1
 }
 
 }  // namespace

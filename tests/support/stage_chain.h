@@ -39,8 +39,8 @@ class StageChain {
 
   CommandResult Run(const std::string& stage) const {
     const auto artefact = [this](const std::string& file) { return Artefact(file).string(); };
-    std::vector<std::string> words = {StageProgram(stage), "--threads", "2", "--output",
-                                      artefact(OutputOf(stage))};
+    std::vector<std::string> words = {
+        StageProgram(stage), "--quiet", "--threads", "2", "--output", artefact(OutputOf(stage))};
     const auto add = [&](const std::string& argument, const std::string& path) {
       words.insert(words.end(), {"--" + argument, path});
     };
