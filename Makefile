@@ -4,6 +4,7 @@
 
 DATASET ?=
 VARIANT ?= all
+STAGE ?=
 DATA_ROOT ?= data
 RESULTS ?= results
 PIPELINES ?= pipelines
@@ -21,11 +22,19 @@ SOURCES = $(shell find lib stages tests -name '*.h' -o -name '*.cpp')
 PLAN = $(RESULTS)/$(DATASET)/plan.mk
 PLAN_COMMAND = $(BIN)/soslam-plan --dataset $(DATA_ROOT)/$(DATASET) --name $(DATASET) \
   --pipelines $(PIPELINES) --results $(RESULTS) --variants '$(filter-out all,$(VARIANT))'
+STATUS_COMMAND = $(BIN)/soslam-status --results $(RESULTS) --executables $(BIN) \
+  --name '$(DATASET)' --variants '$(filter-out all,$(VARIANT))'
 
 one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
 $(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
-ifneq ($(filter run ablation export,$(MAKECMDGOALS)),)
+ifneq ($(filter run ablation export explain,$(MAKECMDGOALS)),)
 $(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
+endif
+ifneq ($(filter explain,$(MAKECMDGOALS)),)
+$(call one-word,STAGE,expected the name of one stage)
+endif
+ifneq ($(filter status explain,$(MAKECMDGOALS)),)
+$(if $(wildcard $(BIN)/soslam-status),,$(error $(BIN)/soslam-status is not there yet: make build))
 endif
 
 .PHONY: help
@@ -34,6 +43,7 @@ help: ## List the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16 | sed 's/^/  /'
 	@echo 'DATASET=<name of a folder in DATA_ROOT>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
 	@echo 'RESULTS=results, PIPELINES=pipelines, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
+	@echo 'STAGE=<name> as in the table of `make status`'
 	@echo 'Variants: $(sort $(basename $(notdir $(wildcard $(PIPELINES)/variants/*.json))))'
 
 .PHONY: demo
@@ -43,10 +53,13 @@ demo: ## Run all variants on the sequence that comes with the project, and print
 	@echo
 	@echo 'This table: $(RESULTS)/tables.md. Every intermediate result: $(RESULTS)/room_a/<variant>/'
 
+# Stages that run side by side must not mix their lines; synchronised, progress would come too late.
+SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)
+
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
 	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
-	+@if test -e $(PLAN); then $(MAKE) --keep-going --output-sync -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
+	+@if test -e $(PLAN); then $(MAKE) --keep-going $(SEVERAL_JOBS) -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
 	else echo '# then the stages that $(PLAN) lists'; fi
 
 .PHONY: ablation
@@ -75,8 +88,12 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	done; exit $$status
 
 .PHONY: status
-status: ## Say for each dataset, variant and stage whether its result is done, stale or missing
-	@BIN=$(BIN) RESULTS=$(RESULTS) pipelines/status.sh $(DATASET)
+status: ## Say for each dataset, variant and stage: done, stale, failed or missing
+	@$(STATUS_COMMAND)
+
+.PHONY: explain
+explain: ## Say why STAGE=<name> of DATASET=<name> and VARIANT=<name>|all would run again
+	@$(STATUS_COMMAND) --explain $(STAGE)
 
 .PHONY: setup
 setup: ## Install the packages that are missing (apt, as root or through sudo)

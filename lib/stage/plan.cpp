@@ -113,6 +113,28 @@ const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
   return outputs.at(stage);
 }
 
+std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
+  using Folder = Prerequisite::Folder;
+  std::vector<Prerequisite> files = {
+      {Folder::kExecutables, "soslam-" + instance.stage},
+      {Folder::kResults, InstancePath(instance.Id(), "settings.json")}};
+  for (const auto& [argument, source] : instance.inputs) {
+    files.push_back({Folder::kResults, InstancePath(source.instance, source.file)});
+  }
+  if (instance.stage == "import") files.push_back({Folder::kResults, kDatasetListing});
+  if (instance.stage == "edges" || instance.stage == "planes") {
+    files.push_back({Folder::kResults, kImagesListing});
+  }
+  if (!instance.semantic_table.empty()) {
+    files.push_back({Folder::kPipelines, instance.semantic_table});
+  }
+  return files;
+}
+
+std::string InstancePath(const std::string& instance, const std::string& file) {
+  return "shared/" + instance + "/" + file;
+}
+
 Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
               const std::vector<std::string>& variants) {
   Plan plan;

@@ -48,6 +48,22 @@ struct StageOutput {
 };
 const std::vector<StageOutput>& OutputsOfStage(const std::string& stage);
 
+// A file that a stage instance is made from.
+struct Prerequisite {
+  enum class Folder { kExecutables, kPipelines, kResults };  // the last one of this dataset
+  Folder folder;
+  std::string path;  // relative to it
+};
+std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance);
+
+// Where the artefacts and the record of a stage instance lie, relative to the results of the
+// dataset: "shared/refine-c664bee12d/done".
+std::string InstancePath(const std::string& instance, const std::string& file);
+
+// What lists the files of the dataset that import reads, and its images: see RunPlan.
+inline constexpr const char* kDatasetListing = "shared/dataset.txt";
+inline constexpr const char* kImagesListing = "shared/images.txt";
+
 // The stage runs that these variants of a dataset need. Throws SettingsError as ReadVariant.
 Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
               const std::vector<std::string>& variants);

@@ -5,8 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <set>
+
+#include "base/error.h"
 
 namespace soslam {
 namespace {
@@ -25,6 +28,7 @@ dataset := {dataset_folder}
 pipelines := {pipelines}
 BIN ?= build/bin
 THREADS ?= 0
+QUIET ?=
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .PHONY: all {variants} FORCE
@@ -36,11 +40,15 @@ dry_run := $(findstring n,$(firstword -$(MAKEFLAGS)))$(findstring q,$(firstword 
 # $(call missing,FILES): forces a rule when one of the files it made is gone.
 missing = $(if $(filter-out $(wildcard $(1)),$(1)),FORCE)
 
-# $(call stage,TITLE,COMMAND): runs a stage unless nothing but stamps is newer than its own.
+# $(call stage,TITLE,COMMAND): runs a stage unless nothing but stamps is newer than its own. When it
+# fails, `failed` beside the stamp says how; a stage that crashes cannot write that itself.
 define run-stage
 @echo '[{dataset}] $(1)'
+@rm -f $(@D)/failed
 @touch $@.begun
-@$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS)
+@$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) \
+  --failure_record $(@D)/failed || {{ code=$$?; \
+  test -e $(@D)/failed || echo "exit code $$code" > $(@D)/failed; exit $$code; }}
 @mv $@.begun $@
 endef
 stage = $(if $(dry_run)$(filter-out %/done,$?),$(run-stage),@touch $@)
@@ -66,7 +74,7 @@ class Writer {
 
  private:
   static std::string Shared(const std::string& id, const std::string& file) {
-    return fmt::format("$(results)/shared/{}/{}", id, file);
+    return "$(results)/" + InstancePath(id, file);
   }
 
   static std::vector<std::string> OutputPaths(const StageInstance& instance) {
@@ -77,7 +85,8 @@ class Writer {
     return paths;
   }
 
-  // The folder of a variant holds links, replaced together once its last stage is done.
+  // The folder of a variant holds links, replaced together once its last stage is done; .linked
+  // keeps the stages.txt that they are of.
   std::string VariantRules(const VariantChain& variant) const {
     const std::string folder = "$(results)/" + variant.name;
     std::vector<std::string> stamps, links, targets;
@@ -97,7 +106,7 @@ class Writer {
         "{folder}/.linked: {folder}/stages.txt {stamps} $(call missing,{links})\n"
         "\t@find {folder} -maxdepth 1 -type l -delete\n"
         "\t@ln -s {targets} {folder}/\n"
-        "\t@touch $@\n",
+        "\t@cp $< $@\n",
         fmt::arg("variant", variant.name), fmt::arg("folder", folder),
         fmt::arg("stamps", fmt::join(stamps, " ")), fmt::arg("links", fmt::join(links, " ")),
         fmt::arg("targets", fmt::join(targets, " ")));
@@ -117,19 +126,19 @@ class Writer {
   }
 
   static std::vector<std::string> Prerequisites(const StageInstance& instance) {
-    std::vector<std::string> files = {"$(BIN)/soslam-" + instance.stage,
-                                      Shared(instance.Id(), "settings.json")};
+    static const std::map<Prerequisite::Folder, std::string> kFolders = {
+        {Prerequisite::Folder::kExecutables, "$(BIN)/"},
+        {Prerequisite::Folder::kPipelines, "$(pipelines)/"},
+        {Prerequisite::Folder::kResults, "$(results)/"}};
+    std::vector<std::string> files;
+    for (const Prerequisite& file : PrerequisitesOf(instance)) {
+      files.push_back(kFolders.at(file.folder) + file.path);
+    }
     std::set<std::string> stamps;
     for (const auto& [argument, source] : instance.inputs) {
-      files.push_back(Shared(source.instance, source.file));
       stamps.insert(Shared(source.instance, "done"));
     }
     files.insert(files.end(), stamps.begin(), stamps.end());
-    if (instance.stage == "import") files.emplace_back("$(results)/shared/dataset.txt");
-    if (instance.stage == "edges" || instance.stage == "planes") {
-      files.emplace_back("$(results)/shared/images.txt");
-    }
-    if (!instance.semantic_table.empty()) files.push_back(SemanticTable(instance));
     return files;
   }
 
@@ -141,15 +150,13 @@ class Writer {
     for (const auto& [argument, source] : instance.inputs) {
       command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
     }
-    if (!instance.semantic_table.empty()) command += " --table " + SemanticTable(instance);
+    if (!instance.semantic_table.empty()) {
+      command += " --table $(pipelines)/" + instance.semantic_table;
+    }
     for (const StageOutput& output : OutputsOfStage(instance.stage)) {
       command += fmt::format(" --{} {}", output.argument, Shared(instance.Id(), output.file));
     }
     return command;
-  }
-
-  static std::string SemanticTable(const StageInstance& instance) {
-    return "$(pipelines)/" + instance.semantic_table;
   }
 
   const Plan& plan_;
@@ -161,6 +168,17 @@ class Writer {
 
 std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders) {
   return Writer(plan, dataset, folders).Write();
+}
+
+PlanFolders ReadPlanFolders(const fs::path& makefile) {
+  std::ifstream stream(makefile);
+  if (!stream) throw InputError(makefile.string() + ": cannot be read; nothing was planned yet");
+  std::map<std::string, fs::path> values;
+  for (std::string line; std::getline(stream, line);) {
+    const size_t assigns = line.find(" := ");
+    if (assigns != std::string::npos) values[line.substr(0, assigns)] = line.substr(assigns + 4);
+  }
+  return {values["dataset"], values["pipelines"], values["results"]};
 }
 
 }  // namespace soslam

@@ -19,4 +19,7 @@ struct PlanFolders {
 // per stage instance. It is for GNU make >= 4.3; $(BIN) is the folder of the executables.
 std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders);
 
+// The folders that a makefile by PlanMakefile names. Throws InputError when there is no such file.
+PlanFolders ReadPlanFolders(const std::filesystem::path& makefile);
+
 }  // namespace soslam

@@ -43,15 +43,6 @@ void RefuseIfNotAFolderName(const std::string& name, const std::string& what) {
   }
 }
 
-std::vector<std::string> SplitAtSpaces(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) {
-    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
-  }
-  return words;
-}
-
 // One line per file that tells when it changes, without reading it.
 std::string Fingerprint(const fs::path& folder, const std::set<std::string>& names) {
   std::string text = fs::canonical(folder).string() + "\n";
@@ -134,6 +125,15 @@ void WriteFile(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> SplitAtSpaces(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) {
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+  }
+  return words;
+}
+
 void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*/) {
   const fs::path dataset = files.at("dataset").lexically_normal();
   if (!fs::is_directory(dataset)) {
@@ -155,15 +155,15 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
     if (!instance.semantic_table.empty()) {
       RefuseIfUnfitForMake(instance.semantic_table, "setting 'semantic_table'");
     }
-    WriteFile(folders.results / "shared" / instance.Id() / "settings.json",
+    WriteFile(folders.results / InstancePath(instance.Id(), "settings.json"),
               instance.settings.dump(2) + "\n");
   }
   for (const VariantChain& variant : plan.variants) {
     WriteFile(folders.results / variant.name / "stages.txt",
               fmt::format("{}\n", fmt::join(variant.instances, "\n")));
   }
-  WriteFile(folders.results / "shared" / "dataset.txt", DatasetFingerprint(dataset, found));
-  WriteFile(folders.results / "shared" / "images.txt", Fingerprint(dataset, found.others));
+  WriteFile(folders.results / kDatasetListing, DatasetFingerprint(dataset, found));
+  WriteFile(folders.results / kImagesListing, Fingerprint(dataset, found.others));
   WriteFile(folders.results / "plan.mk", PlanMakefile(plan, name, folders));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/options.h"
 #include "stage/stage_files.h"
@@ -18,6 +19,9 @@ struct PlanOptions {
     visit.Text("variants", &variants, "names of variants, separated by spaces; empty: all");
   }
 };
+
+// The words of a list of names, each once.
+std::vector<std::string> SplitAtSpaces(const std::string& text);
 
 // Resolves the variants that folder "pipelines" defines for the dataset in folder "dataset". Under
 // <results>/<name> it writes, each only when its content changes: plan.mk, see PlanMakefile;

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "base/options.h"
+#include "stage/stage_files.h"
+
+namespace soslam {
+
+struct StatusOptions {
+  std::string name;
+  std::string variants;
+  std::string explain;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Status");
+    visit.Text("name", &name, "name of the dataset in results; empty: all that were planned");
+    visit.Text("variants", &variants, "names of variants, separated by spaces; empty: all");
+    visit.Text("explain", &explain,
+               "a stage: says why it would run again; empty: a table of all stages");
+  }
+};
+
+// Plans the datasets in folder "results" anew, and prints which stages of which variants are done,
+// stale, failed or missing, or why one stage would run. "executables" is the folder of the stages'
+// programs. Throws InputError when that dataset was never planned; SettingsError for an unknown
+// variant or stage, and as RunPlan.
+void RunStatus(const StatusOptions& options, const StageFiles& files, int threads);
+
+}  // namespace soslam

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/command_line.h"
+#include "stage/run_status.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::StatusOptions>(
+      argc, argv,
+      {.name = "soslam-status",
+       .purpose = "Says which stages are done, stale, failed or missing, and why one would run.",
+       .inputs = {{"results", "results folder, with <dataset>/plan.mk of soslam-plan"},
+                  {"executables", "folder with the programs of the stages"}},
+       .outputs = {},
+       .example = "soslam-status --results results --executables build/bin --explain refine"},
+      &soslam::RunStatus);
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kFrames = 4;
+constexpr const char* kVariants = "InitP InitPT";
+
+class StatusTest : public testing::Test {
+ protected:
+  StatusTest() {
+    const CommandResult run = pipeline_.Run(kVariants);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+  }
+  std::string Status(const std::vector<std::string>& arguments = {}) const {
+    std::vector<std::string> words = {StageProgram("status"), "--results",
+                                      pipeline_.Results().parent_path().string(), "--executables",
+                                      SOSLAM_BINARY_DIR};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const CommandResult result = RunCommand(words);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.output;
+  }
+  std::string Explain(const std::string& stage, const std::string& variant) const {
+    return Status({"--explain", stage, "--variants", variant});
+  }
+  static void Touch(const fs::path& path) {
+    fs::last_write_time(path, fs::file_time_type::clock::now());
+  }
+
+  SmallPipeline pipeline_{kFrames};
+};
+
+TEST_F(StatusTest, AfterARunEverythingIsDone) {
+  const std::string status = Status({"--variants", kVariants});
+  EXPECT_THAT(status, ContainsRegex("small +import +edges +initialise +refine +evaluate"));
+  EXPECT_THAT(status, ContainsRegex("InitP +done +- +done +- +done"));
+  EXPECT_THAT(status, ContainsRegex("InitPT +done +done +done +done +done"));
+  EXPECT_THAT(Status(), ContainsRegex("OursP +done +- +done +- +missing +missing"));
+  EXPECT_THAT(Explain("refine", "InitPT"),
+              AllOf(ContainsRegex("small: refine-[0-9a-f]+ .*InitPT.* is done"),
+                    HasSubstr("nothing that it is made from has changed")));
+}
+
+TEST_F(StatusTest, ChangedDatasetFileIsNamed) {
+  Touch(pipeline_.Dataset() / "planes.json");
+  EXPECT_THAT(Status({"--variants", "InitPT"}),
+              ContainsRegex("InitPT +stale +stale +stale +stale +stale"));
+  EXPECT_THAT(Explain("initialise", "InitP"),
+              AllOf(ContainsRegex("initialise-[0-9a-f]+ .* is stale\n"
+                                  "  sequence.json comes from import-[0-9a-f]+, which is stale\n"),
+                    ContainsRegex("import-[0-9a-f]+ .* is stale\n"
+                                  "  files of the dataset have changed since: planes.json\n")));
+}
+
+TEST_F(StatusTest, ChangedSettingIsNamedWithBothValues) {
+  nlohmann::json settings = SmallPipeline::TrueRatios();
+  settings["refine"]["yaw_step_deg"] = 5.0;
+  pipeline_.WriteSettings(settings);
+  EXPECT_THAT(Status({"--variants", "InitPT"}),
+              ContainsRegex("InitPT +done +done +done +missing +missing"));
+  EXPECT_THAT(Explain("evaluate", "InitPT"),
+              AllOf(ContainsRegex("evaluate-[0-9a-f]+ .* is missing"),
+                    ContainsRegex("refined.json: refine-[0-9a-f]+ -> refine-[0-9a-f]+"),
+                    HasSubstr("since the last complete run of InitPT: yaw_step_deg: 2.0 -> 5.0"),
+                    Not(HasSubstr("yaw_range_deg"))));
+}
+
+TEST_F(StatusTest, ChangedTableAndMissingArtefactAreNamed) {
+  Touch(pipeline_.SemanticTable());
+  EXPECT_THAT(Explain("initialise", "InitP"), HasSubstr("semantic_table.json has changed since"));
+  EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
+  EXPECT_THAT(Explain("initialise", "InitP"), HasSubstr("is done"));
+  fs::remove(fs::canonical(pipeline_.Results() / "InitP/initial.json"));
+  EXPECT_THAT(Explain("initialise", "InitP"), HasSubstr("initial.json, which it writes, is gone"));
+}
+
+TEST_F(StatusTest, FailureIsShownWithItsErrorUntilTheStageRuns) {
+  const fs::path image = pipeline_.Dataset() / "rgb/000002.png";
+  const std::string whole_image = FileBytes(image);
+  WriteBytes(image, "not an image");
+  EXPECT_NE(pipeline_.Run(kVariants).exit_code, 0);
+  const std::string status = Status({"--variants", kVariants});
+  EXPECT_THAT(status, ContainsRegex("InitP +done +- +done +- +done"));
+  EXPECT_THAT(status, ContainsRegex("InitPT +done +failed +done +stale +stale"));
+  EXPECT_THAT(status, ContainsRegex("edges-[0-9a-f]+: its last run failed: exit code 3: .*000002"));
+  WriteBytes(image, whole_image);
+  EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
+  EXPECT_THAT(Status({"--variants", kVariants}),
+              ContainsRegex("InitPT +done +done +done +done +done"));
+}
+
+// A program that dies cannot say why; its end is recorded all the same.
+TEST_F(StatusTest, CrashIsAFailure) {
+  const fs::path programs = pipeline_.Folder() / "bin";
+  fs::create_directory(programs);
+  for (const auto& entry : fs::directory_iterator(SOSLAM_BINARY_DIR)) {
+    if (entry.path().filename() == "soslam-evaluate") continue;
+    fs::create_symlink(entry.path(), programs / entry.path().filename());
+  }
+  WriteBytes(programs / "soslam-evaluate", "#!/bin/sh\nkill -SEGV $$\n");
+  fs::permissions(programs / "soslam-evaluate", fs::perms::owner_all);
+  EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + programs.string()}).exit_code, 0);
+  EXPECT_THAT(Status({"--variants", "InitP"}),
+              ContainsRegex("evaluate-[0-9a-f]+: its last run failed: exit code 139"));
+}
+
+TEST(StatusOfNothingTest, UnknownStageIsRefused) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      RunCommand({StageProgram("status"), "--results", folder.path().string(), "--executables",
+                  SOSLAM_BINARY_DIR, "--explain", "paint"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("'paint'"), HasSubstr("initialise")));
+}
+
+TEST(StatusOfNothingTest, NothingRanYet) {
+  const TemporaryFolder folder;
+  const CommandResult result =
+      RunCommand({StageProgram("status"), "--results", folder.path().string(), "--executables",
+                  SOSLAM_BINARY_DIR});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("nothing ran yet"));
+}
+
+}  // namespace
+}  // namespace soslam
