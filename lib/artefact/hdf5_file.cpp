@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "artefact/hdf5_types.h"
 #include "base/error.h"
 
 namespace soslam {
@@ -18,37 +19,12 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-using Shape = std::vector<std::uint64_t>;
+using Shape = Hdf5Shape;
 
 // Beyond any image that can be processed; a damaged size must not exhaust the memory.
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 28;
 
 constexpr const char* kDamaged = "cannot be read; the file is cut short or damaged";
-
-struct Element {
-  hid_t file_type;
-  hid_t memory_type;
-  const char* name;
-};
-
-Element ElementOf(int depth) {
-  switch (depth) {
-    case CV_8U:
-      return {H5T_STD_U8LE, H5T_NATIVE_UINT8, "uint8"};
-    case CV_16S:
-      return {H5T_STD_I16LE, H5T_NATIVE_INT16, "int16"};
-    case CV_32S:
-      return {H5T_STD_I32LE, H5T_NATIVE_INT32, "int32"};
-    case CV_32F:
-      return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, "float32"};
-    case CV_64F:
-      return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "float64"};
-    default:
-      throw std::logic_error(fmt::format("no HDF5 type for OpenCV depth {}", depth));
-  }
-}
-
-Hdf5Handle PropertyList(hid_t list_class) { return {H5Pcreate(list_class), &H5Pclose}; }
 
 // The prefixes of "/a/b/c": "/a", "/a/b", "/a/b/c".
 std::vector<std::string> Prefixes(const std::string& name) {
@@ -58,44 +34,6 @@ std::vector<std::string> Prefixes(const std::string& name) {
   }
   if (name.size() > 1) prefixes.push_back(name);
   return prefixes;
-}
-
-// Format 1.8: attributes, unlike in older ones, may be larger than 64 KiB, and metadata has
-// checksums.
-Hdf5Handle FileAccess() {
-  H5dont_atexit();  // its clean-up at exit crashes on a file that a full disk left unfinished
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
-  Hdf5Handle access = PropertyList(H5P_FILE_ACCESS);
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
-  return access;
-}
-
-// A list for creating files, groups or data sets that stores no times.
-Hdf5Handle Timeless(hid_t list_class) {
-  Hdf5Handle creation = PropertyList(list_class);
-  H5Pset_obj_track_times(creation.id(), false);
-  return creation;
-}
-
-Hdf5Handle DataSetCreation(const Shape& shape) {
-  Hdf5Handle creation = Timeless(H5P_DATASET_CREATE);
-  const bool empty = std::find(shape.begin(), shape.end(), 0U) != shape.end();
-  if (empty) return creation;  // a chunk cannot be empty
-  const std::vector<hsize_t> chunk(shape.begin(), shape.end());
-  H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
-  H5Pset_shuffle(creation.id());
-  constexpr unsigned kFastest = 1;
-  H5Pset_deflate(creation.id(), kFastest);
-  return creation;
-}
-
-// Texts are of fixed length and UTF-8; HDF5 has no length 0.
-Hdf5Handle TextType(size_t length) {
-  Hdf5Handle type{H5Tcopy(H5T_C_S1), &H5Tclose};
-  H5Tset_size(type.id(), std::max<size_t>(length, 1));
-  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.id(), H5T_CSET_UTF8);
-  return type;
 }
 
 std::string Describe(const std::vector<int>& expected, const char* element) {
@@ -124,8 +62,8 @@ Hdf5File::Hdf5File(std::filesystem::path path, std::int64_t id)
     : path_(std::move(path)), file_(id, &H5Fclose) {}
 
 Hdf5File Hdf5File::Create(const std::filesystem::path& path) {
-  const Hdf5Handle access = FileAccess();
-  const Hdf5Handle creation = Timeless(H5P_FILE_CREATE);
+  const Hdf5Handle access = Hdf5FileAccess();
+  const Hdf5Handle creation = Hdf5Timeless(H5P_FILE_CREATE);
   Hdf5File file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
   if (!file.file_.valid()) file.FailWriting("/");
   return file;
@@ -136,7 +74,7 @@ Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such file; expected an HDF5 file", path.string()));
   }
-  const Hdf5Handle access = FileAccess();
+  const Hdf5Handle access = Hdf5FileAccess();
   Hdf5File file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()));
   if (file.file_.valid()) return file;
   if (H5Fis_hdf5(path.c_str()) > 0) {
@@ -155,7 +93,7 @@ void Hdf5File::FailReading(const std::string& name, const std::string& problem) 
 
 void Hdf5File::WriteGroup(const std::string& name) {
   // Group by group: those that HDF5 creates on the way by itself store times.
-  const Hdf5Handle creation = Timeless(H5P_GROUP_CREATE);
+  const Hdf5Handle creation = Hdf5Timeless(H5P_GROUP_CREATE);
   for (const std::string& prefix : Prefixes(name)) {
     if (H5Lexists(file_.id(), prefix.c_str(), H5P_DEFAULT) > 0) continue;
     const Hdf5Handle group{
@@ -174,11 +112,11 @@ void Hdf5File::WriteMatrix(const std::string& name, const cv::Mat& matrix) {
 void Hdf5File::WriteArray(const std::string& name, int depth, const Shape& shape,
                           const void* values) {
   WriteGroup(name.substr(0, name.rfind('/')));
-  const Element element = ElementOf(depth);
+  const Hdf5Element element = Hdf5ElementOf(depth);
   const std::vector<hsize_t> sizes(shape.begin(), shape.end());
   const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                          &H5Sclose};
-  const Hdf5Handle creation = DataSetCreation(shape);
+  const Hdf5Handle creation = Hdf5DataSetCreation(shape);
   Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), element.file_type, space.id(),
                                  H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                       &H5Dclose};
@@ -199,7 +137,7 @@ void Hdf5File::WriteAttribute(const std::string& owner, const std::string& name,
 
 void Hdf5File::WriteText(const std::string& owner, const std::string& name,
                          const std::string& text) {
-  const Hdf5Handle type = TextType(text.size());
+  const Hdf5Handle type = Hdf5TextType(text.size());
   WriteAttribute(owner, name, type.id(), type.id(), text.c_str());
 }
 
@@ -255,7 +193,7 @@ Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) con
 
 Shape Hdf5File::CheckedShape(const std::string& name, int depth,
                              const std::vector<int>& expected) const {
-  const Element element = ElementOf(depth);
+  const Hdf5Element element = Hdf5ElementOf(depth);
   const std::string wanted = Describe(expected, element.name);
   if (!Has(name)) FailReading(name, "missing; expected " + wanted);
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
@@ -271,8 +209,8 @@ Shape Hdf5File::CheckedShape(const std::string& name, int depth,
 
 void Hdf5File::ReadArray(const std::string& name, int depth, void* values) const {
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
-  if (H5Dread(data_set.id(), ElementOf(depth).memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) <
-      0) {
+  if (H5Dread(data_set.id(), Hdf5ElementOf(depth).memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+              values) < 0) {
     FailReading(name, kDamaged);
   }
 }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "artefact/hdf5_file.h"
+
+namespace soslam {
+
+using Hdf5Shape = std::vector<std::uint64_t>;
+
+// The type of numbers in files and in memory. For an OpenCV depth; throws std::logic_error for
+// those that our files do not have.
+struct Hdf5Element {
+  hid_t file_type;
+  hid_t memory_type;
+  const char* name;
+};
+Hdf5Element Hdf5ElementOf(int depth);
+
+// Format 1.8: attributes, unlike in older ones, may be larger than 64 KiB, and metadata has
+// checksums.
+Hdf5Handle Hdf5FileAccess();
+
+// A list for creating files, groups or data sets that stores no times.
+Hdf5Handle Hdf5Timeless(hid_t list_class);
+
+// For a data set of this shape: one chunk, shuffled and deflated.
+Hdf5Handle Hdf5DataSetCreation(const Hdf5Shape& shape);
+
+// Texts are of fixed length and UTF-8; HDF5 has no length 0.
+Hdf5Handle Hdf5TextType(size_t length);
+
+}  // namespace soslam
