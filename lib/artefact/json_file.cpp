@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 // [major, minor] of every kind's schema. A reader reads all versions up to its own.
-const std::vector<int> kSchemaVersion = {1, 3};
+const std::vector<int> kSchemaVersion = {1, 4};
 
 // nlohmann keeps the last of several equal keys without a word; this parser callback refuses them.
 class DuplicateKeyCheck {

@@ -37,10 +37,10 @@ struct ShapePrior {
   Mount mount = Mount::kStanding;
 };
 
-// Between a prior of things as they are upright (a is their depth, b their width, c their height),
-// as tables have it, and one of the object's frame, whose z points away from its support: the
-// prior of what is on a wall has its height along x and its depth along z. Either way. Of
-// heights, ratios are taken to tell nothing.
+// The prior of the object's frame, whose z points away from its support, from one of things as they
+// are upright (a is their depth, b their width, c their height), as tables have it: that of what is
+// on a wall has its height along x and its depth along z. Ratios are taken to tell nothing of
+// heights, so the spread of a depth is that of height and ratio together.
 ShapePrior TurnedToSupport(const ShapePrior& prior);
 
 // Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the

@@ -35,10 +35,12 @@ struct PlanesOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Support planes");
-    visit.Choice("planes", &planes, kPlaneSourceNames,
-                 "where the support planes come from: the dataset (given: the stage does not run); "
-                 "the boxes of the objects that stand on them (estimated); a level camera at a "
-                 "known height above the ground (camera_height)");
+    visit.Choice(
+        "planes", &planes, kPlaneSourceNames,
+        "where the support planes come from: the dataset (given: the stage does not run); "
+        "the boxes of the objects that stand on them or hang from them (estimated); a level "
+        "camera at a known height above the ground (camera_height). What the table has on "
+        "walls is left out");
     visit.Group("Ground below the camera (planes = camera_height)");
     visit.Real("camera_height_m", &camera_height_m, {1e-3, 1e3},
                "height of the camera above the ground");

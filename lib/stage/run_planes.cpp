@@ -195,6 +195,11 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   const Result result = options.planes == PlaneSource::kCameraHeight
                             ? FromCameraHeight(sequence, options, files)
                             : FromBoxes(sequence, options, files, threads);
+  if (result.sequence.detections.empty()) {
+    throw NothingUsableError(fmt::format("{}: none of {} detections is of an object on a plane",
+                                         files.at("sequence").string(),
+                                         sequence.detections.size()));
+  }
   ArtefactInfo info = {OptionsToJson(options), {files.at("sequence")}};
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
   WritePlanes(files.at("report"), result.estimate, sequence, info);

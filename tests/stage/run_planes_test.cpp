@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stage/run_planes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -180,6 +181,16 @@ TEST_F(RunPlanesTest, WhatIsOnAWallIsLeftOutAndCounted) {
     EXPECT_EQ(report.at("objects").at(static_cast<size_t>(first.object_index)).at("reason"),
               "none");
   }
+}
+
+TEST_F(RunPlanesTest, RefusesObjectsOfWhichNoneIsOnAPlane) {
+  for (const Object& object : sequence_.objects) labels_[object.label]["mount"] = "on_wall";
+  WriteTable();
+  options_.planes = PlaneSource::kCameraHeight;
+  ExpectError<NothingUsableError>(
+      [&] { Run(); },
+      {"sequence.json", fmt::format("none of {} detections", sequence_.detections.size())});
+  EXPECT_FALSE(std::filesystem::exists(File("output")));
 }
 
 TEST_F(RunPlanesTest, RefusesGivenPlanes) {
