@@ -56,8 +56,23 @@ demo: ## Run all variants on the sequence that comes with the project, and print
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)
 
+# One run of a dataset at a time. What it started keeps the lock, so that a run that was killed does
+# not write beside the next one.
+LOCK = $(RESULTS)/.$(DATASET).lock
+
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
+	@mkdir -p $(RESULTS)
+	@flock --nonblock $(LOCK) true || echo 'run: waiting for another run of $(DATASET) in $(RESULTS)'
+	+@if test -e $(LOCK); then flock $(LOCK) $(MAKE) locked-run; else $(MAKE) locked-run; fi
+
+# Killed stages leave temporaries. After the clock was set back, files from the future would pass for
+# newer than what changes from now on: their stamps go, and they are of now.
+.PHONY: locked-run
+locked-run:
+	@if test -d $(RESULTS)/$(DATASET); then \
+	  find $(RESULTS)/$(DATASET) -name '.*.tmp' -delete; \
+	  find $(RESULTS)/$(DATASET) -type f -newermt now \( -name done -delete -o -exec touch {} + \); fi
 	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
 	+@if test -e $(PLAN); then $(MAKE) --keep-going $(SEVERAL_JOBS) -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
 	else echo '# then the stages that $(PLAN) lists'; fi
@@ -101,7 +116,7 @@ setup: ## Install the packages that are missing (apt, as root or through sudo)
 
 .PHONY: build
 build: $(BUILD)/build.ninja ## Build the executables of the stages
-	@cmake --build $(BUILD) --target $(STAGES)
+	@flock $(BUILD) cmake --build $(BUILD) --target $(STAGES)
 
 $(BUILD)/build.ninja: | setup
 	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)

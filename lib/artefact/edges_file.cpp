@@ -37,7 +37,7 @@ void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
 }  // namespace
 
 EdgesWriter::EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info)
-    : atomic_(path), file_(Hdf5File::Create(atomic_.TemporaryPath())) {
+    : atomic_(path), file_(Hdf5File::Create(atomic_.TemporaryPath(), path)) {
   WriteArtefactHeader(kKind, info, &file_);
 }
 

@@ -6,6 +6,8 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
@@ -61,10 +63,13 @@ bool Hdf5Handle::Close() {
 Hdf5File::Hdf5File(std::filesystem::path path, std::int64_t id)
     : path_(std::move(path)), file_(id, &H5Fclose) {}
 
-Hdf5File Hdf5File::Create(const std::filesystem::path& path) {
+Hdf5File Hdf5File::Create(const std::filesystem::path& path,
+                          const std::filesystem::path& final_path) {
+  errno = 0;
   const Hdf5Handle access = Hdf5FileAccess();
   const Hdf5Handle creation = Hdf5Timeless(H5P_FILE_CREATE);
-  Hdf5File file(path, H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
+  Hdf5File file(final_path.empty() ? path : final_path,
+                H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
   if (!file.file_.valid()) file.FailWriting("/");
   return file;
 }
@@ -84,7 +89,9 @@ Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
 }
 
 void Hdf5File::FailWriting(const std::string& name) const {
-  throw SettingsError(fmt::format("{}: {} cannot be written", path_.string(), name));
+  // Of the system call in which the HDF5 library failed.
+  const std::string reason = errno == 0 ? "" : fmt::format(": {}", std::strerror(errno));
+  throw SettingsError(fmt::format("{}: {} cannot be written{}", path_.string(), name, reason));
 }
 
 void Hdf5File::FailReading(const std::string& name, const std::string& problem) const {
@@ -92,6 +99,7 @@ void Hdf5File::FailReading(const std::string& name, const std::string& problem) 
 }
 
 void Hdf5File::WriteGroup(const std::string& name) {
+  errno = 0;
   // Group by group: those that HDF5 creates on the way by itself store times.
   const Hdf5Handle creation = Hdf5Timeless(H5P_GROUP_CREATE);
   for (const std::string& prefix : Prefixes(name)) {
@@ -127,6 +135,7 @@ void Hdf5File::WriteArray(const std::string& name, int depth, const Shape& shape
 
 void Hdf5File::WriteAttribute(const std::string& owner, const std::string& name,
                               std::int64_t file_type, std::int64_t memory_type, const void* value) {
+  errno = 0;
   const Hdf5Handle space{H5Screate(H5S_SCALAR), &H5Sclose};
   const Hdf5Handle attribute{H5Acreate_by_name(file_.id(), owner.c_str(), name.c_str(), file_type,
                                                space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
@@ -146,6 +155,7 @@ void Hdf5File::WriteNumber(const std::string& owner, const std::string& name, do
 }
 
 void Hdf5File::Close() {
+  errno = 0;
   const bool flushed = H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0;
   if (!file_.Close() || !flushed) FailWriting("/");
 }

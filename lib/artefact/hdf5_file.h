@@ -42,8 +42,10 @@ class Hdf5Handle {
 // The HDF5 library is not thread-safe: use it from one thread at a time, all files together.
 class Hdf5File {
  public:
-  // A new, empty file; replaces an existing one.
-  static Hdf5File Create(const std::filesystem::path& path);
+  // A new, empty file; replaces an existing one. Messages name `final_path`, where it is to go,
+  // unless that is empty.
+  static Hdf5File Create(const std::filesystem::path& path,
+                         const std::filesystem::path& final_path = {});
   static Hdf5File Open(const std::filesystem::path& path);
 
   // Groups on the way to a name are created as needed.

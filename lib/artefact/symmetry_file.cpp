@@ -74,7 +74,7 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
 void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
                    const ArtefactInfo& info) {
   AtomicFile atomic(path);
-  Hdf5File file = Hdf5File::Create(atomic.TemporaryPath());
+  Hdf5File file = Hdf5File::Create(atomic.TemporaryPath(), path);
   WriteArtefactHeader(kKind, info, &file);
   file.WriteGroup(kObservations);
   for (const SymmetryRecord& record : records) WriteRecord(record, &file);

@@ -95,14 +95,15 @@ class SmallPipeline {
     return RunMake(words);
   }
 
-  // The bytes of all artefacts (JSON, HDF5) below a folder, by path; without the times of stages.
+  // The bytes of all artefacts (JSON, HDF5) below a folder, by path, links as well; without the
+  // times of stages.
   static std::map<std::string, std::string> Artefacts(const std::filesystem::path& folder) {
     std::map<std::string, std::string> artefacts;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       const std::filesystem::path& path = entry.path();
       const bool is_artefact = path.extension() == ".json" || path.extension() == ".h5";
       if (!is_artefact || path.filename() == "timing.json") continue;
-      artefacts[std::filesystem::relative(path, folder).string()] = FileBytes(path);
+      artefacts[path.lexically_relative(folder).string()] = FileBytes(path);
     }
     return artefacts;
   }

@@ -1,0 +1,11 @@
+# What find_package(soslam) reads: the packages that the library needs, then the library.
+include(CMakeFindDependencyMacro)
+find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn)
+find_dependency(Eigen3)
+find_dependency(Ceres 2.1)
+find_dependency(nlohmann_json)
+find_dependency(fmt)
+find_dependency(TBB)
+find_dependency(OpenSSL)
+find_dependency(LibArchive)
+include(${CMAKE_CURRENT_LIST_DIR}/soslam-targets.cmake)

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/background_command.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr int kFrames = 4;
+
+// `make run` of the project itself on the small scene, through all stages that a run can have:
+// those of sequences without planes and ids, of bodies of any shape.
+class FaultsTest : public testing::Test {
+ protected:
+  FaultsTest() {
+    const fs::path datasets = pipeline_.Pipelines() / "unannotated/datasets";
+    fs::create_directory(datasets);
+    // Coarse, for speed.
+    WriteBytes(datasets / "small.json",
+               R"({"planes": {"refine_poses": false}, "refine": {"yaw_step_deg": 45},
+                   "optimise": {"max_iterations": 10}})");
+  }
+
+  std::vector<std::string> Words() const {
+    return {"env",
+            "-u",
+            "MAKEFLAGS",
+            "-u",
+            "MFLAGS",
+            "-u",
+            "MAKELEVEL",
+            "make",
+            "-j2",
+            "-C",
+            SOSLAM_SOURCE_DIR,
+            "run",
+            "DATASET=small",
+            "VARIANT=OursST-unannotated InitS",
+            "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string(),
+            "DATA_ROOT=" + pipeline_.Dataset().parent_path().string(),
+            "RESULTS=" + pipeline_.Results().parent_path().string(),
+            "PIPELINES=" + (pipeline_.Pipelines() / "unannotated").string()};
+  }
+  CommandResult Run() const { return RunCommand(Words()); }
+
+  // What a run that nothing disturbs leaves behind, by path; removes it again.
+  std::map<std::string, std::string> Undisturbed() {
+    const auto begin = std::chrono::steady_clock::now();
+    const CommandResult run = Run();
+    duration_ = std::chrono::steady_clock::now() - begin;
+    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+    auto artefacts = Artefacts();
+    EXPECT_EQ(artefacts.count("OursST-unannotated/metrics.json"), 1u);
+    fs::remove_all(pipeline_.Results());
+    return artefacts;
+  }
+  std::map<std::string, std::string> Artefacts() const {
+    return SmallPipeline::Artefacts(pipeline_.Results());
+  }
+
+  // Every artefact that is there is whole.
+  void ExpectOnlyPartsOf(const std::map<std::string, std::string>& undisturbed) const {
+    if (!fs::exists(pipeline_.Results())) return;
+    for (const auto& [path, bytes] : Artefacts()) {
+      ASSERT_EQ(undisturbed.count(path), 1u) << path;
+      EXPECT_EQ(undisturbed.at(path), bytes) << path;
+    }
+  }
+  void ExpectThatARunGives(const std::map<std::string, std::string>& undisturbed) const {
+    const CommandResult run = Run();
+    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+    EXPECT_EQ(Artefacts(), undisturbed);
+    for (const auto& entry : fs::recursive_directory_iterator(pipeline_.Results())) {
+      EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
+    }
+  }
+
+  SmallPipeline pipeline_{kFrames};
+  std::chrono::duration<double> duration_{};  // of the undisturbed run
+};
+
+// How often a run is killed; `SOSLAM_KILLS=200 pipeline_test --gtest_filter=FaultsTest.*` for more.
+int Kills() {
+  const char* const text = std::getenv("SOSLAM_KILLS");
+  return text == nullptr ? 2 : std::atoi(text);
+}
+
+// Kills everything, or make alone, so that what it started goes on and meets the next run.
+TEST_F(FaultsTest, KilledAtAnyMoment) {
+  const auto undisturbed = Undisturbed();
+  std::mt19937 random(1);
+  int survived = 0;
+  for (int i = 0; i < Kills() && !HasFailure(); ++i) {
+    SCOPED_TRACE(i);
+    BackgroundCommand run(Words());
+    std::this_thread::sleep_for(duration_ * std::uniform_real_distribution<double>(0, 1)(random));
+    if (i % 2 == 0) {
+      run.KillAll();
+    } else {
+      run.KillFirst();
+    }
+    run.Wait();
+    ExpectOnlyPartsOf(undisturbed);
+    ExpectThatARunGives(undisturbed);
+    fs::remove_all(pipeline_.Results());
+    if (!HasFailure()) ++survived;
+  }
+  RecordProperty("kills", Kills());
+  RecordProperty("survived", survived);
+}
+
+TEST_F(FaultsTest, TwoRunsAtOnce) {
+  const auto undisturbed = Undisturbed();
+  BackgroundCommand one(Words());
+  BackgroundCommand other(Words());
+  for (BackgroundCommand* run : {&one, &other}) {
+    const CommandResult result = run->Wait();
+    EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+  }
+  EXPECT_EQ(Artefacts(), undisturbed);
+  ExpectThatARunGives(undisturbed);
+}
+
+// As when everything was made an hour ahead of the clock of now.
+TEST_F(FaultsTest, ClockSetBack) {
+  EXPECT_EQ(Run().exit_code, 0);
+  for (const auto& entry : fs::recursive_directory_iterator(pipeline_.Folder())) {
+    if (!entry.is_regular_file() || entry.is_symlink()) continue;
+    fs::last_write_time(entry.path(), entry.last_write_time() + std::chrono::hours(1));
+  }
+  const fs::path camera = pipeline_.Dataset() / "camera.json";
+  nlohmann::json changed = nlohmann::json::parse(FileBytes(camera));
+  changed["fx"] = 410.0;
+  WriteBytes(camera, changed.dump());
+  EXPECT_EQ(Run().exit_code, 0);
+  const auto after_change = Artefacts();
+  fs::remove_all(pipeline_.Results());
+  ExpectThatARunGives(after_change);
+}
+
+// Results on a file system of their own.
+class FaultyDiskTest : public FaultsTest {
+ protected:
+  ~FaultyDiskTest() override { ::umount(Disk().c_str()); }
+
+  std::string Disk() const { return pipeline_.Results().parent_path().string(); }
+  bool Mount(unsigned long flags, const std::string& options) const {
+    fs::create_directories(Disk());
+    return ::mount("tmpfs", Disk().c_str(), "tmpfs", flags, options.c_str()) == 0;
+  }
+};
+
+TEST_F(FaultyDiskTest, FullDisk) {
+  const auto undisturbed = Undisturbed();
+  size_t bytes = 0;
+  for (const auto& [path, content] : undisturbed) bytes += content.size();
+  if (!Mount(0, "size=256k")) GTEST_SKIP() << "needs root, to mount a small disk";
+  // From too little for anything to nearly enough.
+  for (const size_t size : {bytes / 64, bytes / 16, bytes / 8, bytes / 5}) {
+    SCOPED_TRACE(size);
+    ASSERT_TRUE(Mount(MS_REMOUNT, "size=" + std::to_string(size)));
+    const CommandResult run = Run();
+    EXPECT_NE(run.exit_code, 0);
+    EXPECT_THAT(run.output + run.errors, HasSubstr("No space left on device"));
+    ExpectOnlyPartsOf(undisturbed);
+  }
+  ASSERT_TRUE(Mount(MS_REMOUNT, "size=100m"));
+  ExpectThatARunGives(undisturbed);
+}
+
+TEST_F(FaultyDiskTest, ReadOnlyDisk) {
+  if (!Mount(0, "size=100m")) GTEST_SKIP() << "needs root, to mount a disk";
+  EXPECT_EQ(Run().exit_code, 0);
+  const auto before = Artefacts();
+  ASSERT_TRUE(Mount(MS_REMOUNT | MS_RDONLY, ""));
+  pipeline_.WriteSettings({});
+  fs::remove(pipeline_.Dataset() / "objects.json");
+  const CommandResult run = Run();
+  EXPECT_NE(run.exit_code, 0);
+  EXPECT_THAT(run.output + run.errors, HasSubstr("Read-only file system"));
+  EXPECT_EQ(Artefacts(), before);
+}
+
+}  // namespace
+}  // namespace soslam

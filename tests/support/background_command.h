@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+
+// A program that runs while the test goes on, in a process group of its own.
+class BackgroundCommand {
+ public:
+  explicit BackgroundCommand(const std::vector<std::string>& words) {
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    Redirect(&actions, STDOUT_FILENO, "output");
+    Redirect(&actions, STDERR_FILENO, "errors");
+    const int error =
+        posix_spawnp(&process_, arguments[0], &actions, &attributes, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
+    if (error != 0) throw std::runtime_error("cannot run " + words[0]);
+  }
+  ~BackgroundCommand() {
+    if (process_ <= 0) return;
+    KillAll();
+    Wait();
+  }
+  BackgroundCommand(const BackgroundCommand&) = delete;
+  BackgroundCommand& operator=(const BackgroundCommand&) = delete;
+
+  // kill -9 to the program and all that it started.
+  void KillAll() const { ::kill(-process_, SIGKILL); }
+  // kill -9 to the program alone.
+  void KillFirst() const { ::kill(process_, SIGKILL); }
+
+  // Of the program alone; what it started may live on.
+  CommandResult Wait() {
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    process_ = 0;
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            FileBytes(captured_ / "output"), FileBytes(captured_ / "errors")};
+  }
+
+ private:
+  void Redirect(posix_spawn_file_actions_t* actions, int descriptor, const std::string& name) {
+    const std::string file = (captured_ / name).string();
+    posix_spawn_file_actions_addopen(actions, descriptor, file.c_str(),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  }
+
+  TemporaryFolder captured_;
+  pid_t process_ = 0;
+};
+
+}  // namespace soslam
