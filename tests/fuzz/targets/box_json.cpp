@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/coco_results.h"
+#include "dataset/oa_slam_boxes.h"
+#include "fuzz/fuzz_target.h"
+
+namespace soslam {
+namespace {
+
+const FuzzTarget kBoxJson("box_json", [](const HostileInput& input) {
+  const auto file = input.AsFile("boxes.json");
+  IsAccepted(file, [&] { ReadCocoResults(file); });
+  IsAccepted(file, [&] { ReadOaSlamBoxes(file, {"cup", "chair"}); });
+});
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/detections_csv.h"
+
+#include "dataset/label_file.h"
+#include "fuzz/fuzz_target.h"
+
+namespace soslam {
+namespace {
+
+const FuzzTarget kDetectionsCsv("detections_csv", [](const HostileInput& input) {
+  const auto file = input.AsFile("detections.csv");
+  IsAccepted(file, [&] { HasObjectIds(file); });
+  IsAccepted(file, [&] { ReadDetections(file); });
+  IsAccepted(file, [&] { ReadLabelledBoxes(file); });
+  IsAccepted(file, [&] { ReadLabelFile(file); });
+});
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/kitti_trajectory.h"
+#include "dataset/tum_list.h"
+#include "fuzz/fuzz_target.h"
+
+namespace soslam {
+namespace {
+
+const FuzzTarget kTrajectories("trajectories", [](const HostileInput& input) {
+  const auto file = input.AsFile("trajectory.txt");
+  IsAccepted(file, [&] { ReadTrajectory(file); });
+  IsAccepted(file, [&] { ReadKittiTrajectory(file); });
+});
+
+}  // namespace
+}  // namespace soslam
