@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <ranges>
 #include <tuple>
 
 #include "base/assignment.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -56,9 +56,8 @@ class FrameLinker {
   // By what is seen, so that the order and ids of the input do not matter; best score first.
   std::vector<int> DetectionsIn(int frame) const {
     const auto& all = model_.sequence().detections;
-    const auto range = std::ranges::equal_range(all, frame, {}, &Detection::frame_index);
     std::vector<int> detections;
-    for (const Detection& detection : range) {
+    for (const Detection& detection : soslam::DetectionsIn(model_.sequence(), frame)) {
       detections.push_back(static_cast<int>(&detection - all.data()));
     }
     const auto key = [&](int index) {

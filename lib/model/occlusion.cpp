@@ -29,7 +29,9 @@ std::optional<Eigen::Vector3d> FootInCamera(const Camera& camera, const Box& box
 }
 
 std::span<const Detection> DetectionsIn(const Sequence& sequence, int frame_index) {
-  return std::ranges::equal_range(sequence.detections, frame_index, {}, &Detection::frame_index);
+  const auto& all = sequence.detections;
+  return {std::ranges::lower_bound(all, frame_index, {}, &Detection::frame_index),
+          std::ranges::upper_bound(all, frame_index, {}, &Detection::frame_index)};
 }
 
 std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detection) {
