@@ -66,7 +66,9 @@ bool JsonEntry::Flag(const char* name, bool default_value) const {
 std::string JsonEntry::Text(const char* name) const {
   const json& field = Field(name);
   if (!field.is_string() || field == "") Refuse(name, "a text");
-  return field.get<std::string>();
+  std::string text = field.get<std::string>();
+  if (text.find('\0') != text.npos) Refuse(name, "a text without a zero byte");
+  return text;
 }
 
 void JsonEntry::Refuse(const char* name, const std::string& expected) const {

@@ -50,7 +50,9 @@ std::vector<TextLine> TextLines(std::istream& stream, const std::string& name) {
     const std::string_view text = Trimmed(line);
     if (text.empty() || text.front() == '#') continue;
     lines.push_back({fmt::format("{}:{}", name, number), std::string(text)});
-    if (!IsUtf8(line)) throw InputError(lines.back().place + ": is not UTF-8 text");
+    if (!IsUtf8(line) || line.find('\0') != line.npos) {
+      throw InputError(lines.back().place + ": is not UTF-8 text");
+    }
   }
   return lines;
 }
