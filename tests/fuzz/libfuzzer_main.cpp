@@ -20,6 +20,9 @@ soslam::FuzzTarget::Read g_read = nullptr;
 
 }  // namespace
 
+// What the HDF5 library does not free of a damaged file ends with the program.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+
 // libFuzzer leaves arguments alone that begin with two dashes.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   constexpr std::string_view kTarget = "--target=";
