@@ -118,6 +118,7 @@ int main(int argc, char** argv) {
   return soslam::internal::ExitCodeOf(&app, [&] {
     Arguments arguments;
     app.get_formatter()->column_width(34);
+    soslam::internal::AddOutsidePaths(&app);
     soslam::internal::AddHelpAndVersion(&app);
     AddFiles(&app, &arguments.request);
     AddOptions(&app, &arguments);

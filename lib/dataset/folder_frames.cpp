@@ -121,12 +121,12 @@ void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* est
 }
 
 // The image's path in a frame; empty when it is not there and need not be.
-std::string ImageOfFrame(const fs::path& folder, const ListedImage& image,
-                         const ImportOptions& options) {
-  if (options.format == DatasetFormat::kSoslam && !options.folder.images.empty()) {
-    return image.image;
-  }
-  return fs::exists(ImagePath(folder, image.image, options.folder.images)) ? image.image : "";
+std::string ImageOfFrame(const fs::path& folder, const DatasetFiles& files,
+                         const ListedImage& image, const ImportOptions& options) {
+  const fs::path path =
+      ImagePath(folder, image.image, files.images.value_or(files.detections).string());
+  const bool has_to_be_there = options.format == DatasetFormat::kSoslam && files.images;
+  return has_to_be_there || fs::exists(path) ? image.image : "";
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
     Frame frame;
     frame.id = static_cast<int>(i);
     frame.timestamp = images[i].timestamp;
-    frame.image = ImageOfFrame(folder, images[i], options);
+    frame.image = ImageOfFrame(folder, files, images[i], options);
     frame.world_from_camera = estimates[i].value_or(Rigid3d());
     frame.true_world_from_camera = truth[i];
     if (frame.image.empty()) ++absent;

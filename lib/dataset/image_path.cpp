@@ -6,15 +6,42 @@
 #include "base/error.h"
 
 namespace soslam {
+namespace {
 
-std::filesystem::path ImagePath(const std::filesystem::path& dataset, const std::string& image,
-                                const std::string& place) {
-  const std::filesystem::path relative = std::filesystem::path(image).lexically_normal();
-  if (image.empty() || relative.is_absolute() || *relative.begin() == "..") {
-    throw InputError(
-        fmt::format("{}: image is '{}'; expected a path inside the dataset folder", place, image));
-  }
-  return dataset / relative;
+namespace fs = std::filesystem;
+
+bool& OutsidePathsAreAllowed() {
+  static bool are_allowed = false;
+  return are_allowed;
 }
+
+// With symbolic links followed as far as there is something.
+fs::path Resolved(const fs::path& path) {
+  std::error_code error;
+  fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
+  return error ? path : resolved;
+}
+
+bool IsInside(const fs::path& path, const fs::path& folder) {
+  const fs::path relative = Resolved(path).lexically_relative(Resolved(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+}  // namespace
+
+fs::path ImagePath(const fs::path& dataset, const std::string& image, const std::string& place) {
+  const fs::path path = dataset / fs::path(image).lexically_normal();
+  if (image.empty()) throw InputError(place + ": image is ''; expected the name of a file");
+  const bool is_inside = !fs::path(image).is_absolute() && IsInside(path, dataset);
+  if (!is_inside && !OutsidePathsAreAllowed()) {
+    throw InputError(
+        fmt::format("{}: image is '{}', which is outside {}; expected a path inside the dataset "
+                    "folder (--allow_outside_paths takes any)",
+                    place, image, dataset.string()));
+  }
+  return path;
+}
+
+void AllowOutsidePaths(bool is_allowed) { OutsidePathsAreAllowed() = is_allowed; }
 
 }  // namespace soslam

@@ -7,8 +7,13 @@
 namespace soslam {
 
 // The file of an image that a list names relative to its dataset folder. Throws InputError, naming
-// `place`, for a name that is empty or leads out of the folder.
+// `place`, for a name that is empty or leads out of the folder, by itself or through a symbolic
+// link: a dataset from elsewhere must not have other files of its user read.
 std::filesystem::path ImagePath(const std::filesystem::path& dataset, const std::string& image,
                                 const std::string& place);
+
+// Whether images may lie outside their dataset folder all the same, for the whole program; not
+// while threads are running. At first they may not.
+void AllowOutsidePaths(bool is_allowed);
 
 }  // namespace soslam

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/recordings.h"
 
@@ -26,7 +27,9 @@ Frame ReadFrame(const fs::path& folder, const NumberedPath& labels) {
   frame.id = labels.number;
   frame.segment = labels.number;
   const fs::path image = fs::path("image_2") / (labels.path.stem().string() + ".png");
-  if (fs::exists(folder / image)) frame.image = image.string();
+  if (fs::exists(ImagePath(folder, image.string(), labels.path.string()))) {
+    frame.image = image.string();
+  }
   return frame;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/kitti_trajectory.h"
 #include "dataset/match_boxes.h"
@@ -115,9 +116,10 @@ class Recording {
       frame.world_from_camera = poses_[i];
       frame.segment = number_;
       const fs::path image = images / fmt::format("{:06d}.png", i);
-      if (!fs::exists(folder_ / image)) continue;
+      const fs::path path = ImagePath(folder_, image.string(), folder_.string());
+      if (!fs::exists(path)) continue;
       frame.image = image.string();
-      if (!any_image) any_image = folder_ / image;
+      if (!any_image) any_image = path;
     }
     camera_ = WithImageSize(calibration_.camera, any_image,
                             RecordingValues("image_size", options_.image_size), number_);

@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "base/machine.h"
 #include "base/progress.h"
+#include "dataset/image_path.h"
 #include "stage/help.h"
 #include "stage/settings_file.h"
 
@@ -85,6 +86,7 @@ void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArgum
       ->group("Common")
       ->option_text("PATH");
   app->add_flag("--quiet", parsed->quiet, "show no progress on stderr")->group("Common");
+  AddOutsidePaths(app);
   app->add_flag_callback(
          "--settings_schema",
          [&options, app] {
@@ -154,10 +156,33 @@ void WriteTiming(const fs::path& output, const std::string& stage, double wall_s
   WriteTextFile(folder / "timing.json", timing.dump(2) + "\n");
 }
 
+// Begin and end of a text in UTF-8, which have its place and what was expected.
+std::string WithoutMiddle(const std::string& text) {
+  constexpr size_t kMaxHalf = 1000;
+  if (text.size() <= 2 * kMaxHalf) return text;
+  const auto is_inside_character = [&](size_t i) { return (text[i] & 0xC0) == 0x80; };
+  size_t begin = kMaxHalf;
+  size_t end = text.size() - kMaxHalf;
+  while (begin > 0 && is_inside_character(begin)) --begin;
+  while (end < text.size() && is_inside_character(end)) ++end;
+  return text.substr(0, begin) + " ... " + text.substr(end);
+}
+
+// As one line that a terminal takes for text: messages quote files, which may hold anything.
 std::string OneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
+  text.erase(text.find_last_not_of('\n') + 1);
+  std::string line;
+  for (const char character : text) {
+    const bool is_control = static_cast<unsigned char>(character) < 0x20 || character == 0x7F;
+    if (character == '\n') {
+      line += ' ';
+    } else if (is_control) {
+      line += fmt::format("\\x{:02x}", static_cast<unsigned char>(character));
+    } else {
+      line += character;
+    }
+  }
+  return WithoutMiddle(line);
 }
 
 int Fail(const CLI::App& app, ExitCode exit_code, const std::string& message) {
@@ -202,6 +227,13 @@ void AddHelpAndVersion(CLI::App* app) {
   app->set_help_flag("--help", "print this and exit")->group("Common");
   app->set_version_flag("--version", app->get_name() + " " + SOSLAM_VERSION,
                         "print the version and exit")
+      ->group("Common");
+}
+
+void AddOutsidePaths(CLI::App* app) {
+  app->add_flag_callback(
+         "--allow_outside_paths", [] { AllowOutsidePaths(true); },
+         "read images of a dataset also where its lists or symbolic links\nlead out of its folder")
       ->group("Common");
 }
 

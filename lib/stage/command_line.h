@@ -52,6 +52,9 @@ extern const char* const kExitCodes;
 // Options --help and --version of a program.
 void AddHelpAndVersion(CLI::App* app);
 
+// Option --allow_outside_paths of a program that reads images of datasets.
+void AddOutsidePaths(CLI::App* app);
+
 // What `run`, which parses the command line first, returns: an exit code. Errors that it throws
 // become one line on stderr and their exit codes; --help and --version are answered.
 int ExitCodeOf(CLI::App* app, const std::function<int()>& run);

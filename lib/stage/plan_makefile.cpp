@@ -29,6 +29,7 @@ pipelines := {pipelines}
 BIN ?= build/bin
 THREADS ?= 0
 QUIET ?=
+OUTSIDE_PATHS ?=
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .PHONY: all {variants} FORCE
@@ -46,7 +47,7 @@ define run-stage
 @echo '[{dataset}] $(1)'
 @rm -f $(@D)/failed
 @touch $@.begun
-@$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) \
+@$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) $(OUTSIDE_PATHS) \
   --failure_record $(@D)/failed || {{ code=$$?; \
   test -e $(@D)/failed || echo "exit code $$code" > $(@D)/failed; exit $$code; }}
 @mv $@.begun $@

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/image_path.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImagePathTest : public testing::Test {
+ protected:
+  ImagePathTest() {
+    for (const char* folder : {"dataset/rgb", "elsewhere"}) fs::create_directories(Path(folder));
+    WriteBytes(Path("dataset/rgb/0.png"), "image");
+    WriteBytes(Path("elsewhere/secret.png"), "image");
+  }
+  ~ImagePathTest() override { AllowOutsidePaths(false); }
+
+  fs::path Path(const std::string& name) const { return folder_.path() / name; }
+  fs::path Of(const std::string& image) const {
+    return ImagePath(Path("dataset"), image, "rgb.txt");
+  }
+  void ExpectRefused(const std::string& image) const {
+    ExpectError<InputError>([&] { Of(image); }, {"rgb.txt: image is '" + image + "'", "expected"});
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ImagePathTest, IsInTheDataset) {
+  EXPECT_EQ(Of("rgb/0.png"), Path("dataset/rgb/0.png"));
+  EXPECT_EQ(Of("rgb/absent.png"), Path("dataset/rgb/absent.png"));
+  EXPECT_EQ(Of("./rgb/../rgb/0.png"), Path("dataset/rgb/0.png"));
+  EXPECT_EQ(ImagePath(Path("dataset/"), "rgb/0.png", ""), Path("dataset/rgb/0.png"));
+  EXPECT_EQ(ImagePath(".", "0.png", ""), fs::path("./0.png"));
+}
+
+TEST_F(ImagePathTest, NamesThatLeadOutAreRefused) {
+  ExpectRefused("../elsewhere/secret.png");
+  ExpectRefused("rgb/../../elsewhere/secret.png");
+  ExpectRefused(Path("elsewhere/secret.png").string());
+  ExpectRefused("../dataset2/absent.png");
+  ExpectRefused("");
+  ExpectRefused(Path("dataset/rgb/0.png").string());
+}
+
+TEST_F(ImagePathTest, LinksThatLeadOutAreRefused) {
+  fs::create_directory_symlink(Path("elsewhere"), Path("dataset/linked"));
+  fs::create_symlink(Path("elsewhere/secret.png"), Path("dataset/rgb/1.png"));
+  ExpectRefused("linked/secret.png");
+  ExpectRefused("linked/absent.png");
+  ExpectRefused("rgb/1.png");
+}
+
+TEST_F(ImagePathTest, LinksInTheDatasetAndOfTheDatasetAreFollowed) {
+  fs::create_directory_symlink("rgb", Path("dataset/colour"));
+  fs::create_directory_symlink("dataset", Path("link"));
+  EXPECT_EQ(Of("colour/0.png"), Path("dataset/colour/0.png"));
+  EXPECT_EQ(ImagePath(Path("link"), "rgb/0.png", ""), Path("link/rgb/0.png"));
+}
+
+TEST_F(ImagePathTest, AllAreTakenOnceAllowed) {
+  fs::create_directory_symlink(Path("elsewhere"), Path("dataset/linked"));
+  AllowOutsidePaths(true);
+  EXPECT_EQ(Of("linked/secret.png"), Path("dataset/linked/secret.png"));
+  EXPECT_EQ(Of(Path("elsewhere/secret.png").string()), Path("elsewhere/secret.png"));
+  EXPECT_TRUE(fs::exists(Of("../elsewhere/secret.png")));
+  ExpectRefused("");
+}
+
+}  // namespace
+}  // namespace soslam
