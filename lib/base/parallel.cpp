@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/parallel.h"
 
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
+#include <atomic>
 #include <exception>
+#include <thread>
 #include <vector>
 
 #include "base/progress.h"
@@ -14,18 +12,24 @@
 namespace soslam {
 
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
-  // More threads than cores bring nothing but a warning on stderr.
-  tbb::task_arena arena(std::clamp(threads, 1, tbb::info::default_concurrency()));
   std::vector<std::exception_ptr> errors(static_cast<size_t>(std::max(0, count)));
-  arena.execute([&] {
-    tbb::parallel_for(0, count, [&](int i) {
+  std::atomic<int> next = 0;
+  const auto work_until_done = [&] {
+    for (int i = next++; i < count; i = next++) {
       try {
         work(i);
       } catch (...) {
         errors[static_cast<size_t>(i)] = std::current_exception();
       }
-    });
-  });
+    }
+  };
+  {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    std::vector<std::jthread> others;  // joined at the end of this block
+    for (int i = 1; i < std::min({count, threads, cores}); ++i)
+      others.emplace_back(work_until_done);
+    work_until_done();
+  }
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }

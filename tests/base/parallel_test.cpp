@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/parallel.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace soslam {
+namespace {
+
+class ParallelForTest : public testing::TestWithParam<int> {};
+
+TEST_P(ParallelForTest, DoesEachOnce) {
+  for (const int count : {0, 1, 2, 1000}) {
+    std::vector<int> done(static_cast<size_t>(count));
+    ParallelFor(count, GetParam(), [&](int i) { ++done[static_cast<size_t>(i)]; });
+    EXPECT_THAT(done, testing::Each(1));
+  }
+}
+
+TEST_P(ParallelForTest, TriesAllAndThrowsTheFirstOfTheErrors) {
+  std::atomic<int> tried = 0;
+  const auto work = [&](int i) {
+    ++tried;
+    if (i % 10 == 7) throw std::runtime_error(std::to_string(i));
+  };
+  EXPECT_THAT([&] { ParallelFor(100, GetParam(), work); },
+              testing::ThrowsMessage<std::runtime_error>("7"));
+  EXPECT_EQ(tried, 100);
+}
+
+TEST_P(ParallelForTest, MayBeNested) {
+  std::atomic<int> sum = 0;
+  ParallelFor(4, GetParam(),
+              [&](int i) { ParallelFor(5, GetParam(), [&](int j) { sum += 10 * i + j; }); });
+  EXPECT_EQ(sum, 5 * 10 * (0 + 1 + 2 + 3) + 4 * (0 + 1 + 2 + 3 + 4));
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, ParallelForTest, testing::Values(-1, 1, 2, 16));
+
+}  // namespace
+}  // namespace soslam
