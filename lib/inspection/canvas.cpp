@@ -6,12 +6,13 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "inspection/projection.h"
+
 namespace soslam {
 namespace {
 
-constexpr int kFractionBits = 4;        // of pixels, in the coordinates of OpenCV's drawing
-constexpr int kSeam = 1;                // px of the picture, on both sides
-constexpr double kNearestDepth = 0.05;  // m: what is drawn is farther from the camera
+constexpr int kFractionBits = 4;  // of pixels, in the coordinates of OpenCV's drawing
+constexpr int kSeam = 1;          // px of the picture, on both sides
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
@@ -43,13 +44,6 @@ void PutText(const std::string& text, const cv::Point& corner, const cv::Scalar&
              cv::Mat* picture) {
   cv::putText(*picture, text, corner + cv::Point(kTextMargin, SizeOf(text).baseline), kFont,
               kFontScale, colour, 1, cv::LINE_AA);
-}
-
-// The point of the segment from `inside`, which is far enough in front of the camera, to `outside`,
-// which is not, where it comes too near.
-Eigen::Vector3d CutNear(const Eigen::Vector3d& inside, const Eigen::Vector3d& outside) {
-  const double share = (inside.z() - kNearestDepth) / (inside.z() - outside.z());
-  return inside + share * (outside - inside);
 }
 
 }  // namespace
@@ -98,17 +92,13 @@ void Canvas::Text(const Eigen::Vector2d& pixel, const std::string& text, const c
 
 void Canvas::Segment(const Eigen::Vector3d& begin_in_camera, const Eigen::Vector3d& end_in_camera,
                      const Stroke& stroke) {
-  Eigen::Vector3d begin = begin_in_camera;
-  Eigen::Vector3d end = end_in_camera;
-  if (begin.z() < kNearestDepth && end.z() < kNearestDepth) return;
-  if (begin.z() < kNearestDepth) begin = CutNear(end, begin);
-  if (end.z() < kNearestDepth) end = CutNear(begin, end);
-  Lines({*camera_.Project(begin), *camera_.Project(end)}, false, stroke);
+  const auto visible = ProjectSegment(camera_, {begin_in_camera, end_in_camera});
+  if (visible) Lines({(*visible)[0], (*visible)[1]}, false, stroke);
 }
 
 void Canvas::Arrow(const Eigen::Vector3d& begin_in_camera, const Eigen::Vector3d& end_in_camera,
                    const Stroke& stroke) {
-  if (begin_in_camera.z() < kNearestDepth || end_in_camera.z() < kNearestDepth) return;
+  if (begin_in_camera.z() < kNearM || end_in_camera.z() < kNearM) return;
   constexpr double kHeadPx = 9.0;  // of the picture
   const Eigen::Vector2d begin = *camera_.Project(begin_in_camera);
   const Eigen::Vector2d end = *camera_.Project(end_in_camera);

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 
+#include "inspection/projection.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -27,20 +26,6 @@ constexpr double kGridOpacity = 0.5;
 
 std::string CaptionOf(const Object& object) {
   return fmt::format("{} {}", object.id, object.label);
-}
-
-// The outline of a body in the image, a convex polygon; empty unless the whole body is in front of
-// the camera.
-std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Landmark& landmark_in_camera) {
-  constexpr int kCorners = 120;
-  std::vector<Eigen::Vector2d> outline;
-  if (!IsInFront(landmark_in_camera)) return outline;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kCorners;
-    const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)});
-    if (end) outline.push_back(*camera.Project(end->point));
-  }
-  return outline;
 }
 
 // A point of a landmark by its coordinates in multiples of the half axes.
@@ -71,7 +56,7 @@ void DrawCircumscribedBox(const Landmark& landmark_in_camera, const Stroke& stro
 }
 
 void DrawBody(const OverlayInput::Body& body, const Camera& camera, Canvas* canvas) {
-  const std::vector<Eigen::Vector2d> outline = OutlineOf(camera, body.landmark_in_camera);
+  const Polygon outline = OutlinePolygon(camera, body.landmark_in_camera);
   if (outline.empty()) return;
   canvas->Lines(outline, true, kLandmarkStroke);
   DrawAxes(body.landmark_in_camera, kLandmarkStroke, kLandmarkAxis, canvas);

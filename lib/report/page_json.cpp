@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "report/projection.h"
+#include "inspection/projection.h"
 
 namespace soslam {
 namespace {

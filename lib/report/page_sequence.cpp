@@ -7,8 +7,8 @@
 #include <set>
 #include <vector>
 
+#include "inspection/projection.h"
 #include "report/page_json.h"
-#include "report/projection.h"
 
 namespace soslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/projection.h"
+#include "inspection/projection.h"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,9 @@ Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera)
 std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
                                                          const Landmark& landmark_in_camera);
 
-// The part of a segment in front of the camera; none when nothing is.
+// The part of a segment that is farther than kNearM (m) in front of the camera: what is nearer
+// leaves any image. None when nothing is.
+inline constexpr double kNearM = 0.05;
 std::optional<LineSegment2> ProjectSegment(const Camera& camera, const LineSegment3& in_camera);
 
 // Lines of a square grid on the plane around points on or near it, both ways, half a metre apart

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/projection.h"
+#include "inspection/projection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kOutlineDirections = 90;
 constexpr double kOutlineTolerancePx = 0.5;
-constexpr double kNearM = 0.05;  // in front of the camera: nearer points leave any image
 constexpr double kGridSpacingM = 0.5;
 constexpr double kGridMarginM = 0.5;  // around what stands on the plane
 
