@@ -66,6 +66,14 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode) {
   return image;
 }
 
+cv::Mat OfSize(const cv::Mat& image, int width, int height, const std::filesystem::path& path) {
+  if (image.cols != width || image.rows != height) {
+    throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}",
+                                 path.string(), image.cols, image.rows, width, height));
+  }
+  return image;
+}
+
 }  // namespace
 
 cv::Mat ReadGreyImage(const std::filesystem::path& path) {
@@ -77,12 +85,11 @@ cv::Mat ReadColourImage(const std::filesystem::path& path) {
 }
 
 cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height) {
-  const cv::Mat grey = ReadGreyImage(path);
-  if (grey.cols != width || grey.rows != height) {
-    throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}",
-                                 path.string(), grey.cols, grey.rows, width, height));
-  }
-  return grey;
+  return OfSize(ReadGreyImage(path), width, height, path);
+}
+
+cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height) {
+  return OfSize(ReadColourImage(path), width, height, path);
 }
 
 }  // namespace soslam

@@ -16,5 +16,6 @@ cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height);
 
 // An image in colour, CV_8UC3: blue, green, red. Otherwise as ReadGreyImage.
 cv::Mat ReadColourImage(const std::filesystem::path& path);
+cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height);
 
 }  // namespace soslam

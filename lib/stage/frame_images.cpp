@@ -39,7 +39,8 @@ cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
 }
 
 cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
-  const cv::Mat colour = ReadColourImage(image.path);
+  const Camera& camera = sequence_.CameraOf(*image.frame);
+  const cv::Mat colour = ReadColourImage(image.path, camera.width, camera.height);
   return undistorter_ ? undistorter_->Undistort(colour) : colour;
 }
 

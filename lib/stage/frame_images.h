@@ -31,7 +31,7 @@ class FrameImageReader {
   // Grey values, CV_8UC1, of the camera's size. May be called by several threads at once. Throws
   // InputError, also when the file is of another size.
   cv::Mat ReadGrey(const FrameImage& image) const;
-  // The same in colour, CV_8UC3, of whatever size the image has.
+  // The same in colour, CV_8UC3.
   cv::Mat ReadColour(const FrameImage& image) const;
 
  private:

@@ -118,6 +118,7 @@ TEST_F(ReadImageTest, BadFilesAreNamed) {
 TEST_F(ReadImageTest, WrongSizeIsNamed) {
   const auto path = Write("a.png", Encode(".png", TestImage()));
   ExpectError<InputError>([&] { ReadGreyImage(path, 40, 60); }, {"a.png", "60 x 40", "40 x 60"});
+  ExpectError<InputError>([&] { ReadColourImage(path, 40, 60); }, {"a.png", "60 x 40", "40 x 60"});
 }
 
 }  // namespace
