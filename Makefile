@@ -88,8 +88,9 @@ tables: build ## Compare all variants of all datasets in RESULTS: tables.md, tab
 	  $(addprefix --settings ,$(wildcard $(PIPELINES)/report.json)) --output $(RESULTS)/tables.md
 
 .PHONY: report
-report: tables ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset
+report: build ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset; and the tables
 	@$(BIN)/soslam-pages --results $(RESULTS)
+	@$(MAKE) tables
 
 MAPS = $(wildcard $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT))))
 

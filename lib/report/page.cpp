@@ -4,14 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
+#include <map>
 #include <optional>
 #include <set>
-#include <vector>
 
 #include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "report/page_curves.h"
 #include "report/page_differences.h"
+#include "report/page_fit.h"
+#include "report/page_html.h"
+#include "report/page_selection.h"
 #include "report/page_sequence.h"
 #include "report/page_variant.h"
+#include "report/variant_state.h"
 
 namespace soslam {
 namespace {
@@ -19,138 +27,152 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Of a page's data, images included as far as there is room: with the libraries it stays below 8
-// MB.
-constexpr size_t kMaxDataBytes = 6'500'000;
-constexpr size_t kMinImageBytes = 1'000'000;
+// Images shrink to this share of a page before anything else is left out.
+constexpr double kLeastShareOfImages = 0.125;
 
-// Those with an image; where they are too many, evenly over those in which something was detected.
-std::vector<int> ShownFrames(const Sequence& sequence, const ImageSource& images) {
-  std::vector<int> frames;
-  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
-    if (images.has(i)) frames.push_back(i);
+// Collects what the page of a dataset shows. Variants share files, which are read once.
+class DatasetPage {
+ public:
+  DatasetPage(const DatasetResult& dataset, const ImageSourceOf& images) : images_(images) {
+    data_ = {{"dataset", Utf8(dataset.name)}, {"url", UrlOf(dataset.name)},
+             {"images", json::object()},      {"sequences", json::array()},
+             {"symmetries", json::array()},   {"variants", json::array()},
+             {"unfinished", json::array()},   {"notes", json::array()},
+             {"problems", json::array()},     {"differences", PageDifferences(dataset)}};
+    for (const VariantResult& variant : dataset.variants) Add(variant);
   }
-  if (frames.size() <= kMaxPageFrames) return frames;
-  std::set<int> with_detections;
-  for (const Detection& detection : sequence.detections) {
-    with_detections.insert(detection.frame_index);
-  }
-  std::erase_if(frames, [&](int frame) { return with_detections.count(frame) == 0; });
-  return SpreadOver(frames, kMaxPageFrames);
-}
 
-// The frames of these ids, ascending.
-std::vector<int> FramesOfIds(const Sequence& sequence, const std::set<int>& ids) {
-  std::vector<int> frames;
-  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
-    if (ids.count(sequence.frames[static_cast<size_t>(i)].id) > 0) frames.push_back(i);
+  json Fitted(size_t max_bytes, int threads) {
+    if (data_["variants"].empty()) return data_;
+    const LoadedSequence& first = sequences_.front();
+    const ImageSource source = images_(first.sequence);
+    const bool has_images = std::ranges::any_of(first.selection.shown, source.has);
+    const auto least = static_cast<size_t>(kLeastShareOfImages * static_cast<double>(max_bytes));
+    FitPageData(max_bytes - (has_images ? least : 0), &data_);
+    if (!data_["sequences"].front()["frames"].empty()) {
+      AddImages(first, source, max_bytes, threads);
+    }
+    return data_;
   }
-  return frames;
-}
 
-json PageImages(const Sequence& sequence, const std::vector<int>& frames, const ImageSource& images,
-                size_t max_bytes, int threads) {
-  const auto encoded = EncodeImages(frames, images, max_bytes, threads);
-  json by_frame = json::object();
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const int id = sequence.frames[static_cast<size_t>(frames[i])].id;
-    by_frame[std::to_string(id)] = "data:image/jpeg;base64," + encoded[i];
+ private:
+  struct LoadedSequence {
+    Sequence sequence;
+    PageSelection selection;
+  };
+
+  void Add(const VariantResult& result) {
+    std::string state =
+        result.unreadable.empty() ? WhyUnfinished(result) : "failed: " + result.unreadable;
+    bool is_shown = false;
+    if (!result.metrics.is_null()) {
+      try {
+        AddEstimates(result);
+        is_shown = true;
+      } catch (const InputError& error) {
+        state = fmt::format("failed: {}", error.what());
+      }
+    }
+    if (state.empty() && is_shown) return;
+    if (state.empty()) state = "incomplete: it has no metrics.json";
+    data_["unfinished"].push_back(
+        {{"name", Utf8(result.name)}, {"state", Utf8(state)}, {"is_shown", is_shown}});
   }
-  return by_frame;
-}
 
-void Replace(const std::string& placeholder, std::string_view by, std::string* text) {
-  const size_t at = text->find(placeholder);
-  if (at == std::string::npos) throw std::logic_error("page.html has no " + placeholder);
-  text->replace(at, placeholder.size(), by);
-}
-
-std::string Escaped(std::string text, const std::string& what, const std::string& by) {
-  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
+  void AddEstimates(const VariantResult& result) {
+    const size_t index = IndexOfSequence(result.folder / "sequence.json");
+    const auto& [sequence, selection] = sequences_[index];
+    json variant = PageVariant(result, sequence, selection);
+    variant["name"] = Utf8(result.name);
+    variant["sequence"] = index;
+    variant["symmetry"] = nullptr;
+    variant["numbers_only"] = false;
+    const fs::path symmetry = result.folder / "symmetry.h5";
+    if (ShowsStage(result, "refine", "symmetry.h5")) {
+      variant["symmetry"] = IndexOfSymmetry(symmetry, sequences_[index]);
+    }
+    data_["variants"].push_back(std::move(variant));
   }
-  return text;
-}
+
+  size_t IndexOfSequence(const fs::path& file) {
+    const auto known = sequence_of_.find(fs::weakly_canonical(file));
+    if (known != sequence_of_.end()) return known->second;
+    Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+    if (sequences_.empty()) shown_ids_ = FramesToShow(sequence, images_(sequence).has);
+    PageSelection selection = SelectForPage(sequence, shown_ids_);
+    data_["sequences"].push_back(PageSequence(sequence, selection));
+    sequences_.push_back({std::move(sequence), std::move(selection)});
+    return sequence_of_[fs::canonical(file)] = sequences_.size() - 1;
+  }
+
+  size_t IndexOfSymmetry(const fs::path& file, const LoadedSequence& loaded) {
+    const auto known = symmetry_of_.find(fs::weakly_canonical(file));
+    if (known != symmetry_of_.end()) return known->second;
+    const std::vector<SymmetryRecord> records = ReadSymmetry(file);
+    data_["symmetries"].push_back(
+        {{"curves", PageCurves(records, loaded.sequence, loaded.selection)},
+         {"descriptors", PageDescriptors(records)}});
+    return symmetry_of_[fs::canonical(file)] = data_["symmetries"].size() - 1;
+  }
+
+  void AddImages(const LoadedSequence& first, const ImageSource& source, size_t max_bytes,
+                 int threads) {
+    constexpr size_t kBytesOfNotes = 20'000;
+    const size_t taken = PageText(data_).size() + kBytesOfNotes;
+    const EncodedImages encoded = EncodeImages(first.selection.shown, source,
+                                               max_bytes - std::min(max_bytes, taken), threads);
+    for (const auto& [frame_index, base64] : encoded.images) {
+      const int id = first.sequence.frames[static_cast<size_t>(frame_index)].id;
+      data_["images"][std::to_string(id)] = "data:image/jpeg;base64," + base64;
+    }
+    if (!encoded.failures.empty()) {
+      data_["problems"].push_back(Utf8(
+          fmt::format("{} of {} images cannot be shown, the first: {}", encoded.failures.size(),
+                      first.selection.shown.size(), encoded.failures.front())));
+    }
+    if (encoded.scaled_to_px > 0) {
+      data_["notes"].push_back(
+          fmt::format("For lack of room images are {} px wide at most.", encoded.scaled_to_px));
+    }
+    if (encoded.left_out > 0) {
+      data_["notes"].push_back(fmt::format("For lack of room {} images of {} are left out.",
+                                           encoded.left_out,
+                                           encoded.left_out + encoded.images.size()));
+    }
+  }
+
+  const ImageSourceOf& images_;
+  json data_;
+  std::deque<LoadedSequence> sequences_;  // stays where it is: image sources refer to it
+  std::set<int> shown_ids_;
+  std::map<fs::path, size_t> sequence_of_, symmetry_of_;  // by the file that links lead to
+};
 
 }  // namespace
 
-bool IsComplete(const VariantResult& variant) {
-  return !variant.metrics.is_null() && fs::exists(variant.folder / "sequence.json");
-}
-
-json PageData(const DatasetResult& dataset, const ImageSourceOf& images, int threads) {
-  json data = {{"dataset", dataset.name},
-               {"sequences", json::array()},
-               {"variants", json::array()},
-               {"images", json::object()},
-               {"differences", PageDifferences(dataset)}};
-  std::map<fs::path, size_t> index_of_sequence;  // by the file that links lead to
-  std::optional<Sequence> first;                 // whose images are shown
-  std::vector<int> frames_of_first;
-  std::set<int> shown_ids;
-  for (const VariantResult& result : dataset.variants) {
-    if (!IsComplete(result)) continue;
-    const fs::path file = result.folder / "sequence.json";
-    const Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
-    if (!first) {
-      first = sequence;
-      frames_of_first = ShownFrames(sequence, images(sequence));
-      for (const int i : frames_of_first) {
-        shown_ids.insert(sequence.frames[static_cast<size_t>(i)].id);
-      }
-    }
-    const std::vector<int> shown = FramesOfIds(sequence, shown_ids);
-    const auto [entry, is_new] =
-        index_of_sequence.emplace(fs::canonical(file), data["sequences"].size());
-    if (is_new) data["sequences"].push_back(PageSequence(sequence, shown));
-    json variant = PageVariant(result, sequence, shown);
-    variant["sequence"] = entry->second;
-    data["variants"].push_back(std::move(variant));
-  }
-  if (!first) return data;
-  const size_t without_images = data.dump(-1, ' ', false, json::error_handler_t::replace).size();
-  const size_t room = kMaxDataBytes - std::min(kMaxDataBytes - kMinImageBytes, without_images);
-  data["images"] = PageImages(*first, frames_of_first, images(*first), room, threads);
-  return data;
+json PageData(const DatasetResult& dataset, const ImageSourceOf& images, size_t max_bytes,
+              int threads) {
+  return DatasetPage(dataset, images).Fitted(max_bytes, threads);
 }
 
 json OverviewData(const std::vector<json>& pages) {
   json datasets = json::array();
   for (const json& page : pages) {
-    json variants = json::array();
+    json dataset = {{"counts", nullptr}, {"variants", json::array()}};
+    for (const char* key : {"dataset", "url", "unfinished", "notes", "problems"})
+      dataset[key] = page.at(key);
     for (const json& variant : page.at("variants")) {
-      variants.push_back({{"name", variant.at("name")},
-                          {"kind", variant.at("kind")},
-                          {"metrics", variant.at("metrics")}});
+      json metrics = variant.at("metrics");
+      metrics.erase("objects");
+      dataset["variants"].push_back(
+          {{"name", variant.at("name")}, {"kind", variant.at("kind")}, {"metrics", metrics}});
     }
-    const json& sequence = page.at("sequences").front();
-    datasets.push_back({{"dataset", page.at("dataset")},
-                        {"frames", sequence.at("frames").size()},
-                        {"objects", sequence.at("objects").size()},
-                        {"detections", sequence.at("detections").size()},
-                        {"variants", std::move(variants)}});
+    if (!page.at("variants").empty()) {
+      dataset["counts"] = page.at("sequences").front().at("counts");
+    }
+    datasets.push_back(std::move(dataset));
   }
   return {{"datasets", std::move(datasets)}};
-}
-
-std::string PageHtml(const std::string& title, const std::string& entry, const json& data) {
-  const auto& files = EmbeddedPageFiles();
-  std::string scripts;
-  // Libraries first; of ours the functions that others use.
-  for (const char* name :
-       {"three.min.js", "OrbitControls.js", "chart.min.js", "elements.js", "overlay.js",
-        "charts.js", "map.js", "figures.js", "objects.js", "frames.js", "tables.js", "main.js"}) {
-    scripts += fmt::format("<script>\n{}\n</script>\n", files.at(name));
-  }
-  std::string html(files.at("page.html"));
-  Replace("{{title}}", Escaped(Escaped(title, "&", "&amp;"), "<", "&lt;"), &html);
-  Replace("{{style}}", files.at("page.css"), &html);
-  Replace("{{scripts}}", scripts, &html);
-  Replace("{{entry}}", entry, &html);
-  // "<" would begin or end elements. Names that are not UTF-8 are shown as far as they are.
-  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
-  Replace("{{data}}", Escaped(text, "<", "\\u003c"), &html);
-  return html;
 }
 
 }  // namespace soslam

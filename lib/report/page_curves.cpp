@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kNearDeg = 10.0;
 
 json Degrees(double radians) { return PageNumber(kDegPerRad * radians); }
 
@@ -53,6 +54,7 @@ json PageCurve(const SymmetryRecord& record, int detection_index) {
 // What one cost says over all observations.
 struct DescriptorFacts {
   std::vector<double> errors_deg;
+  std::vector<double> errors_where_known_deg;  // of those that have a cost at the true yaw
   double minima = 0.0;
 };
 
@@ -66,6 +68,18 @@ int LocalMinima(const std::vector<double>& cost) {
   return minima;
 }
 
+double ErrorDeg(const SymmetryRecord& record, size_t index) {
+  return kDegPerRad * std::abs(YawDifferenceModuloPi(record.yaw[index], *record.true_yaw));
+}
+
+bool IsKnownAtTruth(const SymmetryRecord& record, const std::vector<double>& cost) {
+  size_t nearest = 0;
+  for (size_t i = 1; i < cost.size(); ++i) {
+    if (ErrorDeg(record, i) < ErrorDeg(record, nearest)) nearest = i;
+  }
+  return std::isfinite(cost[nearest]);
+}
+
 void AddRecord(const SymmetryRecord& record, std::map<std::string, DescriptorFacts>* facts) {
   for (const auto& [name, cost] : record.cost) {
     size_t lowest = cost.size();
@@ -74,17 +88,25 @@ void AddRecord(const SymmetryRecord& record, std::map<std::string, DescriptorFac
     }
     if (lowest == cost.size()) continue;
     DescriptorFacts& of_name = (*facts)[name];
-    of_name.errors_deg.push_back(
-        kDegPerRad * std::abs(YawDifferenceModuloPi(record.yaw[lowest], *record.true_yaw)));
+    of_name.errors_deg.push_back(ErrorDeg(record, lowest));
+    if (IsKnownAtTruth(record, cost)) {
+      of_name.errors_where_known_deg.push_back(of_name.errors_deg.back());
+    }
     const double turns = (record.yaw.back() - record.yaw.front()) / std::numbers::pi;
     of_name.minima += LocalMinima(cost) / std::max(1.0, std::round(turns));
   }
 }
 
+// NaN of none.
+double ShareWithin(const std::vector<double>& errors_deg, double limit_deg) {
+  const auto near =
+      std::ranges::count_if(errors_deg, [&](double error_deg) { return error_deg <= limit_deg; });
+  return static_cast<double>(near) / static_cast<double>(errors_deg.size());
+}
+
 }  // namespace
 
 json PageDescriptors(const std::vector<SymmetryRecord>& records) {
-  constexpr double kNearDeg = 10.0;
   std::map<std::string, DescriptorFacts> facts;
   for (const SymmetryRecord& record : records) {
     if (record.true_yaw) AddRecord(record, &facts);
@@ -92,18 +114,24 @@ json PageDescriptors(const std::vector<SymmetryRecord>& records) {
   json descriptors = json::object();
   for (const auto& [name, of_name] : facts) {
     const auto count = static_cast<double>(of_name.errors_deg.size());
-    const auto near =
-        std::ranges::count_if(of_name.errors_deg, [](double error) { return error <= kNearDeg; });
-    descriptors[name] = {{"observations", of_name.errors_deg.size()},
-                         {"median_error_deg", PageNumber(*MedianOf(of_name.errors_deg))},
-                         {"within_10_deg", PageNumber(static_cast<double>(near) / count)},
-                         {"minima", PageNumber(of_name.minima / count)}};
+    std::vector<double> within;
+    for (int limit_deg = 0; limit_deg <= 90; limit_deg += kErrorStepDeg) {
+      within.push_back(ShareWithin(of_name.errors_deg, limit_deg));
+    }
+    const auto known = static_cast<double>(of_name.errors_where_known_deg.size());
+    descriptors[name] = {
+        {"observations", of_name.errors_deg.size()},
+        {"median_error_deg", PageNumber(*MedianOf(of_name.errors_deg))},
+        {"within", PageNumbers(within)},
+        {"known_at_truth", PageNumber(known / count)},
+        {"near_where_known", PageNumber(ShareWithin(of_name.errors_where_known_deg, kNearDeg))},
+        {"minima", PageNumber(of_name.minima / count)}};
   }
   return descriptors;
 }
 
 json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence,
-                const std::vector<int>& shown) {
+                const PageSelection& selection) {
   std::map<std::pair<int, int>, const SymmetryRecord*> by_ids;
   for (const SymmetryRecord& record : records) {
     by_ids[{record.frame_id, record.object_id}] = &record;
@@ -111,14 +139,15 @@ json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequ
   json curves = json::array();
   for (std::vector<int> detections : DetectionsByObject(sequence)) {
     std::erase_if(detections, [&](int index) {
-      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-      return !std::ranges::binary_search(shown, detection.frame_index);
+      return !selection.Shows(sequence.detections[static_cast<size_t>(index)].frame_index);
     });
     for (const int index : SpreadOver(detections, kCurvesPerObject)) {
       const Detection& detection = sequence.detections[static_cast<size_t>(index)];
       const auto record =
           by_ids.find({sequence.FrameOf(detection).id, sequence.ObjectOf(detection).id});
-      if (record != by_ids.end()) curves.push_back(PageCurve(*record->second, index));
+      if (record != by_ids.end()) {
+        curves.push_back(PageCurve(*record->second, selection.PlaceOfDetection(index)));
+      }
     }
   }
   return curves;

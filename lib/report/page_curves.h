@@ -6,21 +6,25 @@
 
 #include "model/sequence.h"
 #include "model/symmetry_record.h"
+#include "report/page_selection.h"
 
 namespace soslam {
 
-// Cost over yaw of up to kCurvesPerObject observations of each object, evenly over those in frames
-// that are `shown` (indices, ascending): detection (index); yaw_deg: the grid; cost: by name;
+// Cost over yaw of up to kCurvesPerObject observations of each object, evenly over those that are
+// selected: detection (index into those that are selected); yaw_deg: the grid; cost: by name;
 // true_yaw_deg, initial_yaw_deg, refined_yaw_deg, yaw_sigma_deg or null; pairs: up to kPairsOfCurve
 // pixels with their mirror pixels [x, y, x, y].
 inline constexpr size_t kCurvesPerObject = 3;
 inline constexpr size_t kPairsOfCurve = 120;
 nlohmann::json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence,
-                          const std::vector<int>& shown);
+                          const PageSelection& selection);
 
 // How well each cost finds the true yaw modulo half a turn, over all observations with ground
-// truth, by name: observations; median_error_deg of its lowest minimum; within_10_deg: share of
-// them; minima: mean number of local minima over half a turn. Empty without ground truth.
+// truth, by name: observations; median_error_deg of its lowest minimum; within: the shares of
+// them at most 0, kErrorStepDeg, 2 kErrorStepDeg, ... 90 degrees off; known_at_truth: the share
+// that has a cost at the true yaw; near_where_known: of those the share at most 10 degrees off, or
+// null; minima: mean number of local minima over half a turn. Empty without ground truth.
+inline constexpr int kErrorStepDeg = 5;
 nlohmann::json PageDescriptors(const std::vector<SymmetryRecord>& records);
 
 }  // namespace soslam

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "base/base64.h"
+#include "base/error.h"
 #include "base/parallel.h"
 
 namespace soslam {
@@ -15,33 +16,88 @@ namespace {
 
 constexpr int kJpegQuality = 75;
 constexpr std::array kWidthsPx = {800, 640, 480, 320, 200};  // tried in turn
+constexpr size_t kBytesAround = 64;                          // what a page has around each image
 
-std::string EncodeJpeg(const cv::Mat& image, int max_width) {
-  cv::Mat scaled = image;
-  if (image.cols > max_width) {
-    const double scale = static_cast<double>(max_width) / image.cols;
-    cv::resize(image, scaled, {}, scale, scale, cv::INTER_AREA);
-  }
+cv::Mat ScaledTo(const cv::Mat& image, int max_width) {
+  if (image.cols <= max_width) return image;
+  const double scale = static_cast<double>(max_width) / image.cols;
+  cv::Mat scaled;
+  cv::resize(image, scaled, {}, scale, scale, cv::INTER_AREA);
+  return scaled;
+}
+
+std::string EncodeJpeg(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", scaled, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   return Base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+struct ReadImages {
+  std::vector<int> frames;
+  std::vector<cv::Mat> images;  // of the largest width that is tried
+  std::vector<std::string> failures;
+};
+
+ReadImages ReadAll(std::vector<int> frames, const ImageSource& source, int threads) {
+  std::erase_if(frames, std::not_fn(source.has));
+  std::vector<cv::Mat> images(frames.size());
+  std::vector<std::string> failures(frames.size());
+  ParallelFor(static_cast<int>(frames.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    try {
+      images[index] = ScaledTo(source.read(frames[index]), kWidthsPx.front());
+    } catch (const InputError& error) {
+      failures[index] = error.what();
+    }
+  });
+  ReadImages read;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    if (failures[i].empty()) {
+      read.frames.push_back(frames[i]);
+      read.images.push_back(images[i]);
+    } else {
+      read.failures.push_back(failures[i]);
+    }
+  }
+  return read;
+}
+
+std::vector<EncodedImages::Image> EncodeAll(const ReadImages& read, int width, int threads) {
+  std::vector<EncodedImages::Image> encoded(read.frames.size());
+  ParallelFor(static_cast<int>(encoded.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    encoded[index] = {read.frames[index], EncodeJpeg(ScaledTo(read.images[index], width))};
+  });
+  return encoded;
+}
+
+size_t TotalBytes(const std::vector<EncodedImages::Image>& images) {
+  size_t bytes = 0;
+  for (const auto& image : images) bytes += image.base64.size() + kBytesAround;
+  return bytes;
+}
+
+// Every other one.
+void Halve(std::vector<EncodedImages::Image>* images) {
+  std::vector<EncodedImages::Image> kept;
+  for (size_t i = 1; i < images->size(); i += 2) kept.push_back(std::move((*images)[i]));
+  *images = std::move(kept);
 }
 
 }  // namespace
 
-std::vector<std::string> EncodeImages(const std::vector<int>& frames, const ImageSource& images,
-                                      size_t max_bytes, int threads) {
-  std::vector<std::string> encoded(frames.size());
+EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
+                           size_t max_bytes, int threads) {
+  ReadImages read = ReadAll(frames, source, threads);
+  EncodedImages encoded;
   for (const int width : kWidthsPx) {
-    ParallelFor(static_cast<int>(frames.size()), threads, [&](int i) {
-      const auto index = static_cast<size_t>(i);
-      encoded[index] = EncodeJpeg(images.read(frames[index]), width);
-    });
-    const size_t total =
-        std::accumulate(encoded.begin(), encoded.end(), size_t{0},
-                        [](size_t sum, const std::string& text) { return sum + text.size(); });
-    if (total <= max_bytes) break;
+    encoded.images = EncodeAll(read, width, threads);
+    if (width < kWidthsPx.front()) encoded.scaled_to_px = width;
+    if (TotalBytes(encoded.images) <= max_bytes) break;
   }
+  while (TotalBytes(encoded.images) > max_bytes) Halve(&encoded.images);
+  encoded.left_out = read.frames.size() - encoded.images.size();
+  encoded.failures = std::move(read.failures);
   return encoded;
 }
 

@@ -2,22 +2,24 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "model/sequence.h"
+#include "report/page_selection.h"
 
 namespace soslam {
 
-// What pages show of a sequence whatever the method; of frames that are not among `shown` (indices,
-// ascending) no pixels:
-//   frames: id, timestamp, segment, width, height, pose (odometry) and true_pose or null, grid: the
-//     planes of what was detected there, lines as pixels [x, y, x, y]
-//   objects: id, label, segment (null without detections), plane (id), truth (landmark or null),
-//     rotationally_symmetric
-//   detections: frame and object (indices), score, box, truth (outline or null); the truth is the
-//     cuboid around the object, with which estimates are compared
-//   planes: id, normal, offset, grid: lines in the world [x, y, z, x, y, z]
+// What pages show of a sequence whatever the method; frames and detections are those selected, and
+// files' indices those in these lists:
+//   counts: frames, objects, detections of the whole sequence
+//   frames: id, timestamp, segment, width, height, pose (odometry) and true_pose or null, shown;
+//     of those shown grid: see PageGridInFrame
+//   objects: id, label, segment (null where nobody knows), plane (index or null), truth (landmark
+//     or null)
+//   detections: frame and object (indices), box, truth (outline or null); the truth is the cuboid
+//     around the object, with which estimates are compared
+//   planes: see PageGrids
+//   segments: up, a direction of the world
 //   rejected: reason -> detections that were not used
-nlohmann::json PageSequence(const Sequence& sequence, const std::vector<int>& shown);
+nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selection);
 
 }  // namespace soslam

@@ -10,9 +10,9 @@
 
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
-#include "artefact/symmetry_file.h"
-#include "report/page_curves.h"
 #include "report/page_json.h"
+#include "report/page_planes.h"
+#include "report/variant_state.h"
 
 namespace soslam {
 namespace {
@@ -68,19 +68,19 @@ json PageObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& s
 // How each camera sees the landmarks in the world.
 json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence,
                        const std::vector<Rigid3d>& world_from_camera,
-                       const std::vector<int>& shown) {
+                       const PageSelection& selection) {
   std::vector<std::optional<Landmark>> landmarks(sequence.objects.size());
   for (const ObjectEstimate& estimate : estimates) {
     landmarks[static_cast<size_t>(estimate.object_index)] = estimate.landmark_in_world;
   }
   json outlines = json::array();
-  for (const Detection& detection : sequence.detections) {
+  for (const int index : selection.detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const auto& landmark = landmarks[static_cast<size_t>(detection.object_index)];
     const Rigid3d& pose = world_from_camera[static_cast<size_t>(detection.frame_index)];
-    const bool is_shown = std::ranges::binary_search(shown, detection.frame_index);
-    outlines.push_back(landmark && is_shown ? PageOutline(sequence.CameraOf(detection),
-                                                          Transform(pose.Inverse(), *landmark))
-                                            : json());
+    outlines.push_back(
+        landmark ? PageOutline(sequence.CameraOf(detection), Transform(pose.Inverse(), *landmark))
+                 : json());
   }
   return outlines;
 }
@@ -99,83 +99,103 @@ json PageSolver(const SolverSummary& solver) {
           {"gated", solver.gated}};
 }
 
-void AddMap(const MapEstimate& map, const Sequence& sequence, const std::vector<int>& shown,
+// Planes that are given are the same in the map.
+void AddPlanes(const MapEstimate& map, const Sequence& sequence, const PageSelection& selection,
+               json* variant) {
+  const bool are_given = std::ranges::none_of(sequence.planes, [](const SupportPlane& plane) {
+    return plane.attitude_information.has_value();
+  });
+  if (are_given) return;
+  const PlaneGrids grids = GridsOfMap(map, sequence);
+  (*variant)["planes"] = PageGrids(grids);
+  for (const int frame : selection.frames) {
+    const Rigid3d camera_from_world = map.world_from_camera[static_cast<size_t>(frame)].Inverse();
+    (*variant)["grids"].push_back(
+        selection.Shows(frame)
+            ? PageGridInFrame(sequence, frame, grids,
+                              [&](const Detection&) { return camera_from_world; })
+            : json());
+  }
+}
+
+void AddMap(const MapEstimate& map, const Sequence& sequence, const PageSelection& selection,
             json* variant) {
   (*variant)["kind"] = "map";
   (*variant)["objects"] = PageObjects(map.objects, sequence);
-  (*variant)["outlines"] = OutlinesOfObjects(map.objects, sequence, map.world_from_camera, shown);
-  for (const Rigid3d& pose : map.world_from_camera) {
-    (*variant)["trajectory"].push_back(PagePose(pose));
+  (*variant)["outlines"] =
+      OutlinesOfObjects(map.objects, sequence, map.world_from_camera, selection);
+  for (const int frame : selection.frames) {
+    (*variant)["trajectory"].push_back(PagePose(map.world_from_camera[static_cast<size_t>(frame)]));
   }
   (*variant)["solver"] = PageSolver(map.solver);
+  AddPlanes(map, sequence, selection, variant);
 }
 
 void AddViews(const LandmarkEstimates& estimates, const Sequence& sequence,
-              const std::vector<int>& shown, json* variant) {
+              const PageSelection& selection, json* variant) {
   (*variant)["kind"] = "views";
   (*variant)["objects"] = PageObjects(estimates.objects, sequence);
   (*variant)["outlines"] =
-      OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence), shown);
+      OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence), selection);
 }
 
-void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
-               const std::vector<int>& shown, json* variant) {
-  std::vector<json> outlines(sequence.detections.size());
+// Of each object its first observation that has a landmark.
+std::vector<ObjectEstimate> FirstEstimates(const LandmarkEstimates& estimates,
+                                           const Sequence& sequence) {
   std::vector<ObjectEstimate> first(sequence.objects.size());
   for (size_t i = 0; i < first.size(); ++i) first[i].object_index = static_cast<int>(i);
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const auto index = static_cast<size_t>(estimate.detection_index);
-    const Detection& detection = sequence.detections[index];
+    const Detection& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
     ObjectEstimate& object = first[static_cast<size_t>(detection.object_index)];
     ++object.observations;
-    if (estimate.hypotheses.empty()) {
-      if (!object.landmark_in_world) object.failure = estimate.failure;
-      continue;
-    }
-    const Landmark& landmark_in_camera = estimate.hypotheses.front().landmark_in_camera;
-    if (std::ranges::binary_search(shown, detection.frame_index)) {
-      outlines[index] = PageOutline(sequence.CameraOf(detection), landmark_in_camera);
-    }
     if (object.landmark_in_world) continue;
-    object.landmark_in_world =
-        Transform(sequence.FrameOf(detection).world_from_camera, landmark_in_camera);
+    object.failure = estimate.failure;
+    if (estimate.hypotheses.empty()) continue;
+    object.landmark_in_world = Transform(sequence.FrameOf(detection).world_from_camera,
+                                         estimate.hypotheses.front().landmark_in_camera);
     object.failure.clear();
   }
+  return first;
+}
+
+void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
+               const PageSelection& selection, json* variant) {
+  std::vector<json> outlines(selection.detections.size());
+  for (const ObservationEstimate& estimate : estimates.observations) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+    if (estimate.hypotheses.empty() || !selection.Shows(detection.frame_index)) continue;
+    outlines[static_cast<size_t>(selection.PlaceOfDetection(estimate.detection_index))] =
+        PageOutline(sequence.CameraOf(detection), estimate.hypotheses.front().landmark_in_camera);
+  }
   (*variant)["kind"] = "frames";
-  (*variant)["objects"] = PageObjects(first, sequence);
+  (*variant)["objects"] = PageObjects(FirstEstimates(estimates, sequence), sequence);
   (*variant)["outlines"] = outlines;
 }
 
-void AddEstimates(const fs::path& folder, const Sequence& sequence, const std::vector<int>& shown,
-                  json* variant) {
-  if (fs::exists(folder / "map.json")) {
-    AddMap(ReadMap(folder / "map.json", sequence), sequence, shown, variant);
+void AddEstimates(const VariantResult& result, const Sequence& sequence,
+                  const PageSelection& selection, json* variant) {
+  const fs::path& folder = result.folder;
+  if (ShowsStage(result, "optimise", "map.json")) {
+    AddMap(ReadMap(folder / "map.json", sequence), sequence, selection, variant);
     return;
   }
-  const char* file = fs::exists(folder / "refined.json") ? "refined.json" : "initial.json";
+  const char* file = ShowsStage(result, "refine", "refined.json") ? "refined.json" : "initial.json";
   const LandmarkEstimates estimates = ReadLandmarks(folder / file, sequence);
   if (estimates.observations.empty()) {
-    AddViews(estimates, sequence, shown, variant);
+    AddViews(estimates, sequence, selection, variant);
   } else {
-    AddFrames(estimates, sequence, shown, variant);
+    AddFrames(estimates, sequence, selection, variant);
   }
 }
 
 }  // namespace
 
 json PageVariant(const VariantResult& result, const Sequence& sequence,
-                 const std::vector<int>& shown) {
-  json variant = {{"name", result.name},     {"metrics", result.metrics},
-                  {"trajectory", nullptr},   {"solver", nullptr},
-                  {"curves", json::array()}, {"descriptors", json::object()}};
+                 const PageSelection& selection) {
+  json variant = {{"name", result.name}, {"metrics", result.metrics}, {"trajectory", nullptr},
+                  {"solver", nullptr},   {"planes", nullptr},         {"grids", nullptr}};
   variant["metrics"].erase("artefact");
-  AddEstimates(result.folder, sequence, shown, &variant);
-  const fs::path symmetry = result.folder / "symmetry.h5";
-  if (fs::exists(symmetry)) {
-    const std::vector<SymmetryRecord> records = ReadSymmetry(symmetry);
-    variant["curves"] = PageCurves(records, sequence, shown);
-    variant["descriptors"] = PageDescriptors(records);
-  }
+  AddEstimates(result, sequence, selection, &variant);
   return variant;
 }
 

@@ -42,27 +42,47 @@ std::optional<StageTiming> ReadTiming(const fs::path& file) {
   return timing;
 }
 
-// Lines of stages.txt are <stage>-<key>.
+// stages.txt and .linked list runs, <stage>-<key>.
+std::vector<std::string> RunsIn(const fs::path& list) {
+  std::vector<std::string> runs;
+  std::ifstream lines(list);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty()) runs.push_back(line);
+  }
+  return runs;
+}
+
 std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& variant) {
   std::vector<StageRun> stages;
-  std::ifstream lines(variant / "stages.txt");
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty()) continue;
-    const fs::path folder = dataset / "shared" / line;
-    stages.push_back({line.substr(0, line.rfind('-')), folder, ReadTiming(folder / "timing.json")});
+  for (const std::string& run : RunsIn(variant / "stages.txt")) {
+    const fs::path folder = dataset / "shared" / run;
+    stages.push_back({run.substr(0, run.rfind('-')), folder, ReadTiming(folder / "timing.json")});
   }
   return stages;
 }
 
-std::vector<VariantResult> ReadVariants(const fs::path& dataset) {
+VariantResult ReadVariant(const fs::path& dataset, const fs::path& folder, DamagedFiles damaged) {
+  VariantResult variant = {folder.filename().string(), folder};
+  variant.shown_runs = RunsIn(folder / (fs::exists(folder / ".linked") ? ".linked" : "stages.txt"));
+  try {
+    if (fs::exists(folder / "metrics.json")) {
+      variant.metrics = ReadArtefact(folder / "metrics.json", "metrics");
+    }
+    variant.stages = ReadStages(dataset, folder);
+  } catch (const InputError& error) {
+    if (damaged == DamagedFiles::kRefused) throw;
+    variant.metrics = json();
+    variant.unreadable = error.what();
+  }
+  return variant;
+}
+
+std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles damaged) {
   std::vector<VariantResult> variants;
   for (const std::string& name : SubfoldersOf(dataset)) {
     const fs::path folder = dataset / name;
-    const bool has_metrics = fs::exists(folder / "metrics.json");
-    if (!has_metrics && !fs::exists(folder / "stages.txt")) continue;
-    variants.push_back({name, folder,
-                        has_metrics ? ReadArtefact(folder / "metrics.json", "metrics") : json(),
-                        ReadStages(dataset, folder)});
+    if (!fs::exists(folder / "metrics.json") && !fs::exists(folder / "stages.txt")) continue;
+    variants.push_back(ReadVariant(dataset, folder, damaged));
   }
   std::stable_sort(variants.begin(), variants.end(), [](const auto& a, const auto& b) {
     return VariantRank(a.name) < VariantRank(b.name);
@@ -80,10 +100,10 @@ const VariantResult* DatasetResult::Evaluated(const std::string& variant) const 
   return found == variants.end() ? nullptr : &*found;
 }
 
-std::vector<DatasetResult> ReadResults(const fs::path& results) {
+std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles damaged) {
   std::vector<DatasetResult> datasets;
   for (const std::string& name : SubfoldersOf(results)) {
-    DatasetResult dataset = {name, ReadVariants(results / name)};
+    DatasetResult dataset = {name, ReadVariants(results / name, damaged)};
     if (!dataset.variants.empty()) datasets.push_back(std::move(dataset));
   }
   return datasets;

@@ -50,8 +50,11 @@ struct StageRun {
 struct VariantResult {
   std::string name;
   std::filesystem::path folder;
-  nlohmann::json metrics;        // metrics.json (schemas/metrics.schema.json); null without one
-  std::vector<StageRun> stages;  // in the order in which they run; empty without stages.txt
+  nlohmann::json metrics = {};  // metrics.json (schemas/metrics.schema.json); null without one
+  std::vector<StageRun> stages = {};  // in the order in which they run; empty without stages.txt
+  // The runs, <stage>-<key>, that the other files of the folder are of; `stages` may be newer.
+  std::vector<std::string> shown_runs = {};
+  std::string unreadable = {};  // why metrics.json or a timing.json is not valid; empty: they are
 };
 
 // <results>/<dataset>/: at least one variant.
@@ -64,9 +67,11 @@ struct DatasetResult {
 };
 
 // All datasets in a results folder by name, those without metrics too; empty when the folder does
-// not exist. Throws InputError, naming file and field, for a metrics.json or timing.json that is
-// not valid.
-std::vector<DatasetResult> ReadResults(const std::filesystem::path& results);
+// not exist. A metrics.json or timing.json that is not valid is refused with an InputError that
+// names file and field, or noted with its variant, which then has neither metrics nor stages.
+enum class DamagedFiles { kRefused, kNoted };
+std::vector<DatasetResult> ReadResults(const std::filesystem::path& results,
+                                       DamagedFiles damaged = DamagedFiles::kRefused);
 
 // A number of metrics.json by its JSON pointer, "/summary/iou_mean"; none when it is null or
 // absent.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "base/error.h"
 #include "dataset/image_path.h"
 #include "report/page.h"
+#include "report/page_html.h"
 #include "stage/frame_images.h"
 
 namespace soslam {
@@ -41,6 +43,38 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
           [=](int frame_index) { return reader->ReadColour(image_of(frame_index)); }};
 }
 
+// What is missing on the page.
+void PrintProblems(const nlohmann::json& page) {
+  const auto print = [&](const std::string& what) {
+    fmt::print(stderr, "soslam-pages: {}: {}\n", page["dataset"].get<std::string>(), what);
+  };
+  for (const nlohmann::json& variant : page["unfinished"]) {
+    print(fmt::format("{} {}", variant["name"].get<std::string>(),
+                      variant["state"].get<std::string>()));
+  }
+  for (const nlohmann::json& problem : page["problems"]) print(problem.get<std::string>());
+}
+
+// The data of the page, which is written unless it has nothing to show.
+nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
+  constexpr const char* kEntry = "showDataset";
+  const size_t max_data_bytes =
+      kMaxPageBytes - PageHtml(result.name, kEntry, nlohmann::json()).size();
+  const fs::path dataset = DatasetOf(folder);
+  nlohmann::json data = PageData(
+      result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, max_data_bytes,
+      threads);
+  PrintProblems(data);
+  if (data["variants"].empty()) return data;
+  const std::string html = PageHtml(result.name, kEntry, data);
+  WriteTextFile(folder / "report.html", html);
+  fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
+             data["variants"].size(), data["images"].size(),
+             static_cast<double>(html.size()) / 1e6);
+  data.erase("images");
+  return data;
+}
+
 }  // namespace
 
 void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int threads) {
@@ -49,24 +83,15 @@ void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int thre
     throw InputError(results.string() + ": is no folder; expected results of runs");
   }
   std::vector<nlohmann::json> pages;
-  for (const DatasetResult& result : ReadResults(results)) {
-    if (std::ranges::none_of(result.variants, &IsComplete)) continue;
-    const fs::path folder = results / result.name;
-    const fs::path dataset = DatasetOf(folder);
-    nlohmann::json data = PageData(
-        result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, threads);
-    const std::string html = PageHtml(result.name, "showDataset", data);
-    WriteTextFile(folder / "report.html", html);
-    fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
-               data["variants"].size(), data["images"].size(),
-               static_cast<double>(html.size()) / 1e6);
-    data.erase("images");
-    pages.push_back(std::move(data));
+  for (const DatasetResult& result : ReadResults(results, DamagedFiles::kNoted)) {
+    pages.push_back(WriteDatasetPage(result, results / result.name, threads));
   }
-  if (pages.empty()) {
-    throw NothingUsableError(
-        results.string() +
-        ": no <dataset>/<variant>/ with metrics.json and sequence.json; expected at least one");
+  const bool shows_something = std::ranges::any_of(
+      pages, [](const nlohmann::json& page) { return !page["variants"].empty(); });
+  if (!shows_something) {
+    throw NothingUsableError(results.string() +
+                             ": no <dataset>/<variant>/ with a metrics.json and what it is of that "
+                             "can be read; expected at least one");
   }
   WriteTextFile(results / "report.html", PageHtml("Results", "showOverview", OverviewData(pages)));
 }

@@ -3,18 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/page_html.h"
 #include "support/browser.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kMaxPageBytes = 8e6;
+constexpr int kFrames = 6;
 
 class PagesTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    pipeline_ = new SmallPipeline(6);
+    pipeline_ = new SmallPipeline(kFrames);
     const CommandResult run = pipeline_->Run("InitPT OursPT SVD");
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     const CommandResult pages =
@@ -30,19 +31,23 @@ const SmallPipeline* PagesTest::pipeline_ = nullptr;
 
 TEST_F(PagesTest, ADatasetIsShownWithoutErrors) {
   const std::filesystem::path page = Results() / "small/report.html";
-  EXPECT_LT(static_cast<double>(std::filesystem::file_size(page)), kMaxPageBytes);
+  EXPECT_LT(std::filesystem::file_size(page), kMaxPageBytes);
   if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";
   const nlohmann::json found = CheckPage(page);
   ASSERT_FALSE(found.is_null());
   EXPECT_EQ(found.at("errors"), nlohmann::json::array());
   EXPECT_EQ(found.at("variants"), 3);
   EXPECT_EQ(found.at("broken_images"), 0);
-  // The frame, three objects' evidence, figures.
-  EXPECT_GT(found.at("images"), 10);
-  EXPECT_EQ(found.at("charts"), found.at("canvases"));
-  EXPECT_GT(found.at("charts"), 4);
+  // The frame, an object's evidence, pairs of three objects.
+  EXPECT_EQ(found.at("images"), 1 + kFrames + 3);
+  // From above, yaw errors, convergence.
+  EXPECT_EQ(found.at("charts"), 3);
+  EXPECT_EQ(found.at("canvases"), 3);
+  EXPECT_EQ(found.at("charts_after_use"), 3);
+  EXPECT_GE(found.at("strips"), 3);
   EXPECT_EQ(found.at("rows"), 3);
   EXPECT_GT(found.at("drawn_pixels"), 10000);
+  EXPECT_EQ(found.at("last_frame"), "frame 5");
   EXPECT_THAT(found.at("picked").get<std::string>(),
               testing::AllOf(testing::ContainsRegex("chest|stool|armchair"),
                              testing::HasSubstr("sigma of yaw"), testing::HasSubstr("IoU")));

@@ -32,9 +32,24 @@ TEST(PageDescriptors, CountErrorsModuloHalfATurnAndMinima) {
   const auto& wave = found.at("wave");
   EXPECT_EQ(wave.at("observations"), 3);
   EXPECT_NEAR(wave.at("median_error_deg").get<double>(), 4.0, 1e-3);
-  EXPECT_NEAR(wave.at("within_10_deg").get<double>(), 2.0 / 3.0, 1e-4);
+  // 4 degrees off twice, 60 once.
+  EXPECT_EQ(wave.at("within")[0], 0.0);
+  EXPECT_NEAR(wave.at("within")[1].get<double>(), 2.0 / 3.0, 1e-4);
+  EXPECT_NEAR(wave.at("within")[11].get<double>(), 2.0 / 3.0, 1e-4);
+  EXPECT_EQ(wave.at("within")[12], 1.0);
+  EXPECT_EQ(wave.at("within")[90 / kErrorStepDeg], 1.0);
   EXPECT_EQ(wave.at("minima"), 1.0);
   EXPECT_EQ(PageDescriptors({Record(40, 3, 40)}).at("wave").at("minima"), 3.0);
+}
+
+TEST(PageDescriptors, TellWhereTheTrueYawHasNoCost) {
+  SymmetryRecord gap = Record(40, 1, 100);
+  for (size_t i = 45; i < 56; ++i) gap.cost["wave"][i] = std::nan("");  // 90 to 110 degrees
+  const auto wave = PageDescriptors({gap, Record(40, 1, 44)}).at("wave");
+  EXPECT_EQ(wave.at("known_at_truth"), 0.5);
+  EXPECT_EQ(wave.at("near_where_known"), 1.0);
+  EXPECT_EQ(wave.at("within")[2], 0.5);
+  EXPECT_TRUE(PageDescriptors({gap}).at("wave").at("near_where_known").is_null());
 }
 
 TEST(PageDescriptors, NeedTheTruth) {
@@ -66,12 +81,14 @@ TEST(PageCurves, AreOfObservationsSpreadOverEachObject) {
     records.back().samples.assign(500, {1.0f, 2.0f});
     records.back().mirrored.assign(500, {3.0f, 4.0f});
   }
-  const auto curves = PageCurves(records, Seen(9), {0, 1, 2, 4, 5, 6});
+  const Sequence sequence = Seen(9);
+  const auto curves =
+      PageCurves(records, sequence, SelectForPage(sequence, {0, 10, 20, 40, 50, 60}));
   ASSERT_EQ(curves.size(), kCurvesPerObject);
   EXPECT_EQ(curves[0].at("detection"), 0);
   EXPECT_EQ(curves[1].at("detection"), 2);
-  EXPECT_EQ(curves[2].at("detection"), 5);
-  EXPECT_TRUE(PageCurves(records, Seen(9), {}).empty());
+  EXPECT_EQ(curves[2].at("detection"), 4);
+  EXPECT_TRUE(PageCurves(records, sequence, SelectForPage(sequence, {})).empty());
   EXPECT_NEAR(curves[0].at("true_yaw_deg").get<double>(), 44.0, 1e-3);
   EXPECT_TRUE(curves[0].at("refined_yaw_deg").is_null());
   EXPECT_EQ(curves[0].at("pairs").size(), kPairsOfCurve);

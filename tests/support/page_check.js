@@ -1,5 +1,26 @@
 // Ends a page under test: looks at it as a reader would, and leaves what it found as JSON in the
 // element "check".
+// Those that are alive, on the page or not.
+function charts() {
+  return Object.values(Chart.instances);
+}
+
+// Every choice, every slider to its end, every object.
+function useControls() {
+  for (const select of document.querySelectorAll("select")) {
+    for (let i = 0; i < select.options.length; ++i) {
+      select.selectedIndex = i;
+      select.dispatchEvent(new Event("change"));
+    }
+  }
+  for (const range of document.querySelectorAll("input[type=range]")) {
+    range.value = range.max;
+    range.dispatchEvent(new Event("input"));
+  }
+  for (const box of document.querySelectorAll("input[type=checkbox]")) box.click();
+  for (const button of document.querySelectorAll("button")) button.click();
+}
+
 (async () => {
   const found = { errors: window.errorsOfPage, images: 0, broken_images: 0 };
   try {
@@ -11,8 +32,9 @@
         loaded.src = image.getAttribute("href");
       });
     }
-    found.charts = [...document.querySelectorAll(".chart canvas")].filter((canvas) => Chart.getChart(canvas)).length;
+    found.charts = charts().length;
     found.canvases = document.querySelectorAll(".chart canvas").length;
+    found.strips = document.querySelectorAll("svg.strips").length;
     found.rows = document.querySelectorAll("tr[data-object]").length;
     const canvas = document.getElementById("map-canvas");
     if (canvas) {
@@ -35,6 +57,10 @@
         canvas.dispatchEvent(new PointerEvent("pointerup", at));
       }
       found.picked = picked.textContent;
+      useControls();
+      await new Promise((done) => setTimeout(done, 500));  // charts are drawn with the next frames
+      found.charts_after_use = charts().length;
+      found.last_frame = document.querySelector("#map input[type=range]").nextElementSibling.textContent;
     }
   } catch (error) {
     found.errors.push(String(error));

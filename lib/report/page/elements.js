@@ -45,11 +45,25 @@ function checkbox(label, key, checked, onchange) {
     key ? element("span", { class: "key", style: `background: var(--${key})` }) : null, label);
 }
 
-function slider(label, count, chosen, onchange) {
-  const input = element("input",
-    { type: "range", min: 0, max: Math.max(0, count - 1), value: chosen, "aria-label": label,
-      oninput: () => onchange(Number(input.value)) });
-  return input;
+// Positions 0 to count - 1: made for none, until setCount says how many there are.
+function slider(label, onchange) {
+  const input = element("input", { type: "range", min: 0, max: 0, value: 0, "aria-label": label,
+    oninput: () => onchange(Number(input.value)) });
+  const setCount = (count, at) => {
+    input.max = Math.max(0, count - 1);
+    input.value = at;
+    input.disabled = count < 2;
+  };
+  return { input, setCount };
+}
+
+// Charts draw on until they are told that they are gone.
+function replaceContent(holder, ...children) {
+  for (const canvas of holder.querySelectorAll("canvas")) {
+    const chart = Chart.getChart(canvas);
+    if (chart) chart.destroy();
+  }
+  holder.replaceChildren(...children);
 }
 
 // rows: arrays of cells, each a text or {text, best}.

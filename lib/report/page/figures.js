@@ -1,17 +1,13 @@
 "use strict";
 // The paper's figures from these runs.
 
-function byName(page, name) {
-  return page.variants.find((variant) => variant.name === name);
-}
-
-// The first observation with an image of each object that all of these variants have an estimate of.
+// The first observation of each object that all of these variants have an estimate of.
 function exampleDetections(page, variants, count) {
   const sequence = page.sequences[variants[0].sequence];
   const taken = new Set();
   const examples = [];
   sequence.detections.forEach((detection, i) => {
-    if (taken.has(detection.object) || !page.images[sequence.frames[detection.frame].id]) return;
+    if (taken.has(detection.object)) return;
     if (!variants.every((variant) => variant.outlines[i])) return;
     taken.add(detection.object);
     examples.push(i);
@@ -23,17 +19,18 @@ function sameSequence(variants) {
   return variants.filter((variant) => variant && variant.sequence === (variants.find(Boolean) || {}).sequence);
 }
 
-function comparison(page, names, count) {
-  const variants = sameSequence(names.map((name) => byName(page, name)));
-  if (variants.length === 0) return [];
+// Of fewer than two there is nothing to compare.
+function comparison(page, all, names, count) {
+  const variants = sameSequence(names.map((name) => all.find((variant) => variant.name === name)));
+  if (variants.length < 2) return [];
   const sequence = page.sequences[variants[0].sequence];
   return exampleDetections(page, variants, count).map((index) => {
     const detection = sequence.detections[index];
     const object = sequence.objects[detection.object];
-    return element("div", {}, element("div", { class: "faint" },
+    return element("div", { class: "comparison" }, element("h4", {},
       `${object.label} ${object.id}, frame ${sequence.frames[detection.frame].id}`),
       element("div", { class: "grid" }, variants.map((variant) => element("figure", {},
-        detectionView(page, variant, index, [], `${variant.name}, ${object.label}`),
+        detectionView(page, variant, index, `${variant.name}, ${object.label}`),
         element("figcaption", {}, variant.name)))));
   });
 }
@@ -42,74 +39,90 @@ function figure(title, text, content) {
   return content.length === 0 ? [] : [element("h3", {}, title), element("p", {}, text), ...content];
 }
 
-// Fig. 5: samples and the pixels that the body's mirror plane takes them to.
-function pairFigures(page, variants) {
-  return variants.flatMap((variant) => {
-    const sequence = page.sequences[variant.sequence];
-    const records = firstOfEachObject(page, variant).filter(({ pairs }) => pairs.length > 0).slice(0, 3);
-    return records.map((record) => {
-      const shapes = record.pairs.flatMap(([x1, y1, x2, y2]) => [
-        line([x1, y1, x2, y2], "detection", { "stroke-width": 0.6, "stroke-opacity": 0.5 }),
-        svgElement("circle", { cx: x1, cy: y1, r: 1.4, fill: "var(--front)" }),
-        svgElement("circle", { cx: x2, cy: y2, r: 1.4, fill: "var(--estimate)" })]);
-      const object = sequence.objects[sequence.detections[record.detection].object];
-      return element("figure", {}, detectionView(page, variant, record.detection, shapes, "mirrored pairs"),
-        element("figcaption", {}, `${variant.name}, ${object.label} ${object.id}: ${record.pairs.length} of ${record.pairs_in_all} pairs`));
-    });
-  });
+// Each way in which curves were made, with one variant that has them, of single frames if possible:
+// what its curves are of is then its estimate.
+function waysOfCurves(page) {
+  return page.symmetries.map((symmetry, i) => {
+    const sharing = page.variants.filter((variant) => variant.symmetry === i && !variant.numbers_only);
+    const variant = sharing.find(({ kind }) => kind === "frames") || sharing[0];
+    return { ...symmetry, variant, names: sharing.map(({ name }) => name).join(", ") };
+  }).filter(({ variant }) => variant);
 }
 
-function firstOfEachObject(page, variant) {
-  const { detections, frames } = page.sequences[variant.sequence];
+function curvesOf(page, variant) {
+  return variant.symmetry == null ? [] : page.symmetries[variant.symmetry].curves;
+}
+
+function firstOfEachObject(page, { curves, variant }) {
+  const { detections } = page.sequences[variant.sequence];
   const taken = new Set();
-  return variant.curves.filter((record) => {
-    const { object, frame } = detections[record.detection];
-    if (taken.has(object) || !page.images[frames[frame].id]) return false;
-    taken.add(object);
-    return true;
+  return curves.filter(({ detection }) => {
+    const { object } = detections[detection];
+    return taken.has(object) ? false : taken.add(object);
   });
 }
 
-function descriptorTable(variant) {
-  const rows = Object.entries(variant.descriptors).map(([name, all]) =>
-    [name.replaceAll("_", " "), all.observations, all.median_error_deg, all.within_10_deg, all.minima]);
-  const errors = bestOf(rows.map((row) => row[2])), shares = bestOf(rows.map((row) => row[3]), true);
-  return table(["cost", "observations", "median error of its minimum, deg", "within 10 deg", "local minima"],
-    rows.map(([name, observations, error, share, minima]) => [name, String(observations),
-      { text: number(error, 1), best: error === errors },
-      { text: `${number(100 * share, 0)} %`, best: share === shares }, number(minima, 1)]));
+function nameOfRecord(page, variant, record) {
+  const { detections, objects, frames } = page.sequences[variant.sequence];
+  const { object, frame } = detections[record.detection];
+  return `${objects[object].label} ${objects[object].id}, frame ${frames[frame].id}`;
 }
 
-function curveFigures(page, variants) {
-  return variants.flatMap((variant) => {
-    if (variant.curves.length === 0) return [];
-    const { detections, objects, frames } = page.sequences[variant.sequence];
-    const charts = firstOfEachObject(page, variant).slice(0, 4).map((record) => {
-      const { object, frame } = detections[record.detection];
-      return element("figure", {}, yawChart(record),
-        element("figcaption", {}, `${objects[object].label} ${objects[object].id}, frame ${frames[frame].id}`));
-    });
-    return [element("h3", {}, variant.name), descriptorTable(variant), element("div", { class: "wide" }, charts)];
+// Fig. 5: samples and the pixels that the body's mirror plane takes them to.
+function pairShapes(record, width) {
+  return record.pairs.flatMap(([x1, y1, x2, y2]) => [
+    line([x1, y1, x2, y2], "detection", { "stroke-width": 0.6, "stroke-opacity": 0.6 }),
+    svgElement("circle", { cx: x1, cy: y1, r: width / 120, fill: "var(--front)" }),
+    svgElement("circle", { cx: x2, cy: y2, r: width / 120, fill: "var(--grid)" })]);
+}
+
+function pairFigures(page, ways) {
+  return ways.flatMap((way) => {
+    const records = firstOfEachObject(page, way).filter(({ pairs }) => pairs.length > 0).slice(0, 4);
+    if (records.length === 0) return [];
+    return [element("div", { class: "comparison" }, element("h4", {}, way.names),
+      element("div", { class: "grid" }, records.map((record) => element("figure", {},
+        detectionView(page, way.variant, record.detection, "mirrored pairs", (width) => pairShapes(record, width)),
+        element("figcaption", {}, `${nameOfRecord(page, way.variant, record)}: ${record.pairs.length} of ${record.pairs_in_all} pairs`)))))];
   });
 }
 
-// One variant for each way in which curves were made: others share them.
-function variantsWithCurves(page) {
-  return page.variants.filter((variant) => variant.kind === "frames" && variant.curves.length > 0);
+function descriptorTable(descriptors) {
+  const kStepDeg = 5;
+  const rows = Object.entries(descriptors).map(([name, all]) => ({ name, ...all, near: all.within[10 / kStepDeg] }));
+  const best = (of, higher) => bestOf(rows.map(of), higher);
+  const [error, near, nearKnown] = [best((row) => row.median_error_deg), best((row) => row.near, true),
+    best((row) => row.near_where_known, true)];
+  const share = (value, highest) => ({ text: value == null ? "–" : `${number(100 * value, 0)} %`, best: value === highest });
+  return table(["cost", "observations", "median yaw error, °", "within 10°", "known at true yaw", "within 10° where known", "local minima"],
+    rows.map((row) => [row.name.replaceAll("_", " "), String(row.observations),
+      { text: number(row.median_error_deg, 1), best: row.median_error_deg === error },
+      share(row.near, near), share(row.known_at_truth), share(row.near_where_known, nearKnown), number(row.minima, 1)]));
 }
 
-function figuresSection(page) {
-  const curved = variantsWithCurves(page);
-  const pairs = pairFigures(page, curved);
+function curveFigures(page, ways) {
+  return ways.flatMap((way) => {
+    const strips = firstOfEachObject(page, way).slice(0, 4).map((record) => element("figure", {},
+      yawStrips(record, "cost over yaw"), element("figcaption", {}, nameOfRecord(page, way.variant, record))));
+    const overall = Object.keys(way.descriptors).length === 0 ? []
+      : [descriptorTable(way.descriptors), yawErrorChart(way.descriptors)];
+    return [element("h4", {}, way.names), ...overall, element("div", { class: "wide" }, strips)];
+  });
+}
+
+function figuresSection(page, variants) {
+  const ways = waysOfCurves(page);
   const content = [
-    ...figure("Samples and mirrored pairs", "Samples are orange, the pixels that the mirror plane of the estimate takes them to blue (fig. 5 of the paper).",
-      pairs.length > 0 ? [element("div", { class: "grid" }, pairs)] : []),
+    ...figure("Samples and mirrored pairs", "Samples are orange, the pixels that the mirror plane of the estimate takes them to white (fig. 5 of the paper).",
+      pairFigures(page, ways)),
     ...figure("Single-frame initialisation", "The first observations of some objects (fig. 6): detection dashed, ground truth green, estimate blue with its front orange.",
-      comparison(page, ["Init1-1", "InitP", "InitS", "InitSTE"], 3)),
-    ...figure("Cost over yaw", "Each curve over its own range (fig. 7). A descriptor is good where its lowest minimum is at the true yaw, or half a turn from it, and where it has few others. The tables count all observations: how far the lowest minimum is from the truth, modulo half a turn.",
-      curveFigures(page, curved)),
+      comparison(page, variants, ["Init1-1", "InitP", "InitS", "InitSTE"], 3)),
+    ...figure("Cost over yaw", "Which descriptor finds the yaw (fig. 7)? The tables count all observations: how far the lowest cost is from the true yaw, modulo half a turn, " +
+      "and whether there is a cost at the true yaw at all: where too few pairs of pixels are visible at once there is none, and no descriptor can win. " +
+      "The strips show single observations, each cost over its own range: the dot is its lowest point, green within 10° of the truth, the dashed line the true yaw, the dotted one the yaw that was chosen.",
+      curveFigures(page, ways)),
     ...figure("Before and after symmetry", "The same observations before the yaw is refined and after (fig. 8).",
-      [...comparison(page, ["InitP", "InitPT"], 3), ...comparison(page, ["InitS", "InitST", "InitSTE"], 3)]),
+      [...comparison(page, variants, ["InitP", "InitPT"], 3), ...comparison(page, variants, ["InitS", "InitST", "InitSTE"], 3)]),
   ];
   return content.length === 0 ? null : section("figures", "Figures", ...content);
 }

@@ -1,49 +1,61 @@
 "use strict";
-// All frames, one at a time.
+// All frames that are shown, one at a time.
+
+function shapesInFrame(page, variant, frameIndex, shown) {
+  const sequence = page.sequences[variant.sequence];
+  const grid = variant.grids ? variant.grids[frameIndex] : sequence.frames[frameIndex].grid;
+  const shapes = shown.grid ? grid.map((pixels) => line(pixels, "grid", { "stroke-width": 1, "stroke-opacity": 0.55 })) : [];
+  sequence.detections.forEach((detection, i) => {
+    if (detection.frame !== frameIndex) return;
+    if (shown.detection) shapes.push(boxOutline(detection.box, "detection"));
+    if (shown.truth && detection.truth && detection.truth.outline.length > 0) {
+      shapes.push(polygon(detection.truth.outline, "truth"));
+    }
+    const estimate = variant.outlines[i];
+    if (shown.estimate) shapes.push(...estimateShapes(estimate, "estimate"));
+    if (shown.box && estimate && estimate.outline.length > 0) {
+      shapes.push(boxOutline(boundsOf(estimate.outline), "estimate"));
+    }
+  });
+  return shapes;
+}
 
 function framesSection(page, variants) {
-  const holder = element("div");
+  const holder = element("div"), caption = element("span", { class: "faint" });
   const shown = { estimate: true, box: false, truth: true, detection: true, grid: true };
-  let variant = variants[0], at = 0;
+  const detections = page.sequences[variants[0].sequence].detections;
+  let variant = variants[0];
   const framesOf = () => page.sequences[variant.sequence].frames
-    .map((frame, index) => ({ frame, index })).filter(({ frame }) => page.images[frame.id]);
-  const caption = element("span", { class: "faint" });
-
+    .map((frame, index) => ({ frame, index })).filter(({ frame }) => frame.shown);
+  // One in which there is something to see.
+  let at = Math.max(0, framesOf().findIndex(({ index }) => detections.some(({ frame }) => frame === index)));
   const draw = () => {
     const frames = framesOf();
     if (frames.length === 0) return;
-    at = Math.min(at, frames.length - 1);
     const { frame, index } = frames[at];
-    const sequence = page.sequences[variant.sequence];
-    const shapes = shown.grid
-      ? frame.grid.map((pixels) => line(pixels, "truth", { "stroke-width": 0.8, "stroke-opacity": 0.45 })) : [];
-    sequence.detections.forEach((detection, i) => {
-      if (detection.frame !== index) return;
-      if (shown.detection) shapes.push(boxOutline(detection.box, "detection"));
-      if (shown.truth && detection.truth && detection.truth.outline.length > 0) {
-        shapes.push(polygon(detection.truth.outline, "truth"));
-      }
-      const estimate = variant.outlines[i];
-      if (shown.estimate) shapes.push(...estimateShapes(estimate, "estimate"));
-      if (shown.box && estimate && estimate.outline.length > 0) {
-        shapes.push(boxOutline(boundsOf(estimate.outline), "estimate"));
-      }
-    });
-    caption.textContent = `frame ${frame.id}, ${at + 1} of ${frames.length}, ${frame.timestamp.toFixed(2)} s`;
-    holder.replaceChildren(imageView(page, frame, null, shapes, `frame ${frame.id}`));
+    const begin = page.sequences[variant.sequence].frames.find(({ segment }) => segment === frame.segment);
+    const seconds = frame.timestamp - begin.timestamp;
+    caption.textContent = `frame ${frame.id}, ${at + 1} of ${frames.length}, ${seconds.toFixed(2)} s`;
+    const view = imageView(page, frame, null, shapesInFrame(page, variant, index, shown), `frame ${frame.id}`);
+    view.style.maxWidth = `${78 * frame.width / frame.height}vh`;  // so that it is seen with its slider
+    holder.replaceChildren(view);
   };
+  const { input, setCount } = slider("frame", (i) => { at = i; draw(); });
+  const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => {
+    variant = variants[i];
+    at = Math.max(0, Math.min(at, framesOf().length - 1));
+    setCount(framesOf().length, at);
+    draw();
+  });
   const toggle = (label, name, key) =>
     checkbox(label, key, shown[name], (on) => { shown[name] = on; draw(); });
-  const controls = element("div", { class: "bar" },
-    chooser("variant", variants.map(({ name }) => name), 0, (i) => { variant = variants[i]; draw(); }),
-    slider("frame", framesOf().length, 0, (i) => { at = i; draw(); }), caption,
-    toggle("estimate", "estimate", "estimate"), toggle("its box", "box", "estimate"),
-    toggle("ground truth", "truth", "truth"), toggle("detection", "detection", "detection"),
-    toggle("support planes", "grid", "truth"));
   const note = Object.keys(page.images).length === 0
-    ? element("p", { class: "faint" }, "The images of this dataset were not there when the page was made.") : null;
+    ? element("p", { class: "faint" }, "There were no images of this dataset where the page was made.") : null;
   return section("frames", "Frames",
-    element("p", {}, "Detections are dashed. Thick ends point to the object's front: its mirror plane " +
-      "is the one through it. Estimates over several frames are seen from the estimated camera, the ground truth from the true one."),
-    controls, note, holder);
+    element("p", {}, "Detections are dashed, the thick end of an estimate points to its front. " +
+      "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."), note,
+    element("div", { class: "bar on-image" }, choose, toggle("estimate", "estimate", "estimate"), toggle("its box", "box", "estimate"),
+      toggle("ground truth", "truth", "truth"), toggle("detection", "detection", "detection"),
+      toggle("support planes", "grid", "grid")),
+    element("div", { class: "bar" }, input, caption), holder);
 }

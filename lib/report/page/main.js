@@ -14,8 +14,8 @@ function contents(sections) {
     element("a", { href: `#${part.id}` }, part.querySelector("h2").textContent)));
 }
 
-function convergenceSection(page) {
-  const maps = page.variants.filter(({ solver }) => solver);
+function convergenceSection(variants) {
+  const maps = variants.filter(({ solver }) => solver);
   if (maps.length === 0) return null;
   const list = (counts) => Object.entries(counts).map(([name, count]) => `${name} ${count}`).join(", ");
   return section("convergence", "Convergence", convergenceChart(maps),
@@ -24,22 +24,31 @@ function convergenceSection(page) {
       [name, String(solver.iterations), solver.converged ? "yes" : "no", list(solver.residuals), list(solver.gated)])));
 }
 
+function counted(count, what) {
+  return `${count} ${what}${count === 1 ? "" : "s"}`;
+}
+
 function showDataset(page, holder) {
-  const variants = byInterest(page.variants);
-  const sequence = page.sequences[0];
-  const rejected = Object.entries(sequence.rejected).map(([reason, count]) => `${count} ${reason.replaceAll("_", " ")}`);
-  const sections = [metricsSection(page), mapSection(page, variants), framesSection(page, variants),
-    objectsSection(page, variants), figuresSection(page), ablationSection(page), convergenceSection(page)].filter(Boolean);
+  const detailed = byInterest(page.variants.filter(({ numbers_only }) => !numbers_only));
+  const { counts, rejected } = page.sequences[0];
+  const shown = page.sequences[0].frames.filter(({ shown }) => shown).length;
+  const reasons = Object.entries(rejected).map(([reason, count]) => `${count} ${reason.replaceAll("_", " ")}`);
+  const sections = [metricsSection(page),
+    ...(detailed.length === 0 ? [] : [mapSection, framesSection, objectsSection, figuresSection].map((make) => make(page, detailed))),
+    ablationSection(page), convergenceSection(detailed)].filter(Boolean);
   holder.append(element("h1", {}, page.dataset),
-    element("p", { class: "faint" }, `${sequence.frames.length} frames, ${sequence.objects.length} objects, ` +
-      `${sequence.detections.length} detections used` + (rejected.length > 0 ? `; not used: ${rejected.join(", ")}` : "")),
-    contents(sections), ...sections);
+    element("p", { class: "faint" }, counted(counts.frames, "frame") + (shown < counts.frames ? `, ${shown} of them shown, ` : ", ") +
+      `${counted(counts.objects, "object")}, ${counted(counts.detections, "detection")} used` + (reasons.length > 0 ? `; not used: ${reasons.join(", ")}` : "")),
+    ...remarks(page), contents(sections), ...sections);
 }
 
 function showOverview(data, holder) {
-  holder.append(element("h1", {}, "Results"), ...data.datasets.map((dataset) =>
-    section(dataset.dataset, dataset.dataset,
-      element("p", {}, `${dataset.frames} frames, ${dataset.objects} objects, ${dataset.detections} detections. `,
-        element("a", { href: `./${encodeURIComponent(dataset.dataset)}/report.html` }, "Look at it")),
-      metricsTable(dataset.variants))));
+  holder.append(element("h1", {}, "Results"), ...data.datasets.map((dataset) => {
+    const { counts, variants } = dataset;
+    const about = counts == null ? "Nothing of it can be shown."
+      : [`${counted(counts.frames, "frame")}, ${counted(counts.objects, "object")}, ${counted(counts.detections, "detection")}. `,
+        element("a", { href: `./${dataset.url}/report.html` }, "Map, frames, objects and figures")];
+    return section(dataset.url, dataset.dataset, element("p", {}, about), ...remarks(dataset),
+      ...(variants.length > 0 ? [metricsTable(variants)] : []));
+  }));
 }

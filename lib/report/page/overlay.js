@@ -51,14 +51,14 @@ function estimateShapes(shown, name) {
 function imageView(page, frame, crop, shapes, label) {
   const [x1, y1, x2, y2] = crop || [-0.5, -0.5, frame.width - 0.5, frame.height - 0.5];
   const view = svgElement("svg",
-    { class: "view", viewBox: `${x1} ${y1} ${x2 - x1} ${y2 - y1}`, role: "img", "aria-label": label });
+    { class: "view on-image", viewBox: `${x1} ${y1} ${x2 - x1} ${y2 - y1}`, role: "img", "aria-label": label });
   view.style.aspectRatio = `${x2 - x1} / ${y2 - y1}`;
   const url = imageUrl(page, frame.id);
   if (url) {
     view.append(svgElement("image", { href: url, x: -0.5, y: -0.5, width: frame.width, height: frame.height,
       preserveAspectRatio: "none" }));
   }
-  view.append(...shapes);
+  view.append(svgElement("g", { class: "shapes" }, shapes));
   return view;
 }
 
@@ -75,14 +75,16 @@ function cropAround(boxes, frame, margin) {
   return [left, top, left + width, top + height];
 }
 
-// A detection, cut out, with one variant's estimate and the truth.
-function detectionView(page, variant, index, extra, label) {
+// A detection, cut out, with one variant's estimate and, unless other shapes are to be shown, with
+// its box and the truth.
+function detectionView(page, variant, index, label, otherShapes) {
   const sequence = page.sequences[variant.sequence];
   const detection = sequence.detections[index];
   const frame = sequence.frames[detection.frame];
   const crop = cropAround([detection.box], frame, 0.25);
-  const shapes = [boxOutline(detection.box, "detection")];
-  if (detection.truth && detection.truth.outline.length > 0) shapes.push(polygon(detection.truth.outline, "truth"));
-  shapes.push(...estimateShapes(variant.outlines[index], "estimate"), ...(extra || []));
-  return imageView(page, frame, crop, shapes, label);
+  const shapes = otherShapes ? otherShapes(crop[2] - crop[0]) : [boxOutline(detection.box, "detection")];
+  if (!otherShapes && detection.truth && detection.truth.outline.length > 0) {
+    shapes.push(polygon(detection.truth.outline, "truth"));
+  }
+  return imageView(page, frame, crop, [...estimateShapes(variant.outlines[index], "estimate"), ...shapes], label);
 }

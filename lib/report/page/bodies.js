@@ -1,0 +1,88 @@
+"use strict";
+// What the map in three dimensions shows, made for three.js in the world's own frame.
+
+// A body whose support function is ||(a n1, b n2, c n3)||_p is the unit ball of the norm with the
+// exponent q, 1/p + 1/q = 1, scaled by its half axes.
+function bodyGeometry(landmark) {
+  const [a, b, c] = landmark.half_axes;
+  if (landmark.p <= 1.001) return new THREE.BoxBufferGeometry(2 * a, 2 * b, 2 * c);
+  const q = landmark.p / (landmark.p - 1);
+  const geometry = new THREE.BoxBufferGeometry(2, 2, 2, 14, 14, 14);
+  const positions = geometry.attributes.position;
+  for (let i = 0; i < positions.count; ++i) {
+    const d = [positions.getX(i), positions.getY(i), positions.getZ(i)];
+    const size = Math.hypot(...d);
+    const norm = Math.pow(d.reduce((sum, part) => sum + Math.pow(Math.abs(part) / size, q), 0), 1 / q);
+    positions.setXYZ(i, a * d[0] / size / norm, b * d[1] / size / norm, c * d[2] / size / norm);
+  }
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+function placed(object, pose) {
+  object.position.set(pose[0], pose[1], pose[2]);
+  object.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
+  return object;
+}
+
+function threeLine(points, name, opacity) {
+  const geometry = new THREE.BufferGeometry()
+    .setFromPoints(points.map(([x, y, z]) => new THREE.Vector3(x, y, z)));
+  return new THREE.Line(geometry, lineMaterial(name, opacity));
+}
+
+function lineMaterial(name, opacity) {
+  return new THREE.LineBasicMaterial(
+    { color: colour(name), transparent: opacity < 1, opacity: opacity || 1 });
+}
+
+function bodyMesh(landmark, name, opacity) {
+  const geometry = bodyGeometry(landmark);
+  const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
+    { color: colour(name), transparent: true, opacity, depthWrite: opacity > 0.4 }));
+  const [a, b, c] = landmark.half_axes;
+  const box = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(2 * a, 2 * b, 2 * c));
+  mesh.add(new THREE.LineSegments(box, lineMaterial(name, 1)));
+  return placed(mesh, landmark.pose);
+}
+
+function frontArrow(landmark) {
+  const [a] = landmark.half_axes;
+  const arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1.35 * a,
+    colour("front"), 0.3 * a, 0.2 * a);
+  for (const part of arrow.children) {  // drawn last: it shows inside the body as well
+    Object.assign(part.material, { depthTest: false, transparent: true });
+    part.renderOrder = 1;
+  }
+  return placed(new THREE.Group().add(arrow), landmark.pose);
+}
+
+// Three standard deviations of the centre: x = L u of the unit sphere, L L^T the covariance.
+function uncertaintyBody(object) {
+  const m = object.centre_covariance;
+  const l = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
+  for (let i = 0; i < 3; ++i) {
+    for (let k = 0; k <= i; ++k) {
+      let rest = m[i][k];
+      for (let n = 0; n < k; ++n) rest -= l[i][n] * l[k][n];
+      l[i][k] = i === k ? Math.sqrt(Math.max(rest, 0)) : l[k][k] > 0 ? rest / l[k][k] : 0;
+    }
+  }
+  const mesh = new THREE.Mesh(new THREE.SphereBufferGeometry(3, 24, 16),
+    new THREE.MeshLambertMaterial({ color: colour("other"), transparent: true, opacity: 0.45, depthTest: false }));
+  const [x, y, z] = object.landmark.pose;
+  mesh.matrixAutoUpdate = false;
+  mesh.matrix.set(l[0][0], 0, 0, x, l[1][0], l[1][1], 0, y, l[2][0], l[2][1], l[2][2], z, 0, 0, 0, 1);
+  return mesh;
+}
+
+function cameraFrustum(frame, size) {
+  const w = 0.5 * size, h = 0.5 * size * frame.height / frame.width;
+  const corners = [[-w, -h], [w, -h], [w, h], [-w, h]].map(([x, y]) => [x, y, 0.7 * size]);
+  const group = new THREE.Group();
+  corners.forEach((corner, i) => {
+    group.add(threeLine([[0, 0, 0], corner], "detection", 1));
+    group.add(threeLine([corner, corners[(i + 1) % 4]], "detection", 1));
+  });
+  return group;
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_fit.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+#include <vector>
+
+#include "report/page_html.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+void LeaveOutCurves(json* data) {
+  if (data->at("symmetries").empty()) return;
+  for (json& symmetry : data->at("symmetries")) symmetry["curves"] = json::array();
+  data->at("notes").push_back(
+      "For lack of room the cost over yaw of single observations is left out.");
+}
+
+void KeepNumbersOnly(json* variant) {
+  for (const char* key : {"objects", "outlines", "trajectory", "solver", "planes", "grids"}) {
+    variant->erase(key);
+  }
+  variant->at("metrics")["objects"] = json::array();
+  variant->at("numbers_only") = true;
+}
+
+// Of variants, as far as needed. Returns their names.
+std::vector<std::string> KeepNumbersOnlyOfSome(size_t bytes, size_t max_bytes, json* data) {
+  std::vector<std::string> names;
+  for (const char* kind : {"frames", "views", "map"}) {
+    for (json& variant : data->at("variants")) {
+      if (bytes <= max_bytes || variant.at("kind") != kind) continue;
+      bytes -= PageText(variant).size();
+      KeepNumbersOnly(&variant);
+      bytes += PageText(variant).size();
+      names.push_back(variant.at("name"));
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+void FitPageData(size_t max_bytes, json* data) {
+  if (PageText(*data).size() <= max_bytes) return;
+  LeaveOutCurves(data);
+  const auto reduced = KeepNumbersOnlyOfSome(PageText(*data).size(), max_bytes, data);
+  if (reduced.empty()) return;
+  data->at("notes").push_back(
+      fmt::format("For lack of room only the numbers of {} are shown.", fmt::join(reduced, ", ")));
+  if (reduced.size() < data->at("variants").size()) return;
+  for (json& sequence : data->at("sequences")) {
+    for (const char* key : {"frames", "objects", "detections", "planes", "segments"}) {
+      sequence[key] = json::array();
+    }
+  }
+}
+
+}  // namespace soslam

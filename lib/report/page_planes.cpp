@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_planes.h"
+
+#include <algorithm>
+#include <set>
+
+#include "model/occlusion.h"
+#include "report/page_json.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// What is less upright than this is a wall.
+constexpr double kMinUprightCosine = 0.2;
+
+using PointsByPlane = std::vector<std::vector<Eigen::Vector3d>>;
+
+PlaneGrids GridsAround(const PointsByPlane& points, const std::vector<Plane>& planes_in_world) {
+  PlaneGrids grids(points.size());
+  for (size_t i = 0; i < grids.size(); ++i) {
+    if (!points[i].empty()) grids[i] = PlaneGrid(planes_in_world[i], points[i]);
+  }
+  return grids;
+}
+
+}  // namespace
+
+PlaneGrids GridsOfSequence(const Sequence& sequence) {
+  PointsByPlane points(sequence.planes.size());
+  std::vector<Plane> planes;
+  for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
+  if (planes.empty()) return {};
+  for (const Detection& detection : sequence.detections) {
+    const Object& object = sequence.ObjectOf(detection);
+    const auto plane_index = static_cast<size_t>(object.plane_index);
+    if (object.ground_truth) {
+      points[plane_index].push_back(object.ground_truth->landmark_in_world.Centre());
+      continue;
+    }
+    const Rigid3d& world_from_camera = sequence.FrameOf(detection).world_from_camera;
+    const auto foot = FootInCamera(sequence.CameraOf(detection), detection.box,
+                                   Transform(world_from_camera.Inverse(), planes[plane_index]));
+    if (foot) points[plane_index].push_back(world_from_camera * *foot);
+  }
+  return GridsAround(points, planes);
+}
+
+PlaneGrids GridsOfMap(const MapEstimate& map, const Sequence& sequence) {
+  PointsByPlane points(map.planes_in_world.size());
+  if (points.empty()) return {};
+  for (const ObjectEstimate& estimate : map.objects) {
+    const Object& object = sequence.objects[static_cast<size_t>(estimate.object_index)];
+    if (!estimate.landmark_in_world) continue;
+    points[static_cast<size_t>(object.plane_index)].push_back(estimate.landmark_in_world->Centre());
+  }
+  return GridsAround(points, map.planes_in_world);
+}
+
+json PageGrids(const PlaneGrids& grids) {
+  json planes = json::array();
+  for (const auto& grid : grids) {
+    json lines = json::array();
+    for (const LineSegment3& line : grid) {
+      json ends = PageVector(line[0]);
+      for (const json& part : PageVector(line[1])) ends.push_back(part);
+      lines.push_back(std::move(ends));
+    }
+    planes.push_back(std::move(lines));
+  }
+  return planes;
+}
+
+json PageGridInFrame(const Sequence& sequence, int frame_index, const PlaneGrids& grids,
+                     const std::function<Rigid3d(const Detection&)>& camera_from_world_for) {
+  json lines = json::array();
+  if (sequence.planes.empty()) return lines;
+  std::set<int> drawn;
+  for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
+    const int plane_index = sequence.ObjectOf(detection).plane_index;
+    if (!drawn.insert(plane_index).second) continue;
+    const Rigid3d camera_from_world = camera_from_world_for(detection);
+    for (const LineSegment3& line : grids[static_cast<size_t>(plane_index)]) {
+      const auto segment = ProjectSegment(
+          sequence.CameraOf(detection), {camera_from_world * line[0], camera_from_world * line[1]});
+      if (segment) lines.push_back(PagePixels({(*segment)[0], (*segment)[1]}));
+    }
+  }
+  return lines;
+}
+
+Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection) {
+  const Frame& frame = sequence.FrameOf(detection);
+  const SupportPlane& plane =
+      sequence.planes[static_cast<size_t>(sequence.ObjectOf(detection).plane_index)];
+  if (!plane.attitude_information) {
+    return frame.true_world_from_camera.value_or(frame.world_from_camera).Inverse();
+  }
+  const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
+  const Plane by_odometry = Transform(camera_from_world, plane.plane_in_world);
+  const Plane& seen = detection.plane_in_camera;
+  const Rigid3d correction = {Eigen::Quaterniond::FromTwoVectors(by_odometry.normal, seen.normal),
+                              (by_odometry.offset - seen.offset) * seen.normal};
+  return correction * camera_from_world;
+}
+
+Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
+  Eigen::Vector3d upright = Eigen::Vector3d::Zero();
+  for (const Frame& frame : sequence.frames) {
+    if (frame.segment == segment) {
+      upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
+    }
+  }
+  if (upright.norm() < kMinUprightCosine) upright = Eigen::Vector3d::UnitZ();  // looks all around
+  upright.normalize();
+  Eigen::Vector3d up = upright;
+  double best = kMinUprightCosine;
+  if (sequence.planes.empty()) return up;
+  for (const Detection& detection : sequence.detections) {
+    if (sequence.FrameOf(detection).segment != segment) continue;
+    const auto plane = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
+    const Eigen::Vector3d& normal = sequence.planes[plane].plane_in_world.normal;
+    if (normal.dot(upright) <= best) continue;
+    best = normal.dot(upright);
+    up = normal;
+  }
+  return up;
+}
+
+}  // namespace soslam

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_pages.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "artefact/landmarks_file.h"
+#include "artefact/map_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/symmetry_file.h"
+#include "base/error.h"
+#include "report/page_html.h"
+#include "support/cuboid_sequence.h"
+#include "support/expect_error.h"
+#include "support/page_data.h"
+#include "support/results_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Results of one dataset, "room", with images.
+class RunPagesTest : public testing::Test {
+ protected:
+  RunPagesTest() {
+    fs::create_directories(Dataset());
+    for (Frame& frame : sequence_.frames) frame.image = std::to_string(frame.id) + ".png";
+    const Camera& camera = sequence_.camera;
+    const cv::Mat grey(camera.height, camera.width, CV_8UC3, cv::Scalar(90, 120, 60));
+    for (const Frame& frame : sequence_.frames) {
+      cv::imwrite((Dataset() / frame.image).string(), grey);
+    }
+    WriteBytes(results_.VariantFolder("room", "shared") / "dataset.txt", Dataset().string() + "\n");
+  }
+  fs::path Dataset() const { return folder_ / "data"; }
+  fs::path Folder(const std::string& variant) const {
+    return results_.VariantFolder("room", variant);
+  }
+  fs::path Page() const { return results_.path() / "room/report.html"; }
+
+  // Without the last object, and with covariances as a back end has them.
+  std::vector<ObjectEstimate> Estimates() const {
+    std::vector<ObjectEstimate> objects;
+    for (size_t i = 0; i + 1 < sequence_.objects.size(); ++i) {
+      const auto& truth = sequence_.objects[i].ground_truth;
+      objects.push_back({static_cast<int>(i), 5, truth->landmark_in_world,
+                         Covariance9(0.0123456 * Covariance9::Identity()), ""});
+    }
+    return objects;
+  }
+  void WriteVariant(const std::string& name, const std::vector<std::string>& runs) const {
+    WriteSequence(Folder(name) / "sequence.json", sequence_, {});
+    results_.WriteMetrics("room", name, {{.id = sequence_.objects[0].id, .iou = 0.5}});
+    results_.WriteStages("room", name, runs);
+    for (const std::string& run : runs) WriteBytes(Folder("shared/" + run) / "done", "");
+  }
+  void WriteMultiView(const std::string& name) const {
+    WriteVariant(name, {"import-1", "initialise-2", "evaluate-3"});
+    WriteLandmarks(Folder(name) / "initial.json", {{}, Estimates()}, sequence_, {});
+  }
+  void WriteOurs(const std::string& name) const {
+    WriteMultiView(name);
+    WriteVariant(name, {"import-1", "initialise-2", "refine-4", "optimise-5", "evaluate-6"});
+    MapEstimate map;
+    map.objects = Estimates();
+    for (const Frame& frame : sequence_.frames) {
+      map.world_from_camera.push_back(frame.world_from_camera);
+    }
+    for (const SupportPlane& plane : sequence_.planes) {
+      map.planes_in_world.push_back(plane.plane_in_world);
+    }
+    WriteMap(Folder(name) / "map.json", map, sequence_, {});
+    WriteSymmetry(Folder(name) / "symmetry.h5", {Record()}, {});
+  }
+  SymmetryRecord Record() const {
+    const Detection& seen = sequence_.detections.front();
+    SymmetryRecord record;
+    record.frame_id = sequence_.FrameOf(seen).id;
+    record.object_id = sequence_.ObjectOf(seen).id;
+    record.yaw = {0.0, 1.0, 2.0, 3.0};
+    record.cost["grey"] = {3.0, 1.0, 2.0, 4.0};
+    record.initial_yaw = record.refined_yaw = 1.0;
+    record.true_yaw = 1.1;
+    return record;
+  }
+
+  struct Printed {
+    std::string output, errors;
+  };
+  Printed Run() const {
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const auto printed = [] {
+      std::fflush(stdout);
+      const std::string output = testing::internal::GetCapturedStdout();
+      return Printed{output, testing::internal::GetCapturedStderr()};
+    };
+    try {
+      RunPages({}, {{"results", results_.path()}}, 2);
+    } catch (...) {
+      printed();
+      throw;
+    }
+    return printed();
+  }
+  // Names and states of what is not complete.
+  std::map<std::string, std::string> Unfinished() const {
+    std::map<std::string, std::string> states;
+    const json page = PageDataIn(Page());
+    for (const json& variant : page["unfinished"]) {
+      states[variant["name"]] = variant["state"];
+    }
+    return states;
+  }
+
+  Sequence sequence_ = CuboidSequence(4, 6);
+  ResultsFolder results_;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunPagesTest, VariantsShareWhatIsTheSame) {
+  WriteOurs("OursS");
+  fs::create_directory(Folder("OursST"));
+  for (const auto& file : fs::directory_iterator(Folder("OursS"))) {
+    fs::create_symlink(file.path(), Folder("OursST") / file.path().filename());
+  }
+  const Printed printed = Run();
+  EXPECT_EQ(printed.errors, "");
+  EXPECT_THAT(printed.output, HasSubstr("2 variants, 6 images"));
+  const json page = PageDataIn(Page());
+  EXPECT_EQ(page["sequences"].size(), 1u);
+  EXPECT_EQ(page["symmetries"].size(), 1u);
+  EXPECT_EQ(page["variants"][1]["kind"], "map");
+  EXPECT_EQ(page["variants"][1]["symmetry"], 0);
+  EXPECT_EQ(page["notes"], json::array());
+  EXPECT_EQ(page["sequences"][0]["counts"]["objects"], 4);
+}
+
+// Each damage leaves the other variant as it is.
+struct Damage {
+  const char* file;
+  const char* bytes;  // null: the file is a link that leads nowhere
+};
+class DamagedVariantTest : public RunPagesTest, public testing::WithParamInterface<Damage> {};
+
+TEST_P(DamagedVariantTest, IsNamedAndTheRestIsShown) {
+  WriteMultiView("MultiView");
+  WriteOurs("OursS");
+  const fs::path file = Folder("OursS") / GetParam().file;
+  if (GetParam().bytes == nullptr) {
+    fs::remove(file);
+    fs::create_symlink("../shared/nowhere/file", file);
+  } else {
+    WriteBytes(file, GetParam().bytes);
+  }
+  const Printed printed = Run();
+  EXPECT_THAT(printed.errors,
+              AllOf(HasSubstr("soslam-pages: room: OursS failed: "), HasSubstr(GetParam().file)));
+  const json page = PageDataIn(Page());
+  ASSERT_EQ(page["variants"].size(), 1u);
+  EXPECT_EQ(page["variants"][0]["name"], "MultiView");
+  EXPECT_THAT(Unfinished().at("OursS"), HasSubstr(GetParam().file));
+  const json overview = PageDataIn(results_.path() / "report.html");
+  EXPECT_EQ(overview["datasets"][0]["unfinished"].size(), 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, DamagedVariantTest,
+                         testing::Values(Damage{"map.json", "{\"artefact\": 3}"},
+                                         Damage{"map.json", nullptr}, Damage{"sequence.json", ""},
+                                         Damage{"sequence.json", nullptr},
+                                         Damage{"symmetry.h5", "no HDF5"},
+                                         Damage{"symmetry.h5", nullptr},
+                                         Damage{"metrics.json", "["}));
+
+TEST_F(RunPagesTest, VariantsWithoutResultsAreNamed) {
+  WriteMultiView("MultiView");
+  results_.WriteStages("room", "InitPT", {"import-1", "initialise-7"});
+  results_.WriteStages("room", "OursPT", {"import-1", "optimise-8"});
+  WriteBytes(Folder("shared/optimise-8") / "failed", "exit code 5: no descent\n");
+  Run();
+  EXPECT_EQ(Unfinished(), (std::map<std::string, std::string>{
+                              {"InitPT", "incomplete: initialise has not run"},
+                              {"OursPT", "failed: optimise: exit code 5: no descent"}}));
+}
+
+TEST_F(RunPagesTest, OlderResultsAreShownAsSuch) {
+  WriteMultiView("MultiView");
+  WriteBytes(Folder("shared/evaluate-3") / "failed", "exit code 70: bug\n");
+  Run();
+  const json unfinished = PageDataIn(Page())["unfinished"];
+  ASSERT_EQ(unfinished.size(), 1u);
+  EXPECT_EQ(unfinished[0]["is_shown"], true);
+  EXPECT_EQ(PageDataIn(Page())["variants"].size(), 1u);
+}
+
+TEST_F(RunPagesTest, ImagesThatAreDamagedOrOfAnotherSizeAreLeftOut) {
+  WriteMultiView("MultiView");
+  WriteBytes(Dataset() / sequence_.frames[1].image, "no image");
+  cv::imwrite((Dataset() / sequence_.frames[2].image).string(), cv::Mat(9, 8, CV_8UC3));
+  const Printed printed = Run();
+  EXPECT_THAT(printed.errors, AllOf(HasSubstr("2 of 6 images cannot be shown"),
+                                    HasSubstr(sequence_.frames[1].image)));
+  const json page = PageDataIn(Page());
+  EXPECT_EQ(page["images"].size(), 4u);
+  EXPECT_EQ(page["problems"].size(), 1u);
+}
+
+TEST_F(RunPagesTest, WithoutImagesFramesHaveOutlinesAllTheSame) {
+  WriteMultiView("MultiView");
+  fs::remove_all(Dataset());
+  Run();
+  const json page = PageDataIn(Page());
+  EXPECT_TRUE(page["images"].empty());
+  const json& sequence = page["sequences"][0];
+  for (const json& frame : sequence["frames"]) {
+    EXPECT_EQ(frame["shown"], true);
+    EXPECT_FALSE(frame["grid"].empty());
+    EXPECT_EQ(frame["width"], sequence_.camera.width);
+  }
+  EXPECT_EQ(sequence["detections"].size(), sequence_.detections.size());
+  EXPECT_FALSE(page["variants"][0]["outlines"][0]["outline"].empty());
+}
+
+TEST_F(RunPagesTest, ObjectsThatWereNeverDetectedAreWhereAllAre) {
+  sequence_.objects.push_back(sequence_.objects.back());
+  sequence_.objects.back().id += 1;
+  WriteMultiView("MultiView");
+  Run();
+  EXPECT_EQ(PageDataIn(Page())["sequences"][0]["objects"].back()["segment"], 0);
+}
+
+TEST_F(RunPagesTest, LargeDatasetsStayBelowTheLimitAndSaySo) {
+  const Camera& camera = sequence_.camera;
+  cv::Mat noise(camera.height, camera.width, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);
+  cv::imwrite((Dataset() / "noise.jpg").string(), noise);
+  sequence_ = CuboidSequence(4, 60);
+  for (Frame& frame : sequence_.frames) frame.image = "noise.jpg";
+  const Object object = sequence_.objects.back();
+  for (int i = 1; i <= 3000; ++i) {
+    sequence_.objects.push_back(object);
+    sequence_.objects.back().id += i;
+  }
+  for (const char* name : {"OursP", "OursPT", "OursS", "OursST"}) WriteOurs(name);
+  for (const char* name : {"SVD", "MultiView"}) WriteMultiView(name);
+  Run();
+  EXPECT_LE(fs::file_size(Page()), kMaxPageBytes);
+  EXPECT_GT(fs::file_size(Page()), kMaxPageBytes / 2);
+  const json page = PageDataIn(Page());
+  EXPECT_EQ(page["variants"].size(), 6u);
+  EXPECT_FALSE(page["images"].empty());
+  const std::string notes = page["notes"].dump();
+  EXPECT_THAT(notes, AllOf(HasSubstr("px wide"), HasSubstr("cost over yaw"),
+                           HasSubstr("only the numbers of SVD, MultiView")));
+  EXPECT_EQ(PageDataIn(results_.path() / "report.html")["datasets"][0]["notes"], page["notes"]);
+}
+
+TEST_F(RunPagesTest, NamesNeedNotBeUtf8) {
+  WriteMultiView("Multi\xe9");
+  fs::rename(results_.path() / "room", results_.path() / "caf\xe9");
+  Run();
+  const json overview = PageDataIn(results_.path() / "report.html")["datasets"][0];
+  EXPECT_EQ(overview["dataset"], "caf\xef\xbf\xbd");
+  EXPECT_EQ(overview["url"], "caf%E9");
+  EXPECT_EQ(overview["variants"][0]["name"], "Multi\xef\xbf\xbd");
+  EXPECT_TRUE(fs::exists(results_.path() / "caf\xe9/report.html"));
+}
+
+TEST_F(RunPagesTest, ADatasetWithNothingToShowIsNamedBesideOthers) {
+  WriteMultiView("MultiView");
+  results_.WriteStages("desk", "SVD", {"import-12"});
+  Run();
+  const json datasets = PageDataIn(results_.path() / "report.html")["datasets"];
+  ASSERT_EQ(datasets.size(), 2u);
+  EXPECT_TRUE(datasets[0]["variants"].empty());
+  EXPECT_EQ(datasets[0]["unfinished"][0]["state"], "incomplete: import has not run");
+  EXPECT_FALSE(fs::exists(results_.path() / "desk/report.html"));
+}
+
+TEST_F(RunPagesTest, NothingToShowAtAllIsAnError) {
+  ExpectError<NothingUsableError>([&] { Run(); }, {"no <dataset>/<variant>/"});
+  WriteMultiView("MultiView");
+  WriteBytes(Folder("MultiView") / "sequence.json", "{}");
+  ExpectError<NothingUsableError>([&] { Run(); }, {"no <dataset>/<variant>/"});
+  EXPECT_FALSE(fs::exists(results_.path() / "report.html"));
+  ExpectError<InputError>(
+      [&] {
+        RunPages({}, {{"results", Dataset() / "none"}}, 1);
+      },
+      {"is no folder"});
+}
+
+}  // namespace
+}  // namespace soslam
