@@ -8,14 +8,23 @@
 #include <vector>
 
 namespace soslam {
+namespace {
+
+// Not by SuiteSparse: the last digits of its BLAS may depend on where in memory matrices lie.
+ceres::Covariance::Options ReproducibleOptions() {
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::SPARSE_QR;
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  return options;
+}
+
+}  // namespace
 
 std::optional<std::vector<Covariance9>> LandmarkCovariances(
     const std::vector<const double*>& landmark_blocks, ceres::Problem* problem) {
   std::vector<std::pair<const double*, const double*>> pairs;
   for (const double* block : landmark_blocks) pairs.emplace_back(block, block);
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::SPARSE_QR;
-  ceres::Covariance covariance(options);
+  ceres::Covariance covariance(ReproducibleOptions());
   if (!covariance.Compute(pairs, problem)) return std::nullopt;
 
   // Ceres' rotation tangent is half the rotation vector.
@@ -42,9 +51,7 @@ std::optional<std::vector<Eigen::Matrix4d>> PlaneCovariances(
   // Parallel planes share a normal.
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::SPARSE_QR;
-  ceres::Covariance covariance(options);
+  ceres::Covariance covariance(ReproducibleOptions());
   if (!covariance.Compute(pairs, problem)) return std::nullopt;
   std::vector<Eigen::Matrix4d> covariances;
   for (const auto& [normal, offset] : planes) {
