@@ -14,9 +14,6 @@
 
 namespace {
 
-// Beside those of all programs, as diff has it.
-constexpr int kDiffer = 1;
-
 constexpr const char* kExamples =
     "Examples:\n"
     "  soslam-inspect map.json --sequence sequence.json\n"
@@ -33,8 +30,8 @@ struct Arguments {
 };
 
 std::string HelpFooter(const std::string& examples) {
-  return fmt::format("{}\n\n{};\n1 the two artefacts of diff differ", examples,
-                     soslam::internal::kExitCodes);
+  return fmt::format("{}\n\n{}", examples,
+                     soslam::internal::ExitCodesHelp("the two artefacts of diff differ"));
 }
 
 bool IsColoured() {
@@ -100,7 +97,8 @@ int Run(Arguments* arguments, bool is_diff) {
     const soslam::Differences differences =
         soslam::CompareArtefacts(arguments->one, arguments->two, arguments->tolerance);
     fmt::print("{}", FormatDifferences(differences, arguments->tolerance, IsColoured()));
-    return differences.content.empty() ? static_cast<int>(soslam::ExitCode::kDone) : kDiffer;
+    return differences.content.empty() ? static_cast<int>(soslam::ExitCode::kDone)
+                                       : soslam::kFindings;
   }
   if (arguments->request.file.empty()) throw CLI::RequiredError("FILE");
   const auto layer = std::ranges::find(soslam::kEdgeLayerNames, arguments->layer);

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
        .inputs = {},
        .outputs = {{"results",
                     "results folder; gets report.html, and one in each dataset's folder"}},
-       .example = "soslam-pages --results results"},
+       .example = "soslam-pages --results results",
+       .is_recorded = false},
       &soslam::RunPages);
 }

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
                   {"pipelines", "folder with base.json, variants/ and datasets/"}},
        .outputs = {{"results",
                     "results folder; writes <results>/<dataset>/plan.mk and what it needs"}},
-       .example = "soslam-plan --dataset data/room_a --pipelines pipelines --results results"},
+       .example = "soslam-plan --dataset data/room_a --pipelines pipelines --results results",
+       .is_recorded = false},
       &soslam::RunPlan);
 }

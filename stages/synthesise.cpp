@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
       {.name = "soslam-synthesise",
        .purpose = "Renders a scene description into a dataset folder with exact ground truth.",
        .inputs = {{"scene", "scene description, JSON"}},
-       .outputs = {{"output", "dataset folder to write"}},
+       .outputs = {{"output", "dataset folder to write", true, false, true}},
        .example = "soslam-synthesise --scene scene.json --output data/my_scene"},
       &soslam::RunSynthesise);
 }

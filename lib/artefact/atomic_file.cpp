@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -62,6 +63,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::Commit() {
+  CheckInputsUnchanged();
   if (const int error = Sync(temporary_)) RefuseToWrite(path_, std::strerror(error));
   if (SameBytes(temporary_, path_)) {
     fs::remove(temporary_);
@@ -72,6 +74,7 @@ void AtomicFile::Commit() {
     Sync(FolderOf(path_));
   }
   temporary_.clear();
+  NoteOutput(path_);
 }
 
 void WriteTextFile(const fs::path& path, std::string_view text) {

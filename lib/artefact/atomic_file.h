@@ -22,7 +22,7 @@ class AtomicFile {
 
   // Moves the temporary to its final name once it is safe on disk. An existing file with the same
   // bytes is kept instead, with its modification time, so that Make reruns nothing that depends on
-  // it. Throws SettingsError when the disk refuses.
+  // it. Throws SettingsError when the disk refuses, InputError as CheckInputsUnchanged.
   void Commit();
 
  private:

@@ -15,6 +15,7 @@
 
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -79,6 +80,7 @@ Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such file; expected an HDF5 file", path.string()));
   }
+  NoteInput(path);
   const Hdf5Handle access = Hdf5FileAccess();
   Hdf5File file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()));
   if (file.file_.valid()) return file;

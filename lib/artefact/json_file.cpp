@@ -10,9 +10,9 @@
 #include <stdexcept>
 
 #include "artefact/atomic_file.h"
-#include "artefact/hash.h"
 #include "artefact/schema.h"
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -61,6 +61,7 @@ void RefuseNonFinite(const json& value, const json::json_pointer& place, const s
 }  // namespace
 
 json ParseJsonFile(const std::filesystem::path& path) {
+  NoteInput(path);
   const std::string file = path.string();
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) {
@@ -83,17 +84,21 @@ std::string Excerpt(const json& value) {
   return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 
+json HeaderOfKind(const std::string& kind) {
+  return {
+      {"kind", kind}, {"schema_version", kSchemaVersion}, {"software", "soslam " SOSLAM_VERSION}};
+}
+
 json ArtefactHeader(const std::string& kind, const ArtefactInfo& info) {
   json inputs = json::array();
   for (const auto& input : info.inputs) {
-    inputs.push_back({{"file", input.filename().string()}, {"sha256", Sha256OfFile(input)}});
+    inputs.push_back({{"file", input.filename().string()}, {"sha256", DigestOfInput(input)}});
   }
   std::sort(inputs.begin(), inputs.end());
-  return {{"kind", kind},
-          {"schema_version", kSchemaVersion},
-          {"software", "soslam " SOSLAM_VERSION},
-          {"settings", info.settings.is_null() ? json::object() : info.settings},
-          {"inputs", inputs}};
+  json header = HeaderOfKind(kind);
+  header["settings"] = info.settings.is_null() ? json::object() : info.settings;
+  header["inputs"] = inputs;
+  return header;
 }
 
 void CheckArtefactHeader(const json& header, const std::string& kind, const std::string& file) {

@@ -30,6 +30,9 @@ nlohmann::json ParseJsonFile(const std::filesystem::path& path);
 // A value as text in ASCII, cut to what fits on a line.
 std::string Excerpt(const nlohmann::json& value);
 
+// What every header begins with: kind, schema version, software version.
+nlohmann::json HeaderOfKind(const std::string& kind);
+
 // The header of an artefact: kind, schema version, software version, settings, and each input by
 // file name with its SHA-256. JSON artefacts hold it as "artefact", HDF5 artefacts as an attribute.
 nlohmann::json ArtefactHeader(const std::string& kind, const ArtefactInfo& info);

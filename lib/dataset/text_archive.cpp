@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -26,6 +27,7 @@ using ArchivePointer = std::unique_ptr<archive, FreeArchive>;
 }
 
 ArchivePointer Open(const std::filesystem::path& path) {
+  NoteInput(path);
   constexpr size_t kBlock = 1 << 16;  // bytes
   ArchivePointer opened(archive_read_new());
   archive_read_support_filter_all(opened.get());

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -35,6 +36,7 @@ bool ParseWhole(std::string_view text, Number* number) {
 }  // namespace
 
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
+  NoteInput(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) {
     throw InputError(path.string() + ": cannot be read; expected a text file");

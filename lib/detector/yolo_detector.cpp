@@ -9,6 +9,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "base/error.h"
+#include "base/run_log.h"
 #include "detector/letterbox.h"
 
 namespace soslam {
@@ -27,6 +28,7 @@ cv::dnn::Net LoadNetwork(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path) || !std::ifstream(path)) {
     throw InputError(path.string() + ": cannot be read; expected an ONNX file");
   }
+  NoteInput(path);
   // OpenCV prints what it also throws.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   try {

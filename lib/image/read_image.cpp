@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -22,6 +23,7 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
   }
+  NoteInput(path);
   std::ifstream stream(path, std::ios::binary);
   std::vector<char> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));

@@ -3,35 +3,25 @@
 
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iostream>
 #include <optional>
 #include <thread>
 
-#include "artefact/atomic_file.h"
-#include "base/error.h"
-#include "base/machine.h"
 #include "base/progress.h"
 #include "dataset/image_path.h"
 #include "stage/help.h"
+#include "stage/run_recorder.h"
 #include "stage/settings_file.h"
 
 namespace soslam::internal {
 
-const char* const kExitCodes =
-    "Exit codes: 0 done; 2 wrong usage or setting; 3 input missing or not valid; 4 nothing usable\n"
-    "came out; 5 numerical failure; 70 a bug in this program";
-
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kFailureRecord = "--failure_record";
 
@@ -119,41 +109,25 @@ nlohmann::json ValueFromText(const std::string& text, const std::string& type) {
   return text;
 }
 
-StageCall MakeCall(const ParsedArguments& parsed, const std::vector<OptionRow>& options) {
-  StageCall call;
-  call.files = parsed.files;
-  call.threads = parsed.threads > 0
-                     ? parsed.threads
-                     : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+int ThreadsOf(const ParsedArguments& parsed) {
+  if (parsed.threads > 0) return parsed.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::vector<SettingsLayer> LayersOf(const ParsedArguments& parsed,
+                                    const std::vector<OptionRow>& options) {
+  std::vector<SettingsLayer> layers;
   if (!parsed.settings_file.empty()) {
-    call.settings.push_back({parsed.settings_file, ReadSettingsFile(parsed.settings_file)});
+    layers.push_back(
+        {parsed.settings_file, "settings file", ReadSettingsFile(parsed.settings_file)});
   }
   nlohmann::json values = nlohmann::json::object();
   for (const OptionRow& row : options) {
     const auto text = parsed.option_texts.find(row.name);
     if (text != parsed.option_texts.end()) values[row.name] = ValueFromText(text->second, row.type);
   }
-  call.settings.push_back({"command line", values});
-  return call;
-}
-
-double Seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-void WriteTiming(const fs::path& output, const std::string& stage, double wall_s, int threads) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const Machine machine = ThisMachine();
-  const nlohmann::ordered_json timing = {
-      {"stage", stage},
-      {"wall_s", wall_s},
-      {"cpu_s", Seconds(usage.ru_utime) + Seconds(usage.ru_stime)},
-      {"peak_memory_mb", static_cast<double>(usage.ru_maxrss) / 1024.0},  // ru_maxrss is in KiB
-      {"threads", threads},
-      {"machine", {{"cpu", machine.cpu}, {"cores", machine.cores}}}};
-  const fs::path folder = fs::is_directory(output) ? output : output.parent_path();
-  WriteTextFile(folder / "timing.json", timing.dump(2) + "\n");
+  layers.push_back({"command line", "command line", values});
+  return layers;
 }
 
 // Begin and end of a text in UTF-8, which have its place and what was expected.
@@ -185,24 +159,63 @@ std::string OneLine(std::string text) {
   return WithoutMiddle(line);
 }
 
-int Fail(const CLI::App& app, ExitCode exit_code, const std::string& message) {
-  const std::string line = OneLine(message);
-  std::cerr << app.get_name() << ": error: " << line << std::endl;
+struct Failure {
+  int exit_code;
+  std::string message;  // one line
+};
+
+// What the exception that is being handled means.
+Failure CurrentFailure() {
+  const auto failure = [](ExitCode exit_code, const std::string& message) {
+    return Failure{static_cast<int>(exit_code), OneLine(message)};
+  };
+  try {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    return failure(ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
+  } catch (const Error& error) {
+    return failure(error.exit_code(), error.what());
+  } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
+    return failure(ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
+  } catch (...) {
+    return failure(ExitCode::kInternal, "internal error: unknown exception");
+  }
+}
+
+int Fail(const CLI::App& app, const Failure& failure) {
+  std::cerr << app.get_name() << ": error: " << failure.message << std::endl;
   const CLI::Option* record = app.get_option_no_throw(kFailureRecord);
   if (record != nullptr && record->count() > 0) {
     // Where the record cannot be written, stderr has to do.
     std::ofstream(record->as<std::string>())
-        << fmt::format("exit code {}: {}\n", static_cast<int>(exit_code), line);
+        << fmt::format("exit code {}: {}\n", failure.exit_code, failure.message);
   }
-  return static_cast<int>(exit_code);
+  return failure.exit_code;
 }
 
-void ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::App* app,
-                 const std::vector<OptionRow>& options,
-                 const std::function<void(const StageCall&)>& run) {
+int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
+                const std::vector<OptionRow>& options, const StageBody& body) {
+  const int threads = ThreadsOf(parsed);
+  RunRecorder recorder(info, parsed.files, parsed.settings_file, threads);
+  try {
+    const std::vector<SettingsLayer> layers = LayersOf(parsed, options);
+    recorder.SetSettings(body.resolve(layers), layers);
+    const int exit_code = body.run(parsed.files, threads);
+    recorder.RecordSuccess();
+    return exit_code;
+  } catch (...) {
+    const Failure failure = CurrentFailure();
+    recorder.RecordFailure(failure.exit_code, failure.message);
+    throw;
+  }
+}
+
+int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::App* app,
+                const std::vector<OptionRow>& options, const StageBody& body) {
   ParsedArguments parsed;
   app->formatter(std::make_shared<HelpFormatter>());
-  app->footer(fmt::format("Example:\n  {}\n\n{}", ExampleHelp(info.example), kExitCodes));
+  app->footer(
+      fmt::format("Example:\n  {}\n\n{}", ExampleHelp(info.example), ExitCodesHelp(info.findings)));
   AddFiles(info.inputs, "Inputs", app, &parsed);
   AddFiles(info.outputs, "Outputs", app, &parsed);
   AddOptions(options, app, &parsed);
@@ -210,18 +223,17 @@ void ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::
   app->parse(argc, argv);
   std::optional<ProgressOnStderr> progress;
   if (!parsed.quiet) progress.emplace(info.name);
-
-  const auto start = std::chrono::steady_clock::now();
-  const StageCall call = MakeCall(parsed, options);
-  run(call);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  const auto output = call.files.find("output");
-  if (output != call.files.end()) {
-    WriteTiming(output->second, info.name, wall.count(), call.threads);
-  }
+  return RunRecorded(parsed, info, options, body);
 }
 
 }  // namespace
+
+std::string ExitCodesHelp(const std::string& findings) {
+  const std::string codes =
+      "Exit codes: 0 done; 2 wrong usage or setting; 3 input missing or not valid; 4 nothing "
+      "usable\ncame out; 5 numerical failure; 70 a bug in this program";
+  return findings.empty() ? codes : fmt::format("{};\n{} {}", codes, kFindings, findings);
+}
 
 void AddHelpAndVersion(CLI::App* app) {
   app->set_help_flag("--help", "print this and exit")->group("Common");
@@ -240,29 +252,20 @@ void AddOutsidePaths(CLI::App* app) {
 int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
   try {
     return run();
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app->exit(error);  // --help and its like
-    return Fail(*app, ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
-  } catch (const Error& error) {
-    return Fail(*app, error.exit_code(), error.what());
-  } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
-    return Fail(*app, ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
+  } catch (const CLI::Success& answered) {  // --help and its like
+    return app->exit(answered);
   } catch (...) {
-    return Fail(*app, ExitCode::kInternal, "internal error: unknown exception");
+    return Fail(*app, CurrentFailure());
   }
 }
 
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
-                 const std::vector<OptionRow>& options,
-                 const std::function<void(const StageCall&)>& run) {
+                 const std::vector<OptionRow>& options, const StageBody& body) {
   // Ceres warns through glog of what its results say as well, and what the stages report in their
   // words.
   FLAGS_minloglevel = google::GLOG_FATAL;
   CLI::App app(info.purpose, info.name);
-  return ExitCodeOf(&app, [&] {
-    ParseAndRun(argc, argv, info, &app, options, run);
-    return static_cast<int>(ExitCode::kDone);
-  });
+  return ExitCodeOf(&app, [&] { return ParseAndRun(argc, argv, info, &app, options, body); });
 }
 
 }  // namespace soslam::internal

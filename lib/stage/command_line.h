@@ -4,8 +4,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "base/error.h"
 #include "base/options.h"
 #include "stage/stage_files.h"
 
@@ -21,6 +23,7 @@ struct FileArgument {
   std::string doc;
   bool required = true;
   bool repeatable = false;  // may be given several times, or with several paths
+  bool is_folder = false;   // of outputs
 };
 
 // What --help says about a stage.
@@ -30,24 +33,34 @@ struct StageInfo {
   std::vector<FileArgument> inputs;
   std::vector<FileArgument> outputs;
   std::string example;  // one command
+  // What the exit code kFindings means; empty for stages that have none.
+  std::string findings = "";
+  // Whether it leaves run.json and timing.json beside its first output.
+  bool is_recorded = true;
 };
+
+// Exit code of what was asked to look for something, and found it, as diff has it.
+inline constexpr int kFindings = 1;
 
 namespace internal {
 
 // Settings from one source, named for error messages.
 struct SettingsLayer {
   std::string where;
+  std::string origin;  // for the record of the run, where "default" is that of all other values
   nlohmann::json values;
 };
 
-struct StageCall {
-  std::vector<SettingsLayer> settings;  // later ones win
-  StageFiles files;
-  int threads = 1;  // >= 1
+// What a stage does with its options, whose type only it knows.
+struct StageBody {
+  // Takes the settings, later ones win; the value of every option.
+  std::function<nlohmann::json(const std::vector<SettingsLayer>&)> resolve;
+  // The exit code; threads >= 1.
+  std::function<int(const StageFiles& files, int threads)> run;
 };
 
-// What every --help says of exit codes.
-extern const char* const kExitCodes;
+// What --help says of exit codes; `findings`: as StageInfo has it.
+std::string ExitCodesHelp(const std::string& findings);
 
 // Options --help and --version of a program.
 void AddHelpAndVersion(CLI::App* app);
@@ -60,25 +73,33 @@ void AddOutsidePaths(CLI::App* app);
 int ExitCodeOf(CLI::App* app, const std::function<int()>& run);
 
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
-                 const std::vector<OptionRow>& options,
-                 const std::function<void(const StageCall&)>& run);
+                 const std::vector<OptionRow>& options, const StageBody& body);
 
 }  // namespace internal
 
-// The main of a stage: reads the command line, calls `run` and returns the exit code. Options:
-// defaults < --settings FILE < --<option> VALUE. An error is one line on stderr. After success,
-// timing.json lies beside the file (or in the folder) given as "output".
-template <typename Options>
+// The main of a stage: reads the command line, calls `run` and returns the exit code, which is
+// that of `run` where it has one (int). Options: defaults < --settings FILE < --<option> VALUE. An
+// error is one line on stderr. What the run was is in run.json beside its first output, also when
+// it fails; after success timing.json lies there, too.
+template <typename Options, typename Result>
 int StageMain(int argc, const char* const* argv, const StageInfo& info,
-              void (*run)(const Options& options, const StageFiles& files, int threads)) {
-  return internal::RunStageMain(argc, argv, info, OptionRows<Options>(),
-                                [run](const internal::StageCall& call) {
-                                  Options options;
-                                  for (const internal::SettingsLayer& layer : call.settings) {
-                                    OptionsFromJson(layer.values, layer.where, &options);
-                                  }
-                                  run(options, call.files, call.threads);
-                                });
+              Result (*run)(const Options& options, const StageFiles& files, int threads)) {
+  Options options;
+  const auto resolve = [&options](const std::vector<internal::SettingsLayer>& layers) {
+    for (const internal::SettingsLayer& layer : layers) {
+      OptionsFromJson(layer.values, layer.where, &options);
+    }
+    return OptionsToJson(options);
+  };
+  const auto run_resolved = [&options, run](const StageFiles& files, int threads) -> int {
+    if constexpr (std::is_void_v<Result>) {
+      run(options, files, threads);
+      return static_cast<int>(ExitCode::kDone);
+    } else {
+      return run(options, files, threads);
+    }
+  };
+  return internal::RunStageMain(argc, argv, info, OptionRows<Options>(), {resolve, run_resolved});
 }
 
 }  // namespace soslam

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "artefact/hash.h"
+#include "base/hash.h"
 #include "stage/pipeline_settings.h"
 
 namespace soslam {

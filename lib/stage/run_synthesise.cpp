@@ -2,6 +2,7 @@
 #include "stage/run_synthesise.h"
 
 #include "base/error.h"
+#include "base/run_log.h"
 #include "synthesis/scene_file.h"
 #include "synthesis/simulate.h"
 #include "synthesis/write_dataset.h"
@@ -12,6 +13,7 @@ void RunSynthesise(const SynthesiseOptions& options, const StageFiles& files, in
   const std::filesystem::path& path = files.at("scene");
   Scene scene = ReadScene(path);
   if (options.seed >= 0) scene.seed = options.seed;
+  NoteSeed(scene.seed);
   if (Simulate(scene, options.noise).detections.empty()) {
     throw NothingUsableError(path.string() +
                              ": no object is detected in any frame; expected objects wholly inside "

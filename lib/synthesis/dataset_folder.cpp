@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
@@ -62,6 +63,7 @@ DatasetFolder::~DatasetFolder() {
 }
 
 void DatasetFolder::Commit() {
+  CheckInputsUnchanged();
   CheckReplaceable(folder_);
   const fs::path old = Sibling(folder_, "old");
   std::error_code error;
@@ -74,6 +76,9 @@ void DatasetFolder::Commit() {
     Refuse(folder_, why);
   }
   fs::remove_all(old, error);
+  for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+    if (entry.is_regular_file()) NoteOutput(entry.path());
+  }
 }
 
 }  // namespace soslam

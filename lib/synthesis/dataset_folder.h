@@ -23,7 +23,8 @@ class DatasetFolder {
 
   const std::filesystem::path& Temporary() const { return temporary_; }
 
-  // Puts the temporary in the place of `folder`. Throws SettingsError when the disk refuses.
+  // Puts the temporary in the place of `folder`. Throws SettingsError when the disk refuses,
+  // InputError as CheckInputsUnchanged.
   void Commit();
 
  private:

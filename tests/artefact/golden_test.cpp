@@ -5,6 +5,7 @@
 #include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
+#include "artefact/run_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 
@@ -119,6 +120,18 @@ TEST(GoldenTest, Sequence12Segments) {
   EXPECT_FALSE(sequence.objects[1].is_static);
   ASSERT_EQ(sequence.detections.size(), 6u);
   EXPECT_EQ(sequence.detections[3].true_landmark_in_camera->Centre().z(), 12.01);
+}
+
+TEST(GoldenTest, Run13) {
+  const RunRecord record = ReadRun(kGolden / "run-1.3.json");
+  EXPECT_EQ(record.stage, "soslam-refine");
+  EXPECT_EQ(record.software.libraries.at("ceres"), "2.1.0");
+  ASSERT_EQ(record.inputs.size(), 5u);
+  EXPECT_EQ(record.inputs[0].argument, "edges");
+  EXPECT_EQ(record.inputs[0].relative_to, kRelativeToRun);
+  EXPECT_EQ(record.inputs[0].path, "../edges-897d07c6c6/edges.h5");
+  EXPECT_EQ(record.outputs.at(1).argument, "curves");
+  EXPECT_EQ(record.settings->at("asymmetry_cost").origin, "settings file");
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ class CommandLineTest : public testing::Test {
                             .inputs = {{"input", "The input"},
                                        {"extra", "More input", false},
                                        {"many", "As many inputs as you like", false, true}},
-                            .outputs = {{"output", "The output"}},
+                            .outputs = {{"output", "The output", true, false, output_is_folder_}},
                             .example = "soslam-test --input a --output b"};
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
@@ -100,6 +100,7 @@ class CommandLineTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
+  bool output_is_folder_ = false;
   std::string stdout_;
   std::string stderr_;
 };
@@ -266,6 +267,7 @@ TEST_F(CommandLineTest, WritesTimingBesideTheOutput) {
 
 TEST_F(CommandLineTest, TimingOfAnOutputFolderLiesInIt) {
   fs::create_directories(folder_ / "dataset");
+  output_is_folder_ = true;
   EXPECT_EQ(RunBare({"--input", "in.json", "--output", (folder_ / "dataset").string()}), 0);
   EXPECT_TRUE(fs::exists(folder_.path() / "dataset" / "timing.json"));
 }

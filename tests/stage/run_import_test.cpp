@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/hash.h"
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "support/dataset_fixture.h"
 
 namespace soslam {

@@ -96,13 +96,14 @@ class SmallPipeline {
   }
 
   // The bytes of all artefacts (JSON, HDF5) below a folder, by path, links as well; without the
-  // times of stages.
+  // records of runs, which hold times.
   static std::map<std::string, std::string> Artefacts(const std::filesystem::path& folder) {
     std::map<std::string, std::string> artefacts;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       const std::filesystem::path& path = entry.path();
       const bool is_artefact = path.extension() == ".json" || path.extension() == ".h5";
-      if (!is_artefact || path.filename() == "timing.json") continue;
+      const bool is_record = path.filename() == "timing.json" || path.filename() == "run.json";
+      if (!is_artefact || is_record) continue;
       artefacts[path.lexically_relative(folder).string()] = FileBytes(path);
     }
     return artefacts;

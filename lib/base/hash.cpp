@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/hash.h"
+#include "base/hash.h"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/run_file.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "artefact/atomic_file.h"
+#include "artefact/json_file.h"
+#include "artefact/schema.h"
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kKind = "run";
+
+json FilesToJson(const std::vector<RunFile>& files) {
+  json list = json::array();
+  for (const RunFile& file : files) {
+    list.push_back({{"argument", file.argument.empty() ? json() : json(file.argument)},
+                    {"relative_to", file.relative_to},
+                    {"path", file.path.string()},
+                    {"sha256", file.sha256}});
+  }
+  return list;
+}
+
+json SettingsToJson(const std::map<std::string, RunSetting>& settings) {
+  json all = json::object();
+  for (const auto& [name, setting] : settings) {
+    all[name] = {{"value", setting.value}, {"origin", setting.origin}};
+  }
+  return all;
+}
+
+std::vector<RunFile> FilesFromJson(const json& list, const RunRecord& record,
+                                   const std::string& place) {
+  std::vector<RunFile> files;
+  for (const json& item : list) {
+    const json& argument = item.at("argument");
+    files.push_back({argument.is_null() ? "" : argument.get<std::string>(), item.at("relative_to"),
+                     item.at("path").get<std::string>(), item.at("sha256")});
+    const std::string& base = files.back().relative_to;
+    if (base != kRelativeToRun && base != kRelativeToCall && !record.folders.contains(base)) {
+      throw InputError(
+          fmt::format("{}/{}/relative_to is \"{}\"; expected \"{}\", \"{}\" or one of /folders",
+                      place, files.size() - 1, base, kRelativeToRun, kRelativeToCall));
+    }
+  }
+  return files;
+}
+
+std::map<std::string, RunSetting> SettingsFromJson(const json& all) {
+  std::map<std::string, RunSetting> settings;
+  for (const auto& [name, setting] : all.items()) {
+    settings[name] = {setting.at("value"), setting.at("origin")};
+  }
+  return settings;
+}
+
+RunRecord RunFromJson(const json& document) {
+  RunRecord record;
+  record.stage = document.at("stage");
+  record.software = {document.at("artefact").at("software"), document.at("compiler"),
+                     document.at("libraries")};
+  if (!document.at("settings").is_null()) {
+    record.settings = SettingsFromJson(document.at("settings"));
+  }
+  if (!document.at("seed").is_null()) record.seed = document.at("seed");
+  for (const auto& [argument, path] : document.at("folders").items()) {
+    record.folders[argument] = path.get<std::string>();
+  }
+  record.inputs = FilesFromJson(document.at("inputs"), record, "/inputs");
+  record.outputs = FilesFromJson(document.at("outputs"), record, "/outputs");
+  record.exit_code = document.at("exit_code");
+  if (!document.at("error").is_null()) record.error = document.at("error");
+  record.timing = document.at("timing");
+  return record;
+}
+
+}  // namespace
+
+void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
+  json folders = json::object();
+  for (const auto& [argument, folder] : record.folders) folders[argument] = folder.string();
+  const json document = {{"artefact", HeaderOfKind(kKind)},
+                         {"stage", record.stage},
+                         {"compiler", record.software.compiler},
+                         {"libraries", record.software.libraries},
+                         {"settings", record.settings ? SettingsToJson(*record.settings) : json()},
+                         {"seed", OrNull(record.seed)},
+                         {"folders", folders},
+                         {"inputs", FilesToJson(record.inputs)},
+                         {"outputs", FilesToJson(record.outputs)},
+                         {"exit_code", record.exit_code},
+                         {"error", record.error.empty() ? json() : json(record.error)},
+                         {"timing", record.timing}};
+  if (const auto violation = SchemaViolation(document, kKind)) {
+    throw std::logic_error(
+        fmt::format("{}: would break its schema: {}", path.string(), *violation));
+  }
+  constexpr bool kAscii = false;
+  WriteTextFile(path, document.dump(2, ' ', kAscii, json::error_handler_t::replace) + "\n");
+}
+
+RunRecord ReadRun(const std::filesystem::path& path) {
+  return ReadArtefactAs(path, kKind, &RunFromJson);
+}
+
+}  // namespace soslam

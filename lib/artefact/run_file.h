@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "artefact/software.h"
+
+namespace soslam {
+
+// Where the path of a RunFile begins, beside the folders that arguments name.
+inline constexpr const char* kRelativeToRun = "run";    // the folder of run.json
+inline constexpr const char* kRelativeToCall = "call";  // the folder that the program was called in
+
+// A file that a run read or wrote. Files of a results folder are placed relative to the run, those
+// in a folder that the run was called with relative to it, so that both can be moved.
+struct RunFile {
+  std::string argument;     // that names the file, or the folder it is in; empty: none does
+  std::string relative_to;  // kRelativeToRun, kRelativeToCall or an argument
+  std::filesystem::path path;
+  std::string sha256;
+};
+
+struct RunSetting {
+  nlohmann::json value;
+  std::string origin;  // "default", "settings file" or "command line"
+};
+
+// One run of a stage: the content of run.json, schemas/run.schema.json.
+struct RunRecord {
+  std::string stage;  // the executable: "soslam-refine"
+  Software software;
+  std::optional<std::map<std::string, RunSetting>> settings;  // none: they were not valid
+  std::optional<int> seed;
+  std::map<std::string, std::filesystem::path> folders;  // arguments that are folders, as called
+  std::vector<RunFile> inputs;
+  std::vector<RunFile> outputs;
+  int exit_code = 0;
+  std::string error;      // empty after success
+  nlohmann::json timing;  // schemas/timing.schema.json without the stage
+};
+
+// Throws SettingsError when the file cannot be written.
+void WriteRun(const std::filesystem::path& path, const RunRecord& record);
+
+// Throws InputError, naming file and field, when it is missing or not valid.
+RunRecord ReadRun(const std::filesystem::path& path);
+
+}  // namespace soslam

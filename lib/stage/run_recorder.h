@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "artefact/run_file.h"
+#include "base/run_log.h"
+#include "stage/command_line.h"
+
+namespace soslam::internal {
+
+// Writes what a run was, beside its first output: run.json in any case, timing.json after success.
+// Programs that are not recorded leave neither.
+class RunRecorder {
+ public:
+  // Begins; the files that the stage is called with count as read. `settings_file`: empty for none.
+  RunRecorder(const StageInfo& info, const StageFiles& files,
+              const std::filesystem::path& settings_file, int threads);
+
+  // `resolved`: the value of every option, after these layers.
+  void SetSettings(const nlohmann::json& resolved, const std::vector<SettingsLayer>& layers);
+
+  // Throws SettingsError when the files cannot be written.
+  void RecordSuccess();
+  // Where the file cannot be written there is no record: the error is on stderr as well.
+  void RecordFailure(int exit_code, const std::string& error);
+
+ private:
+  // Ends the log.
+  RunRecord Finished(int exit_code, const std::string& error);
+  RunFile Place(const FileDigest& file) const;
+
+  std::optional<std::filesystem::path> folder_;  // none: not recorded
+  StageFiles files_;                             // with the settings file
+  RunRecord record_;                             // as far as known
+  std::optional<RunLog> log_;
+  int threads_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace soslam::internal

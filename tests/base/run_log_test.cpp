@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/run_log.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunLogTest : public testing::Test {
+ protected:
+  RunLogTest() : input_(folder_ / "input.txt") { WriteBytes(input_, "before"); }
+
+  // As programs do that write a file whole: under another name first.
+  void Replace(const std::string& bytes) const {
+    WriteBytes(folder_ / "new", bytes);
+    fs::rename(folder_ / "new", input_);
+  }
+
+  TemporaryFolder folder_;
+  fs::path input_;
+};
+
+TEST_F(RunLogTest, NothingIsNotedWithoutALog) {
+  NoteInput(input_);
+  NoteSeed(3);
+  EXPECT_EQ(DigestOfInput(input_), Sha256OfText("before"));
+  Replace("after");
+  EXPECT_NO_THROW(CheckInputsUnchanged());
+  const RunLog log;
+  EXPECT_TRUE(log.Inputs().empty());
+  EXPECT_TRUE(log.Outputs().empty());
+  EXPECT_FALSE(log.Seed());
+}
+
+TEST_F(RunLogTest, NotesWhatFilesHeld) {
+  WriteBytes(folder_ / "output.txt", "made");
+  const RunLog log;
+  NoteInput(input_);
+  NoteInput(folder_.path() / "." / "input.txt");
+  NoteOutput(folder_ / "output.txt");
+  NoteSeed(3);
+  ASSERT_EQ(log.Inputs().size(), 1u);
+  EXPECT_EQ(log.Inputs()[0].path, input_);
+  EXPECT_EQ(log.Inputs()[0].sha256, Sha256OfText("before"));
+  ASSERT_EQ(log.Outputs().size(), 1u);
+  EXPECT_EQ(log.Outputs()[0].sha256, Sha256OfText("made"));
+  EXPECT_EQ(log.Seed(), 3);
+}
+
+TEST_F(RunLogTest, TheDigestOfAnInputIsThatOfWhenItWasRead) {
+  const RunLog log;
+  NoteInput(input_);
+  Replace("after");
+  EXPECT_EQ(DigestOfInput(input_), Sha256OfText("before"));
+}
+
+TEST_F(RunLogTest, WhatCannotBeReadIsNotNoted) {
+  const RunLog log;
+  NoteInput(folder_ / "missing.txt");
+  NoteInput(folder_.path());
+  EXPECT_TRUE(log.Inputs().empty());
+  ExpectError<InputError>([&] { DigestOfInput(folder_ / "missing.txt"); }, {"missing.txt"});
+}
+
+TEST_F(RunLogTest, RefusesInputsThatChanged) {
+  const RunLog log;
+  NoteInput(input_);
+  EXPECT_NO_THROW(CheckInputsUnchanged());
+  Replace("AFTERW");  // of the same size
+  ExpectError<InputError>([] { CheckInputsUnchanged(); }, {"input.txt", "was changed"});
+  fs::remove(input_);
+  ExpectError<InputError>([] { CheckInputsUnchanged(); }, {"input.txt", "was removed"});
+  Replace("before");
+  EXPECT_NO_THROW(CheckInputsUnchanged()) << "the same content in another file is the same input";
+}
+
+TEST_F(RunLogTest, AnInputThatTheRunReplacesItselfMayChange) {
+  const RunLog log;
+  NoteInput(input_);
+  Replace("after");
+  NoteOutput(input_);
+  EXPECT_NO_THROW(CheckInputsUnchanged());
+}
+
+}  // namespace
+}  // namespace soslam
