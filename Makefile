@@ -112,6 +112,17 @@ status: ## Say for each dataset, variant and stage: done, stale, failed or missi
 explain: ## Say why STAGE=<name> of DATASET=<name> and VARIANT=<name>|all would run again
 	@$(STATUS_COMMAND) --explain $(STAGE)
 
+# Datasets are where they were when they ran, unless the caller says otherwise.
+DATA_ROOT_ARGUMENT = $(if $(filter-out file,$(origin DATA_ROOT)),--data_root $(DATA_ROOT))
+
+.PHONY: verify
+verify: build ## Say which files in RESULTS, or that they were made from, are no longer what was recorded
+	@$(BIN)/soslam-verify --results $(RESULTS) $(DATA_ROOT_ARGUMENT)
+
+.PHONY: reproduce
+reproduce: build ## Make all of RESULTS once more, beside it, as recorded, and compare every byte
+	@$(BIN)/soslam-reproduce --results $(RESULTS) --executables $(BIN) --threads $(THREADS) $(DATA_ROOT_ARGUMENT)
+
 .PHONY: setup
 setup: ## Install the packages that are missing (apt, as root or through sudo)
 	@pipelines/install-packages.sh pipelines/packages.txt
@@ -139,7 +150,7 @@ format-check: | setup ## Fail when a source is not formatted
 
 .PHONY: clean
 clean: ## Delete what runs wrote to RESULTS
-	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json report.html)
+	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html)
 
 .PHONY: distclean
 distclean: clean ## Delete the build as well

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <openssl/crypto.h>
-#include <tbb/version.h>
 
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
@@ -56,8 +55,7 @@ Software ThisSoftware() {
            {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                          NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
            {"opencv", cv::getVersionString()},
-           {"openssl", OpenSSL_version(OPENSSL_VERSION_STRING)},
-           {"tbb", TBB_runtime_version()}}};
+           {"openssl", OpenSSL_version(OPENSSL_VERSION_STRING)}}};
 }
 
 }  // namespace soslam

@@ -6,22 +6,13 @@
 
 #include "artefact/json_file.h"
 #include "artefact/schema.h"
+#include "base/run_log.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::vector<std::string> SubfoldersOf(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_directory()) names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 // Place in the order of variants; equal for all that are neither the paper's nor ours.
 size_t VariantRank(const std::string& name) {
@@ -40,16 +31,6 @@ std::optional<StageTiming> ReadTiming(const fs::path& file) {
     timing.machine = Machine{document["machine"]["cpu"], document["machine"]["cores"]};
   }
   return timing;
-}
-
-// stages.txt and .linked list runs, <stage>-<key>.
-std::vector<std::string> RunsIn(const fs::path& list) {
-  std::vector<std::string> runs;
-  std::ifstream lines(list);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.empty()) runs.push_back(line);
-  }
-  return runs;
 }
 
 std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& variant) {
@@ -98,6 +79,33 @@ const VariantResult* DatasetResult::Evaluated(const std::string& variant) const 
         return candidate.name == variant && !candidate.metrics.is_null();
       });
   return found == variants.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> SubfoldersOf(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> RunsIn(const fs::path& list) {
+  NoteInput(list);
+  std::vector<std::string> runs;
+  std::ifstream lines(list);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty()) runs.push_back(line);
+  }
+  return runs;
+}
+
+fs::path DatasetFolderOf(const fs::path& results_of_dataset) {
+  std::ifstream list(results_of_dataset / "shared" / "dataset.txt");
+  std::string folder;
+  std::getline(list, folder);
+  return folder;
 }
 
 std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles damaged) {

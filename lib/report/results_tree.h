@@ -66,6 +66,17 @@ struct DatasetResult {
   const VariantResult* Evaluated(const std::string& variant) const;
 };
 
+// The names of the folders in a folder, sorted; none when it is not there.
+std::vector<std::string> SubfoldersOf(const std::filesystem::path& folder);
+
+// The runs, <stage>-<key>, that a stages.txt or .linked lists, in its order; none when it is not
+// there.
+std::vector<std::string> RunsIn(const std::filesystem::path& list);
+
+// Where a dataset was when its runs were planned: the first line of shared/dataset.txt in its
+// results. Empty without one.
+std::filesystem::path DatasetFolderOf(const std::filesystem::path& results_of_dataset);
+
 // All datasets in a results folder by name, those without metrics too; empty when the folder does
 // not exist. A metrics.json or timing.json that is not valid is refused with an InputError that
 // names file and field, or noted with its variant, which then has neither metrics nor stages.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -14,20 +13,13 @@
 #include "dataset/image_path.h"
 #include "report/page.h"
 #include "report/page_html.h"
+#include "report/results_tree.h"
 #include "stage/frame_images.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Where the dataset was when the plan was made: the first line of its list of files.
-fs::path DatasetOf(const fs::path& results_of_dataset) {
-  std::ifstream list(results_of_dataset / "shared" / "dataset.txt");
-  std::string folder;
-  std::getline(list, folder);
-  return folder;
-}
 
 // Frames whose file is not there have no image.
 ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
@@ -60,7 +52,7 @@ nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& fol
   constexpr const char* kEntry = "showDataset";
   const size_t max_data_bytes =
       kMaxPageBytes - PageHtml(result.name, kEntry, nlohmann::json()).size();
-  const fs::path dataset = DatasetOf(folder);
+  const fs::path dataset = DatasetFolderOf(folder);
   nlohmann::json data = PageData(
       result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, max_data_bytes,
       threads);

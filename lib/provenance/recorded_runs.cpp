@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "provenance/recorded_runs.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "report/results_tree.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kShared = "shared";
+
+RecordedRun* Find(const std::string& name, std::vector<RecordedRun>* runs) {
+  const auto found = std::ranges::find(*runs, name, &RecordedRun::name);
+  return found == runs->end() ? nullptr : &*found;
+}
+
+// A variant lists its runs in order, so in the union of all each comes after what it reads.
+void AppendSharedRuns(DatasetRuns* dataset) {
+  for (const VariantRuns& variant : dataset->variants) {
+    for (const std::string& id : variant.runs) {
+      const std::string name = std::string(kShared) + "/" + id;
+      RecordedRun* known = Find(name, &dataset->runs);
+      if (known == nullptr) {
+        known = &dataset->runs.emplace_back(RecordedRun{name, dataset->results / name, {}});
+      }
+      known->variants.push_back(variant.name);
+    }
+  }
+}
+
+void AppendExports(DatasetRuns* dataset) {
+  for (const VariantRuns& variant : dataset->variants) {
+    for (const std::string& folder : SubfoldersOf(dataset->results / variant.name)) {
+      const std::string name = variant.name + "/" + folder;
+      if (!fs::exists(dataset->results / name / "run.json")) continue;
+      dataset->exports.push_back({name, dataset->results / name, {variant.name}});
+    }
+  }
+}
+
+DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
+                          const fs::path& data_root) {
+  DatasetRuns dataset = {name, (results / name).lexically_normal(), data_root / name, {}, {}, {},
+                         {}};
+  if (data_root.empty()) dataset.dataset = DatasetFolderOf(dataset.results);
+  for (const std::string& folder : SubfoldersOf(dataset.results)) {
+    const std::vector<std::string> runs = RunsIn(dataset.results / folder / "stages.txt");
+    if (!runs.empty()) dataset.variants.push_back({folder, runs});
+  }
+  AppendSharedRuns(&dataset);
+  for (const std::string& folder : SubfoldersOf(dataset.results / kShared)) {
+    const std::string shared = std::string(kShared) + "/" + folder;
+    if (Find(shared, &dataset.runs) == nullptr) dataset.unused.push_back(shared);
+  }
+  AppendExports(&dataset);
+  return dataset;
+}
+
+}  // namespace
+
+std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_root) {
+  if (!fs::is_directory(results)) {
+    throw InputError(results.string() + ": is no folder; expected results of runs");
+  }
+  std::vector<DatasetRuns> datasets;
+  for (const std::string& name : SubfoldersOf(results)) {
+    DatasetRuns dataset = RunsOfDataset(name, results, data_root);
+    if (!dataset.runs.empty() || !dataset.unused.empty()) datasets.push_back(std::move(dataset));
+  }
+  if (datasets.empty()) {
+    throw NothingUsableError(results.string() +
+                             ": no <dataset>/<variant>/stages.txt; expected at least one");
+  }
+  return datasets;
+}
+
+fs::path FolderOf(const std::string& argument, const RunRecord& record,
+                  const DatasetRuns& dataset) {
+  const bool is_known_dataset = argument == "dataset" && !dataset.dataset.empty();
+  return is_known_dataset ? dataset.dataset : record.folders.at(argument);
+}
+
+fs::path PathOf(const RunFile& file, const RunRecord& record, const RecordedRun& run,
+                const DatasetRuns& dataset) {
+  if (file.relative_to == kRelativeToRun) return (run.folder / file.path).lexically_normal();
+  if (file.relative_to == kRelativeToCall) return file.path;
+  return (FolderOf(file.relative_to, record, dataset) / file.path).lexically_normal();
+}
+
+}  // namespace soslam

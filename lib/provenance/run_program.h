@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace soslam {
+
+// Runs a program to its end, with what it prints going to a file. Meanwhile interrupts from the
+// terminal are the program's alone. Returns its exit code, or 128 and the number of the signal that
+// ended it; 127 when there is no such program.
+int RunProgram(const std::vector<std::string>& words, const std::filesystem::path& printed);
+
+}  // namespace soslam

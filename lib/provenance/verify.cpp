@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "provenance/verify.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <utility>
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Verifier {
+ public:
+  explicit Verifier(const DatasetRuns& dataset)
+      : dataset_(dataset),
+        is_dataset_gone_(!dataset.dataset.empty() && !fs::is_directory(dataset.dataset)) {}
+
+  Verification Verify() {
+    if (is_dataset_gone_) AddDataset();
+    for (const RecordedRun& run : dataset_.runs) CheckRun(run);
+    for (const RecordedRun& run : dataset_.exports) CheckRun(run);
+    for (const VariantRuns& variant : dataset_.variants) CheckLinks(variant);
+    result_.files = digests_.files();
+    return std::move(result_);
+  }
+
+ private:
+  void Add(const fs::path& file, const std::string& problem,
+           const std::vector<std::string>& variants) {
+    result_.findings.push_back({fmt::format("{}: {}", file.string(), problem), variants});
+  }
+
+  // Instead of a finding for each of its files.
+  void AddDataset() {
+    std::vector<std::string> all;
+    for (const VariantRuns& variant : dataset_.variants) all.push_back(variant.name);
+    Add(dataset_.dataset, "the dataset is not there; its files are not compared", all);
+  }
+
+  void CheckRun(const RecordedRun& run) {
+    std::string failure;
+    std::getline(std::ifstream(run.folder / "failed"), failure);
+    if (!failure.empty()) Add(run.folder, "its last run failed: " + failure, run.variants);
+    const fs::path file = run.folder / "run.json";
+    if (!fs::exists(file)) {
+      Add(file, "is missing: the stage has not run, or its record was removed", run.variants);
+      return;
+    }
+    try {
+      const RunRecord& record = records_[run.name] = ReadRun(file);
+      if (record.exit_code == 0) {
+        CheckFiles(run, record);
+      } else if (failure.empty()) {
+        Add(run.folder, "its last run failed: " + record.error, run.variants);
+      }
+    } catch (const InputError& error) {
+      result_.findings.push_back({error.what(), run.variants});
+    }
+  }
+
+  void CheckFiles(const RecordedRun& run, const RunRecord& record) {
+    const auto check = [&](const RunFile& file, const char* what_it_did) {
+      if (file.relative_to == "dataset" && is_dataset_gone_) return;
+      const fs::path path = PathOf(file, record, run, dataset_);
+      if (const auto change = digests_.ChangeOf(path, file.sha256)) {
+        Add(path, fmt::format("{} since {} {} it", *change, run.name, what_it_did), run.variants);
+      }
+    };
+    for (const RunFile& output : record.outputs) check(output, "wrote");
+    for (const RunFile& input : record.inputs) check(input, "read");
+  }
+
+  // The folder of a variant shows the artefacts of its runs, of each the last one of that name.
+  void CheckLinks(const VariantRuns& variant) {
+    std::map<fs::path, std::string> makers;  // run by file name
+    for (const std::string& id : variant.runs) {
+      const std::string run = "shared/" + id;
+      for (const RunFile& output : records_[run].outputs) makers[output.path] = run;
+    }
+    for (const auto& [file, run] : makers) {
+      const fs::path link = dataset_.results / variant.name / file;
+      std::error_code not_there;
+      if (fs::equivalent(link, dataset_.results / run / file, not_there)) continue;
+      Add(link, fs::exists(link) ? "is not the one of " + run : "is gone; expected that of " + run,
+          {variant.name});
+    }
+  }
+
+  const DatasetRuns& dataset_;
+  bool is_dataset_gone_;
+  FileDigests digests_;
+  std::map<std::string, RunRecord> records_;  // by name of the run; empty where it has none
+  Verification result_;
+};
+
+}  // namespace
+
+std::optional<std::string> FileDigests::ChangeOf(const fs::path& path, const std::string& sha256) {
+  auto digest = digests_.find(path);
+  if (digest == digests_.end()) {
+    digest = digests_.emplace(path, fs::is_regular_file(path) ? Sha256OfFile(path) : "").first;
+  }
+  if (digest->second == sha256) return std::nullopt;
+  return digest->second.empty() ? "is gone" : "has changed";
+}
+
+Verification Verify(const DatasetRuns& dataset) { return Verifier(dataset).Verify(); }
+
+}  // namespace soslam

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "artefact/json_file.h"
+#include "artefact/run_file.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kFrames = 4;
+constexpr const char* kVariants = "InitP InitPT";
+
+class ProvenanceTest : public testing::Test {
+ protected:
+  ProvenanceTest() {
+    const CommandResult run = pipeline_.Run(kVariants);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+  }
+
+  fs::path Results() const { return pipeline_.Folder() / "results"; }
+  // The folder of the only run of a stage.
+  fs::path RunOf(const std::string& stage) const {
+    for (const auto& entry : fs::directory_iterator(pipeline_.Results() / "shared")) {
+      if (entry.path().filename().string().starts_with(stage + "-")) return entry.path();
+    }
+    ADD_FAILURE() << "no run of " << stage;
+    return {};
+  }
+  static CommandResult Verify(const fs::path& results) {
+    return RunCommand({StageProgram("verify"), "--results", results.string()});
+  }
+  CommandResult Reproduce() const {
+    return RunCommand({StageProgram("reproduce"), "--results", Results().string(), "--executables",
+                       SOSLAM_BINARY_DIR, "--threads", "2"});
+  }
+  // Everything but what was changed on purpose.
+  static void ChangeOneByte(const fs::path& file) {
+    std::string bytes = FileBytes(file);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    WriteBytes(file, bytes);
+  }
+  std::map<std::string, std::string> FilesBelow(const fs::path& folder) const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file()) files[entry.path().string()] = FileBytes(entry.path());
+    }
+    return files;
+  }
+
+  SmallPipeline pipeline_{kFrames};
+};
+
+TEST_F(ProvenanceTest, RecordsNameEveryFileThatAStageRead) {
+  std::set<fs::path> read;
+  for (const RunFile& file : ReadRun(RunOf("edges") / "run.json").inputs) read.insert(file.path);
+  EXPECT_EQ(read.size(), kFrames + 2u);  // and the sequence, the settings
+  EXPECT_TRUE(read.contains("rgb/000003.png"));
+  EXPECT_TRUE(read.contains("../" + RunOf("import").filename().string() + "/sequence.json"));
+  read.clear();
+  for (const RunFile& file : ReadRun(RunOf("import") / "run.json").inputs) read.insert(file.path);
+  for (const char* table : {"rgb.txt", "camera.json", "planes.json", "objects.json",
+                            "detections.csv", "groundtruth.txt"}) {
+    EXPECT_TRUE(read.contains(table)) << table;
+  }
+  EXPECT_TRUE(ReadRun(pipeline_.Dataset() / "run.json").seed) << "synthesise draws noise";
+}
+
+TEST_F(ProvenanceTest, VerifyFindsWhatChangedAndWhomItConcerns) {
+  const CommandResult well = Verify(Results());
+  EXPECT_EQ(well.exit_code, 0) << well.output << well.errors;
+  EXPECT_THAT(well.output, ContainsRegex("small +\\| - +\\|"));
+
+  ChangeOneByte(RunOf("refine") / "symmetry.h5");
+  const CommandResult artefact = Verify(Results());
+  EXPECT_EQ(artefact.exit_code, 1);
+  EXPECT_THAT(artefact.output,
+              ContainsRegex("symmetry.h5: has changed since shared/refine-[0-9a-f]+ "
+                            "wrote it \\(InitPT\\)\n"));
+  ChangeOneByte(pipeline_.Dataset() / "rgb/000001.png");
+  EXPECT_THAT(Verify(Results()).output,
+              ContainsRegex("rgb/000001.png: has changed since shared/edges-[0-9a-f]+ read it"));
+}
+
+TEST_F(ProvenanceTest, MovedResultsVerify) {
+  const fs::path moved = pipeline_.Folder() / "elsewhere/of_mine";
+  fs::create_directories(moved.parent_path());
+  fs::rename(Results(), moved);
+  const CommandResult result = Verify(moved);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST_F(ProvenanceTest, EarlierRunsAreUnusedNotWrong) {
+  nlohmann::json settings = SmallPipeline::TrueRatios();
+  settings["refine"]["yaw_step_deg"] = 5.0;
+  pipeline_.WriteSettings(settings);
+  ASSERT_EQ(pipeline_.Run(kVariants).exit_code, 0);
+  const CommandResult result = Verify(Results());
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, ContainsRegex("shared/refine-[0-9a-f]+: no variant uses it any more"));
+}
+
+TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
+  const auto before = SmallPipeline::Artefacts(pipeline_.Results());
+  const fs::path image = pipeline_.Dataset() / "rgb/000002.png";
+  WriteBytes(image, FileBytes(image).substr(0, 1000));
+  EXPECT_NE(pipeline_.Run(kVariants).exit_code, 0);
+  EXPECT_TRUE(SmallPipeline::Artefacts(pipeline_.Results()) == before);
+  const RunRecord record = ReadRun(RunOf("edges") / "run.json");
+  EXPECT_EQ(record.exit_code, 3);
+  EXPECT_THAT(record.error, HasSubstr("000002.png"));
+  EXPECT_TRUE(record.outputs.empty());
+  const CommandResult result = Verify(Results());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, ContainsRegex("edges-[0-9a-f]+: its last run failed: exit code 3"));
+  EXPECT_THAT(Reproduce().output,
+              AllOf(ContainsRegex("not rerun .*edges-[0-9a-f]+: it failed when it was recorded"),
+                    ContainsRegex("not rerun .*refine-[0-9a-f]+: .*edges.h5, which it reads")));
+}
+
+TEST_F(ProvenanceTest, MissingRecordIsFound) {
+  fs::remove(RunOf("initialise") / "run.json");
+  const CommandResult result = Verify(Results());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, HasSubstr("run.json: is missing"));
+  EXPECT_THAT(result.output, HasSubstr("(InitP, InitPT)"));
+}
+
+TEST_F(ProvenanceTest, ReproducesEveryByteAndLeavesTheResultsAlone) {
+  // What is recorded counts, not what the pipelines say now.
+  nlohmann::json settings = SmallPipeline::TrueRatios();
+  settings["refine"]["yaw_step_deg"] = 5.0;
+  pipeline_.WriteSettings(settings);
+  const auto before = FilesBelow(pipeline_.Folder());
+  const CommandResult result = Reproduce();
+  EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+  for (const char* file : {"sequence.json", "edges.h5", "initial.json", "refined.json",
+                           "symmetry.h5", "metrics.json"}) {
+    EXPECT_THAT(result.output, ContainsRegex("same +/[^\n]*" + std::string(file) + "\n"));
+  }
+  EXPECT_THAT(result.output, AllOf(Not(HasSubstr("differs")), Not(HasSubstr("recorded with"))));
+  EXPECT_TRUE(FilesBelow(pipeline_.Folder()) == before);
+}
+
+TEST_F(ProvenanceTest, ReproduceSaysWhereArtefactsDiffer) {
+  const fs::path initial = RunOf("initialise") / "initial.json";
+  nlohmann::json document = ParseJsonFile(initial);
+  document["observations"][0]["hypotheses"][0]["cost"] = 123.0;
+  WriteBytes(initial, document.dump());
+  nlohmann::json record = ParseJsonFile(RunOf("import") / "run.json");
+  record["libraries"]["opencv"] = "1.0.0";
+  WriteBytes(RunOf("import") / "run.json", record.dump());
+  const CommandResult result = Reproduce();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(ContainsRegex("differs +/[^\n]*initial.json: "
+                                                 "/observations/0/hypotheses/0/cost: 123 is "),
+                                   ContainsRegex("same +/[^\n]*refined.json\n"),
+                                   HasSubstr("recorded with opencv 1.0.0 is ")));
+}
+
+TEST_F(ProvenanceTest, WhatWasMadeFromOtherFilesIsNotRerun) {
+  WriteBytes(pipeline_.Dataset() / "planes.json", "[]");
+  const CommandResult result = Reproduce();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output,
+              AllOf(ContainsRegex("not rerun .*import-[0-9a-f]+: .*planes.json has changed since"),
+                    ContainsRegex("not rerun .*edges-[0-9a-f]+: .*sequence.json, which it reads"),
+                    Not(HasSubstr("same  "))));
+}
+
+// The project's Makefile, up to what would build the executables.
+TEST_F(ProvenanceTest, FrontDoor) {
+  const CommandResult planned = RunMake({"-n", "-C", SOSLAM_SOURCE_DIR, "verify", "reproduce",
+                                         "RESULTS=some", "DATA_ROOT=elsewhere"});
+  EXPECT_EQ(planned.exit_code, 0) << planned.errors;
+  EXPECT_THAT(planned.output,
+              AllOf(HasSubstr("soslam-verify --results some --data_root elsewhere"),
+                    ContainsRegex("soslam-reproduce --results some .*--data_root elsewhere")));
+}
+
+}  // namespace
+}  // namespace soslam
