@@ -150,7 +150,7 @@ format-check: | setup ## Fail when a source is not formatted
 
 .PHONY: clean
 clean: ## Delete what runs wrote to RESULTS
-	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html)
+	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html) $(wildcard $(RESULTS)/.*.lock)
 
 .PHONY: distclean
 distclean: clean ## Delete the build as well
