@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "planes/levels.h"
+#include "planes/mounts.h"
+#include "planes/search_up.h"
 #include "planes/standing_bodies.h"
 
 namespace soslam {
@@ -20,18 +21,8 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-// Where up may be before boxes are looked at: this far (standard deviations) from the cameras' up.
-constexpr double kMaxSigmas = 2.5;
-constexpr double kMaxTiltOfCameras = 45.0 * kRadians;
-constexpr double kTiltStep = 7.5 * kRadians;
-// For that search, of each object.
+// For the search of up, of each object.
 constexpr size_t kViewsOfSearch = 12;
-// Directions that all the rest is tried from, farther apart than neighbours of the grid.
-constexpr size_t kStarts = 4;
-constexpr double kBetweenStarts = 1.6 * kTiltStep;
-constexpr double kYawStepOfSearch = 6.0 * kRadians;
-// A direction of up in which an object has no body is worse than any in which it has one.
-constexpr double kCostWithoutBody = 1e4;
 
 constexpr double kYawStep = 3.0 * kRadians;
 constexpr int kMaxRounds = 10;
@@ -39,26 +30,6 @@ constexpr int kMaxRounds = 10;
 constexpr double kMaxTilt = 8.0 * kRadians;
 // An object whose height is known no better than to this share of its size does not decide.
 constexpr double kMaxHeightSigmaBySize = 1.0;
-
-// Directions around the cameras' up, itself first.
-std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
-  const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
-  const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
-  const int steps = static_cast<int>(kMaxTiltOfCameras / kTiltStep);
-  std::vector<Eigen::Vector3d> candidates = {attitude.up_in_world};
-  for (int i = -steps; i <= steps; ++i) {
-    for (int k = -steps; k <= steps; ++k) {
-      const Eigen::Vector3d turn(i * kTiltStep, k * kTiltStep, 0.0);
-      if ((i == 0 && k == 0) || turn.norm() > kMaxTiltOfCameras) continue;
-      const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
-      if (up.dot(attitude.information * up) - lowest > kMaxSigmas * kMaxSigmas) continue;
-      candidates.push_back(up);
-    }
-  }
-  return candidates;
-}
-
-Mount MountOf(const std::optional<ShapePrior>& prior) { return prior.value_or(ShapePrior()).mount; }
 
 // The planes of the objects that are mounted in one way, on bodies whose z axes are up as the
 // attitude has it.
@@ -84,7 +55,7 @@ class Estimator {
   std::optional<PlanesEstimate> Estimate() {
     std::optional<PlanesEstimate> best;
     double lowest = 0.0;
-    for (const Eigen::Vector3d& up : SearchUp()) {
+    for (const Eigen::Vector3d& up : SearchUp(attitude_, sparse_, threads_)) {
       auto estimate = EstimateFrom(up);
       if (!estimate) continue;
       const double cost = CostOfAll(*estimate);
@@ -137,38 +108,6 @@ class Estimator {
       }
     }
     return cost;
-  }
-
-  // Of the directions that the cameras leave open, those in which upright bodies of any height
-  // explain the boxes best, lowest cost first: where bodies turn over to another of their axes the
-  // cost has several minima.
-  std::vector<Eigen::Vector3d> SearchUp() const {
-    const std::vector<Eigen::Vector3d> candidates = UpCandidates(attitude_);
-    std::vector<double> costs(candidates.size());
-    ParallelFor("directions of up", static_cast<int>(candidates.size()), threads_, [&](int i) {
-      const Eigen::Vector3d& up = candidates[static_cast<size_t>(i)];
-      double cost = 0.5 * up.dot(attitude_.information * up);
-      for (auto observation : sparse_) {
-        if (!observation) continue;
-        observation->plane_in_world = {up, 0.0};
-        const auto optima = SweepViews(*observation, kYawStepOfSearch);
-        cost += optima.empty() ? kCostWithoutBody : optima.front().cost;
-      }
-      costs[static_cast<size_t>(i)] = cost;
-    });
-    std::vector<size_t> order(candidates.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](size_t one, size_t other) { return costs[one] < costs[other]; });
-    std::vector<Eigen::Vector3d> starts;
-    for (const size_t i : order) {
-      const bool is_apart = std::all_of(starts.begin(), starts.end(), [&](const auto& start) {
-        return start.dot(candidates[i]) < std::cos(kBetweenStarts);
-      });
-      if (is_apart) starts.push_back(candidates[i]);
-      if (starts.size() == kStarts) break;
-    }
-    return starts;
   }
 
   // The bodies whose own views determine the height of their foot, the normal being given.
@@ -352,48 +291,6 @@ class Estimator {
   std::vector<RefinedPlanes> refined_;  // one for all planes where they are parallel
 };
 
-// What is known of down, z of what hangs: ceilings are level where floors are.
-CameraAttitude Down(const CameraAttitude& attitude, const std::optional<PlanesEstimate>& floors) {
-  CameraAttitude down{attitude.information, -attitude.up_in_world};
-  if (!floors) return down;
-  const EstimatedPlane& floor = floors->planes.front();
-  down.up_in_world = -floor.plane_in_world.normal;
-  // Turns about x move the normal by -y, those about y by x.
-  Eigen::Matrix<double, 3, 2> by_turns;
-  by_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
-  by_turns.col(1) = -floor.x_axis_in_world;
-  down.information =
-      by_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * by_turns.transpose();
-  return down;
-}
-
-// Level where the floor is, through the same point.
-EstimatedPlane Opposite(const EstimatedPlane& floor, EstimatedPlane ceiling) {
-  const Eigen::Vector3d normal = -floor.plane_in_world.normal;
-  ceiling.plane_in_world = {normal, -normal.dot(ceiling.point_in_world)};
-  const Eigen::Vector3d& x = ceiling.x_axis_in_world;
-  ceiling.x_axis_in_world = (x - normal.dot(x) * normal).normalized();
-  return ceiling;
-}
-
-// Both, with the objects of each on their own planes; parallel if they are to be.
-PlanesEstimate Joined(const PlanesEstimate& floors, const PlanesEstimate& ceilings, bool parallel,
-                      const std::vector<std::optional<ShapePrior>>& priors) {
-  PlanesEstimate joined = floors;
-  for (const EstimatedPlane& ceiling : ceilings.planes) {
-    joined.planes.push_back(parallel ? Opposite(floors.planes.front(), ceiling) : ceiling);
-  }
-  for (size_t i = 0; i < priors.size(); ++i) {
-    if (MountOf(priors[i]) != Mount::kHanging) continue;
-    joined.objects[i] = ceilings.objects[i];
-    joined.objects[i].plane_index += static_cast<int>(floors.planes.size());
-  }
-  joined.cost = *floors.cost + *ceilings.cost;
-  joined.rounds = std::max(floors.rounds, ceilings.rounds);
-  joined.settled = floors.settled && ceilings.settled;
-  return joined;
-}
-
 }  // namespace
 
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
@@ -404,7 +301,7 @@ PlanesEstimate EstimatePlanes(const Sequence& sequence,
     return Estimator(sequence, priors, mount, up, options, threads).Estimate();
   };
   const auto floors = planes_of(Mount::kStanding, attitude);
-  const auto ceilings = planes_of(Mount::kHanging, Down(attitude, floors));
+  const auto ceilings = planes_of(Mount::kHanging, DownOf(attitude, floors));
   if (!floors && !ceilings) {
     throw NothingUsableError(fmt::format(
         "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
@@ -413,7 +310,7 @@ PlanesEstimate EstimatePlanes(const Sequence& sequence,
   }
   PlanesEstimate estimate = !ceilings ? *floors
                             : !floors ? *ceilings
-                                      : Joined(*floors, *ceilings, options.parallel, priors);
+                                      : JoinedPlanes(*floors, *ceilings, options.parallel, priors);
   estimate.up_of_cameras = attitude.up_in_world;
   estimate.attitude_information = attitude.information;
   for (size_t i = 0; i < priors.size(); ++i) {
