@@ -47,6 +47,24 @@ bool SettleWithImages(size_t objects, BackEndProblem* problem) {
   return false;
 }
 
+void AddObjects(const BackEndInput& input, BackEndProblem* problem, MapEstimate* map) {
+  const auto detections = DetectionsByObject(input.sequence);
+  const std::vector<std::optional<Landmark>> landmarks = LandmarksOf(problem, input.starts.size());
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    ObjectEstimate object;
+    object.object_index = static_cast<int>(i);
+    object.observations = static_cast<int>(detections[i].size());
+    if (!landmarks[i]) {
+      object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
+    } else if (HasExtent(*landmarks[i])) {
+      object.landmark_in_world = landmarks[i];
+    } else {
+      object.failure = "collapsed";  // as boxes alone may be explained best
+    }
+    map->objects.push_back(object);
+  }
+}
+
 void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
   std::vector<const double*> blocks;
   std::vector<ObjectEstimate*> objects;
@@ -107,21 +125,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   for (size_t i = 0; i < input.sequence.planes.size(); ++i) {
     map.planes_in_world.push_back(variables.PlaneValue(i));
   }
-  const auto detections = DetectionsByObject(input.sequence);
-  const std::vector<std::optional<Landmark>> landmarks = LandmarksOf(&problem, input.starts.size());
-  for (size_t i = 0; i < landmarks.size(); ++i) {
-    ObjectEstimate object;
-    object.object_index = static_cast<int>(i);
-    object.observations = static_cast<int>(detections[i].size());
-    if (!landmarks[i]) {
-      object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
-    } else if (HasExtent(*landmarks[i])) {
-      object.landmark_in_world = landmarks[i];
-    } else {
-      object.failure = "collapsed";  // as boxes alone may be explained best
-    }
-    map.objects.push_back(object);
-  }
+  AddObjects(input, &problem, &map);
   if (options.covariances) {
     AddCovariances(&problem, &map);
     AddPlaneCovariances(input.sequence, &problem, &map);
