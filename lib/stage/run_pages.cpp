@@ -23,16 +23,19 @@ namespace fs = std::filesystem;
 
 // Frames whose file is not there have no image.
 ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
-  const auto image_of = [dataset, &sequence](int frame_index) -> FrameImage {
-    const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
-    return {&frame, ImagePath(dataset, frame.image, fmt::format("frame {}", frame.id))};
+  const auto frame_at = [&sequence](int frame_index) -> const Frame& {
+    return sequence.frames[static_cast<size_t>(frame_index)];
   };
   const auto reader = std::make_shared<const FrameImageReader>(sequence);
-  return {[=, &sequence](int frame_index) {
-            const bool is_named = !sequence.frames[static_cast<size_t>(frame_index)].image.empty();
-            return is_named && fs::exists(image_of(frame_index).path);
+  return {[=](int frame_index) {
+            const std::string& image = frame_at(frame_index).image;
+            return !image.empty() && fs::exists(dataset / image);
           },
-          [=](int frame_index) { return reader->ReadColour(image_of(frame_index)); }};
+          [=](int frame_index) {
+            const Frame& frame = frame_at(frame_index);
+            const std::string place = fmt::format("frame {}", frame.id);
+            return reader->ReadColour({&frame, ImagePath(dataset, frame.image, place)});
+          }};
 }
 
 // What is missing on the page.

@@ -214,6 +214,14 @@ TEST_F(RunPagesTest, ImagesThatAreDamagedOrOfAnotherSizeAreLeftOut) {
   EXPECT_EQ(page["problems"].size(), 1u);
 }
 
+TEST_F(RunPagesTest, ImagesOutsideTheDatasetAreNotShown) {
+  WriteBytes(Dataset().parent_path() / "secret.png", "no image");
+  sequence_.frames[0].image = "../secret.png";
+  WriteMultiView("MultiView");
+  EXPECT_THAT(Run().errors, HasSubstr("outside"));
+  EXPECT_EQ(PageDataIn(Page())["images"].size(), 5u);
+}
+
 TEST_F(RunPagesTest, WithoutImagesFramesHaveOutlinesAllTheSame) {
   WriteMultiView("MultiView");
   fs::remove_all(Dataset());
