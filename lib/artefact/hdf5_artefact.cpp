@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/hdf5_artefact.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
 
 #include "base/error.h"
@@ -10,12 +13,12 @@
 namespace soslam {
 namespace {
 
-// Discarded where it is missing or not JSON.
+// Null where there is none.
 nlohmann::json HeaderOf(const Hdf5File& file) {
-  constexpr bool kAllowExceptions = false;
-  const std::string text =
-      file.HasAttribute("/", kHeaderAttribute) ? file.ReadText("/", kHeaderAttribute) : "";
-  return nlohmann::json::parse(text, nullptr, kAllowExceptions);
+  if (!file.HasAttribute("/", kHeaderAttribute)) return {};
+  std::istringstream text(file.ReadText("/", kHeaderAttribute));
+  return ParseJsonText(text,
+                       fmt::format("{}: attribute {}", file.path().string(), kHeaderAttribute));
 }
 
 }  // namespace

@@ -22,12 +22,21 @@ using nlohmann::json;
 // [major, minor] of every kind's schema. A reader reads all versions up to its own.
 const std::vector<int> kSchemaVersion = {1, 4};
 
-// nlohmann keeps the last of several equal keys without a word; this parser callback refuses them.
-class DuplicateKeyCheck {
+// A parser callback. nlohmann keeps the last of several equal keys without a word, and what walks a
+// document calls itself for each level, so that deep nesting exhausts the stack.
+class StructureCheck {
  public:
-  explicit DuplicateKeyCheck(const std::string& file) : file_(file) {}
+  static constexpr int kMaxDepth = 100;
 
-  bool operator()(int, json::parse_event_t event, const json& parsed) {
+  explicit StructureCheck(const std::string& file) : file_(file) {}
+
+  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
+    const bool begins =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (begins && depth >= kMaxDepth) {
+      throw InputError(
+          fmt::format("{}: is nested more than {} levels deep; expected less", file_, kMaxDepth));
+    }
     if (event == json::parse_event_t::object_start) {
       keys_of_open_objects_.emplace_back();
     } else if (event == json::parse_event_t::object_end) {
@@ -67,14 +76,18 @@ json ParseJsonFile(const std::filesystem::path& path) {
   if (!stream || std::filesystem::is_directory(path)) {
     throw InputError(file + ": cannot be read; expected a JSON file");
   }
-  if (stream.peek() == std::ifstream::traits_type::eof()) {
-    throw InputError(file + ": is empty; expected JSON");
+  return ParseJsonText(stream, file);
+}
+
+json ParseJsonText(std::istream& text, const std::string& name) {
+  if (text.peek() == std::istream::traits_type::eof()) {
+    throw InputError(name + ": is empty; expected JSON");
   }
   try {
-    return json::parse(stream, DuplicateKeyCheck(file));
+    return json::parse(text, StructureCheck(name));
   } catch (const json::exception& error) {
     const std::string message = error.what();  // "[json.exception.parse_error.101] parse error ..."
-    throw InputError(file + ": " + message.substr(message.find("] ") + 2));
+    throw InputError(name + ": " + message.substr(message.find("] ") + 2));
   }
 }
 
@@ -130,6 +143,10 @@ json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
   json document = ParseJsonFile(path);
   const json header = document.is_object() ? document.value("artefact", json()) : json();
   CheckArtefactHeader(header, kind, path.string());
+  if (!EmbeddedSchemas().contains(kind)) {
+    throw InputError(
+        fmt::format("{}: artefact kind is \"{}\"; expected one that is JSON", path.string(), kind));
+  }
   ValidateAgainstSchema(document, kind, path.string());
   return document;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -24,8 +25,11 @@ struct ArtefactInfo {
 };
 
 // The document in a JSON file of anybody's. Throws InputError, naming the file and line, when it is
-// missing, empty or malformed, or an object has the same key twice.
+// missing, empty or malformed, nested deeper than any file of ours, or an object has the same key
+// twice.
 nlohmann::json ParseJsonFile(const std::filesystem::path& path);
+// The same of a text that is not a file of its own; `name` stands for it in error messages.
+nlohmann::json ParseJsonText(std::istream& text, const std::string& name);
 
 // A value as text in ASCII, cut to what fits on a line.
 std::string Excerpt(const nlohmann::json& value);

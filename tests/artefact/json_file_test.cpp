@@ -61,6 +61,20 @@ TEST_F(JsonFileTest, UnreadableTextIsRefusedOnOneLine) {
   EXPECT_EQ(ParseErrorOf("{\"a\": {\"b\": 1}, \"b\": {\"b\": 2}}"), "");
 }
 
+TEST_F(JsonFileTest, DeepNestingIsRefused) {
+  const auto nested = [](size_t levels) {
+    return std::string(levels, '[') + std::string(levels, ']');
+  };
+  EXPECT_EQ(ParseErrorOf(nested(100)), "");
+  EXPECT_THAT(ParseErrorOf(nested(101)), HasSubstr("some.json: is nested more than 100 levels"));
+  EXPECT_THAT(ParseErrorOf(nested(1'000'000)), HasSubstr("more than 100 levels"));
+}
+
+TEST_F(JsonFileTest, KindWithoutSchemaIsRefused) {
+  std::ofstream(file) << R"({"artefact": {"kind": "edges", "schema_version": [1, 0]}})";
+  EXPECT_THAT(InputErrorOf([&] { ReadArtefact(file, "edges"); }), HasSubstr("\"edges\""));
+}
+
 TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   std::ofstream(folder / "b.txt") << "b";
   std::ofstream(folder / "a.txt") << "abc";
