@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "artefact/hdf5_checks.h"
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
 #include "base/run_log.h"
@@ -186,6 +187,16 @@ std::vector<std::string> Hdf5File::Children(const std::string& group) const {
   return names;
 }
 
+std::uint64_t Hdf5File::Size() const {
+  hsize_t bytes = 0;
+  H5Fget_filesize(file_.id(), &bytes);
+  return bytes;
+}
+
+void Hdf5File::RequireTree() const {
+  if (!IsTree(file_)) FailReading("/", "has damaged links, or several to one place; expected one");
+}
+
 Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) const {
   const Hdf5Handle space{H5Dget_space(data_set.id()), &H5Sclose};
   const int rank = H5Sget_simple_extent_ndims(space.id());
@@ -200,6 +211,7 @@ Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) con
                                     kMaxValues));
     }
   }
+  if (const auto problem = StorageProblem(data_set, shape, Size())) FailReading(name, *problem);
   return shape;
 }
 
@@ -284,6 +296,7 @@ std::string Hdf5File::ReadText(const std::string& owner, const std::string& name
       H5Sget_simple_extent_npoints(space.id()) != 1) {
     FailReading(where, "is not a text of fixed length; expected one");
   }
+  if (H5Tget_size(type.id()) > Size()) FailReading(where, kDamaged);
   std::string text(H5Tget_size(type.id()), '\0');
   if (H5Aread(attribute.id(), type.id(), text.data()) < 0) FailReading(where, kDamaged);
   text.resize(text.find_last_not_of('\0') + 1);

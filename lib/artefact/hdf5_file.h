@@ -80,6 +80,9 @@ class Hdf5File {
   double ReadNumber(const std::string& owner, const std::string& name) const;
 
   // For readers that do not know the layout.
+  // Throws InputError unless each group and data set has one name, so that a walk through all of
+  // them ends.
+  void RequireTree() const;
   bool IsGroup(const std::string& name) const;
   std::vector<std::string> Attributes(const std::string& owner) const;  // sorted
   bool IsText(const std::string& owner, const std::string& attribute) const;
@@ -104,7 +107,8 @@ class Hdf5File {
   // The shape of a data set, once it and the element type are what is expected.
   std::vector<std::uint64_t> CheckedShape(const std::string& name, int depth,
                                           const std::vector<int>& expected) const;
-  // Throws where there are too many values to read.
+  std::uint64_t Size() const;  // of the file, bytes
+  // Throws where there are too many values to read, or more than the file can hold.
   std::vector<std::uint64_t> ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
   void ReadArray(const std::string& name, int depth, void* values) const;
 

@@ -33,6 +33,9 @@ Hdf5Element Hdf5ElementOf(int depth) {
 Hdf5Handle Hdf5FileAccess() {
   H5dont_atexit();  // its clean-up at exit crashes on a file that a full disk left unfinished
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
+  // A file must not have other files read, nor programs loaded.
+  H5Lunregister(H5L_TYPE_EXTERNAL);
+  H5PLset_loading_state(0);
   Hdf5Handle access = PropertyList(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
   return access;

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/hdf5_checks.h"
+
+#include <gtest/gtest.h>
+
+#include "artefact/hdf5_artefact.h"
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+// Files that Hdf5File does not write, made with the library itself.
+class Hdf5ChecksTest : public testing::Test {
+ protected:
+  Hdf5ChecksTest() { file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT); }
+  // A data set of float64 in which nothing is written.
+  void CreateDataSet(const Hdf5Shape& shape, hid_t creation, const char* name = "/values") const {
+    const std::vector<hsize_t> sizes(shape.begin(), shape.end());
+    const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
+                           &H5Sclose};
+    const Hdf5Handle data_set{
+        H5Dcreate2(file_, name, H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, creation, H5P_DEFAULT),
+        &H5Dclose};
+    ASSERT_TRUE(data_set.valid());
+  }
+  void Write(const std::string& name) const {
+    Hdf5File file = Hdf5File::Create(folder_ / name);
+    file.WriteVector<double>("/values", {1.0, 2.0});
+    file.Close();
+  }
+  void ExpectRefused(const std::vector<std::string>& words) {
+    H5Fclose(file_);
+    ExpectError<InputError>([&] { Hdf5File::Open(path_).ReadVector<double>("/values"); }, words);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "bad.h5";
+  hid_t file_ = -1;
+};
+
+TEST_F(Hdf5ChecksTest, SizeWithoutValues) {
+  CreateDataSet({100'000'000}, H5P_DEFAULT);
+  ExpectRefused({"bad.h5", "/values", "cut short or damaged"});
+}
+
+TEST_F(Hdf5ChecksTest, SizeBeyondMemory) {
+  CreateDataSet({std::uint64_t{1} << 40, std::uint64_t{1} << 40}, H5P_DEFAULT);
+  ExpectRefused({"bad.h5", "/values", "at most"});
+}
+
+TEST_F(Hdf5ChecksTest, ValuesInAnotherFile) {
+  WriteBytes(folder_ / "secret", std::string(16, 'x'));
+  const Hdf5Handle creation{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+  H5Pset_external(creation.id(), (folder_ / "secret").c_str(), 0, 16);
+  CreateDataSet({2}, creation.id());
+  ExpectRefused({"bad.h5", "/values", "in other files"});
+}
+
+TEST_F(Hdf5ChecksTest, VirtualDataSet) {
+  Write("secret.h5");
+  const hsize_t size = 2;
+  const Hdf5Handle space{H5Screate_simple(1, &size, nullptr), &H5Sclose};
+  const Hdf5Handle creation{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+  H5Pset_virtual(creation.id(), space.id(), (folder_ / "secret.h5").c_str(), "/values", space.id());
+  CreateDataSet({2}, creation.id());
+  ExpectRefused({"bad.h5", "/values", "in other files"});
+}
+
+// The library's own links of this kind are gone once a file was opened, so that a test can only
+// write one of a kind of its own by the same number.
+hid_t FollowLink(const char*, hid_t group, const void*, size_t, hid_t, hid_t) {
+  return H5Dopen2(group, "/target", H5P_DEFAULT);
+}
+
+TEST_F(Hdf5ChecksTest, LinkToAnotherFile) {
+  const H5L_class_t links = {
+      H5L_LINK_CLASS_T_VERS, H5L_TYPE_EXTERNAL, "",     nullptr, nullptr, nullptr,
+      &FollowLink,           nullptr,           nullptr};
+  H5Lregister(&links);
+  CreateDataSet({0}, H5P_DEFAULT, "/target");
+  ASSERT_GE(H5Lcreate_ud(file_, "/values", H5L_TYPE_EXTERNAL, "", 1, H5P_DEFAULT, H5P_DEFAULT), 0);
+  ExpectRefused({"bad.h5", "/values"});
+}
+
+TEST_F(Hdf5ChecksTest, GroupThatHoldsItself) {
+  const Hdf5Handle group{H5Gcreate2(file_, "/a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose};
+  H5Lcreate_hard(file_, "/a", file_, "/a/again", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(file_);
+  ExpectError<InputError>([&] { Hdf5File::Open(path_).RequireTree(); }, {"bad.h5", "links"});
+}
+
+TEST_F(Hdf5ChecksTest, WhatIsWrittenIsATree) {
+  Write("good.h5");
+  EXPECT_NO_THROW(Hdf5File::Open(folder_ / "good.h5").RequireTree());
+  H5Fclose(file_);
+}
+
+TEST_F(Hdf5ChecksTest, NestedHeader) {
+  H5Fclose(file_);
+  Hdf5File file = Hdf5File::Create(path_);
+  file.WriteText("/", kHeaderAttribute, std::string(100'000, '['));
+  file.Close();
+  ExpectError<InputError>([&] { OpenArtefact(path_, "edges"); }, {"bad.h5", "more than 100"});
+}
+
+}  // namespace
+}  // namespace soslam
