@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {
@@ -80,6 +81,10 @@ void to_json(json& json, const Camera& camera) {
 void from_json(const json& json, Camera& camera) {
   camera = {json.at("width").get<int>(), json.at("height").get<int>(), json.at("fx").get<double>(),
             json.at("fy").get<double>(), json.at("cx").get<double>(),  json.at("cy").get<double>()};
+  if (!IsImageSize(camera.width, camera.height)) {
+    throw InputError(fmt::format("camera is of {} x {} pixels; expected at most {} in all",
+                                 camera.width, camera.height, kMaxPixels));
+  }
 }
 
 json LandmarkToJson(const Landmark& landmark, const std::string& frame) {

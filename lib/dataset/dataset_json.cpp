@@ -10,6 +10,7 @@
 #include "dataset/icl_nuim.h"
 #include "dataset/json_entry.h"
 #include "dataset/unit_quaternion.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {
@@ -74,6 +75,9 @@ Camera ParseCamera(const Entry& entry) {
                 entry.Real("fy"),       entry.Real("cx"),        entry.Real("cy")};
   if (camera.width <= 0) entry.Refuse("width", "pixels above 0");
   if (camera.height <= 0) entry.Refuse("height", "pixels above 0");
+  if (!IsImageSize(camera.width, camera.height)) {
+    entry.Refuse("height", fmt::format("at most {} pixels in all", kMaxPixels));
+  }
   return camera;
 }
 

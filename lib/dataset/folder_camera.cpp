@@ -10,6 +10,7 @@
 #include "dataset/dataset_json.h"
 #include "dataset/icl_nuim.h"
 #include "dataset/text_file.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {
@@ -34,9 +35,12 @@ std::array<double, kSize> ParseSetting(const char* setting, const std::string& t
   return numbers;
 }
 
-bool IsPixelCount(double number) {
-  constexpr double kMax = 1e6;
-  return number > 0.0 && number < kMax && number == std::floor(number);
+bool IsSizeInPixels(double width, double height) {
+  const auto is_count = [](double number) {
+    return number > 0.0 && number <= kMaxPixels && number == std::floor(number);
+  };
+  return is_count(width) && is_count(height) &&
+         IsImageSize(static_cast<int>(width), static_cast<int>(height));
 }
 
 Camera CameraOfSetting(const ImportOptions& options) {
@@ -44,8 +48,7 @@ Camera CameraOfSetting(const ImportOptions& options) {
   const std::string& text = options.folder.camera;
   const auto [width, height, fx, fy, cx, cy] = ParseSetting<6>("camera", text, kExpected);
   const bool y_is_up = options.format == DatasetFormat::kIclNuim;
-  if (!IsPixelCount(width) || !IsPixelCount(height) || !(fx > 0.0) ||
-      !(y_is_up ? fy < 0.0 : fy > 0.0)) {
+  if (!IsSizeInPixels(width, height) || !(fx > 0.0) || !(y_is_up ? fy < 0.0 : fy > 0.0)) {
     throw SettingsError(fmt::format("camera: found '{}'; expected {}, fy {} 0", text, kExpected,
                                     y_is_up ? "below" : "above"));
   }

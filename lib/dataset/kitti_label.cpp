@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "dataset/text_file.h"
+#include "geometry/image_size.h"
 #include "image/read_image.h"
 
 namespace soslam {
@@ -155,7 +156,7 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
   } catch (const InputError&) {
     camera.width = 0;
   }
-  if (camera.width <= 0 || camera.height <= 0) {
+  if (!IsImageSize(camera.width, camera.height)) {
     throw SettingsError(
         fmt::format("image_size: found '{}'; expected width and height, as in 1242x375", text));
   }

@@ -12,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/run_log.h"
+#include "geometry/image_size.h"
+#include "image/image_header.h"
 
 namespace soslam {
 namespace {
@@ -52,9 +54,22 @@ void CheckComplete(std::string_view bytes, const std::filesystem::path& path) {
   }
 }
 
+// Before anything of that size is allocated.
+void CheckSize(std::string_view bytes, const std::filesystem::path& path) {
+  const auto size = SizeInHeader(bytes);
+  if (!size) {
+    throw InputError(path.string() + ": cannot be decoded; expected a PNG or JPEG image");
+  }
+  if (!IsImageSize(size->width, size->height)) {
+    throw InputError(fmt::format("{}: is {} x {} pixels; expected at most {} in all", path.string(),
+                                 size->width, size->height, kMaxPixels));
+  }
+}
+
 // `mode` is OpenCV's IMREAD_GRAYSCALE or IMREAD_COLOR.
 cv::Mat ReadImage(const std::filesystem::path& path, int mode) {
   const std::vector<char> bytes = ReadBytes(path);
+  CheckSize({bytes.data(), bytes.size()}, path);
   CheckComplete({bytes.data(), bytes.size()}, path);
   cv::Mat image;
   try {

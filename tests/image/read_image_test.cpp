@@ -106,13 +106,33 @@ TEST_F(ReadImageTest, BadFilesAreNamed) {
   ExpectError<InputError>([&] { read(folder_ / "none.png"); }, {"none.png", "no such file"});
   ExpectError<InputError>([&] { read(folder_.path()); }, {folder_.path().string()});
   ExpectError<InputError>([&] { read(Write("empty.png", "")); }, {"empty.png", "is empty"});
-  ExpectError<InputError>([&] { read(Write("text.png", "hello")); }, {"text.png", "decoded"});
+  ExpectError<InputError>([&] { read(Write("text.png", "hello")); },
+                          {"text.png", "decoded", "PNG or JPEG"});
   const std::string jpeg = Encode(".jpg", TestImage());
   ExpectError<InputError>([&] { read(Write("cut.jpg", jpeg.substr(0, jpeg.size() / 2))); },
                           {"cut.jpg", "cut short", "EOI"});
   const std::string png = Encode(".png", TestImage());
   ExpectError<InputError>([&] { read(Write("cut.png", png.substr(0, png.size() - 12))); },
                           {"cut.png", "cut short", "IEND"});
+}
+
+TEST_F(ReadImageTest, SizesBeyondMemoryAreRefusedUnread) {
+  std::string png = Encode(".png", TestImage());
+  png.replace(16, 8, std::string("\0\0\x7f\xff\0\0\x7f\xff", 8));  // width and height in IHDR
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.png", png)); },
+                          {"a.png", "32767 x 32767", "at most"});
+  std::string jpeg = Encode(".jpg", TestImage());
+  const size_t frame = jpeg.find("\xff\xc0");  // marker, length, bits, height, width
+  jpeg.replace(frame + 5, 4, "\xff\xfe\xff\xff");
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.jpg", jpeg)); },
+                          {"a.jpg", "65535 x 65534", "at most"});
+}
+
+TEST_F(ReadImageTest, OtherFormatsAreRefused) {
+  for (const char* extension : {".bmp", ".pgm", ".tiff", ".webp"}) {
+    const auto path = Write(std::string("a") + extension, Encode(extension, TestImage()));
+    ExpectError<InputError>([&] { ReadGreyImage(path); }, {path.string(), "PNG or JPEG"});
+  }
 }
 
 TEST_F(ReadImageTest, WrongSizeIsNamed) {

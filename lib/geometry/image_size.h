@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace soslam {
+
+// More than cameras have; a size beyond it is damaged, or made to fill the memory.
+inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
+
+// Whether an image can have this many columns and rows.
+inline bool IsImageSize(std::int64_t width, std::int64_t height) {
+  return width > 0 && height > 0 && width <= kMaxPixels / height;
+}
+
+}  // namespace soslam
