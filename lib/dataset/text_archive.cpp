@@ -30,7 +30,11 @@ ArchivePointer Open(const std::filesystem::path& path) {
   NoteInput(path);
   constexpr size_t kBlock = 1 << 16;  // bytes
   ArchivePointer opened(archive_read_new());
-  archive_read_support_filter_all(opened.get());
+  // Not "all": for some formats the library runs programs.
+  archive_read_support_filter_gzip(opened.get());
+  archive_read_support_filter_bzip2(opened.get());
+  archive_read_support_filter_xz(opened.get());
+  archive_read_support_filter_zstd(opened.get());
   archive_read_support_format_tar(opened.get());
   archive_read_support_format_zip(opened.get());
   if (archive_read_open_filename(opened.get(), path.c_str(), kBlock) != ARCHIVE_OK) {
@@ -39,11 +43,19 @@ ArchivePointer Open(const std::filesystem::path& path) {
   return opened;
 }
 
-// More than any detector's boxes of one image: what is larger is packed to fill memory.
-constexpr size_t kMaxEntryBytes = size_t{64} << 20;
+// More than any detector's boxes of a recording, and than an archive of them unpacks to: what is
+// larger is packed to fill the memory, or to keep its reader busy.
+constexpr std::int64_t kMaxTextBytes = std::int64_t{64} << 20;
+constexpr std::int64_t kMaxUnpackedBytes = std::int64_t{256} << 20;
+
+void CheckBytes(std::int64_t bytes, std::int64_t most, const std::filesystem::path& path) {
+  if (bytes <= most) return;
+  throw InputError(fmt::format("{}: unpacks to {} bytes or more; expected at most {} of text files",
+                               path.string(), bytes, most));
+}
 
 // Of the entry that was opened last.
-std::string ReadEntry(const std::filesystem::path& path, const std::string& name, archive* opened) {
+std::string ReadEntry(const std::filesystem::path& path, std::int64_t max_bytes, archive* opened) {
   std::string text;
   std::array<char, 1 << 16> block;
   for (;;) {
@@ -51,10 +63,7 @@ std::string ReadEntry(const std::filesystem::path& path, const std::string& name
     if (size < 0) Refuse(path, opened);
     if (size == 0) return text;
     text.append(block.data(), static_cast<size_t>(size));
-    if (text.size() > kMaxEntryBytes) {
-      throw InputError(fmt::format("{}: {} has more than {} bytes; expected a text file of boxes",
-                                   path.string(), name, kMaxEntryBytes));
-    }
+    CheckBytes(static_cast<std::int64_t>(text.size()), max_bytes, path);
   }
 }
 
@@ -64,14 +73,19 @@ std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
                                           const std::string& extension) {
   const ArchivePointer opened = Open(path);
   std::vector<ArchivedText> texts;
+  std::int64_t bytes_left = kMaxTextBytes;
   for (;;) {
     archive_entry* entry = nullptr;
     const int status = archive_read_next_header(opened.get(), &entry);
     if (status == ARCHIVE_EOF) break;
     if (status < ARCHIVE_WARN) Refuse(path, opened.get());
+    // Also what is skipped has to be unpacked, to find what follows.
+    CheckBytes(archive_entry_size(entry), kMaxUnpackedBytes, path);
+    CheckBytes(archive_filter_bytes(opened.get(), 0), kMaxUnpackedBytes, path);
     const char* name = archive_entry_pathname(entry);
     if (name == nullptr || std::filesystem::path(name).extension() != extension) continue;
-    texts.push_back({name, ReadEntry(path, name, opened.get())});
+    texts.push_back({name, ReadEntry(path, bytes_left, opened.get())});
+    bytes_left -= static_cast<std::int64_t>(texts.back().text.size());
   }
   std::ranges::sort(texts, {}, &ArchivedText::name);
   return texts;

@@ -14,7 +14,8 @@ struct ArchivedText {
 };
 
 // The files of an archive (tar, also compressed; zip) whose names have this extension (".txt"), by
-// name. Throws InputError for what is no archive, and for one that is cut short.
+// name. Throws InputError for what is no archive, and for one that is cut short, or unpacks to more
+// than text files would.
 std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
                                           const std::string& extension);
 
