@@ -126,7 +126,8 @@ std::string ImageOfFrame(const fs::path& folder, const DatasetFiles& files,
   const fs::path path =
       ImagePath(folder, image.image, files.images.value_or(files.detections).string());
   const bool has_to_be_there = options.format == DatasetFormat::kSoslam && files.images;
-  return has_to_be_there || fs::exists(path) ? image.image : "";
+  std::error_code ignored;  // a name that no file can have
+  return has_to_be_there || fs::exists(path, ignored) ? image.image : "";
 }
 
 }  // namespace

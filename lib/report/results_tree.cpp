@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/results_tree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 
 #include "artefact/json_file.h"
 #include "artefact/schema.h"
+#include "base/error.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -44,12 +47,13 @@ std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& varian
 
 VariantResult ReadVariant(const fs::path& dataset, const fs::path& folder, DamagedFiles damaged) {
   VariantResult variant = {folder.filename().string(), folder};
-  variant.shown_runs = RunsIn(folder / (fs::exists(folder / ".linked") ? ".linked" : "stages.txt"));
   try {
     if (fs::exists(folder / "metrics.json")) {
       variant.metrics = ReadArtefact(folder / "metrics.json", "metrics");
     }
     variant.stages = ReadStages(dataset, folder);
+    variant.shown_runs =
+        RunsIn(folder / (fs::exists(folder / ".linked") ? ".linked" : "stages.txt"));
   } catch (const InputError& error) {
     if (damaged == DamagedFiles::kRefused) throw;
     variant.metrics = json();
@@ -92,11 +96,17 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
 }
 
 std::vector<std::string> RunsIn(const fs::path& list) {
+  constexpr size_t kMaxName = 255;  // bytes, of files and folders on Linux
   NoteInput(list);
   std::vector<std::string> runs;
   std::ifstream lines(list);
   for (std::string line; std::getline(lines, line);) {
-    if (!line.empty()) runs.push_back(line);
+    if (line.empty()) continue;
+    if (line.size() > kMaxName || fs::path(line).filename() != line) {
+      throw InputError(
+          fmt::format("{}: run is '{}'; expected the name of a folder", list.string(), line));
+    }
+    runs.push_back(line);
   }
   return runs;
 }

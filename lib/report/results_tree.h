@@ -70,7 +70,7 @@ struct DatasetResult {
 std::vector<std::string> SubfoldersOf(const std::filesystem::path& folder);
 
 // The runs, <stage>-<key>, that a stages.txt or .linked lists, in its order; none when it is not
-// there.
+// there. Throws InputError for what is not the name of a folder.
 std::vector<std::string> RunsIn(const std::filesystem::path& list);
 
 // Where a dataset was when its runs were planned: the first line of shared/dataset.txt in its

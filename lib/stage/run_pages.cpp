@@ -29,7 +29,8 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
   const auto reader = std::make_shared<const FrameImageReader>(sequence);
   return {[=](int frame_index) {
             const std::string& image = frame_at(frame_index).image;
-            return !image.empty() && fs::exists(dataset / image);
+            std::error_code ignored;  // a name that no file can have
+            return !image.empty() && fs::exists(dataset / image, ignored);
           },
           [=](int frame_index) {
             const Frame& frame = frame_at(frame_index);

@@ -71,20 +71,27 @@ FoundFiles FindFiles(const fs::path& dataset) {
   static const std::set<std::string> kTables = {".txt", ".csv", ".json", ".gz",
                                                 ".tgz", ".tar", ".zip"};
   FoundFiles found;
-  for (const auto& entry :
-       fs::recursive_directory_iterator(dataset, fs::directory_options::follow_directory_symlink)) {
-    if (!entry.is_regular_file()) continue;
+  std::error_code error;  // a circle of symbolic links, or a folder that may not be read
+  fs::recursive_directory_iterator entries(dataset, fs::directory_options::follow_directory_symlink,
+                                           error);
+  for (; !error && entries != fs::end(entries); entries.increment(error)) {
+    const fs::directory_entry& entry = *entries;
+    std::error_code ignored;  // a link to nothing is no file
+    if (!entry.is_regular_file(ignored)) continue;
     const fs::path extension = entry.path().extension();
     const bool is_table = kTables.count(extension.string()) > 0;
     (is_table ? found.tables : found.others)
         .insert(entry.path().lexically_relative(dataset).string());
   }
+  if (error) {
+    throw InputError(
+        fmt::format("{}: its files cannot be listed: {}", dataset.string(), error.message()));
+  }
   return found;
 }
 
 bool IsImage(const std::string& file) {
-  static const std::set<std::string> kExtensions = {".png", ".jpg", ".jpeg", ".bmp", ".pgm",
-                                                    ".ppm", ".tif", ".tiff", ".webp"};
+  static const std::set<std::string> kExtensions = {".png", ".jpg", ".jpeg"};
   std::string extension = fs::path(file).extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
