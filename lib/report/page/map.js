@@ -192,19 +192,27 @@ function mapRemarks(sequence) {
   return remarks.length > 0 ? element("p", { class: "faint" }, remarks.join(" ")) : null;
 }
 
-function mapSection(page, variants) {
+// A map, and beside it what it says of the object that is picked; none without WebGL.
+function mapWithPanel(page) {
   const panel = element("div", { class: "panel", id: "picked" });
   const explain = () => panel.replaceChildren(element("p", { class: "faint" },
     "Drag to turn, scroll to zoom. Click an object for its numbers."));
-  let view;
+  explain();
   try {
-    view = new MapView(page, (index) => {
+    const view = new MapView(page, (index) => {
       if (index === null) explain();
       else panel.replaceChildren(...objectNumbers(page, view.variant, index));
     });
+    return { view, panel, explain };
   } catch (error) {
-    return section("map", "Map", element("p", {}, "This browser has no WebGL, which the map needs."));
+    return null;
   }
+}
+
+function mapSection(page, variants) {
+  const made = mapWithPanel(page);
+  if (!made) return section("map", "Map", element("p", {}, "This browser has no WebGL, which the map needs."));
+  const { view, panel, explain } = made;
   let variant = variants[0], frame = 0;
   const above = element("div"), caption = element("span", { class: "faint" });
   const framesOf = () => page.sequences[variant.sequence].frames;
