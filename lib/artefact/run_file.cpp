@@ -69,6 +69,7 @@ RunRecord RunFromJson(const json& document) {
   if (!document.at("settings").is_null()) {
     record.settings = SettingsFromJson(document.at("settings"));
   }
+  record.allow_outside_paths = document.at("allow_outside_paths");
   if (!document.at("seed").is_null()) record.seed = document.at("seed");
   for (const auto& [argument, path] : document.at("folders").items()) {
     record.folders[argument] = path.get<std::string>();
@@ -91,6 +92,7 @@ void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
                          {"compiler", record.software.compiler},
                          {"libraries", record.software.libraries},
                          {"settings", record.settings ? SettingsToJson(*record.settings) : json()},
+                         {"allow_outside_paths", record.allow_outside_paths},
                          {"seed", OrNull(record.seed)},
                          {"folders", folders},
                          {"inputs", FilesToJson(record.inputs)},

@@ -35,6 +35,7 @@ struct RunRecord {
   std::string stage;  // the executable: "soslam-refine"
   Software software;
   std::optional<std::map<std::string, RunSetting>> settings;  // none: they were not valid
+  bool allow_outside_paths = false;
   std::optional<int> seed;
   std::map<std::string, std::filesystem::path> folders;  // arguments that are folders, as called
   std::vector<RunFile> inputs;

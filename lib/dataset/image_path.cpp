@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool& OutsidePathsAreAllowed() {
+bool& OutsidePathsFlag() {
   static bool are_allowed = false;
   return are_allowed;
 }
@@ -42,6 +42,8 @@ fs::path ImagePath(const fs::path& dataset, const std::string& image, const std:
   return path;
 }
 
-void AllowOutsidePaths(bool is_allowed) { OutsidePathsAreAllowed() = is_allowed; }
+void AllowOutsidePaths(bool is_allowed) { OutsidePathsFlag() = is_allowed; }
+
+bool OutsidePathsAreAllowed() { return OutsidePathsFlag(); }
 
 }  // namespace soslam

@@ -15,5 +15,6 @@ std::filesystem::path ImagePath(const std::filesystem::path& dataset, const std:
 // Whether images may lie outside their dataset folder all the same, for the whole program; not
 // while threads are running. At first they may not.
 void AllowOutsidePaths(bool is_allowed);
+bool OutsidePathsAreAllowed();
 
 }  // namespace soslam

@@ -136,6 +136,7 @@ std::vector<std::string> Reproduction::Arguments(const RunRecord& record,
                                     (folder / "settings.json").string(),
                                     "--failure_record",
                                     (folder / "failed").string()};
+  if (record.allow_outside_paths) words.emplace_back("--allow_outside_paths");
   const auto add = [&words](const std::string& argument, const fs::path& path) {
     words.insert(words.end(), {"--" + argument, path.string()});
   };

@@ -8,6 +8,7 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/machine.h"
+#include "dataset/image_path.h"
 
 namespace soslam::internal {
 namespace {
@@ -69,6 +70,7 @@ RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
   if (!settings_file.empty()) files_["settings"] = settings_file;
   record_.stage = info.name;
   record_.software = ThisSoftware();
+  record_.allow_outside_paths = OutsidePathsAreAllowed();
   log_.emplace();
   for (const auto& [name, path] : files_) {
     const std::string argument = ArgumentOf(name);

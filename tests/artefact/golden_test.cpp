@@ -122,8 +122,8 @@ TEST(GoldenTest, Sequence12Segments) {
   EXPECT_EQ(sequence.detections[3].true_landmark_in_camera->Centre().z(), 12.01);
 }
 
-TEST(GoldenTest, Run13) {
-  const RunRecord record = ReadRun(kGolden / "run-1.3.json");
+TEST(GoldenTest, Run14) {
+  const RunRecord record = ReadRun(kGolden / "run-1.4.json");
   EXPECT_EQ(record.stage, "soslam-refine");
   EXPECT_EQ(record.software.libraries.at("ceres"), "2.1.0");
   ASSERT_EQ(record.inputs.size(), 5u);

@@ -21,6 +21,7 @@ RunRecord SmallRecord() {
   record.stage = "soslam-planes";
   record.software = ThisSoftware();
   record.settings = {{"count", {3, "default"}}, {"name", {"x", "command line"}}};
+  record.allow_outside_paths = true;
   record.seed = 7;
   record.folders = {{"dataset", "data/room"}};
   record.inputs = {{"dataset", "dataset", "rgb/1.png", Sha256OfText("1")},
@@ -58,6 +59,7 @@ TEST_F(RunFileTest, ReadsWhatWasWritten) {
   EXPECT_EQ(record.software, ThisSoftware());
   EXPECT_EQ(record.settings->at("count").value, 3);
   EXPECT_EQ(record.settings->at("name").origin, "command line");
+  EXPECT_TRUE(record.allow_outside_paths);
   EXPECT_EQ(record.inputs.at(1).path, "../import-1/sequence.json");
   WriteRun(file_, record);
   EXPECT_EQ(FileBytes(file_), bytes);

@@ -90,6 +90,9 @@ TEST_F(ProvenanceTest, VerifyFindsWhatChangedAndWhomItConcerns) {
   ChangeOneByte(pipeline_.Dataset() / "rgb/000001.png");
   EXPECT_THAT(Verify(Results()).output,
               ContainsRegex("rgb/000001.png: has changed since shared/edges-[0-9a-f]+ read it"));
+  fs::remove(RunOf("initialise") / "run.json");
+  EXPECT_THAT(Verify(Results()).output,
+              ContainsRegex("run.json: is missing.*\\(InitP, InitPT\\)\n"));
 }
 
 TEST_F(ProvenanceTest, MovedResultsVerify) {
@@ -128,12 +131,22 @@ TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
                     ContainsRegex("not rerun .*refine-[0-9a-f]+: .*edges.h5, which it reads")));
 }
 
-TEST_F(ProvenanceTest, MissingRecordIsFound) {
-  fs::remove(RunOf("initialise") / "run.json");
+// A program that crashes cannot write a record; make writes down that it failed.
+TEST_F(ProvenanceTest, ACrashKeepsTheRecordOfTheRunBefore) {
+  const std::string record = FileBytes(RunOf("refine") / "run.json");
+  const fs::path programs = pipeline_.Folder() / "programs";
+  fs::create_directory(programs);
+  for (const auto& program : fs::directory_iterator(SOSLAM_BINARY_DIR)) {
+    fs::create_symlink(program.path(), programs / program.path().filename());
+  }
+  fs::remove(programs / "soslam-refine");
+  WriteBytes(programs / "soslam-refine", "#!/bin/sh\nkill -SEGV $$\n");
+  fs::permissions(programs / "soslam-refine", fs::perms::owner_all);
+  EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + programs.string()}).exit_code, 0);
+  EXPECT_EQ(FileBytes(RunOf("refine") / "run.json"), record);
   const CommandResult result = Verify(Results());
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, HasSubstr("run.json: is missing"));
-  EXPECT_THAT(result.output, HasSubstr("(InitP, InitPT)"));
+  EXPECT_THAT(result.output, ContainsRegex("refine-[0-9a-f]+: its last run failed: exit code 139"));
 }
 
 TEST_F(ProvenanceTest, ReproducesEveryByteAndLeavesTheResultsAlone) {
