@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 
 #include "artefact/hdf5_file.h"
+#include "support/refused_input.h"
 #include "support/small_pipeline.h"
 #include "support/stage_chain.h"
 
@@ -19,42 +19,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr int kFrames = StageChain::kFrames;
-
-using Spoil = std::function<void(const StageChain&)>;
-
-// Replaces the first `from` of a file, which has to be there.
-void Replace(const fs::path& path, const std::string& from, const std::string& to) {
-  std::string bytes = FileBytes(path);
-  const size_t found = bytes.find(from);
-  ASSERT_NE(found, std::string::npos) << path << " has no " << from;
-  WriteBytes(path, bytes.replace(found, from.size(), to));
-}
-
-// Replaces a line, counted from 1, of a file of the dataset.
-Spoil Line(const std::string& file, int number, const std::string& line) {
-  return [=](const StageChain& chain) {
-    std::string text = FileBytes(chain.Dataset(file));
-    size_t begin = 0;
-    for (int i = 1; i < number; ++i) begin = text.find('\n', begin) + 1;
-    const size_t end = text.find('\n', begin);
-    ASSERT_NE(end, std::string::npos) << file << " has no line " << number;
-    WriteBytes(chain.Dataset(file), text.replace(begin, end - begin, line));
-  };
-}
-
-Spoil DatasetText(const std::string& file, const std::string& from, const std::string& to) {
-  return [=](const StageChain& chain) { Replace(chain.Dataset(file), from, to); };
-}
-
-Spoil ArtefactText(const std::string& file, const std::string& from, const std::string& to) {
-  return [=](const StageChain& chain) { Replace(chain.Artefact(file), from, to); };
-}
-
-Spoil Content(const std::string& file, const std::string& content) {
-  return [=](const StageChain& chain) { WriteBytes(chain.Dataset(file), content); };
-}
-
-void Truncate(const fs::path& path) { fs::resize_file(path, fs::file_size(path) / 2); }
 
 // A semantic table that knows these labels only and has no default.
 Spoil TableOf(const std::vector<std::string>& labels) {
@@ -84,35 +48,9 @@ void PutObject2OnACeiling(const StageChain& chain) {
   WriteBytes(chain.Dataset("objects.json"), objects.dump());
 }
 
-struct RefusedInput {
-  std::string name;
-  std::string stage;  // that meets it, after all stages before it ran on the sound dataset
-  Spoil spoil;
-  int exit_code;
-  std::vector<std::string> words;  // of the error
-};
-
-void PrintTo(const RefusedInput& input, std::ostream* stream) { *stream << input.name; }
-
 class RefusedInputTest : public testing::TestWithParam<RefusedInput> {};
 
-TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) {
-  const RefusedInput& bad = GetParam();
-  const StageChain chain;
-  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
-  ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
-  const CommandResult result = chain.Run(bad.stage);
-  EXPECT_EQ(result.exit_code, bad.exit_code);
-  EXPECT_THAT(result.errors, testing::StartsWith("soslam-" + bad.stage + ": error: "));
-  EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
-  for (const std::string& word : bad.words) EXPECT_THAT(result.errors, HasSubstr(word));
-  EXPECT_FALSE(fs::exists(chain.Artefact(StageChain::OutputOf(bad.stage))));
-}
-
-template <typename Case>
-std::string CaseName(const testing::TestParamInfo<Case>& info) {
-  return info.param.name;
-}
+TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) { ExpectRefused(GetParam()); }
 
 INSTANTIATE_TEST_SUITE_P(
     Dataset, RefusedInputTest,

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Inputs that somebody made to harm: the table of bad inputs goes on.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "support/refused_input.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kInput = 3;
+
+Spoil ArtefactContent(const std::string& file, const std::string& content) {
+  return [=](const StageChain& chain) { WriteBytes(chain.Artefact(file), content); };
+}
+
+Spoil TableContent(const std::string& content) {
+  return [=](const StageChain& chain) { WriteBytes(chain.pipeline().SemanticTable(), content); };
+}
+
+std::string Nested(int levels) { return std::string(static_cast<size_t>(levels), '['); }
+
+// The signature and first chunk of a PNG image of this size (4 bytes, big endian), and its end.
+std::string PngThatClaims(const std::string& side) {
+  return std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + side + side +
+         std::string("\x08\0\0\0\0\0\0\0\0IEND\xae\x42\x60\x82", 17);
+}
+
+// Of the dataset, replaced by a symbolic link to a file of the same content elsewhere.
+Spoil MovedOut(const std::string& file) {
+  return [=](const StageChain& chain) {
+    const fs::path elsewhere = chain.pipeline().Folder() / "elsewhere";
+    fs::rename(chain.Dataset(file), elsewhere);
+    fs::create_symlink(elsewhere, chain.Dataset(file));
+  };
+}
+
+void PutFolderInPlaceOf(const fs::path& file) {
+  fs::remove(file);
+  fs::create_directory(file);
+}
+
+class HostileInputTest : public testing::TestWithParam<RefusedInput> {};
+
+TEST_P(HostileInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) { ExpectRefused(GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Text, HostileInputTest,
+    testing::Values(
+        RefusedInput{"ZeroByte",
+                     "import",
+                     Line("detections.csv", 3, std::string("0,2,sto\0ol,1,1,1,2,2", 20)),
+                     kInput,
+                     {"detections.csv:3", "UTF-8"}},
+        RefusedInput{"NotUtf8",
+                     "import",
+                     Line("detections.csv", 3, "0,2,\xC3\x28,1,1,1,2,2"),
+                     kInput,
+                     {"detections.csv:3", "UTF-8"}},
+        RefusedInput{"EscapeSequence",
+                     "import",
+                     Line("detections.csv", 3, "\x1b[2J,2,stool,1,1,1,2,2"),
+                     kInput,
+                     {"detections.csv:3", "frame is '\\x1b[2J'"}},
+        RefusedInput{"AMillionDigits",
+                     "import",
+                     Line("odometry.txt", 3, std::string(1000000, '1') + "e 0 0 1 0 0 0 1"),
+                     kInput,
+                     {"odometry.txt:3", "timestamp is '11", " ... ", "expected a finite number"}},
+        RefusedInput{"CommaForPoint",
+                     "import",
+                     Line("odometry.txt", 3, "0.1 0,5 0 1 0 0 0 1"),
+                     kInput,
+                     {"odometry.txt:3", "tx is '0,5'"}},
+        RefusedInput{"TooLargeNumber",
+                     "import",
+                     Line("odometry.txt", 3, "0.1 1e999 0 1 0 0 0 1"),
+                     kInput,
+                     {"odometry.txt:3", "tx is '1e999'"}},
+        RefusedInput{"MinusInfinity",
+                     "import",
+                     Line("groundtruth.txt", 3, "0.1 -inf 0 1 0 0 0 1"),
+                     kInput,
+                     {"groundtruth.txt:3", "tx is '-inf'"}},
+        RefusedInput{"NanOfYaml",
+                     "import",
+                     Line("detections.csv", 3, "0,2,stool,.nan,100,100,200,200"),
+                     kInput,
+                     {"detections.csv:3", "score is '.nan'"}},
+        RefusedInput{"TooLargeInteger",
+                     "import",
+                     Line("detections.csv", 3, "0,99999999999,stool,1,100,100,200,200"),
+                     kInput,
+                     {"detections.csv:3", "object_id is '99999999999'"}},
+        RefusedInput{
+            "FolderForFile",
+            "import",
+            [](const StageChain& chain) { PutFolderInPlaceOf(chain.Dataset("detections.csv")); },
+            kInput,
+            {"detections.csv", "cannot be read"}},
+        RefusedInput{"ListIsAnImage",
+                     "import",
+                     [](const StageChain& chain) {
+                       fs::copy_file(chain.Dataset("rgb/000000.png"), chain.Dataset("rgb.txt"),
+                                     fs::copy_options::overwrite_existing);
+                     },
+                     kInput,
+                     {"rgb.txt:1", "UTF-8"}}),
+    CaseName<RefusedInput>);
+
+INSTANTIATE_TEST_SUITE_P(
+    Json, HostileInputTest,
+    testing::Values(
+        RefusedInput{"NestedDataset",
+                     "import",
+                     Content("objects.json", Nested(1000000)),
+                     kInput,
+                     {"objects.json", "more than 100"}},
+        RefusedInput{"NestedArtefact",
+                     "initialise",
+                     ArtefactContent("sequence.json", Nested(1000000)),
+                     kInput,
+                     {"sequence.json", "more than 100"}},
+        RefusedInput{"NestedTable",
+                     "initialise",
+                     TableContent(R"({"labels": )" + Nested(1000000)),
+                     kInput,
+                     {"semantic_table.json", "more than 100"}},
+        RefusedInput{"KeyTwice",
+                     "import",
+                     DatasetText("camera.json", "{", "{\"fx\": 1, "),
+                     kInput,
+                     {"camera.json", "\"fx\" twice"}},
+        RefusedInput{"TooLargeNumber",
+                     "import",
+                     DatasetText("camera.json", "\"cx\":", "\"cx\": 1e999, \"old\":"),
+                     kInput,
+                     {"camera.json", "1e999"}},
+        RefusedInput{"Nan",
+                     "import",
+                     DatasetText("camera.json", "\"cx\":", "\"cx\": NaN, \"old\":"),
+                     kInput,
+                     {"camera.json", "parse error"}},
+        RefusedInput{"ZeroByteInLabel",
+                     "import",
+                     DatasetText("objects.json", "\"stool\"", "\"sto\\u0000ol\""),
+                     kInput,
+                     {"objects.json", "zero byte"}},
+        RefusedInput{"ImageBeyondMemory",
+                     "import",
+                     DatasetText("camera.json", "\"width\":", "\"width\": 2000000000, \"old\":"),
+                     kInput,
+                     {"camera.json", "pixels in all"}},
+        RefusedInput{"CameraBeyondMemory",
+                     "edges",
+                     ArtefactText("sequence.json", "\"width\": 480", "\"width\": 2000000000"),
+                     kInput,
+                     {"sequence.json", "2000000000 x 360"}},
+        RefusedInput{"IdBeyondTheSequence",
+                     "optimise",
+                     ArtefactText("refined.json", "\"frame\": 0", "\"frame\": 2147483647"),
+                     kInput,
+                     {"refined.json", "2147483647"}},
+        RefusedInput{"LandmarkOfNoSize",
+                     "optimise",
+                     ArtefactText("refined.json", "\"half_axes\": [", "\"half_axes\": [-1,"),
+                     kInput,
+                     {"refined.json", "half_axes"}},
+        RefusedInput{"EdgesAreText",
+                     "refine",
+                     ArtefactContent("edges.h5", "\x89HDF\r\n\x1a\n is all that is right"),
+                     kInput,
+                     {"edges.h5", "HDF5"}}),
+    CaseName<RefusedInput>);
+
+INSTANTIATE_TEST_SUITE_P(
+    Image, HostileInputTest,
+    testing::Values(RefusedInput{"ClaimsAbsurdSize",
+                                 "edges",
+                                 Content("rgb/000001.png", PngThatClaims({0, 0, '\xff', '\xff'})),
+                                 kInput,
+                                 {"rgb/000001.png", "65535 x 65535"}},
+                    RefusedInput{"IsText",
+                                 "edges",
+                                 Content("rgb/000001.png", "hello"),
+                                 kInput,
+                                 {"rgb/000001.png", "PNG or JPEG"}},
+                    RefusedInput{"IsAFolder",
+                                 "edges",
+                                 [](const StageChain& chain) {
+                                   PutFolderInPlaceOf(chain.Dataset("rgb/000001.png"));
+                                 },
+                                 kInput,
+                                 {"rgb/000001.png"}},
+                    RefusedInput{
+                        "NameLeadsOut",
+                        "import",
+                        DatasetText("rgb.txt", "rgb/000001.png", "../small/rgb/../../secret.png"),
+                        kInput,
+                        {"rgb.txt", "secret.png", "outside"}},
+                    RefusedInput{"NameIsAbsolute",
+                                 "import",
+                                 DatasetText("rgb.txt", "rgb/000001.png", "/etc/hostname"),
+                                 kInput,
+                                 {"rgb.txt", "/etc/hostname", "outside"}},
+                    RefusedInput{"LinkLeadsOut",
+                                 "import",
+                                 MovedOut("rgb/000001.png"),
+                                 kInput,
+                                 {"rgb.txt", "rgb/000001.png", "--allow_outside_paths"}},
+                    RefusedInput{"FolderLeadsOut",
+                                 "edges",
+                                 MovedOut("rgb"),
+                                 kInput,
+                                 {"sequence.json", "rgb/000000.png", "--allow_outside_paths"}},
+                    RefusedInput{"NameInSequenceLeadsOut",
+                                 "edges",
+                                 ArtefactText("sequence.json", "rgb/000001.png", "../secret.png"),
+                                 kInput,
+                                 {"sequence.json", "../secret.png", "outside"}}),
+    CaseName<RefusedInput>);
+
+// What looks unusual and is nothing bad.
+TEST(UnusualInputTest, ByteOrderMarkAndCarriageReturnsAreRead) {
+  const StageChain chain;
+  std::string text = "\xEF\xBB\xBF";
+  for (const char character : FileBytes(chain.Dataset("detections.csv"))) {
+    text += character == '\n' ? "\r\n" : std::string(1, character);
+  }
+  WriteBytes(chain.Dataset("detections.csv"), text);
+  const CommandResult result = chain.Run("import");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+}
+
+TEST(UnusualInputTest, ImagesElsewhereAreReadWhenTheUserSaysSo) {
+  const StageChain chain;
+  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo("edges"));
+  MovedOut("rgb")(chain);
+  const CommandResult result = RunCommand(
+      {StageProgram("edges"), "--quiet", "--allow_outside_paths", "--dataset",
+       chain.pipeline().Dataset().string(), "--sequence", chain.Artefact("sequence.json").string(),
+       "--output", chain.Artefact("edges.h5").string()});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+}
+
+}  // namespace
+}  // namespace soslam
