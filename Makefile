@@ -11,6 +11,7 @@ PIPELINES ?= pipelines
 THREADS ?= 0
 BUILD ?= build
 CMAKE_ARGS ?=
+OUTSIDE_PATHS ?=
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -64,7 +65,8 @@ LOCK = $(RESULTS)/.$(DATASET).lock
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
 	@mkdir -p $(RESULTS)
-	@flock --nonblock $(LOCK) true || echo 'run: waiting for another run of $(DATASET) in $(RESULTS)'
+	@flock --nonblock --conflict-exit-code 75 $(LOCK) true || test $$? -ne 75 || \
+	  echo 'run: waiting for another run of $(DATASET) in $(RESULTS)'
 	+@if test -e $(LOCK); then flock $(LOCK) $(MAKE) locked-run; else $(MAKE) locked-run; fi
 
 # Killed stages leave temporaries. After the clock was set back, files from the future would pass for
@@ -89,7 +91,7 @@ tables: build ## Compare all variants of all datasets in RESULTS: tables.md, tab
 
 .PHONY: report
 report: build ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset; and the tables
-	@$(BIN)/soslam-pages --results $(RESULTS)
+	@$(BIN)/soslam-pages --results $(RESULTS) $(OUTSIDE_PATHS)
 	@$(MAKE) tables
 
 MAPS = $(wildcard $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT))))
@@ -137,7 +139,7 @@ $(BUILD)/build.ninja: | setup
 .PHONY: test
 test: $(BUILD)/build.ninja ## Build everything and run all tests
 	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
-	@cmake --build $(BUILD)
+	@flock $(BUILD) cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2
 
 .PHONY: format

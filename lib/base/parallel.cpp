@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,8 +27,13 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     std::vector<std::jthread> others;  // joined at the end of this block
-    for (int i = 1; i < std::min({count, threads, cores}); ++i)
-      others.emplace_back(work_until_done);
+    for (int i = 1; i < std::min({count, threads, cores}); ++i) {
+      try {
+        others.emplace_back(work_until_done);
+      } catch (const std::system_error&) {
+        break;  // the system allows no more; those that there are do it all
+      }
+    }
     work_until_done();
   }
   for (const std::exception_ptr& error : errors) {

@@ -10,11 +10,14 @@
 namespace soslam {
 namespace {
 
-// Not by SuiteSparse: the last digits of its BLAS may depend on where in memory matrices lie.
-ceres::Covariance::Options ReproducibleOptions() {
+// The last digits of SuiteSparse's BLAS may depend on where in memory matrices lie, Eigen's do not;
+// but its time grows so fast that large problems have to do without.
+ceres::Covariance::Options OptionsFor(const ceres::Problem& problem) {
+  constexpr int kMaxVariablesForEigen = 1000;
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::SPARSE_QR;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.sparse_linear_algebra_library_type =
+      problem.NumParameters() <= kMaxVariablesForEigen ? ceres::EIGEN_SPARSE : ceres::SUITE_SPARSE;
   return options;
 }
 
@@ -24,7 +27,7 @@ std::optional<std::vector<Covariance9>> LandmarkCovariances(
     const std::vector<const double*>& landmark_blocks, ceres::Problem* problem) {
   std::vector<std::pair<const double*, const double*>> pairs;
   for (const double* block : landmark_blocks) pairs.emplace_back(block, block);
-  ceres::Covariance covariance(ReproducibleOptions());
+  ceres::Covariance covariance(OptionsFor(*problem));
   if (!covariance.Compute(pairs, problem)) return std::nullopt;
 
   // Ceres' rotation tangent is half the rotation vector.
@@ -51,7 +54,7 @@ std::optional<std::vector<Eigen::Matrix4d>> PlaneCovariances(
   // Parallel planes share a normal.
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  ceres::Covariance covariance(ReproducibleOptions());
+  ceres::Covariance covariance(OptionsFor(*problem));
   if (!covariance.Compute(pairs, problem)) return std::nullopt;
   std::vector<Eigen::Matrix4d> covariances;
   for (const auto& [normal, offset] : planes) {

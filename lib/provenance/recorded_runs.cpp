@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "report/results_tree.h"
 
 namespace soslam {
@@ -36,7 +37,7 @@ void AppendExports(DatasetRuns* dataset) {
   for (const VariantRuns& variant : dataset->variants) {
     for (const std::string& folder : SubfoldersOf(dataset->results / variant.name)) {
       const std::string name = variant.name + "/" + folder;
-      if (!fs::exists(dataset->results / name / "run.json")) continue;
+      if (!Exists(dataset->results / name / "run.json")) continue;
       dataset->exports.push_back({name, dataset->results / name, {variant.name}});
     }
   }
@@ -63,7 +64,7 @@ DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
 }  // namespace
 
 std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_root) {
-  if (!fs::is_directory(results)) {
+  if (!IsFolder(results)) {
     throw InputError(results.string() + ": is no folder; expected results of runs");
   }
   std::vector<DatasetRuns> datasets;

@@ -9,6 +9,7 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/hash.h"
 #include "inspection/difference.h"
 #include "provenance/run_program.h"
@@ -156,8 +157,8 @@ std::vector<std::string> Reproduction::Arguments(const RunRecord& record,
 
 Outcome Reproduction::Compare(const fs::path& artefact) const {
   const fs::path again = Again(artefact);
-  if (!fs::exists(artefact)) return {Outcome::Kind::kDiffers, artefact, "is gone"};
-  if (!fs::exists(again)) return {Outcome::Kind::kDiffers, artefact, "was not written again"};
+  if (!Exists(artefact)) return {Outcome::Kind::kDiffers, artefact, "is gone"};
+  if (!Exists(again)) return {Outcome::Kind::kDiffers, artefact, "was not written again"};
   if (Sha256OfFile(artefact) == Sha256OfFile(again)) return {Outcome::Kind::kSame, artefact, ""};
   return {Outcome::Kind::kDiffers, artefact, FirstDifference(artefact, again)};
 }

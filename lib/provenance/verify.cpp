@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/hash.h"
 
 namespace soslam {
@@ -18,7 +19,7 @@ class Verifier {
  public:
   explicit Verifier(const DatasetRuns& dataset)
       : dataset_(dataset),
-        is_dataset_gone_(!dataset.dataset.empty() && !fs::is_directory(dataset.dataset)) {}
+        is_dataset_gone_(!dataset.dataset.empty() && !IsFolder(dataset.dataset)) {}
 
   Verification Verify() {
     if (is_dataset_gone_) AddDataset();
@@ -47,7 +48,7 @@ class Verifier {
     std::getline(std::ifstream(run.folder / "failed"), failure);
     if (!failure.empty()) Add(run.folder, "its last run failed: " + failure, run.variants);
     const fs::path file = run.folder / "run.json";
-    if (!fs::exists(file)) {
+    if (!Exists(file)) {
       Add(file, "is missing: the stage has not run, or its record was removed", run.variants);
       return;
     }
@@ -86,7 +87,7 @@ class Verifier {
       const fs::path link = dataset_.results / variant.name / file;
       std::error_code not_there;
       if (fs::equivalent(link, dataset_.results / run / file, not_there)) continue;
-      Add(link, fs::exists(link) ? "is not the one of " + run : "is gone; expected that of " + run,
+      Add(link, Exists(link) ? "is not the one of " + run : "is gone; expected that of " + run,
           {variant.name});
     }
   }
@@ -103,7 +104,7 @@ class Verifier {
 std::optional<std::string> FileDigests::ChangeOf(const fs::path& path, const std::string& sha256) {
   auto digest = digests_.find(path);
   if (digest == digests_.end()) {
-    digest = digests_.emplace(path, fs::is_regular_file(path) ? Sha256OfFile(path) : "").first;
+    digest = digests_.emplace(path, IsFile(path) ? Sha256OfFile(path) : "").first;
   }
   if (digest->second == sha256) return std::nullopt;
   return digest->second.empty() ? "is gone" : "has changed";

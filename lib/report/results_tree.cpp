@@ -9,6 +9,7 @@
 #include "artefact/json_file.h"
 #include "artefact/schema.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -26,7 +27,7 @@ size_t VariantRank(const std::string& name) {
 }
 
 std::optional<StageTiming> ReadTiming(const fs::path& file) {
-  if (!fs::exists(file)) return std::nullopt;
+  if (!Exists(file)) return std::nullopt;
   const json document = ParseJsonFile(file);
   ValidateAgainstSchema(document, "timing", file.string());
   StageTiming timing = {document["wall_s"], document["cpu_s"], document["threads"], std::nullopt};
@@ -48,12 +49,11 @@ std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& varian
 VariantResult ReadVariant(const fs::path& dataset, const fs::path& folder, DamagedFiles damaged) {
   VariantResult variant = {folder.filename().string(), folder};
   try {
-    if (fs::exists(folder / "metrics.json")) {
+    if (Exists(folder / "metrics.json")) {
       variant.metrics = ReadArtefact(folder / "metrics.json", "metrics");
     }
     variant.stages = ReadStages(dataset, folder);
-    variant.shown_runs =
-        RunsIn(folder / (fs::exists(folder / ".linked") ? ".linked" : "stages.txt"));
+    variant.shown_runs = RunsIn(folder / (Exists(folder / ".linked") ? ".linked" : "stages.txt"));
   } catch (const InputError& error) {
     if (damaged == DamagedFiles::kRefused) throw;
     variant.metrics = json();
@@ -66,7 +66,7 @@ std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles da
   std::vector<VariantResult> variants;
   for (const std::string& name : SubfoldersOf(dataset)) {
     const fs::path folder = dataset / name;
-    if (!fs::exists(folder / "metrics.json") && !fs::exists(folder / "stages.txt")) continue;
+    if (!Exists(folder / "metrics.json") && !Exists(folder / "stages.txt")) continue;
     variants.push_back(ReadVariant(dataset, folder, damaged));
   }
   std::stable_sort(variants.begin(), variants.end(), [](const auto& a, const auto& b) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "base/file_kind.h"
+
 namespace soslam {
 namespace {
 
@@ -20,10 +22,9 @@ std::string FirstLine(const fs::path& file) {
 
 std::string WhyUnfinished(const VariantResult& variant) {
   for (const StageRun& run : variant.stages) {
-    if (fs::exists(run.folder / "failed")) {
-      return "failed: " + run.stage + ": " + FirstLine(run.folder / "failed");
-    }
-    if (!fs::exists(run.folder / "done")) return "incomplete: " + run.stage + " has not run";
+    const std::string failure = FirstLine(run.folder / "failed");
+    if (!failure.empty()) return "failed: " + run.stage + ": " + failure;
+    if (!Exists(run.folder / "done")) return "incomplete: " + run.stage + " has not run";
   }
   const bool is_older =
       !std::ranges::equal(variant.stages, variant.shown_runs, {},
@@ -32,7 +33,7 @@ std::string WhyUnfinished(const VariantResult& variant) {
 }
 
 bool ShowsStage(const VariantResult& variant, const std::string& stage, const std::string& file) {
-  if (variant.shown_runs.empty()) return fs::exists(variant.folder / file);
+  if (variant.shown_runs.empty()) return Exists(variant.folder / file);
   return std::ranges::any_of(variant.shown_runs, [&](const std::string& run) {
     return run.substr(0, run.rfind('-')) == stage;
   });

@@ -49,7 +49,7 @@ define run-stage
 @touch $@.begun
 @$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) $(OUTSIDE_PATHS) \
   --failure_record $(@D)/failed || {{ code=$$?; \
-  test -e $(@D)/failed || echo "exit code $$code" > $(@D)/failed; exit $$code; }}
+  test -s $(@D)/failed || echo "exit code $$code" > $(@D)/failed; exit $$code; }}
 @mv $@.begun $@
 endef
 stage = $(if $(dry_run)$(filter-out %/done,$?),$(run-stage),@touch $@)

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "artefact/json_file.h"
+#include "base/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -85,7 +86,7 @@ class StateFinder {
   std::vector<std::string> MissingOutputs(const StageInstance& instance) const {
     std::vector<std::string> reasons;
     for (const StageOutput& output : OutputsOfStage(instance.stage)) {
-      if (!fs::exists(Result(instance, output.file))) {
+      if (!Exists(Result(instance, output.file))) {
         reasons.push_back(output.file + ", which it writes, is gone");
       }
     }
@@ -194,7 +195,7 @@ std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChai
   if (before == last.end() || before->second == instance.Id()) return {};
   const fs::path settings = folders.results / InstancePath(before->second, "settings.json");
   std::vector<std::string> changes;
-  if (fs::exists(settings)) changes = SettingChanges(ParseJsonFile(settings), instance.settings);
+  if (Exists(settings)) changes = SettingChanges(ParseJsonFile(settings), instance.settings);
   for (const auto& [argument, source] : instance.inputs) {
     const std::string stage = plan.Instance(source.instance).stage;
     const auto earlier = last.find(stage);

@@ -10,6 +10,7 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/image_path.h"
 #include "report/page.h"
 #include "report/page_html.h"
@@ -29,8 +30,7 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
   const auto reader = std::make_shared<const FrameImageReader>(sequence);
   return {[=](int frame_index) {
             const std::string& image = frame_at(frame_index).image;
-            std::error_code ignored;  // a name that no file can have
-            return !image.empty() && fs::exists(dataset / image, ignored);
+            return !image.empty() && Exists(dataset / image);
           },
           [=](int frame_index) {
             const Frame& frame = frame_at(frame_index);
@@ -75,7 +75,7 @@ nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& fol
 
 void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int threads) {
   const fs::path& results = files.at("results");
-  if (!fs::is_directory(results)) {
+  if (!IsFolder(results)) {
     throw InputError(results.string() + ": is no folder; expected results of runs");
   }
   std::vector<nlohmann::json> pages;

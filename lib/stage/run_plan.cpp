@@ -12,6 +12,7 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "stage/pipeline_settings.h"
 #include "stage/plan.h"
 #include "stage/plan_makefile.h"
@@ -98,23 +99,6 @@ bool IsImage(const std::string& file) {
   return kExtensions.contains(extension);
 }
 
-// All variants; without images in the dataset those that look at none.
-std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::string& dataset,
-                                          const FoundFiles& files) {
-  std::vector<std::string> variants = VariantNames(pipelines);
-  if (std::ranges::any_of(files.others, IsImage)) return variants;
-  std::vector<std::string> impossible;
-  std::erase_if(variants, [&](const std::string& variant) {
-    const bool needs_images = ReadVariant(pipelines, dataset, variant).stages.contains("edges");
-    if (needs_images) impossible.push_back(variant);
-    return needs_images;
-  });
-  if (!impossible.empty()) {
-    fmt::print("{}: no images; left out are {}\n", dataset, fmt::join(impossible, ", "));
-  }
-  return variants;
-}
-
 // Imports read tables, and some look which images there are.
 std::string DatasetFingerprint(const fs::path& dataset, const FoundFiles& files) {
   return Fingerprint(dataset, files.tables) + fmt::format("{}\n", fmt::join(files.others, "\n"));
@@ -130,7 +114,28 @@ void WriteFile(const fs::path& path, const std::string& text) {
   WriteTextFile(path, text);
 }
 
+// Says what PossibleVariants leaves out.
+void PrintImpossible(const fs::path& pipelines, const std::string& dataset,
+                     const std::vector<std::string>& possible) {
+  std::vector<std::string> impossible = VariantNames(pipelines);
+  std::erase_if(impossible, [&](const std::string& variant) {
+    return std::ranges::find(possible, variant) != possible.end();
+  });
+  if (impossible.empty()) return;
+  fmt::print("{}: no images; left out are {}\n", dataset, fmt::join(impossible, ", "));
+}
+
 }  // namespace
+
+std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::string& name,
+                                          const fs::path& dataset) {
+  std::vector<std::string> variants = VariantNames(pipelines);
+  if (std::ranges::any_of(FindFiles(dataset).others, IsImage)) return variants;
+  std::erase_if(variants, [&](const std::string& variant) {
+    return ReadVariant(pipelines, name, variant).stages.contains("edges");
+  });
+  return variants;
+}
 
 std::vector<std::string> SplitAtSpaces(const std::string& text) {
   std::istringstream stream(text);
@@ -143,7 +148,7 @@ std::vector<std::string> SplitAtSpaces(const std::string& text) {
 
 void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*/) {
   const fs::path dataset = files.at("dataset").lexically_normal();
-  if (!fs::is_directory(dataset)) {
+  if (!IsFolder(dataset)) {
     throw InputError(dataset.string() + ": no such dataset folder");
   }
   const std::string name =
@@ -154,7 +159,10 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
 
   const FoundFiles found = FindFiles(dataset);
   std::vector<std::string> variants = SplitAtSpaces(options.variants);
-  if (variants.empty()) variants = PossibleVariants(folders.pipelines, name, found);
+  if (variants.empty()) {
+    variants = PossibleVariants(folders.pipelines, name, dataset);
+    PrintImpossible(folders.pipelines, name, variants);
+  }
   for (const std::string& variant : variants) RefuseIfNotAFolderName(variant, "variant");
 
   const Plan plan = MakePlan(folders.pipelines, name, variants);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct PlanOptions {
 
 // The words of a list of names, each once.
 std::vector<std::string> SplitAtSpaces(const std::string& text);
+
+// All variants that folder `pipelines` defines; where the dataset called `name` in folder `dataset`
+// has no images, those that look at none. Errors as RunPlan.
+std::vector<std::string> PossibleVariants(const std::filesystem::path& pipelines,
+                                          const std::string& name,
+                                          const std::filesystem::path& dataset);
 
 // Resolves the variants that folder "pipelines" defines for the dataset in folder "dataset". Under
 // <results>/<name> it writes, each only when its content changes: plan.mk, see PlanMakefile;

@@ -7,6 +7,7 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/machine.h"
 #include "dataset/image_path.h"
 
@@ -75,7 +76,7 @@ RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
   for (const auto& [name, path] : files_) {
     const std::string argument = ArgumentOf(name);
     const FileArgument* output = FindOutput(info, argument);
-    if (fs::is_directory(path) || (output != nullptr && output->is_folder)) {
+    if (IsFolder(path) || (output != nullptr && output->is_folder)) {
       record_.folders[argument] = path;
     } else if (output == nullptr) {
       NoteInput(path);
@@ -116,11 +117,13 @@ void RunRecorder::RecordFailure(int exit_code, const std::string& error) {
 
 RunRecord RunRecorder::Finished(int exit_code, const std::string& error) {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
+  if (log_) {  // not when it is called again because the first record could not be written
+    for (const FileDigest& input : log_->Inputs()) record_.inputs.push_back(Place(input));
+    for (const FileDigest& output : log_->Outputs()) record_.outputs.push_back(Place(output));
+    record_.seed = log_->Seed();
+    log_.reset();  // the record is no result
+  }
   RunRecord record = record_;
-  for (const FileDigest& input : log_->Inputs()) record.inputs.push_back(Place(input));
-  for (const FileDigest& output : log_->Outputs()) record.outputs.push_back(Place(output));
-  record.seed = log_->Seed();
-  log_.reset();  // the record is no result
   record.exit_code = exit_code;
   record.error = error;
   record.timing = Timing(wall.count(), threads_);

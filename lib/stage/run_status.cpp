@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "stage/pipeline_settings.h"
 #include "stage/plan_state.h"
 #include "stage/run_plan.h"
@@ -23,7 +24,7 @@ std::vector<std::string> PlannedDatasets(const fs::path& results) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(results, error)) {
-    if (fs::exists(entry.path() / "plan.mk")) names.push_back(entry.path().filename().string());
+    if (Exists(entry.path() / "plan.mk")) names.push_back(entry.path().filename().string());
   }
   std::ranges::sort(names);
   return names;
@@ -36,8 +37,9 @@ class Status {
       : name_(std::move(name)), folders_(ReadPlanFolders(files.at("results") / name_ / "plan.mk")) {
     folders_.results = files.at("results") / name_;
     // So that changed settings and files count; without the dataset the last plan has to do.
-    if (fs::is_directory(folders_.dataset)) {
-      RunPlan({.name = name_, .variants = ""},
+    const std::vector<std::string> planned = PlannedVariants();
+    if (IsFolder(folders_.dataset) && !planned.empty()) {
+      RunPlan({.name = name_, .variants = fmt::format("{}", fmt::join(planned, " "))},
               {{"dataset", folders_.dataset},
                {"pipelines", folders_.pipelines},
                {"results", files.at("results")}},
@@ -85,11 +87,16 @@ class Status {
 
  private:
   std::vector<std::string> Variants(const StatusOptions& options) const {
-    std::vector<std::string> variants = SplitAtSpaces(options.variants);
+    const std::vector<std::string> variants = SplitAtSpaces(options.variants);
     if (!variants.empty()) return variants;
-    variants = VariantNames(folders_.pipelines);
+    if (!IsFolder(folders_.dataset)) return PlannedVariants();
+    return PossibleVariants(folders_.pipelines, name_, folders_.dataset);
+  }
+
+  std::vector<std::string> PlannedVariants() const {
+    std::vector<std::string> variants = VariantNames(folders_.pipelines);
     std::erase_if(variants, [this](const std::string& variant) {
-      return !fs::exists(folders_.results / variant / "stages.txt");
+      return !Exists(folders_.results / variant / "stages.txt");
     });
     return variants;
   }
@@ -149,14 +156,20 @@ void RunStatus(const StatusOptions& options, const StageFiles& files, int /*thre
   if (datasets.empty()) {
     fmt::print("nothing ran yet: there is no {}\n", (results / "<dataset>/plan.mk").string());
   }
+  std::optional<SettingsError> failure;  // the last one, once all others have been shown
   for (const std::string& name : datasets) {
-    const Status status(name, options, files);
-    if (options.explain.empty()) {
-      status.PrintTable();
-    } else {
-      status.PrintReasons(options.explain);
+    try {
+      const Status status(name, options, files);
+      if (options.explain.empty()) {
+        status.PrintTable();
+      } else {
+        status.PrintReasons(options.explain);
+      }
+    } catch (const Error& error) {
+      failure.emplace(fmt::format("{}: {}", name, error.what()));
     }
   }
+  if (failure) throw *failure;
 }
 
 }  // namespace soslam

@@ -203,5 +203,21 @@ TEST_F(RunRecorderTest, WhereNoRecordCanBeWrittenTheErrorIsThatOfTheRun) {
   EXPECT_THAT(errors_, HasSubstr("settings.json: cannot be read"));
 }
 
+TEST_F(RunRecorderTest, ARecordThatCannotBeWrittenFailsTheRun) {
+  fs::create_directory(folder_ / "results/two/timing.json");
+  EXPECT_EQ(Run(), 2);
+  EXPECT_THAT(errors_, HasSubstr("timing.json: cannot be written"));
+  EXPECT_EQ(Record().exit_code, 2);
+  EXPECT_EQ(Record().inputs.size(), 4u);
+  EXPECT_EQ(Record().outputs.size(), 1u);
+}
+
+TEST_F(RunRecorderTest, PathsThatTheFileSystemRefusesAreBadInput) {
+  fs::remove(folder_ / "results/one/sequence.json");
+  fs::create_symlink("sequence.json", folder_ / "results/one/sequence.json");  // to itself
+  EXPECT_EQ(Run(), 3);
+  EXPECT_THAT(errors_, HasSubstr("sequence.json: cannot be read"));
+}
+
 }  // namespace
 }  // namespace soslam
