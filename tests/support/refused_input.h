@@ -91,14 +91,15 @@ inline void ExpectOneLine(const std::string& errors) {
 }
 
 // Runs a row: its exit code, and one line that names it; what was written before stays as it was,
-// and nothing is left beside it.
+// and nothing but the record of the failure is left beside it.
 inline void ExpectRefused(const RefusedInput& bad) {
   const StageChain chain;
   ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
   ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
   const std::filesystem::path output = chain.Artefact(StageChain::OutputOf(bad.stage));
   WriteBytes(output, "from before");
-  const std::set<std::string> names = NamesIn(output.parent_path());
+  std::set<std::string> names = NamesIn(output.parent_path());
+  names.insert("run.json");
 
   const CommandResult result = chain.Run(bad.stage);
   EXPECT_EQ(result.exit_code, bad.exit_code);
