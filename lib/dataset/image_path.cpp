@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/is_within.h"
 
 namespace soslam {
 namespace {
@@ -22,17 +23,13 @@ fs::path Resolved(const fs::path& path) {
   return error ? path : resolved;
 }
 
-bool IsInside(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = Resolved(path).lexically_relative(Resolved(folder));
-  return !relative.empty() && *relative.begin() != "..";
-}
-
 }  // namespace
 
 fs::path ImagePath(const fs::path& dataset, const std::string& image, const std::string& place) {
   const fs::path path = dataset / fs::path(image).lexically_normal();
   if (image.empty()) throw InputError(place + ": image is ''; expected the name of a file");
-  const bool is_inside = !fs::path(image).is_absolute() && IsInside(path, dataset);
+  const bool is_inside =
+      !fs::path(image).is_absolute() && IsWithin(Resolved(path), Resolved(dataset));
   if (!is_inside && !OutsidePathsAreAllowed()) {
     throw InputError(
         fmt::format("{}: image is '{}', which is outside {}; expected a path inside the dataset "

@@ -65,39 +65,33 @@ void AddObjects(const BackEndInput& input, BackEndProblem* problem, MapEstimate*
   }
 }
 
-void AddCovariances(BackEndProblem* problem, MapEstimate* map) {
-  std::vector<const double*> blocks;
-  std::vector<ObjectEstimate*> objects;
+void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndVariables* variables,
+                            MapEstimate* map) {
+  int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
-    blocks.push_back(problem->variables().Landmark(static_cast<size_t>(object.object_index)));
-    objects.push_back(&object);
+    if (!covariances.AreDetermined()) {
+      ++without;
+      continue;
+    }
+    object.covariance =
+        covariances.OfLandmark(variables->Landmark(static_cast<size_t>(object.object_index)));
   }
-  const auto covariances = LandmarkCovariances(blocks, &problem->problem());
-  if (!covariances) {
-    map->solver.gated["covariance_of_undetermined_problem"] = static_cast<int>(objects.size());
-    return;
-  }
-  for (size_t i = 0; i < objects.size(); ++i) objects[i]->covariance = (*covariances)[i];
+  if (without > 0) map->solver.gated["covariance_of_undetermined_problem"] = without;
 }
 
-void AddPlaneCovariances(const Sequence& sequence, BackEndProblem* problem, MapEstimate* map) {
-  std::vector<int> planes;
-  std::vector<std::pair<const double*, const double*>> blocks;
+void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
+                         BackEndProblem* problem, MapEstimate* map) {
+  if (!covariances.AreDetermined()) return;
   BackEndVariables& variables = problem->variables();
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const bool holds_something = problem->problem().HasParameterBlock(variables.Offset(i));
     if (!sequence.planes[i].attitude_information || !holds_something) continue;
-    planes.push_back(static_cast<int>(i));
-    blocks.emplace_back(variables.Normal(i), variables.Offset(i));
-  }
-  if (planes.empty()) return;
-  const auto covariances = PlaneCovariances(blocks, &problem->problem());
-  if (!covariances) return;
-  for (size_t i = 0; i < planes.size(); ++i) {
     Eigen::Vector4d sides = Eigen::Vector4d::Ones();
-    sides.head<3>() *= variables.NormalSide(static_cast<size_t>(planes[i]));
-    map->plane_covariances[planes[i]] = sides.asDiagonal() * (*covariances)[i] * sides.asDiagonal();
+    sides.head<3>() *= variables.NormalSide(i);
+    map->plane_covariances[static_cast<int>(i)] =
+        sides.asDiagonal() * covariances.OfPlane(variables.Normal(i), variables.Offset(i)) *
+        sides.asDiagonal();
   }
 }
 
@@ -127,8 +121,9 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   }
   AddObjects(input, &problem, &map);
   if (options.covariances) {
-    AddCovariances(&problem, &map);
-    AddPlaneCovariances(input.sequence, &problem, &map);
+    const MarginalCovariances covariances(&problem.problem());
+    AddLandmarkCovariances(covariances, &problem.variables(), &map);
+    AddPlaneCovariances(input.sequence, covariances, &problem, &map);
   }
   return map;
 }

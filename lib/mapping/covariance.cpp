@@ -1,74 +1,83 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/covariance.h"
 
-#include <ceres/covariance.h>
-
-#include <algorithm>
-#include <utility>
-#include <vector>
+#include <ceres/crs_matrix.h>
+#include <ceres/manifold.h>
 
 namespace soslam {
 namespace {
 
-// The last digits of SuiteSparse's BLAS may depend on where in memory matrices lie, Eigen's do not;
-// but its time grows so fast that large problems have to do without.
-ceres::Covariance::Options OptionsFor(const ceres::Problem& problem) {
-  constexpr int kMaxVariablesForEigen = 1000;
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::SPARSE_QR;
-  options.sparse_linear_algebra_library_type =
-      problem.NumParameters() <= kMaxVariablesForEigen ? ceres::EIGEN_SPARSE : ceres::SUITE_SPARSE;
-  return options;
+// A variable of which this share of its information is left when all others are unknown has a
+// million times the standard deviation that it would have if they were known.
+constexpr double kLeastIndependentShare = 1e-12;
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::SparseMatrix<double> Jacobian(const std::vector<double*>& blocks, ceres::Problem* problem) {
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = blocks;
+  ceres::CRSMatrix rows;
+  if (!problem->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return {};
+  return Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+      rows.num_rows, rows.num_cols, static_cast<int>(rows.values.size()), rows.rows.data(),
+      rows.cols.data(), rows.values.data());
 }
 
 }  // namespace
 
-std::optional<std::vector<Covariance9>> LandmarkCovariances(
-    const std::vector<const double*>& landmark_blocks, ceres::Problem* problem) {
-  std::vector<std::pair<const double*, const double*>> pairs;
-  for (const double* block : landmark_blocks) pairs.emplace_back(block, block);
-  ceres::Covariance covariance(OptionsFor(*problem));
-  if (!covariance.Compute(pairs, problem)) return std::nullopt;
-
-  // Ceres' rotation tangent is half the rotation vector.
-  Eigen::Matrix<double, 9, 1> scale = Eigen::Matrix<double, 9, 1>::Ones();
-  scale.head<3>().setConstant(2.0);
-  std::vector<Covariance9> covariances;
-  for (const double* block : landmark_blocks) {
-    Eigen::Matrix<double, 9, 9, Eigen::RowMajor> tangent;
-    if (!covariance.GetCovarianceBlockInTangentSpace(block, block, tangent.data())) {
-      return std::nullopt;
-    }
-    covariances.push_back(scale.asDiagonal() * tangent * scale.asDiagonal());
-    if (!covariances.back().allFinite()) return std::nullopt;
+// Columns of unit length: units do not count when it is decided what is determined.
+MarginalCovariances::MarginalCovariances(ceres::Problem* problem) : problem_(problem) {
+  std::vector<double*> blocks;
+  problem->GetParameterBlocks(&blocks);
+  std::erase_if(blocks, [&](double* block) { return problem->IsParameterBlockConstant(block); });
+  if (blocks.empty()) return;
+  int columns = 0;
+  for (const double* block : blocks) {
+    first_column_[block] = columns;
+    columns += problem->ParameterBlockTangentSize(block);
   }
-  return covariances;
+  Eigen::SparseMatrix<double> jacobian = Jacobian(blocks, problem);
+  if (jacobian.cols() != columns) return;
+  column_norms_ =
+      (jacobian.cwiseAbs2().transpose() * Eigen::VectorXd::Ones(jacobian.rows())).cwiseSqrt();
+  if (!column_norms_.allFinite() || !(column_norms_.minCoeff() > 0.0)) return;
+  jacobian = jacobian * column_norms_.cwiseInverse().asDiagonal();
+  factor_.compute(jacobian.transpose() * jacobian);
+  are_determined_ = factor_.info() == Eigen::Success &&
+                    factor_.matrixL().nestedExpression().diagonal().array().square().minCoeff() >
+                        kLeastIndependentShare;
 }
 
-std::optional<std::vector<Eigen::Matrix4d>> PlaneCovariances(
-    const std::vector<std::pair<const double*, const double*>>& planes, ceres::Problem* problem) {
-  std::vector<std::pair<const double*, const double*>> pairs;
-  for (const auto& [normal, offset] : planes) {
-    pairs.insert(pairs.end(), {{normal, normal}, {normal, offset}, {offset, offset}});
+Eigen::MatrixXd MarginalCovariances::HalfInverse(const double* block) const {
+  const auto first = first_column_.find(block);
+  if (first == first_column_.end()) return Eigen::MatrixXd::Zero(column_norms_.size(), 0);
+  const int size = problem_->ParameterBlockTangentSize(block);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(column_norms_.size(), size);
+  for (int i = 0; i < size; ++i) {
+    const int column = first->second + i;
+    columns(factor_.permutationP().indices()[column], i) = 1.0 / column_norms_[column];
   }
-  // Parallel planes share a normal.
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  ceres::Covariance covariance(OptionsFor(*problem));
-  if (!covariance.Compute(pairs, problem)) return std::nullopt;
-  std::vector<Eigen::Matrix4d> covariances;
-  for (const auto& [normal, offset] : planes) {
-    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> of_normal;
-    Eigen::Vector3d mixed;
-    double of_offset = 0.0;
-    covariance.GetCovarianceBlock(normal, normal, of_normal.data());
-    covariance.GetCovarianceBlock(normal, offset, mixed.data());
-    covariance.GetCovarianceBlock(offset, offset, &of_offset);
-    Eigen::Matrix4d whole;
-    whole << of_normal, mixed, mixed.transpose(), of_offset;
-    covariances.push_back(whole);
+  factor_.matrixL().solveInPlace(columns);
+  return columns;
+}
+
+Covariance9 MarginalCovariances::OfLandmark(const double* landmark) const {
+  Eigen::Matrix<double, Eigen::Dynamic, 9> half = HalfInverse(landmark);
+  half.leftCols<3>() *= 2.0;  // Ceres' rotation tangent is half the rotation vector
+  return half.transpose() * half;
+}
+
+Eigen::Matrix4d MarginalCovariances::OfPlane(const double* normal, const double* offset) const {
+  Eigen::Matrix<double, Eigen::Dynamic, 4> half = Eigen::MatrixXd::Zero(column_norms_.size(), 4);
+  if (const Eigen::MatrixXd of_normal = HalfInverse(normal); of_normal.cols() > 0) {
+    RowMajorMatrix normal_by_tangent(3, of_normal.cols());
+    problem_->GetManifold(normal)->PlusJacobian(normal, normal_by_tangent.data());
+    half.leftCols<3>() = of_normal * normal_by_tangent.transpose();
   }
-  return covariances;
+  if (const Eigen::MatrixXd of_offset = HalfInverse(offset); of_offset.cols() > 0) {
+    half.col(3) = of_offset;
+  }
+  return half.transpose() * half;
 }
 
 }  // namespace soslam

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "report/results_tree.h"
+#include "report/run_folder.h"
 
 namespace soslam {
 namespace {
@@ -49,8 +50,14 @@ DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
                          {}};
   if (data_root.empty()) dataset.dataset = DatasetFolderOf(dataset.results);
   for (const std::string& folder : SubfoldersOf(dataset.results)) {
-    const std::vector<std::string> runs = RunsIn(dataset.results / folder / "stages.txt");
-    if (!runs.empty()) dataset.variants.push_back({folder, runs});
+    VariantRuns variant = {folder};
+    try {
+      variant.runs = RunsIn(dataset.results / folder / "stages.txt");
+    } catch (const InputError& error) {
+      variant.problem = error.what();
+    }
+    if (variant.runs.empty() && variant.problem.empty()) continue;
+    dataset.variants.push_back(std::move(variant));
   }
   AppendSharedRuns(&dataset);
   for (const std::string& folder : SubfoldersOf(dataset.results / kShared)) {
@@ -70,7 +77,8 @@ std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_
   std::vector<DatasetRuns> datasets;
   for (const std::string& name : SubfoldersOf(results)) {
     DatasetRuns dataset = RunsOfDataset(name, results, data_root);
-    if (!dataset.runs.empty() || !dataset.unused.empty()) datasets.push_back(std::move(dataset));
+    if (!dataset.variants.empty() || !dataset.unused.empty())
+      datasets.push_back(std::move(dataset));
   }
   if (datasets.empty()) {
     throw NothingUsableError(results.string() +

@@ -18,7 +18,8 @@ struct RecordedRun {
 
 struct VariantRuns {
   std::string name;
-  std::vector<std::string> runs;  // as in its stages.txt
+  std::vector<std::string> runs = {};  // as in its stages.txt
+  std::string problem = {};            // what is wrong with its stages.txt; empty: nothing
 };
 
 // <results>/<dataset>/: what runs left there.

@@ -4,15 +4,16 @@
 #include <fmt/format.h>
 
 #include <csignal>
-#include <fstream>
 #include <utility>
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/hash.h"
+#include "base/is_within.h"
 #include "inspection/difference.h"
 #include "provenance/run_program.h"
+#include "report/run_folder.h"
 
 namespace soslam {
 namespace {
@@ -109,6 +110,14 @@ std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const
       return fmt::format("{} {} since", path.string(), *change);
     }
   }
+  // A record is a file like any other: what it says must not overwrite anything.
+  for (const RunFile& output : record.outputs) {
+    const fs::path path = PathOf(output, record, run, dataset_);
+    if (!IsResult(path)) {
+      return fmt::format("it wrote {}, which is outside of {}", path.string(),
+                         dataset_.results.string());
+    }
+  }
   return std::nullopt;
 }
 
@@ -121,9 +130,8 @@ std::optional<std::string> Reproduction::RunAgain(const RunRecord& record,
   const int exit_code = RunProgram(Arguments(record, run), folder / "printed.txt");
   if (exit_code == 0) return std::nullopt;
   if (exit_code == 128 + SIGINT) throw NothingUsableError("interrupted");
-  std::string failure = fmt::format("exit code {}", exit_code);
-  std::getline(std::ifstream(folder / "failed"), failure);
-  return "it failed: " + failure;
+  const std::string failure = FailureIn(folder);
+  return "it failed: " + (failure.empty() ? fmt::format("exit code {}", exit_code) : failure);
 }
 
 std::vector<std::string> Reproduction::Arguments(const RunRecord& record,
@@ -163,11 +171,7 @@ Outcome Reproduction::Compare(const fs::path& artefact) const {
   return {Outcome::Kind::kDiffers, artefact, FirstDifference(artefact, again)};
 }
 
-// Whether a file lies in the results of the dataset.
-bool Reproduction::IsResult(const fs::path& path) const {
-  const fs::path relative = path.lexically_relative(dataset_.results);
-  return !relative.empty() && *relative.begin() != "..";
-}
+bool Reproduction::IsResult(const fs::path& path) const { return IsWithin(path, dataset_.results); }
 
 fs::path Reproduction::Again(const fs::path& path) const {
   return again_ / path.lexically_relative(dataset_.results);

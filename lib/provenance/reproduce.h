@@ -41,6 +41,7 @@ class Reproduction {
   std::optional<std::string> RunAgain(const RunRecord& record, const RecordedRun& run) const;
   std::vector<std::string> Arguments(const RunRecord& record, const RecordedRun& run) const;
   Outcome Compare(const std::filesystem::path& artefact) const;
+  // Whether a file lies in the results of the dataset.
   bool IsResult(const std::filesystem::path& path) const;
   std::filesystem::path Again(const std::filesystem::path& path) const;
 

@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
+#include <set>
 #include <utility>
 
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/hash.h"
+#include "report/run_folder.h"
 
 namespace soslam {
 namespace {
@@ -25,7 +26,7 @@ class Verifier {
     if (is_dataset_gone_) AddDataset();
     for (const RecordedRun& run : dataset_.runs) CheckRun(run);
     for (const RecordedRun& run : dataset_.exports) CheckRun(run);
-    for (const VariantRuns& variant : dataset_.variants) CheckLinks(variant);
+    for (const VariantRuns& variant : dataset_.variants) CheckVariant(variant);
     result_.files = digests_.files();
     return std::move(result_);
   }
@@ -44,8 +45,7 @@ class Verifier {
   }
 
   void CheckRun(const RecordedRun& run) {
-    std::string failure;
-    std::getline(std::ifstream(run.folder / "failed"), failure);
+    const std::string failure = FailureIn(run.folder);
     if (!failure.empty()) Add(run.folder, "its last run failed: " + failure, run.variants);
     const fs::path file = run.folder / "run.json";
     if (!Exists(file)) {
@@ -77,11 +77,18 @@ class Verifier {
   }
 
   // The folder of a variant shows the artefacts of its runs, of each the last one of that name.
-  void CheckLinks(const VariantRuns& variant) {
+  void CheckVariant(const VariantRuns& variant) {
+    if (!variant.problem.empty()) {
+      result_.findings.push_back({variant.problem, {variant.name}});
+      return;
+    }
     std::map<fs::path, std::string> makers;  // run by file name
+    bool are_known = true;                   // the outputs of all its runs
     for (const std::string& id : variant.runs) {
       const std::string run = "shared/" + id;
-      for (const RunFile& output : records_[run].outputs) makers[output.path] = run;
+      const std::vector<RunFile>& outputs = records_[run].outputs;
+      for (const RunFile& output : outputs) makers[output.path] = run;
+      are_known = are_known && !outputs.empty();
     }
     for (const auto& [file, run] : makers) {
       const fs::path link = dataset_.results / variant.name / file;
@@ -89,6 +96,21 @@ class Verifier {
       if (fs::equivalent(link, dataset_.results / run / file, not_there)) continue;
       Add(link, Exists(link) ? "is not the one of " + run : "is gone; expected that of " + run,
           {variant.name});
+    }
+    if (are_known) CheckStrangers(variant, makers);
+  }
+
+  void CheckStrangers(const VariantRuns& variant, const std::map<fs::path, std::string>& makers) {
+    std::set<fs::path> strangers;
+    std::error_code not_there;
+    for (const auto& entry : fs::directory_iterator(dataset_.results / variant.name, not_there)) {
+      const fs::path name = entry.path().filename();
+      const bool is_of_make = name == "stages.txt" || name.string().starts_with('.');
+      if (IsFolder(entry.path()) || is_of_make || makers.contains(name)) continue;
+      strangers.insert(entry.path());
+    }
+    for (const fs::path& file : strangers) {
+      Add(file, "no run of the variant wrote it", {variant.name});
     }
   }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/results_tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <fstream>
 
@@ -10,7 +8,7 @@
 #include "artefact/schema.h"
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "base/run_log.h"
+#include "report/run_folder.h"
 
 namespace soslam {
 namespace {
@@ -41,7 +39,7 @@ std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& varian
   std::vector<StageRun> stages;
   for (const std::string& run : RunsIn(variant / "stages.txt")) {
     const fs::path folder = dataset / "shared" / run;
-    stages.push_back({run.substr(0, run.rfind('-')), folder, ReadTiming(folder / "timing.json")});
+    stages.push_back({StageOf(run), folder, ReadTiming(folder / "timing.json")});
   }
   return stages;
 }
@@ -93,22 +91,6 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-std::vector<std::string> RunsIn(const fs::path& list) {
-  constexpr size_t kMaxName = 255;  // bytes, of files and folders on Linux
-  NoteInput(list);
-  std::vector<std::string> runs;
-  std::ifstream lines(list);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty()) continue;
-    if (line.size() > kMaxName || fs::path(line).filename() != line) {
-      throw InputError(
-          fmt::format("{}: run is '{}'; expected the name of a folder", list.string(), line));
-    }
-    runs.push_back(line);
-  }
-  return runs;
 }
 
 fs::path DatasetFolderOf(const fs::path& results_of_dataset) {

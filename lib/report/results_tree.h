@@ -69,10 +69,6 @@ struct DatasetResult {
 // The names of the folders in a folder, sorted; none when it is not there.
 std::vector<std::string> SubfoldersOf(const std::filesystem::path& folder);
 
-// The runs, <stage>-<key>, that a stages.txt or .linked lists, in its order; none when it is not
-// there. Throws InputError for what is not the name of a folder.
-std::vector<std::string> RunsIn(const std::filesystem::path& list);
-
 // Where a dataset was when its runs were planned: the first line of shared/dataset.txt in its
 // results. Empty without one.
 std::filesystem::path DatasetFolderOf(const std::filesystem::path& results_of_dataset);

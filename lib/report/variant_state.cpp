@@ -2,27 +2,15 @@
 #include "report/variant_state.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "base/file_kind.h"
+#include "report/run_folder.h"
 
 namespace soslam {
-namespace {
-
-namespace fs = std::filesystem;
-
-std::string FirstLine(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string line;
-  std::getline(stream, line);
-  return line;
-}
-
-}  // namespace
 
 std::string WhyUnfinished(const VariantResult& variant) {
   for (const StageRun& run : variant.stages) {
-    const std::string failure = FirstLine(run.folder / "failed");
+    const std::string failure = FailureIn(run.folder);
     if (!failure.empty()) return "failed: " + run.stage + ": " + failure;
     if (!Exists(run.folder / "done")) return "incomplete: " + run.stage + " has not run";
   }
@@ -34,9 +22,8 @@ std::string WhyUnfinished(const VariantResult& variant) {
 
 bool ShowsStage(const VariantResult& variant, const std::string& stage, const std::string& file) {
   if (variant.shown_runs.empty()) return Exists(variant.folder / file);
-  return std::ranges::any_of(variant.shown_runs, [&](const std::string& run) {
-    return run.substr(0, run.rfind('-')) == stage;
-  });
+  return std::ranges::any_of(variant.shown_runs,
+                             [&](const std::string& run) { return StageOf(run) == stage; });
 }
 
 }  // namespace soslam

@@ -10,6 +10,7 @@
 
 #include "artefact/json_file.h"
 #include "base/file_kind.h"
+#include "report/run_folder.h"
 
 namespace soslam {
 namespace {
@@ -29,9 +30,6 @@ std::vector<std::string> LinesOf(const fs::path& file) {
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
 }
-
-// The stage of an instance's id: that of "learn-priors-0123456789" is "learn-priors".
-std::string StageOf(const std::string& id) { return id.substr(0, id.rfind('-')); }
 
 class StateFinder {
  public:
@@ -61,11 +59,11 @@ class StateFinder {
 
   InstanceState Find(const StageInstance& instance) const {
     const auto done = TimeOf(Result(instance, "done"));
-    const std::vector<std::string> failure = LinesOf(Result(instance, "failed"));
+    const std::string failure = FailureIn(Result(instance, ""));
     InstanceState found;
     if (!failure.empty()) {
       found.state = StageState::kFailed;
-      found.reasons.push_back("its last run failed: " + failure.front());
+      found.reasons.push_back("its last run failed: " + failure);
     } else if (!done) {
       found.state = StageState::kMissing;
       found.reasons.emplace_back("it has not run with these settings and inputs");

@@ -8,6 +8,7 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "base/is_within.h"
 #include "base/machine.h"
 #include "dataset/image_path.h"
 
@@ -41,10 +42,6 @@ const FileArgument* FindOutput(const StageInfo& info, const std::string& argumen
 fs::path Absolute(const fs::path& path) {
   const fs::path whole = fs::absolute(path).lexically_normal();
   return whole.has_filename() ? whole : whole.parent_path();
-}
-
-bool IsWithin(const fs::path& file, const fs::path& folder) {
-  return *Absolute(file).lexically_relative(Absolute(folder)).begin() != "..";
 }
 
 double Seconds(const timeval& time) {

@@ -54,11 +54,16 @@ using Counts = std::array<size_t, kOutcomeNames.size()>;  // by kind of outcome
 
 Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
   Counts counts = {};
+  const auto count = [&counts](const Outcome& outcome) {
+    Print(outcome);
+    ++counts.at(static_cast<size_t>(outcome.kind));
+  };
+  for (const VariantRuns& variant : dataset.variants) {
+    if (variant.problem.empty()) continue;
+    count({Outcome::Kind::kNotRerun, dataset.results / variant.name, variant.problem});
+  }
   for (const RecordedRun& run : dataset.runs) {
-    for (const Outcome& outcome : reproduction->Rerun(run)) {
-      Print(outcome);
-      ++counts.at(static_cast<size_t>(outcome.kind));
-    }
+    for (const Outcome& outcome : reproduction->Rerun(run)) count(outcome);
   }
   return counts;
 }

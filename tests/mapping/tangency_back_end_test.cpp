@@ -30,18 +30,6 @@ double MeanIou(const Sequence& sequence, const MapEstimate& map) {
   return EvaluateMap(sequence, map).summary.iou_mean.value();
 }
 
-// Every second object on a shelf; all planes turned by a degree or so and raised by 5 cm, as if
-// estimated, under hardly any knowledge of up.
-Sequence OnPlanesToEstimate(Sequence sequence) {
-  const Eigen::Quaterniond turn = ExpRotation(Eigen::Vector3d(0.015, -0.02, 0.0));
-  for (SupportPlane& plane : sequence.planes) {
-    plane.plane_in_world.normal = turn * plane.plane_in_world.normal;
-    plane.plane_in_world.offset -= 0.05;
-    plane.attitude_information = 1e-3 * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal();
-  }
-  return sequence;
-}
-
 TEST(TangencyBackEnd, EstimatedPlanesSettleUnderTheirObjects) {
   Scene scene = WithShelf(RandomScene(2, 6, 30, {Shape::kBox}), 0.4);
   const Sequence given = SyntheticSequence(scene, /*noise=*/false);

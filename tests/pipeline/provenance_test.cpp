@@ -191,6 +191,20 @@ TEST_F(ProvenanceTest, WhatWasMadeFromOtherFilesIsNotRerun) {
                     Not(HasSubstr("same  "))));
 }
 
+// A record is a file like any other, and may come from anybody.
+TEST_F(ProvenanceTest, NothingIsWrittenOutsideOfTheResults) {
+  const fs::path outside = pipeline_.Folder() / "letter.json";
+  WriteBytes(outside, "dear");
+  nlohmann::json record = ParseJsonFile(RunOf("import") / "run.json");
+  record["outputs"][0]["relative_to"] = "call";
+  record["outputs"][0]["path"] = outside.string();
+  WriteBytes(RunOf("import") / "run.json", record.dump());
+  const CommandResult result = Reproduce();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, ContainsRegex("not rerun .*letter.json, which is outside of "));
+  EXPECT_EQ(FileBytes(outside), "dear");
+}
+
 // The project's Makefile, up to what would build the executables.
 TEST_F(ProvenanceTest, FrontDoor) {
   const CommandResult planned = RunMake({"-n", "-C", SOSLAM_SOURCE_DIR, "verify", "reproduce",

@@ -163,6 +163,19 @@ TEST_F(VerifyTest, AVariantThatShowsAnotherFileThanItsRunsMade) {
                                            "is not the one of shared/initialise-2", {"Two"})));
 }
 
+TEST_F(VerifyTest, AFileThatNoRunOfTheVariantWrote) {
+  WriteBytes(folder_ / "results/room/Two/metrics.json", "of somebody");
+  EXPECT_THAT(Findings(),
+              ElementsAre(Says("Two/metrics.json", "no run of the variant wrote it", {"Two"})));
+}
+
+TEST_F(VerifyTest, ADamagedListOfRunsConcernsItsVariantOnly) {
+  WriteBytes(folder_ / "results/room/Two/stages.txt", "../../elsewhere\n");
+  WriteBytes(Shared("initialise-1") / "initial.json", "other");
+  EXPECT_THAT(Findings(), ElementsAre(Says("initial.json", "has changed", {"One"}),
+                                      Says("stages.txt", "'../../elsewhere'", {"Two"})));
+}
+
 TEST_F(VerifyTest, NothingToVerify) {
   ExpectError<InputError>([&] { FindRuns(folder_ / "missing", {}); }, {"missing"});
   ExpectError<NothingUsableError>([&] { FindRuns(folder_ / "data", {}); }, {"data", "stages.txt"});

@@ -45,6 +45,18 @@ inline Scene WithCeiling(Scene scene, double height) {
   return scene;
 }
 
+// The sequence with all planes turned by a degree or so and raised by 5 cm, as if estimated, under
+// hardly any knowledge of up.
+inline Sequence OnPlanesToEstimate(Sequence sequence) {
+  const Eigen::Quaterniond turn = ExpRotation(Eigen::Vector3d(0.015, -0.02, 0.0));
+  for (SupportPlane& plane : sequence.planes) {
+    plane.plane_in_world.normal = turn * plane.plane_in_world.normal;
+    plane.plane_in_world.offset -= 0.05;
+    plane.attitude_information = 1e-3 * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal();
+  }
+  return sequence;
+}
+
 // The sequence in another world.
 inline Sequence Moved(const Rigid3d& new_from_old, Sequence sequence) {
   for (Frame& frame : sequence.frames) {
