@@ -69,12 +69,12 @@ run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of
 	  echo 'run: waiting for another run of $(DATASET) in $(RESULTS)'
 	+@if test -e $(LOCK); then flock $(LOCK) $(MAKE) locked-run; else $(MAKE) locked-run; fi
 
-# Killed stages leave temporaries. After the clock was set back, files from the future would pass for
+# Killed stages leave temporaries. (Those of exports and pages may be of a run beside this one.) After the clock was set back, files from the future would pass for
 # newer than what changes from now on: their stamps go, and they are of now.
 .PHONY: locked-run
 locked-run:
 	@if test -d $(RESULTS)/$(DATASET); then \
-	  find $(RESULTS)/$(DATASET) -name '.*.tmp' -delete; \
+	  find $(RESULTS)/$(DATASET) -name '.*.tmp' -not -path '*/export/*' -not -name '.report.*' -delete; \
 	  find $(RESULTS)/$(DATASET) -type f -newermt now \( -name done -delete -o -exec touch {} + \); fi
 	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
 	+@if test -e $(PLAN); then $(MAKE) --keep-going $(SEVERAL_JOBS) -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
@@ -122,8 +122,9 @@ verify: build ## Say which files in RESULTS, or that they were made from, are no
 	@$(BIN)/soslam-verify --results $(RESULTS) $(DATA_ROOT_ARGUMENT)
 
 .PHONY: reproduce
-reproduce: build ## Make all of RESULTS once more, beside it, as recorded, and compare every byte
-	@$(BIN)/soslam-reproduce --results $(RESULTS) --executables $(BIN) --threads $(THREADS) $(DATA_ROOT_ARGUMENT)
+reproduce: build ## Run what made the variants in RESULTS once more, as recorded, and compare every byte
+	@$(BIN)/soslam-reproduce --results $(RESULTS) --executables $(BIN) --threads $(THREADS) \
+	  $(OUTSIDE_PATHS) $(DATA_ROOT_ARGUMENT)
 
 .PHONY: setup
 setup: ## Install the packages that are missing (apt, as root or through sudo)

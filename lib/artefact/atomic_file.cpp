@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -48,7 +49,7 @@ int Sync(const fs::path& path) {
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
-  if (fs::is_directory(path_)) RefuseToWrite(path_, "it is a folder");
+  if (IsFolder(path_)) RefuseToWrite(path_, "it is a folder");
   std::random_device random;
   temporary_ = FolderOf(path_) /
                fmt::format(".{}.{:08x}{:08x}.tmp", path_.filename().string(), random(), random());

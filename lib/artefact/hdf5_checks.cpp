@@ -17,6 +17,27 @@ std::uint64_t BytesOf(const Hdf5Handle& data_set, const Hdf5Shape& shape) {
   return bytes;
 }
 
+// Unpacked by deflate twice, a few bytes fill any memory.
+bool IsPackedAtMostOnce(const Hdf5Handle& creation) {
+  const int filters = H5Pget_nfilters(creation.id());
+  int deflates = 0;
+  for (int i = 0; i < filters; ++i) {
+    unsigned int flags = 0;
+    size_t parameters = 0;
+    const H5Z_filter_t filter = H5Pget_filter2(creation.id(), static_cast<unsigned int>(i), &flags,
+                                               &parameters, nullptr, 0, nullptr, nullptr);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE) return false;
+    deflates += filter == H5Z_FILTER_DEFLATE ? 1 : 0;
+  }
+  return filters >= 0 && deflates <= 1;
+}
+
+// Deflate makes what it cannot pack a little larger.
+std::uint64_t MostStored(std::uint64_t bytes) {
+  constexpr std::uint64_t kSlack = 1 << 16;
+  return bytes + bytes / 16 + kSlack;
+}
+
 // The library reads whole chunks into memory.
 bool HasChunksWithin(const Hdf5Handle& creation, const Hdf5Shape& shape) {
   std::vector<hsize_t> chunk(shape.size());
@@ -37,32 +58,13 @@ std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const Hdf5
   if (layout == H5D_CHUNKED && !HasChunksWithin(creation, shape)) {
     return "has chunks that are larger than itself; the file is damaged";
   }
+  if (!IsPackedAtMostOnce(creation)) return "is packed by other filters than shuffle and deflate";
   const std::uint64_t stored = H5Dget_storage_size(data_set.id());
-  if (stored > file_bytes || BytesOf(data_set, shape) > kMaxPacking * stored) {
+  const std::uint64_t bytes = BytesOf(data_set, shape);
+  if (stored > std::min(file_bytes, MostStored(bytes)) || bytes > kMaxPacking * stored) {
     return "has not the values that its size says; the file is cut short or damaged";
   }
   return std::nullopt;
-}
-
-bool IsTree(const Hdf5Handle& file) {
-  struct Counts {
-    int links = 0;
-    int objects = 0;
-  } counts;
-  const auto count_link = [](hid_t, const char*, const H5L_info_t*, void* data) -> herr_t {
-    ++static_cast<Counts*>(data)->links;
-    return 0;
-  };
-  const auto count_object = [](hid_t, const char*, const H5O_info_t*, void* data) -> herr_t {
-    ++static_cast<Counts*>(data)->objects;
-    return 0;
-  };
-  // Both visit a group once, whatever number of names it has.
-  const bool is_sound =
-      H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, count_link, &counts) >= 0 &&
-      H5Ovisit2(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, count_object, &counts, H5O_INFO_BASIC) >=
-          0;
-  return is_sound && counts.objects == counts.links + 1;  // the root has no link
 }
 
 }  // namespace soslam

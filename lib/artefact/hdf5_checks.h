@@ -15,7 +15,4 @@ namespace soslam {
 std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const Hdf5Shape& shape,
                                           std::uint64_t file_bytes);
 
-// Whether each group and data set of an open file has one name only, so that a walk ends.
-bool IsTree(const Hdf5Handle& file);
-
 }  // namespace soslam

@@ -16,6 +16,7 @@
 #include "artefact/hdf5_checks.h"
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -77,8 +78,7 @@ Hdf5File Hdf5File::Create(const std::filesystem::path& path,
 }
 
 Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
+  if (!IsFile(path)) {
     throw InputError(fmt::format("{}: no such file; expected an HDF5 file", path.string()));
   }
   NoteInput(path);
@@ -193,8 +193,25 @@ std::uint64_t Hdf5File::Size() const {
   return bytes;
 }
 
-void Hdf5File::RequireTree() const {
-  if (!IsTree(file_)) FailReading("/", "has damaged links, or several to one place; expected one");
+void Hdf5File::RequireWalkable() const {
+  constexpr int kMaxDepth = 8;  // artefacts have 3
+  constexpr size_t kMaxPlaces = 1 << 18;
+  size_t places = 0;
+  std::vector<std::pair<std::string, int>> groups = {{"/", 1}};
+  while (!groups.empty()) {
+    const auto [group, depth] = groups.back();
+    groups.pop_back();
+    for (const std::string& name : Children(group)) {
+      if (++places > kMaxPlaces) FailReading("/", "has more places than any artefact");
+      if (!IsGroup(group + name)) continue;
+      if (depth == kMaxDepth) {
+        FailReading("/", fmt::format("has groups nested more than {} deep, or in each other; "
+                                     "expected a tree of a few levels",
+                                     kMaxDepth));
+      }
+      groups.emplace_back(group + name + "/", depth + 1);
+    }
+  }
 }
 
 Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) const {

@@ -80,9 +80,9 @@ class Hdf5File {
   double ReadNumber(const std::string& owner, const std::string& name) const;
 
   // For readers that do not know the layout.
-  // Throws InputError unless each group and data set has one name, so that a walk through all of
-  // them ends.
-  void RequireTree() const;
+  // Throws InputError unless a walk through all groups ends soon: groups may hold each other, or be
+  // nested without end.
+  void RequireWalkable() const;
   bool IsGroup(const std::string& name) const;
   std::vector<std::string> Attributes(const std::string& owner) const;  // sorted
   bool IsText(const std::string& owner, const std::string& attribute) const;

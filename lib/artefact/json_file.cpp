@@ -12,6 +12,7 @@
 #include "artefact/atomic_file.h"
 #include "artefact/schema.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -20,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 // [major, minor] of every kind's schema. A reader reads all versions up to its own.
-const std::vector<int> kSchemaVersion = {1, 4};
+const std::vector<int> kSchemaVersion = {1, 5};
 
 // A parser callback. nlohmann keeps the last of several equal keys without a word, and what walks a
 // document calls itself for each level, so that deep nesting exhausts the stack.
@@ -73,7 +74,7 @@ json ParseJsonFile(const std::filesystem::path& path) {
   NoteInput(path);
   const std::string file = path.string();
   std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
+  if (!stream || IsFolder(path)) {
     throw InputError(file + ": cannot be read; expected a JSON file");
   }
   return ParseJsonText(stream, file);

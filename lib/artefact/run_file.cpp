@@ -71,6 +71,7 @@ RunRecord RunFromJson(const json& document) {
   }
   record.allow_outside_paths = document.at("allow_outside_paths");
   if (!document.at("seed").is_null()) record.seed = document.at("seed");
+  record.called_in = document.value("called_in", std::string());
   for (const auto& [argument, path] : document.at("folders").items()) {
     record.folders[argument] = path.get<std::string>();
   }
@@ -94,6 +95,7 @@ void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
                          {"settings", record.settings ? SettingsToJson(*record.settings) : json()},
                          {"allow_outside_paths", record.allow_outside_paths},
                          {"seed", OrNull(record.seed)},
+                         {"called_in", record.called_in.string()},
                          {"folders", folders},
                          {"inputs", FilesToJson(record.inputs)},
                          {"outputs", FilesToJson(record.outputs)},

@@ -14,7 +14,7 @@ namespace soslam {
 
 // Where the path of a RunFile begins, beside the folders that arguments name.
 inline constexpr const char* kRelativeToRun = "run";    // the folder of run.json
-inline constexpr const char* kRelativeToCall = "call";  // the folder that the program was called in
+inline constexpr const char* kRelativeToCall = "call";  // RunRecord::called_in
 
 // A file that a run read or wrote. Files of a results folder are placed relative to the run, those
 // in a folder that the run was called with relative to it, so that both can be moved.
@@ -37,6 +37,7 @@ struct RunRecord {
   std::optional<std::map<std::string, RunSetting>> settings;  // none: they were not valid
   bool allow_outside_paths = false;
   std::optional<int> seed;
+  std::filesystem::path called_in;  // absolute; empty in records from before 1.5
   std::map<std::string, std::filesystem::path> folders;  // arguments that are folders, as called
   std::vector<RunFile> inputs;
   std::vector<RunFile> outputs;

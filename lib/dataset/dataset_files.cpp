@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -19,11 +20,11 @@ class Finder {
   explicit Finder(const fs::path& folder) : folder_(folder) {}
 
   std::optional<fs::path> IfPresent(const std::string& name) const {
-    if (name.empty() || !fs::exists(folder_ / name)) return std::nullopt;
+    if (name.empty() || !Exists(folder_ / name)) return std::nullopt;
     return folder_ / name;
   }
   fs::path Required(const std::string& name) {
-    if (!fs::exists(folder_ / name)) missing_.push_back(name);
+    if (!Exists(folder_ / name)) missing_.push_back(name);
     return folder_ / name;
   }
   // None when nothing is named.
@@ -50,10 +51,10 @@ class Finder {
 };
 
 std::vector<fs::path> FilesIn(const fs::path& path) {
-  if (!fs::is_directory(path)) return {path};
+  if (!IsFolder(path)) return {path};
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    if (entry.is_regular_file() && entry.path().extension() == ".txt") files.push_back(entry);
+    if (IsFile(entry.path()) && entry.path().extension() == ".txt") files.push_back(entry);
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -72,7 +73,7 @@ std::vector<fs::path> DatasetFiles::All() const {
 }
 
 DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& options) {
-  if (!fs::is_directory(folder)) {
+  if (!IsFolder(folder)) {
     throw InputError(folder.string() + ": is not a folder; expected a dataset folder");
   }
   const FolderOptions usual;

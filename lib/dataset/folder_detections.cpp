@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/coco_labels.h"
 #include "dataset/coco_results.h"
 #include "dataset/detections_csv.h"
@@ -43,10 +44,10 @@ std::vector<fs::path> Sorted(const fs::path& folder) {
 
 // A file of one class, or a folder with a folder for each class, which has one file.
 std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
-  if (!fs::is_directory(path)) return ReadKittiBoxes(path);
+  if (!IsFolder(path)) return ReadKittiBoxes(path);
   std::vector<LabelledBox> boxes;
   for (const fs::path& class_folder : Sorted(path)) {
-    if (!fs::is_directory(class_folder)) continue;
+    if (!IsFolder(class_folder)) continue;
     const std::vector<fs::path> files = Sorted(class_folder);
     if (files.size() != 1) {
       throw InputError(fmt::format("{}: has {} files; expected one, that of this sequence",

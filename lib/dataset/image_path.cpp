@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/is_within.h"
+#include "base/paths.h"
 
 namespace soslam {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "artefact/ids.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/bound_edges.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
@@ -180,7 +181,7 @@ void RequireDetections(const std::filesystem::path& folder, const Sequence& sequ
 
 Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options,
                        std::vector<std::filesystem::path>* files_read) {
-  if (!std::filesystem::is_directory(folder)) {
+  if (!IsFolder(folder)) {
     throw InputError(folder.string() + ": is not a folder; expected a dataset folder");
   }
   const DatasetContent content = ReadContent(folder, options);

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/text_file.h"
 #include "geometry/image_size.h"
 #include "image/read_image.h"
@@ -134,7 +135,7 @@ std::vector<NumberedPath> NumberedFiles(const fs::path& folder, const std::strin
 }
 
 fs::path RequiredFile(const fs::path& path) {
-  if (!fs::is_regular_file(path)) throw InputError(path.string() + ": is missing");
+  if (!IsFile(path)) throw InputError(path.string() + ": is missing");
   return path;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/recordings.h"
@@ -27,7 +28,7 @@ Frame ReadFrame(const fs::path& folder, const NumberedPath& labels) {
   frame.id = labels.number;
   frame.segment = labels.number;
   const fs::path image = fs::path("image_2") / (labels.path.stem().string() + ".png");
-  if (fs::exists(ImagePath(folder, image.string(), labels.path.string()))) {
+  if (Exists(ImagePath(folder, image.string(), labels.path.string()))) {
     frame.image = image.string();
   }
   return frame;

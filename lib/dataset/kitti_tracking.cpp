@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/kitti_trajectory.h"
@@ -117,7 +118,7 @@ class Recording {
       frame.segment = number_;
       const fs::path image = images / fmt::format("{:06d}.png", i);
       const fs::path path = ImagePath(folder_, image.string(), folder_.string());
-      if (!fs::exists(path)) continue;
+      if (!Exists(path)) continue;
       frame.image = image.string();
       if (!any_image) any_image = path;
     }
@@ -170,7 +171,7 @@ class Recording {
     std::vector<fs::path> types;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder_ / detections_, error)) {
-      if (entry.is_directory()) types.push_back(entry.path());
+      if (IsFolder(entry.path())) types.push_back(entry.path());
     }
     if (types.empty()) {
       throw InputError(fmt::format("{}: has no folders; expected one for each type of object",

@@ -36,7 +36,8 @@ ArchivePointer Open(const std::filesystem::path& path) {
   archive_read_support_filter_xz(opened.get());
   archive_read_support_filter_zstd(opened.get());
   archive_read_support_format_tar(opened.get());
-  archive_read_support_format_zip(opened.get());
+  // Not the zip that is read in one pass: it looks for the next entry without end.
+  archive_read_support_format_zip_seekable(opened.get());
   if (archive_read_open_filename(opened.get(), path.c_str(), kBlock) != ARCHIVE_OK) {
     Refuse(path, opened.get());
   }
@@ -82,6 +83,10 @@ std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
     // Also what is skipped has to be unpacked, to find what follows.
     CheckBytes(archive_entry_size(entry), kMaxUnpackedBytes, path);
     CheckBytes(archive_filter_bytes(opened.get(), 0), kMaxUnpackedBytes, path);
+    // Packed over and over, a few bytes keep any reader busy. Not being packed counts as one.
+    if (archive_filter_count(opened.get()) > 2) {
+      throw InputError(path.string() + ": is packed more than once; expected .tar.gz, .tar, .zip");
+    }
     const char* name = archive_entry_pathname(entry);
     if (name == nullptr || std::filesystem::path(name).extension() != extension) continue;
     texts.push_back({name, ReadEntry(path, bytes_left, opened.get())});

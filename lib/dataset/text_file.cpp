@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -38,7 +39,7 @@ bool ParseWhole(std::string_view text, Number* number) {
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
   NoteInput(path);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
+  if (!stream || IsFolder(path)) {
     throw InputError(path.string() + ": cannot be read; expected a text file");
   }
   return TextLines(stream, path.string());

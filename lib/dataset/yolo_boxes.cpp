@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/text_archive.h"
 #include "dataset/text_file.h"
 
@@ -98,10 +99,10 @@ std::vector<ImageText> ReadArchive(const fs::path& archive) {
 }
 
 std::vector<ImageText> ReadTexts(const fs::path& path) {
-  if (!fs::exists(path)) {
+  if (!Exists(path)) {
     throw InputError(path.string() + ": is missing; expected a folder of YOLO text files");
   }
-  std::vector<ImageText> texts = fs::is_directory(path) ? ReadFolder(path) : ReadArchive(path);
+  std::vector<ImageText> texts = IsFolder(path) ? ReadFolder(path) : ReadArchive(path);
   if (texts.empty()) {
     throw InputError(path.string() + ": has no *.txt; expected one for each image");
   }

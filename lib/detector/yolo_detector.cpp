@@ -9,6 +9,7 @@
 #include <opencv2/dnn.hpp>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/run_log.h"
 #include "detector/letterbox.h"
 
@@ -25,7 +26,7 @@ std::string Reason(const cv::Exception& error) {
 }
 
 cv::dnn::Net LoadNetwork(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path) || !std::ifstream(path)) {
+  if (!IsFile(path) || !std::ifstream(path)) {
     throw InputError(path.string() + ": cannot be read; expected an ONNX file");
   }
   NoteInput(path);

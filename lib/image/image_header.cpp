@@ -15,17 +15,26 @@ std::int64_t Number(std::string_view bytes, size_t begin, size_t count) {
   return number;
 }
 
-// The chunk IHDR comes first: length, name, width, height.
+// The chunk IHDR comes first: length, name, width, height. Where it does not, decoders go by one
+// that comes later.
 std::optional<ImageSize> SizeOfPng(std::string_view bytes) {
+  constexpr size_t kChunk = 8;
   constexpr size_t kWidth = 16;
   constexpr size_t kHeight = 20;
-  if (bytes.size() < kHeight + 4) return std::nullopt;
+  if (bytes.size() < kHeight + 4 || bytes.substr(kChunk, 8) != "\0\0\0\rIHDR"sv)
+    return std::nullopt;
   return ImageSize{Number(bytes, kWidth, 4), Number(bytes, kHeight, 4)};
 }
 
 // Whether a segment is one that begins a frame, SOF0 to SOF15; DHT, JPG and DAC are between them.
 bool BeginsFrame(std::int64_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+// Whether a marker is one that has no length after it: RST0 to RST7, TEM. None of them comes before
+// a frame begins, but decoders skip them.
+bool StandsAlone(std::int64_t marker) {
+  return marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD9);
 }
 
 // Segments have a marker, 0xFF and another byte, and a length that counts its own two bytes.
@@ -37,6 +46,7 @@ std::optional<ImageSize> SizeOfJpeg(std::string_view bytes) {
     if (BeginsFrame(marker)) {
       return ImageSize{Number(bytes, begin + 7, 2), Number(bytes, begin + 5, 2)};
     }
+    if (StandsAlone(marker)) return std::nullopt;
     const bool is_fill = marker == 0xFF;
     begin += is_fill ? 1 : 2 + static_cast<size_t>(Number(bytes, begin + 2, 2));
   }

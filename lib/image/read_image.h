@@ -7,8 +7,8 @@
 namespace soslam {
 
 // An image as grey values, CV_8UC1, in the orientation its pixels are stored in: a camera's
-// intrinsics know nothing of EXIF rotations. JPEG, PNG and whatever else OpenCV decodes. Throws
-// InputError when the file is missing, empty, cut short or not an image.
+// intrinsics know nothing of EXIF rotations. PNG or JPEG. Throws InputError when the file is
+// missing, empty, cut short, not such an image, or larger than can be processed.
 cv::Mat ReadGreyImage(const std::filesystem::path& path);
 
 // The same; also throws InputError when the image is not width x height pixels.

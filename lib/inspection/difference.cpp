@@ -191,8 +191,8 @@ void CompareContent(const std::filesystem::path& one, const std::filesystem::pat
   if (IsHdf5(one) && IsHdf5(two)) {
     const Hdf5File file_one = OpenArtefact(one, kind);
     const Hdf5File file_two = OpenArtefact(two, kind);
-    file_one.RequireTree();
-    file_two.RequireTree();
+    file_one.RequireWalkable();
+    file_two.RequireWalkable();
     Hdf5Comparison(file_one, file_two, tolerance, &differences->content).CompareGroup("/");
     return;
   }

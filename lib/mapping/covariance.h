@@ -16,8 +16,7 @@ namespace soslam {
 // as the residuals' sigmas do.
 class MarginalCovariances {
  public:
-  // Evaluates and factors; takes no reference to the problem but for manifolds, which it must
-  // outlive.
+  // Evaluates and factors. The problem has to outlive it.
   explicit MarginalCovariances(ceres::Problem* problem);
 
   // Whether the residuals determine all variables. If not, there are no covariances.

@@ -44,11 +44,31 @@ void AppendExports(DatasetRuns* dataset) {
   }
 }
 
+// Where relative paths of a call begin: in the folder of that call, as long as there is one.
+fs::path AsCalled(const fs::path& path, const RunRecord& record) {
+  return IsFolder(record.called_in) ? record.called_in / path : path;
+}
+
+// Where the runs had it; if it is not there any more, where the plan had it.
+fs::path FolderOfDataset(const DatasetRuns& dataset) {
+  for (const RecordedRun& run : dataset.runs) {
+    try {
+      const RunRecord record = ReadRun(run.folder / "run.json");
+      const auto folder = record.folders.find("dataset");
+      if (folder == record.folders.end()) continue;
+      const fs::path called = AsCalled(folder->second, record);
+      if (IsFolder(called)) return called;
+    } catch (const InputError&) {
+      continue;  // which is found when the run is compared
+    }
+  }
+  return DatasetFolderOf(dataset.results);
+}
+
 DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
                           const fs::path& data_root) {
   DatasetRuns dataset = {name, (results / name).lexically_normal(), data_root / name, {}, {}, {},
                          {}};
-  if (data_root.empty()) dataset.dataset = DatasetFolderOf(dataset.results);
   for (const std::string& folder : SubfoldersOf(dataset.results)) {
     VariantRuns variant = {folder};
     try {
@@ -60,6 +80,7 @@ DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
     dataset.variants.push_back(std::move(variant));
   }
   AppendSharedRuns(&dataset);
+  if (data_root.empty()) dataset.dataset = FolderOfDataset(dataset);
   for (const std::string& folder : SubfoldersOf(dataset.results / kShared)) {
     const std::string shared = std::string(kShared) + "/" + folder;
     if (Find(shared, &dataset.runs) == nullptr) dataset.unused.push_back(shared);
@@ -90,13 +111,13 @@ std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_
 fs::path FolderOf(const std::string& argument, const RunRecord& record,
                   const DatasetRuns& dataset) {
   const bool is_known_dataset = argument == "dataset" && !dataset.dataset.empty();
-  return is_known_dataset ? dataset.dataset : record.folders.at(argument);
+  return is_known_dataset ? dataset.dataset : AsCalled(record.folders.at(argument), record);
 }
 
 fs::path PathOf(const RunFile& file, const RunRecord& record, const RecordedRun& run,
                 const DatasetRuns& dataset) {
   if (file.relative_to == kRelativeToRun) return (run.folder / file.path).lexically_normal();
-  if (file.relative_to == kRelativeToCall) return file.path;
+  if (file.relative_to == kRelativeToCall) return AsCalled(file.path, record).lexically_normal();
   return (FolderOf(file.relative_to, record, dataset) / file.path).lexically_normal();
 }
 

@@ -10,7 +10,8 @@
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/hash.h"
-#include "base/is_within.h"
+#include "base/paths.h"
+#include "dataset/image_path.h"
 #include "inspection/difference.h"
 #include "provenance/run_program.h"
 #include "report/run_folder.h"
@@ -68,10 +69,11 @@ void WriteSettings(const RunRecord& record, const fs::path& file) {
 
 }  // namespace
 
-Reproduction::Reproduction(const DatasetRuns& dataset, fs::path executables, fs::path again,
-                           int threads)
+Reproduction::Reproduction(const DatasetRuns& dataset, fs::path executables,
+                           WrittenArguments written_arguments, fs::path again, int threads)
     : dataset_(dataset),
       executables_(std::move(executables)),
+      written_arguments_(std::move(written_arguments)),
       again_(std::move(again)),
       threads_(threads) {}
 
@@ -99,6 +101,38 @@ std::vector<Outcome> Reproduction::Rerun(const RecordedRun& run) {
 // What makes a rerun pointless; none when there is nothing.
 std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const RecordedRun& run) {
   if (record.exit_code != 0) return "it failed when it was recorded: " + record.error;
+  if (record.outputs.empty() || !record.settings) return "its record has no outputs or no settings";
+  if (record.allow_outside_paths && !OutsidePathsAreAllowed()) {
+    return "it was called with --allow_outside_paths, which has to be given again";
+  }
+  if (const auto foreign = ForeignWrite(record, run)) return foreign;
+  return ChangedInput(record, run);
+}
+
+// A record is a file like any other, and may come from anybody: what it would write outside of the
+// results; none when there is nothing.
+std::optional<std::string> Reproduction::ForeignWrite(const RunRecord& record,
+                                                      const RecordedRun& run) const {
+  const std::set<std::string> written = written_arguments_(record.stage);
+  if (written.empty()) return record.stage + " is no stage of the pipeline";
+  for (const RunFile& input : record.inputs) {
+    if (written.contains(input.argument)) return "--" + input.argument + " is among its inputs";
+  }
+  for (const auto& [argument, folder] : record.folders) {
+    if (written.contains(argument)) return "--" + argument + " is a folder";
+  }
+  for (const RunFile& output : record.outputs) {
+    const fs::path path = PathOf(output, record, run, dataset_);
+    if (IsResult(path)) continue;
+    return fmt::format("it wrote {}, which is outside of {}", path.string(),
+                       dataset_.results.string());
+  }
+  return std::nullopt;
+}
+
+// An input that is not what it was; none when all are, or are made again.
+std::optional<std::string> Reproduction::ChangedInput(const RunRecord& record,
+                                                      const RecordedRun& run) {
   for (const RunFile& input : record.inputs) {
     const fs::path path = PathOf(input, record, run, dataset_);
     if (path.parent_path() == run.folder) continue;  // its settings, which are recorded
@@ -108,14 +142,6 @@ std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const
       }
     } else if (const auto change = digests_.ChangeOf(path, input.sha256)) {
       return fmt::format("{} {} since", path.string(), *change);
-    }
-  }
-  // A record is a file like any other: what it says must not overwrite anything.
-  for (const RunFile& output : record.outputs) {
-    const fs::path path = PathOf(output, record, run, dataset_);
-    if (!IsResult(path)) {
-      return fmt::format("it wrote {}, which is outside of {}", path.string(),
-                         dataset_.results.string());
     }
   }
   return std::nullopt;
@@ -167,7 +193,11 @@ Outcome Reproduction::Compare(const fs::path& artefact) const {
   const fs::path again = Again(artefact);
   if (!Exists(artefact)) return {Outcome::Kind::kDiffers, artefact, "is gone"};
   if (!Exists(again)) return {Outcome::Kind::kDiffers, artefact, "was not written again"};
-  if (Sha256OfFile(artefact) == Sha256OfFile(again)) return {Outcome::Kind::kSame, artefact, ""};
+  try {
+    if (Sha256OfFile(artefact) == Sha256OfFile(again)) return {Outcome::Kind::kSame, artefact, ""};
+  } catch (const InputError& error) {
+    return {Outcome::Kind::kDiffers, artefact, error.what()};
+  }
   return {Outcome::Kind::kDiffers, artefact, FirstDifference(artefact, again)};
 }
 

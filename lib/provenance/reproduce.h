@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -19,6 +20,10 @@ struct Outcome {
   std::string detail;          // where it differs, why it was not rerun
 };
 
+// The names of the arguments that a stage of the pipeline, "soslam-refine", writes to; none for any
+// other program.
+using WrittenArguments = std::function<std::set<std::string>(const std::string& stage)>;
+
 // Runs what a dataset's runs were once more, with their recorded settings, each on what those
 // before it wrote now, and compares the artefacts byte by byte. The results stay as they are.
 class Reproduction {
@@ -26,7 +31,7 @@ class Reproduction {
   // `executables`: the folder of the stages' programs; `again`: an empty folder for what they
   // write.
   Reproduction(const DatasetRuns& dataset, std::filesystem::path executables,
-               std::filesystem::path again, int threads);
+               WrittenArguments written_arguments, std::filesystem::path again, int threads);
 
   // To be called in the order of the dataset's runs. One outcome for each artefact, or one that
   // says why there is none: no record, an input from outside that has changed, a failure. Throws
@@ -38,6 +43,8 @@ class Reproduction {
 
  private:
   std::optional<std::string> Obstacle(const RunRecord& record, const RecordedRun& run);
+  std::optional<std::string> ForeignWrite(const RunRecord& record, const RecordedRun& run) const;
+  std::optional<std::string> ChangedInput(const RunRecord& record, const RecordedRun& run);
   std::optional<std::string> RunAgain(const RunRecord& record, const RecordedRun& run) const;
   std::vector<std::string> Arguments(const RunRecord& record, const RecordedRun& run) const;
   Outcome Compare(const std::filesystem::path& artefact) const;
@@ -47,6 +54,7 @@ class Reproduction {
 
   const DatasetRuns& dataset_;
   std::filesystem::path executables_;
+  WrittenArguments written_arguments_;
   std::filesystem::path again_;
   int threads_;
   FileDigests digests_;

@@ -16,6 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Empty when it cannot be read.
+std::string DigestOf(const fs::path& path) {
+  try {
+    return IsFile(path) ? Sha256OfFile(path) : "";
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
 class Verifier {
  public:
   explicit Verifier(const DatasetRuns& dataset)
@@ -54,7 +63,9 @@ class Verifier {
     }
     try {
       const RunRecord& record = records_[run.name] = ReadRun(file);
-      if (record.exit_code == 0) {
+      if (record.exit_code == 0 && record.outputs.empty()) {
+        Add(file, "has no outputs; expected those of a run that did not fail", run.variants);
+      } else if (record.exit_code == 0) {
         CheckFiles(run, record);
       } else if (failure.empty()) {
         Add(run.folder, "its last run failed: " + record.error, run.variants);
@@ -126,10 +137,11 @@ class Verifier {
 std::optional<std::string> FileDigests::ChangeOf(const fs::path& path, const std::string& sha256) {
   auto digest = digests_.find(path);
   if (digest == digests_.end()) {
-    digest = digests_.emplace(path, IsFile(path) ? Sha256OfFile(path) : "").first;
+    digest = digests_.emplace(path, DigestOf(path)).first;
   }
   if (digest->second == sha256) return std::nullopt;
-  return digest->second.empty() ? "is gone" : "has changed";
+  if (!digest->second.empty()) return "has changed";
+  return IsFile(path) ? "cannot be read" : "is gone";
 }
 
 Verification Verify(const DatasetRuns& dataset) { return Verifier(dataset).Verify(); }

@@ -14,7 +14,7 @@ namespace soslam {
 // Compares files with what they held once; each is read once only.
 class FileDigests {
  public:
-  // "is gone", "has changed"; none when it holds what it held.
+  // "is gone", "has changed", "cannot be read"; none when it holds what it held.
   std::optional<std::string> ChangeOf(const std::filesystem::path& path, const std::string& sha256);
   size_t files() const { return digests_.size(); }
 

@@ -87,7 +87,7 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+    if (IsFolder(entry.path())) names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -10,6 +10,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -94,7 +95,7 @@ std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
   for (const std::string& name : TimedVariants()) {
     const VariantResult* const variant = dataset.Evaluated(name);
     times.emplace_back();
-    if (!variant || !std::filesystem::exists(variant->folder / "sequence.json")) continue;
+    if (!variant || !Exists(variant->folder / "sequence.json")) continue;
     const auto file = std::filesystem::canonical(variant->folder / "sequence.json");
     if (!counts.contains(file)) counts[file] = CountObservations(file);
     times.back() = TimePerLandmark(*variant, counts[file]);

@@ -41,7 +41,10 @@ void AddFiles(const std::vector<FileArgument>& files, const std::string& group, 
     CLI::Option* option = app->add_option_function<std::vector<std::string>>(
         "--" + file.name,
         [parsed, name = file.name](const std::vector<std::string>& paths) {
-          for (size_t i = 0; i < paths.size(); ++i) parsed->files[RepeatedName(name, i)] = paths[i];
+          for (size_t i = 0; i < paths.size(); ++i) {
+            if (paths[i].empty()) throw CLI::ValidationError("--" + name, "is ''; expected a path");
+            parsed->files[RepeatedName(name, i)] = paths[i];
+          }
         },
         file.doc);
     option->group(group)

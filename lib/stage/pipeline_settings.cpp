@@ -9,6 +9,7 @@
 
 #include "association/options.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/options.h"
 #include "dataset/import_options.h"
 #include "evaluation/options.h"
@@ -199,13 +200,13 @@ std::vector<std::string> VariantNames(const fs::path& pipelines) {
 VariantSettings ReadVariant(const fs::path& pipelines, const std::string& dataset,
                             const std::string& variant) {
   const fs::path variant_file = pipelines / "variants" / (variant + ".json");
-  if (!fs::exists(variant_file)) {
+  if (!Exists(variant_file)) {
     throw SettingsError(fmt::format("{}: no such variant; known are {}", variant_file.string(),
                                     fmt::join(VariantNames(pipelines), ", ")));
   }
   json merged = ReadBaseLayer(pipelines / "base.json");
   const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
-  if (fs::exists(dataset_file)) merged.merge_patch(ReadBaseLayer(dataset_file));
+  if (Exists(dataset_file)) merged.merge_patch(ReadBaseLayer(dataset_file));
   for (const json& layer : ReadVariantLayers(variant_file)) merged.merge_patch(layer);
 
   const std::string file = variant_file.string();

@@ -110,7 +110,9 @@ const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
       {"refine", {{"output", "refined.json"}, {"curves", "symmetry.h5"}}},
       {"optimise", {{"output", "map.json"}}},
       {"evaluate", {{"output", "metrics.json"}}}};
-  return outputs.at(stage);
+  static const std::vector<StageOutput> none;
+  const auto found = outputs.find(stage);
+  return found == outputs.end() ? none : found->second;
 }
 
 std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {

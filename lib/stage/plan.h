@@ -41,7 +41,7 @@ struct Plan {
   const StageInstance& Instance(const std::string& id) const;
 };
 
-// What a stage writes: argument name and file name.
+// What a stage writes: argument name and file name. None for programs that are no stage of a plan.
 struct StageOutput {
   std::string argument;
   std::string file;

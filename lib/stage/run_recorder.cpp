@@ -8,8 +8,8 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "base/is_within.h"
 #include "base/machine.h"
+#include "base/paths.h"
 #include "dataset/image_path.h"
 
 namespace soslam::internal {
@@ -38,12 +38,6 @@ const FileArgument* FindOutput(const StageInfo& info, const std::string& argumen
   return output == info.outputs.end() ? nullptr : &*output;
 }
 
-// Without a slash at its end.
-fs::path Absolute(const fs::path& path) {
-  const fs::path whole = fs::absolute(path).lexically_normal();
-  return whole.has_filename() ? whole : whole.parent_path();
-}
-
 double Seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -69,6 +63,7 @@ RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
   record_.stage = info.name;
   record_.software = ThisSoftware();
   record_.allow_outside_paths = OutsidePathsAreAllowed();
+  record_.called_in = fs::current_path();
   log_.emplace();
   for (const auto& [name, path] : files_) {
     const std::string argument = ArgumentOf(name);
@@ -107,8 +102,8 @@ void RunRecorder::RecordFailure(int exit_code, const std::string& error) {
   try {
     const RunRecord record = Finished(exit_code, error);
     WriteRun(*folder_ / "run.json", record);
-  } catch (const Error&) {
-    return;
+  } catch (const std::exception&) {
+    return;  // the failure itself is what counts
   }
 }
 
@@ -128,18 +123,18 @@ RunRecord RunRecorder::Finished(int exit_code, const std::string& error) {
 }
 
 RunFile RunRecorder::Place(const FileDigest& file) const {
-  const fs::path path = Absolute(file.path);
+  const fs::path path = PlainPath(file.path);
   const auto named = std::ranges::find_if(
-      files_, [&](const auto& given) { return Absolute(given.second) == path; });
+      files_, [&](const auto& given) { return PlainPath(given.second) == path; });
   if (named == files_.end()) {
     for (const auto& [argument, folder] : record_.folders) {
       if (!IsWithin(path, folder)) continue;
-      return {argument, argument, path.lexically_relative(Absolute(folder)), file.sha256};
+      return {argument, argument, path.lexically_relative(PlainPath(folder)), file.sha256};
     }
   }
   const std::string argument = named == files_.end() ? "" : ArgumentOf(named->first);
   // What lies in the run's folder, or beside it, is moved together with it.
-  const fs::path run = Absolute(*folder_);
+  const fs::path run = PlainPath(*folder_);
   if (IsWithin(path, run.parent_path())) {
     return {argument, kRelativeToRun, path.lexically_relative(run), file.sha256};
   }

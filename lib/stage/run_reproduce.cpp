@@ -12,6 +12,7 @@
 #include "base/table.h"
 #include "provenance/reproduce.h"
 #include "stage/command_line.h"
+#include "stage/plan.h"
 #include "stage/run_verify.h"
 
 namespace soslam {
@@ -50,6 +51,15 @@ void Print(const Outcome& outcome) {
   std::fflush(stdout);  // the next run takes its time
 }
 
+std::set<std::string> WrittenArgumentsOf(const std::string& executable) {
+  constexpr std::string_view kPrefix = "soslam-";
+  std::set<std::string> arguments;
+  for (const StageOutput& output : OutputsOfStage(executable.substr(kPrefix.size()))) {
+    arguments.insert(output.argument);
+  }
+  return arguments;
+}
+
 using Counts = std::array<size_t, kOutcomeNames.size()>;  // by kind of outcome
 
 Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
@@ -79,8 +89,8 @@ int RunReproduce(const ReproduceOptions& /*options*/, const StageFiles& files, i
   const std::vector<DatasetRuns> datasets = FindRuns(files);
   const FolderBeside again(files.at("results"));
   for (const DatasetRuns& dataset : datasets) {
-    Reproduction reproduction(dataset, files.at("executables"), again.path() / dataset.name,
-                              threads);
+    Reproduction reproduction(dataset, files.at("executables"), &WrittenArgumentsOf,
+                              again.path() / dataset.name, threads);
     const Counts counts = RerunAll(dataset, &reproduction);
     const auto [same, differ, not_rerun] = counts;
     table.rows.push_back({dataset.name, std::to_string(dataset.runs.size()), std::to_string(same),

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "synthesis/dataset_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <system_error>
 
 #include "base/error.h"
+#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/run_log.h"
 
 namespace soslam {
@@ -28,17 +34,11 @@ bool IsSynthesised(const fs::path& folder) {
 
 void CheckReplaceable(const fs::path& folder) {
   std::error_code error;
-  if (!fs::exists(folder, error)) return;
-  if (!fs::is_directory(folder, error)) Refuse(folder, "is not a folder; expected one, or nothing");
+  if (!Exists(folder)) return;
+  if (!IsFolder(folder)) Refuse(folder, "is not a folder; expected one, or nothing");
   if (!fs::is_empty(folder, error) && !IsSynthesised(folder)) {
     Refuse(folder, "is not empty and was not written by soslam-synthesise; expected a new folder");
   }
-}
-
-// "out/" means "out", so that siblings can be named.
-fs::path WithoutTrailingSlash(const fs::path& folder) {
-  const fs::path whole = fs::absolute(folder).lexically_normal();
-  return whole.has_filename() ? whole : whole.parent_path();
 }
 
 fs::path Sibling(const fs::path& folder, const std::string& purpose) {
@@ -46,10 +46,24 @@ fs::path Sibling(const fs::path& folder, const std::string& purpose) {
          fmt::format(".{}.{}-{}", folder.filename().string(), purpose, getpid());
 }
 
+// The errno when something of a folder's disk could not be written, else 0.
+int SyncDiskOf(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int error = ::syncfs(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  return error;
+}
+
+// At once, so that a folder of the name is there at any moment. Not all file systems can do that.
+bool Exchange(const fs::path& one, const fs::path& other) {
+  return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
+}
+
 }  // namespace
 
 DatasetFolder::DatasetFolder(const fs::path& folder)
-    : folder_(WithoutTrailingSlash(folder)), temporary_(Sibling(folder_, "new")) {
+    : folder_(PlainPath(folder)), temporary_(Sibling(folder_, "new")) {
   CheckReplaceable(folder_);
   std::error_code error;
   fs::create_directories(folder_.parent_path(), error);
@@ -65,20 +79,27 @@ DatasetFolder::~DatasetFolder() {
 void DatasetFolder::Commit() {
   CheckInputsUnchanged();
   CheckReplaceable(folder_);
+  if (const int error = SyncDiskOf(temporary_)) {
+    Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
+  }
+  if (!Exists(folder_) || !Exchange(temporary_, folder_)) Replace();
+  for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+    if (entry.is_regular_file()) NoteOutput(entry.path());
+  }
+}
+
+void DatasetFolder::Replace() {
   const fs::path old = Sibling(folder_, "old");
   std::error_code error;
-  const bool replaces = fs::exists(folder_, error);
+  const bool replaces = Exists(folder_);
   if (replaces) fs::rename(folder_, old, error);
   if (!error) fs::rename(temporary_, folder_, error);
   if (error) {
     const std::string why = "cannot be written: " + error.message();
-    if (replaces && !fs::exists(folder_, error)) fs::rename(old, folder_, error);
+    if (replaces && !Exists(folder_)) fs::rename(old, folder_, error);
     Refuse(folder_, why);
   }
   fs::remove_all(old, error);
-  for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-    if (entry.is_regular_file()) NoteOutput(entry.path());
-  }
 }
 
 }  // namespace soslam

@@ -16,7 +16,7 @@ class DatasetFolder {
   // Creates the temporary beside `folder`. Throws SettingsError when `folder` is not a folder,
   // holds anything but an earlier synthesised dataset, or cannot be written.
   explicit DatasetFolder(const std::filesystem::path& folder);
-  // Removes the temporary if it was not committed.
+  // Removes the temporary, or what it replaced.
   ~DatasetFolder();
   DatasetFolder(const DatasetFolder&) = delete;
   DatasetFolder& operator=(const DatasetFolder&) = delete;
@@ -28,6 +28,8 @@ class DatasetFolder {
   void Commit();
 
  private:
+  void Replace();
+
   std::filesystem::path folder_;
   std::filesystem::path temporary_;
 };

@@ -169,10 +169,9 @@ void WriteImage(const Scene& scene, bool noise, int frame_index, const Rigid3d& 
                 const fs::path& folder) {
   cv::Mat image = RenderFrame(scene, world_from_camera);
   if (noise) AddImageNoise(scene, frame_index, &image);
-  const fs::path path = folder / ImageName(frame_index);
-  if (!cv::imwrite(path.string(), image)) {
-    throw SettingsError(path.string() + ": cannot be written; is the disk full?");
-  }
+  std::vector<uchar> bytes;
+  cv::imencode(".png", image, bytes);
+  WriteText(folder / ImageName(frame_index), std::string(bytes.begin(), bytes.end()));
 }
 
 }  // namespace

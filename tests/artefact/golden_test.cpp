@@ -132,6 +132,7 @@ TEST(GoldenTest, Run14) {
   EXPECT_EQ(record.inputs[0].path, "../edges-897d07c6c6/edges.h5");
   EXPECT_EQ(record.outputs.at(1).argument, "curves");
   EXPECT_EQ(record.settings->at("asymmetry_cost").origin, "settings file");
+  EXPECT_TRUE(record.called_in.empty());  // not in this version yet
 }
 
 }  // namespace

@@ -88,12 +88,35 @@ TEST_F(Hdf5ChecksTest, GroupThatHoldsItself) {
   const Hdf5Handle group{H5Gcreate2(file_, "/a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), &H5Gclose};
   H5Lcreate_hard(file_, "/a", file_, "/a/again", H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(file_);
-  ExpectError<InputError>([&] { Hdf5File::Open(path_).RequireTree(); }, {"bad.h5", "links"});
+  ExpectError<InputError>([&] { Hdf5File::Open(path_).RequireWalkable(); },
+                          {"bad.h5", "in each other"});
 }
 
-TEST_F(Hdf5ChecksTest, WhatIsWrittenIsATree) {
+TEST_F(Hdf5ChecksTest, GroupsNestedWithoutEnd) {
+  std::string name;
+  for (int i = 0; i < 20; ++i) {
+    name += "/a";
+    const Hdf5Handle group{H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                           &H5Gclose};
+  }
+  H5Fclose(file_);
+  ExpectError<InputError>([&] { Hdf5File::Open(path_).RequireWalkable(); }, {"bad.h5", "nested"});
+}
+
+// A file of five kilobytes that fills a gigabyte.
+TEST_F(Hdf5ChecksTest, PackedTwice) {
+  const Hdf5Handle creation{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+  const hsize_t chunk = 2;
+  H5Pset_chunk(creation.id(), 1, &chunk);
+  H5Pset_deflate(creation.id(), 9);
+  H5Pset_deflate(creation.id(), 9);
+  CreateDataSet({2}, creation.id());
+  ExpectRefused({"bad.h5", "/values", "packed"});
+}
+
+TEST_F(Hdf5ChecksTest, WhatIsWrittenIsWalkable) {
   Write("good.h5");
-  EXPECT_NO_THROW(Hdf5File::Open(folder_ / "good.h5").RequireTree());
+  EXPECT_NO_THROW(Hdf5File::Open(folder_ / "good.h5").RequireWalkable());
   H5Fclose(file_);
 }
 

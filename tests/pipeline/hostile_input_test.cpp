@@ -38,6 +38,18 @@ Spoil MovedOut(const std::string& file) {
   };
 }
 
+void WithNegativeAxis(const StageChain& chain) {
+  const fs::path file = chain.Artefact("refined.json");
+  nlohmann::json document = nlohmann::json::parse(FileBytes(file));
+  document["observations"][0]["hypotheses"][0]["landmark"]["half_axes"][0] = -0.5;
+  WriteBytes(file, document.dump());
+}
+
+void LinkToItself(const fs::path& file) {
+  fs::remove_all(file);
+  fs::create_symlink(file.filename(), file);
+}
+
 void PutFolderInPlaceOf(const fs::path& file) {
   fs::remove(file);
   fs::create_directory(file);
@@ -101,6 +113,16 @@ INSTANTIATE_TEST_SUITE_P(
             [](const StageChain& chain) { PutFolderInPlaceOf(chain.Dataset("detections.csv")); },
             kInput,
             {"detections.csv", "cannot be read"}},
+        RefusedInput{"LinkToItself",
+                     "import",
+                     [](const StageChain& chain) { LinkToItself(chain.Dataset("camera.json")); },
+                     kInput,
+                     {"camera.json is missing"}},
+        RefusedInput{"FolderThatIsALinkToItself",
+                     "edges",
+                     [](const StageChain& chain) { LinkToItself(chain.Dataset("rgb")); },
+                     kInput,
+                     {"rgb/000000.png"}},
         RefusedInput{"ListIsAnImage",
                      "import",
                      [](const StageChain& chain) {
@@ -166,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                      {"refined.json", "2147483647"}},
         RefusedInput{"LandmarkOfNoSize",
                      "optimise",
-                     ArtefactText("refined.json", "\"half_axes\": [", "\"half_axes\": [-1,"),
+                     WithNegativeAxis,
                      kInput,
                      {"refined.json", "half_axes"}},
         RefusedInput{"EdgesAreText",

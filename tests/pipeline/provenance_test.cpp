@@ -7,6 +7,7 @@
 
 #include "artefact/json_file.h"
 #include "artefact/run_file.h"
+#include "base/hash.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
@@ -193,16 +194,39 @@ TEST_F(ProvenanceTest, WhatWasMadeFromOtherFilesIsNotRerun) {
 
 // A record is a file like any other, and may come from anybody.
 TEST_F(ProvenanceTest, NothingIsWrittenOutsideOfTheResults) {
-  const fs::path outside = pipeline_.Folder() / "letter.json";
-  WriteBytes(outside, "dear");
-  nlohmann::json record = ParseJsonFile(RunOf("import") / "run.json");
-  record["outputs"][0]["relative_to"] = "call";
-  record["outputs"][0]["path"] = outside.string();
-  WriteBytes(RunOf("import") / "run.json", record.dump());
-  const CommandResult result = Reproduce();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, ContainsRegex("not rerun .*letter.json, which is outside of "));
-  EXPECT_EQ(FileBytes(outside), "dear");
+  const fs::path letter = pipeline_.Folder() / "letter.json";
+  WriteBytes(letter, "dear");
+  const fs::path file = RunOf("import") / "run.json";
+  const nlohmann::json record = ParseJsonFile(file);
+  const auto expect_not_rerun = [&](const nlohmann::json& changed, const std::string& why) {
+    WriteBytes(file, changed.dump());
+    const CommandResult result = Reproduce();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.output, ContainsRegex("not rerun .*import-[0-9a-f]+: " + why));
+    EXPECT_EQ(FileBytes(letter), "dear");
+  };
+  nlohmann::json changed = record;
+  changed["outputs"][0]["relative_to"] = "call";
+  changed["outputs"][0]["path"] = letter.string();
+  expect_not_rerun(changed, "it wrote .*letter.json, which is outside");
+  changed = record;
+  changed["inputs"].push_back({{"argument", "output"},
+                               {"relative_to", "call"},
+                               {"path", letter.string()},
+                               {"sha256", Sha256OfText("dear")}});
+  expect_not_rerun(changed, "--output is among its inputs");
+  changed = record;
+  changed["folders"]["output"] = letter.string();
+  expect_not_rerun(changed, "--output is a folder");
+  changed = record;
+  changed["stage"] = "soslam-synthesise";
+  expect_not_rerun(changed, "soslam-synthesise is no stage");
+  changed = record;
+  changed["outputs"].clear();
+  expect_not_rerun(changed, "its record has no outputs");
+  changed = record;
+  changed["allow_outside_paths"] = true;
+  expect_not_rerun(changed, "it was called with --allow_outside_paths");
 }
 
 // The project's Makefile, up to what would build the executables.

@@ -163,6 +163,25 @@ TEST_F(VerifyTest, AVariantThatShowsAnotherFileThanItsRunsMade) {
                                            "is not the one of shared/initialise-2", {"Two"})));
 }
 
+TEST_F(VerifyTest, ARecordWithoutOutputs) {
+  RunRecord record = ReadRun(Shared("initialise-2") / "run.json");
+  record.outputs.clear();
+  WriteRun(Shared("initialise-2") / "run.json", record);
+  EXPECT_THAT(Findings(), ElementsAre(Says("initialise-2/run.json", "has no outputs", {"Two"})));
+}
+
+// Relative paths begin where the stage was called, not where they are verified.
+TEST_F(VerifyTest, PathsBeginInTheFolderOfTheCall) {
+  Write("call/table.json", "table");
+  RunRecord record = ReadRun(Shared("initialise-2") / "run.json");
+  record.called_in = folder_ / "call";
+  record.inputs.push_back({"table", kRelativeToCall, "table.json", Sha256OfText("table")});
+  WriteRun(Shared("initialise-2") / "run.json", record);
+  EXPECT_THAT(Findings(), IsEmpty());
+  Write("call/table.json", "another");
+  EXPECT_THAT(Findings(), ElementsAre(Says("call/table.json", "has changed", {"Two"})));
+}
+
 TEST_F(VerifyTest, AFileThatNoRunOfTheVariantWrote) {
   WriteBytes(folder_ / "results/room/Two/metrics.json", "of somebody");
   EXPECT_THAT(Findings(),

@@ -47,9 +47,12 @@ inline void SetBoxes(const std::function<Box(const Box&)>& box, Sequence* sequen
   for (Detection& detection : sequence->detections) detection.box = box(detection.box);
 }
 
+inline constexpr const char* kNoDegeneracy = "None";  // what has an answer
+
 inline std::vector<Degeneracy> Degeneracies() {
   using Eigen::Vector3d;
   return {
+      {kNoDegeneracy, [](Sequence*) {}},
       {"CameraInsideABody",
        [](Sequence* sequence) {
          const Vector3d inside = TruthOf(*sequence, 0).Centre() + RandomVector(-0.05, 0.05);
