@@ -25,8 +25,7 @@ class OrientationProfile {
   OrientationProfile(const Sequence& sequence, const Detection& detection,
                      const std::shared_ptr<const FrameEdges>& edges, const ShapePrior& prior,
                      const ProfileOptions& options, const SymmetryOptions& symmetry_options)
-      : detection_(detection),
-        options_(options),
+      : options_(options),
         symmetry_options_(symmetry_options),
         observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
         edge_image_{edges, detection.box, detection.nearer_boxes},
@@ -77,7 +76,6 @@ class OrientationProfile {
   }
 
  private:
-  const Detection& detection_;
   const ProfileOptions& options_;
   const SymmetryOptions& symmetry_options_;
   UprightObservation observation_;

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr int kFrames = 4;
+constexpr int kFrames = 3;
 
 // `make run` of the project itself on the small scene, through all stages that a run can have:
 // those of sequences without planes and ids, of bodies of any shape.
@@ -32,8 +32,8 @@ class FaultsTest : public testing::Test {
     fs::create_directory(datasets);
     // Coarse, for speed.
     WriteBytes(datasets / "small.json",
-               R"({"planes": {"refine_poses": false}, "refine": {"yaw_step_deg": 45},
-                   "optimise": {"max_iterations": 10}})");
+               R"({"planes": {"refine_poses": false}, "refine": {"yaw_grid_deg": 30},
+                   "optimise": {"max_iterations": 3}})");
   }
 
   std::vector<std::string> Words() const {
