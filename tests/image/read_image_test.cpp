@@ -128,6 +128,17 @@ TEST_F(ReadImageTest, SizesBeyondMemoryAreRefusedUnread) {
                           {"a.jpg", "65535 x 65534", "at most"});
 }
 
+// Decoders read past what may not be there.
+TEST_F(ReadImageTest, SizesWhereOnlyDecodersLookAreRefused) {
+  std::string png = Encode(".png", TestImage());
+  const std::string chunk("\0\0\0\x08teXt\0\0\0\x10\0\0\0\x10\xa5\x72\x8b\x4d", 20);
+  png.insert(8, chunk);
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.png", png)); }, {"a.png"});
+  std::string jpeg = Encode(".jpg", TestImage());
+  jpeg.insert(2, std::string("\xff\xd0", 2));
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.jpg", jpeg)); }, {"a.jpg"});
+}
+
 TEST_F(ReadImageTest, OtherFormatsAreRefused) {
   for (const char* extension : {".bmp", ".pgm", ".tiff", ".webp"}) {
     const auto path = Write(std::string("a") + extension, Encode(extension, TestImage()));
