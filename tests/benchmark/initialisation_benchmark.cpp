@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One landmark from one box, and what of it costs how much; one landmark from many boxes.
+#include <benchmark/benchmark.h>
+
+#include <numbers>
+
+#include "benchmark/inputs.h"
+#include "initialisation/initialise.h"
+#include "initialisation/multi_view.h"
+#include "initialisation/yaw_sweep.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kYawStep = 3.0 * std::numbers::pi / 180.0;
+
+struct OneBox {
+  Sequence sequence = FirstObservations(OnlyObject(TwelveViews(), 1));
+  std::vector<std::optional<ShapePrior>> priors = TruePriors(sequence);
+  UprightObservation observation = MakeUprightObservation(sequence, sequence.detections.front(),
+                                                          *priors.front(), UprightOptions());
+  YawObjective objective = BoxObjective(observation);
+};
+
+// The closed form for one yaw.
+void SolveOneYaw(benchmark::State& state) {
+  const OneBox box;
+  double yaw = 0.3;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(yaw);
+    benchmark::DoNotOptimize(SolveAtYaw(box.observation, yaw));
+  }
+}
+BENCHMARK(SolveOneYaw)->Name("single_frame/closed_form_at_yaw");
+
+// Levenberg-Marquardt from there, yaw held as in the sweep (0) or free as at its optima (1).
+void Polish(benchmark::State& state) {
+  const OneBox box;
+  const Landmark start = *SolveAtYaw(box.observation, 0.3);
+  const LandmarkTerms terms = box.objective.terms(start);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(FitUpright(box.observation.plane_in_camera, start, terms,
+                                        /*yaw_is_free=*/state.range(0) == 1));
+  }
+}
+BENCHMARK(Polish)->Name("single_frame/polish")->ArgName("yaw_is_free")->Arg(0)->Arg(1);
+
+// Half a turn in steps of 3 degrees: both of the above, 60 times.
+void Sweep(benchmark::State& state) {
+  const OneBox box;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(SweepYaw(box.observation, box.objective, kYawStep));
+  }
+}
+BENCHMARK(Sweep)->Name("single_frame/sweep");
+
+// What lib/initialisation does for one observation: the sweep and its local optima, refined.
+void Whole(benchmark::State& state) {
+  const OneBox box;
+  size_t hypotheses = 0;
+  for (auto _ : state) {
+    const auto estimates =
+        InitialiseUpright(box.sequence, box.priors, UprightOptions(), /*threads=*/1);
+    hypotheses = estimates.observations.front().hypotheses.size();
+  }
+  state.counters["hypotheses"] = static_cast<double>(hypotheses);
+}
+BENCHMARK(Whole)->Name("single_frame/whole");
+
+// The paper's method as InitP has it: eq. (12) with analytic derivatives, from twelve yaws.
+void PaperWithAnalyticDerivatives(benchmark::State& state) {
+  const OneBox box;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(InitialiseSingleFrame(box.sequence, {box.priors.front()->ratio},
+                                                   InitialiseOptions(), /*threads=*/1));
+  }
+}
+BENCHMARK(PaperWithAnalyticDerivatives)->Name("single_frame/InitP");
+
+// From all twelve boxes of the object at once.
+void MultiView(benchmark::State& state) {
+  const Sequence sequence = OnlyObject(TwelveViews(), 1);
+  const auto priors = TruePriors(sequence);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        InitialiseMultiView(sequence, priors, InitialiseOptions(), /*threads=*/1));
+  }
+}
+BENCHMARK(MultiView)->Name("multi_view/12_boxes");
+
+}  // namespace
+}  // namespace soslam
