@@ -143,6 +143,19 @@ test: $(BUILD)/build.ninja ## Build everything and run all tests
 	@flock $(BUILD) cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2
 
+# Five repetitions, each of a tenth of a second or more: the table has their medians.
+.PHONY: bench
+bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's method: RESULTS/bench.md, bench.json
+	@pipelines/install-packages.sh pipelines/bench-packages.txt
+	@flock $(BUILD) sh -c 'cmake $(BUILD) > /dev/null && cmake --build $(BUILD) --target soslam-bench soslam-bench-table'
+	@mkdir -p $(RESULTS)
+	@$(BIN)/soslam-bench --benchmark_repetitions=5 --benchmark_min_time=0.1 --benchmark_report_aggregates_only=true \
+	  --benchmark_out_format=json --benchmark_out=$(RESULTS)/.bench.json.tmp
+	@$(BIN)/soslam-bench-table $(RESULTS)/.bench.json.tmp > $(RESULTS)/.bench.md.tmp
+	@mv $(RESULTS)/.bench.json.tmp $(RESULTS)/bench.json
+	@mv $(RESULTS)/.bench.md.tmp $(RESULTS)/bench.md
+	@cat $(RESULTS)/bench.md
+
 .PHONY: format
 format: ## Format the sources
 	@clang-format-14 -i $(SOURCES)
@@ -153,7 +166,7 @@ format-check: | setup ## Fail when a source is not formatted
 
 .PHONY: clean
 clean: ## Delete what runs wrote to RESULTS
-	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html) $(wildcard $(RESULTS)/.*.lock)
+	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html bench.json bench.md) $(wildcard $(RESULTS)/.*.lock)
 
 .PHONY: distclean
 distclean: clean ## Delete the build as well

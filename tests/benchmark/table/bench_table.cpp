@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// soslam-bench-table BENCH.JSON: what soslam-bench measured, as Markdown on stdout. Times are the
+// medians of its repetitions, of one thread's CPU time, which other load on the machine hardly
+// changes. Fails when a benchmark did.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "artefact/json_file.h"
+#include "base/table.h"
+
+namespace soslam {
+namespace {
+
+using Medians = std::map<std::string, nlohmann::json>;  // by name
+
+// One column of the paper's Table V.
+struct PaperColumn {
+  const char* title;
+  const char* ours;
+  const char* baseline;
+  std::optional<double> published_ms = std::nullopt;  // on an Intel Core i5-7200U
+};
+const PaperColumn kTableV[] = {
+    {"one frame", "single_frame/ours", "single_frame/paper_baseline", 5.8},
+    {"one frame, baseline from 12 yaws", "single_frame/ours",
+     "single_frame/paper_baseline_12_yaws"},
+    {"one frame, texture", "single_frame_texture/ours", "single_frame_texture/paper_baseline",
+     116.5},
+    {"12 frames", "12_frames/ours", "12_frames/paper_baseline", 6.9},
+    {"12 frames, texture of the first", "12_frames_texture/ours",
+     "12_frames_texture/paper_baseline", 295.3},
+    {"12 frames, texture of all", "12_frames_12_textures/ours",
+     "12_frames_12_textures/paper_baseline"},
+};
+
+Medians ReadMedians(const nlohmann::json& document) {
+  Medians medians;
+  for (const nlohmann::json& benchmark : document.at("benchmarks")) {
+    if (benchmark.value("error_occurred", false)) {
+      throw InputError(fmt::format("{}: {}", benchmark.at("name").get<std::string>(),
+                                   benchmark.at("error_message").get<std::string>()));
+    }
+    if (benchmark.value("aggregate_name", "") == "median") {
+      medians[benchmark.at("run_name")] = benchmark;
+    }
+  }
+  if (medians.empty()) throw InputError("no medians; expected --benchmark_repetitions=3 or more");
+  return medians;
+}
+
+double Seconds(const nlohmann::json& median) {
+  static const std::map<std::string, double> units = {
+      {"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}};
+  return median.at("cpu_time").get<double>() * units.at(median.at("time_unit"));
+}
+
+std::string Duration(double seconds) {
+  for (const auto& [unit, size] : {std::pair("s", 1.0), {"ms", 1e-3}, {"us", 1e-6}}) {
+    if (seconds >= size) return fmt::format("{:.3g} {}", seconds / size, unit);
+  }
+  return fmt::format("{:.3g} ns", seconds / 1e-9);
+}
+
+// None where one of both was not measured, as with a filter.
+std::optional<std::pair<double, double>> TimesPerObject(const Medians& medians,
+                                                        const PaperColumn& column) {
+  const auto ours = medians.find(std::string("table_v/") + column.ours);
+  const auto baseline = medians.find(std::string("table_v/") + column.baseline);
+  if (ours == medians.end() || baseline == medians.end()) return std::nullopt;
+  return std::pair(ours->second.at("seconds_per_object").get<double>(),
+                   baseline->second.at("seconds_per_object").get<double>());
+}
+
+Table TableV(const Medians& medians) {
+  Table table{"table_v",
+              "One object, beside the paper's method and its Table V",
+              {"", "ours", "paper's method here", "ratio", "published", "ratio"},
+              {},
+              1,
+              {"The paper's method: numeric derivatives, dense Levenberg-Marquardt; measured in "
+               "the same run on the same boxes and images. Published: on an Intel Core i5-7200U."}};
+  for (const PaperColumn& column : kTableV) {
+    const auto times = TimesPerObject(medians, column);
+    if (!times) continue;
+    const auto& [ours, baseline] = *times;
+    const auto& published = column.published_ms;
+    table.rows.push_back({column.title, Duration(ours), Duration(baseline),
+                          fmt::format("{:.3g}", baseline / ours),
+                          published ? Duration(1e-3 * *published) : kNoValue,
+                          published ? fmt::format("{:.3g}", 1e-3 * *published / ours) : kNoValue});
+  }
+  return table;
+}
+
+Table ScaleTable(const Medians& medians) {
+  Table table{"scale",
+              "The back end on growing worlds, 20 observations per object",
+              {"frames and objects", "observations", "iterations", "time", "of half the size",
+               "peak memory"},
+              {},
+              1,
+              {"Memory is that of the whole program."}};
+  std::map<int, nlohmann::json> by_size;
+  for (const auto& [name, median] : medians) {
+    constexpr const char* kName = "scale/back_end/frames_and_objects:";
+    if (name.rfind(kName, 0) == 0) by_size[std::stoi(name.substr(std::strlen(kName)))] = median;
+  }
+  for (const auto& [size, median] : by_size) {
+    const auto half = by_size.find(size / 2);
+    table.rows.push_back(
+        {std::to_string(size), fmt::format("{}", median.at("observations").get<double>()),
+         fmt::format("{}", median.at("solver_iterations").get<double>()), Duration(Seconds(median)),
+         half == by_size.end() ? kNoValue
+                               : fmt::format("{:.2f} x", Seconds(median) / Seconds(half->second)),
+         fmt::format("{:.0f} MB", median.at("peak_mb").get<double>())});
+  }
+  return table;
+}
+
+// Of one frame where a benchmark goes through several.
+Cell PartName(const std::string& part, const nlohmann::json& median) {
+  return median.contains("seconds_per_frame") ? part + ", per frame" : part;
+}
+
+double PartSeconds(const nlohmann::json& median) {
+  return median.contains("seconds_per_frame") ? median.at("seconds_per_frame").get<double>()
+                                              : Seconds(median);
+}
+
+// All others; what does the same as OpenCV beside it.
+Table PartsTable(const Medians& medians) {
+  Table table{"parts", "Parts", {"", "time", "OpenCV", "of OpenCV's"}, {}, 1, {}};
+  for (const auto& [name, median] : medians) {
+    const bool is_elsewhere = name.rfind("table_v/", 0) == 0 || name.rfind("scale/", 0) == 0;
+    if (is_elsewhere || name.ends_with("/opencv")) continue;
+    const bool is_ours = name.ends_with("/ours");
+    const std::string part = is_ours ? name.substr(0, name.rfind('/')) : name;
+    const double seconds = PartSeconds(median);
+    std::vector<Cell> row = {PartName(part, median), Duration(seconds), kNoValue, kNoValue};
+    const auto opencv = medians.find(part + "/opencv");
+    if (is_ours && opencv != medians.end()) {
+      row[2] = Duration(Seconds(opencv->second));
+      row[3] = fmt::format("{:.2f} x", seconds / Seconds(opencv->second));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+void Print(const std::string& path) {
+  const nlohmann::json document = ParseJsonFile(path);
+  const Medians medians = ReadMedians(document);
+  const nlohmann::json& context = document.at("context");
+  fmt::print("# Benchmarks\n\n{}, {} cores, load {:.2g}; one thread, CPU time, medians.\n\n",
+             context.value("cpu", "unknown"), context.at("num_cpus").get<int>(),
+             context.at("load_avg").empty() ? 0.0 : context.at("load_avg").at(0).get<double>());
+  for (const Table& table : {TableV(medians), ScaleTable(medians), PartsTable(medians)}) {
+    if (!table.rows.empty()) fmt::print("{}\n", ToMarkdown(table));
+  }
+}
+
+}  // namespace
+}  // namespace soslam
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: soslam-bench-table BENCH.JSON\n");
+    return 2;
+  }
+  try {
+    soslam::Print(argv[1]);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "soslam-bench-table: {}\n", error.what());
+    return 3;
+  }
+  return 0;
+}
