@@ -100,25 +100,28 @@ Table TableV(const Medians& medians) {
 }
 
 Table ScaleTable(const Medians& medians) {
+  constexpr const char* kName = "scale/back_end/frames_and_objects:";
   Table table{"scale",
               "The back end on growing worlds, 20 observations per object",
-              {"frames and objects", "observations", "iterations", "time", "of half the size",
-               "peak memory"},
+              {"frames and objects", "observations", "time", "of half the size", "iterations",
+               "of one", "peak memory"},
               {},
               1,
               {"Memory is that of the whole program."}};
   std::map<int, nlohmann::json> by_size;
   for (const auto& [name, median] : medians) {
-    constexpr const char* kName = "scale/back_end/frames_and_objects:";
     if (name.rfind(kName, 0) == 0) by_size[std::stoi(name.substr(std::strlen(kName)))] = median;
   }
   for (const auto& [size, median] : by_size) {
+    const double seconds = Seconds(median);
+    const auto iterations = median.at("solver_iterations").get<double>();
     const auto half = by_size.find(size / 2);
     table.rows.push_back(
         {std::to_string(size), fmt::format("{}", median.at("observations").get<double>()),
-         fmt::format("{}", median.at("solver_iterations").get<double>()), Duration(Seconds(median)),
+         Duration(seconds),
          half == by_size.end() ? kNoValue
-                               : fmt::format("{:.2f} x", Seconds(median) / Seconds(half->second)),
+                               : fmt::format("{:.2f} x", seconds / Seconds(half->second)),
+         fmt::format("{}", iterations), Duration(seconds / iterations),
          fmt::format("{:.0f} MB", median.at("peak_mb").get<double>())});
   }
   return table;
