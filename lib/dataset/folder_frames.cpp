@@ -59,7 +59,7 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
 }
 
 std::vector<TimedPose> ReadTimedPoses(const fs::path& path, const ImportOptions& options) {
-  const std::vector<TimedPose> trajectory = ReadTrajectory(path);
+  std::vector<TimedPose> trajectory = ReadTrajectory(path);
   if (options.format != DatasetFormat::kIclNuim) return trajectory;
   for (const TimedPose& pose : trajectory) CheckFrameNumber(pose.timestamp, path.string());
   return FromIclNuim(trajectory);

@@ -26,7 +26,7 @@ fs::path Resolved(const fs::path& path) {
 }  // namespace
 
 fs::path ImagePath(const fs::path& dataset, const std::string& image, const std::string& place) {
-  const fs::path path = dataset / fs::path(image).lexically_normal();
+  fs::path path = dataset / fs::path(image).lexically_normal();
   if (image.empty()) throw InputError(place + ": image is ''; expected the name of a file");
   const bool is_inside =
       !fs::path(image).is_absolute() && IsWithin(Resolved(path), Resolved(dataset));

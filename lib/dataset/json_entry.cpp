@@ -65,8 +65,8 @@ bool JsonEntry::Flag(const char* name, bool default_value) const {
 
 std::string JsonEntry::Text(const char* name) const {
   const json& field = Field(name);
-  if (!field.is_string() || field == "") Refuse(name, "a text");
-  std::string text = field.get<std::string>();
+  std::string text = field.is_string() ? field.get<std::string>() : "";
+  if (text.empty()) Refuse(name, "a text");
   if (text.find('\0') != text.npos) Refuse(name, "a text without a zero byte");
   return text;
 }

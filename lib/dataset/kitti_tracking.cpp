@@ -224,7 +224,7 @@ class Recording {
 
 // Those of the option `sequences`.
 std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::string& sequences) {
-  const std::vector<NumberedPath> all = NumberedFiles(labels, ".txt");
+  std::vector<NumberedPath> all = NumberedFiles(labels, ".txt");
   const auto ranges = ParseRecordings("sequences", sequences);
   if (ranges.empty()) return all;
   std::vector<NumberedPath> chosen;

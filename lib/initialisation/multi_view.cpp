@@ -135,7 +135,7 @@ class LinearViews {
     if (HasRatio(observation_)) AddRatio(add);
     if (HasSize(observation_)) AddSize(add);
     const Eigen::SelfAdjointEigenSolver<NormalMatrix> eigen(normal_matrix);
-    const Unknowns information = eigen.eigenvalues();  // ascending, 1 / m^2
+    const Unknowns& information = eigen.eigenvalues();  // ascending, 1 / m^2
     if (!(information(0) > kMinInformationShare * information(NumUnknowns() - 1))) return false;
     const Unknowns unknowns = eigen.eigenvectors() * information.cwiseInverse().asDiagonal() *
                               eigen.eigenvectors().transpose() * right_side;

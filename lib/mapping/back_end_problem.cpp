@@ -36,6 +36,9 @@ ceres::Problem::Options BorrowLoss() {
 ceres::Solver::Options SolverOptions(int max_iterations) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_SCHUR;
+  // Last digits of CHOLMOD depend on the BLAS that is installed and on where matrices lie in
+  // memory.
+  solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   solver.max_num_iterations = max_iterations;
   // In the paper's units a pixel is a residual of 1e-3 or less: the default tolerances would stop
   // far from the optimum.
