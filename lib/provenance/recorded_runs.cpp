@@ -98,8 +98,8 @@ std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_
   std::vector<DatasetRuns> datasets;
   for (const std::string& name : SubfoldersOf(results)) {
     DatasetRuns dataset = RunsOfDataset(name, results, data_root);
-    if (!dataset.variants.empty() || !dataset.unused.empty())
-      datasets.push_back(std::move(dataset));
+    if (dataset.variants.empty() && dataset.unused.empty()) continue;
+    datasets.push_back(std::move(dataset));
   }
   if (datasets.empty()) {
     throw NothingUsableError(results.string() +

@@ -95,7 +95,7 @@ TEST_F(RunFileTest, RefusesDamagedRecordsByName) {
        },
        "version [9, 0]"}};
   for (const auto& [change, word] : cases) {
-    ExpectError<InputError>([&] { ReadChanged(change); }, {"run.json", word});
+    ExpectError<InputError>([&, &change = change] { ReadChanged(change); }, {"run.json", word});
   }
   WriteBytes(file_, "{");
   ExpectError<InputError>([&] { ReadRun(file_); }, {"run.json"});
