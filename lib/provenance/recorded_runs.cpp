@@ -56,7 +56,7 @@ fs::path FolderOfDataset(const DatasetRuns& dataset) {
       const RunRecord record = ReadRun(run.folder / "run.json");
       const auto folder = record.folders.find("dataset");
       if (folder == record.folders.end()) continue;
-      const fs::path called = AsCalled(folder->second, record);
+      fs::path called = AsCalled(folder->second, record);
       if (IsFolder(called)) return called;
     } catch (const InputError&) {
       continue;  // which is found when the run is compared

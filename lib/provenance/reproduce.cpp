@@ -105,7 +105,7 @@ std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const
   if (record.allow_outside_paths && !OutsidePathsAreAllowed()) {
     return "it was called with --allow_outside_paths, which has to be given again";
   }
-  if (const auto foreign = ForeignWrite(record, run)) return foreign;
+  if (auto foreign = ForeignWrite(record, run)) return foreign;
   return ChangedInput(record, run);
 }
 
