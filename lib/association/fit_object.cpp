@@ -33,7 +33,7 @@ ByParameters LandmarkByParameters(const MultiViewObservation& observation,
                                   const Landmark& landmark) {
   const Plane& plane = observation.plane_in_world;
   ByParameters by_parameters = ByParameters::Zero(kLandmarkDof, observation.height_is_free ? 7 : 6);
-  by_parameters.leftCols<6>() = UprightByParameters(plane, landmark);
+  by_parameters.leftCols<6>() = UprightGround(plane).ByParameters(landmark);
   if (observation.height_is_free) by_parameters.block<3, 1>(3, 6) = plane.normal;
   return by_parameters;
 }
@@ -72,7 +72,7 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
       {options.box_sigma_fraction, /*axes_weight=*/0.0, options.yaw_grid_deg});
   // Of the same pose as all other views, while the detection's own may be of a better one.
   observation.plane_in_camera = Transform(frame.world_from_camera.Inverse(), all.plane_in_world);
-  const YawObjective objective = BoxObjective(observation);
+  const YawObjective objective;
   const auto optima = LocalOptima(
       observation, objective, SweepYaw(observation, objective, options.yaw_grid_deg * kRadians), 1);
   if (optima.empty()) return std::nullopt;

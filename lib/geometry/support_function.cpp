@@ -4,36 +4,58 @@
 #include <cmath>
 
 namespace soslam {
+namespace {
+
+// A flat body, from its side.
+SupportValue NoExtent() { return {0.0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
+
+// h = || (a m_1, b m_2, c m_3) ||.
+SupportValue OfEllipsoid(const Eigen::Vector3d& half_axes, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d scaled = half_axes.cwiseProduct(direction);
+  const double extent = scaled.norm();
+  if (!(extent > 0.0)) return NoExtent();
+  const double inverse = 1.0 / extent;
+  return {extent, inverse * half_axes.cwiseProduct(scaled), inverse * scaled.cwiseAbs2()};
+}
+
+// d h / d u_i of h = || u ||_p, u >= 0: (u_i / h)^(p - 1).
+Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm) {
+  if (p == kCuboidExponent) {
+    *norm = u.sum();
+    return Eigen::Array3d::Ones();
+  }
+  const double largest = u.maxCoeff();
+  const Eigen::Array3d ratio = u / largest;
+  // r^p = r r^(p - 1): one power serves both, and none is of a number above 1.
+  const Eigen::Array3d power(std::pow(ratio.x(), p - 1.0), std::pow(ratio.y(), p - 1.0),
+                             std::pow(ratio.z(), p - 1.0));
+  const double sum = (ratio * power).sum();
+  const double root = std::pow(sum, 1.0 / p);
+  *norm = largest * root;
+  return power * (root / sum);
+}
+
+}  // namespace
 
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object) {
   const double p = shape_exponent;
+  if (p == kEllipsoidExponent) return OfEllipsoid(half_axes, direction_in_object);
   const double rounding = kEdgeRounding * (kEllipsoidExponent - p);
-  const double squared_length = direction_in_object.squaredNorm();
-  // u_i = s_i sqrt(m_i^2 + e^2 |m|^2); h = (sum u_i^p)^(1/p), scaled by the largest u_i.
+  const double squared_rounding = rounding * rounding;
+  // u_i = s_i sqrt(m_i^2 + e^2 |m|^2)
   const Eigen::Array3d rounded =
-      (direction_in_object.array().square() + rounding * rounding * squared_length).sqrt();
+      (direction_in_object.array().square() + squared_rounding * direction_in_object.squaredNorm())
+          .sqrt();
   const Eigen::Array3d u = half_axes.array() * rounded;
-  const double largest = u.maxCoeff();
-  if (!(largest > 0.0)) {  // a flat body, from its side
-    return {0.0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0};
-  }
-  const Eigen::Array3d ratio = u / largest;
-  const double sum = ratio.pow(p).sum();
-  const double extent = largest * std::pow(sum, 1.0 / p);
+  if (!(u.maxCoeff() > 0.0)) return NoExtent();
 
   SupportValue value;
-  value.extent = extent;
-  const Eigen::Array3d by_u = (u / extent).pow(p - 1.0);
+  const Eigen::Array3d by_u = NormByComponents(u, p, &value.extent);
   value.by_log_half_axes = by_u * u;
-  // d u_i / d m_j = s_i (m_i [i = j] + e^2 m_j) / rounded_i
-  const Eigen::Array3d by_squares = (rounded > 0.0).select(by_u * half_axes.array() / rounded, 0.0);
-  value.contact = (by_squares * direction_in_object.array()).matrix() +
-                  by_squares.sum() * rounding * rounding * direction_in_object;
-  const Eigen::Array3d log_ratio = (u > 0.0).select((u / extent).log(), 0.0);
-  const double by_exponent_of_norm = extent / p * ((u / extent).pow(p) * log_ratio).sum();
-  const double by_rounding = by_squares.sum() * rounding * squared_length;
-  value.by_shape_exponent = by_exponent_of_norm - kEdgeRounding * by_rounding;
+  // d u_i / d m_j = s_i (m_i [i = j] + e^2 m_j) / rounded_i; rounded is nowhere zero for p < 2
+  const Eigen::Array3d by_squares = by_u * half_axes.array() / rounded;
+  value.contact = (by_squares + by_squares.sum() * squared_rounding) * direction_in_object.array();
   return value;
 }
 

@@ -21,7 +21,6 @@ struct SupportValue {
   double extent;                     // h, in metres where |m| = 1
   Eigen::Vector3d contact;           // dh / dm: the point of the body that reaches farthest
   Eigen::Vector3d by_log_half_axes;  // dh / d log (a, b, c)
-  double by_shape_exponent;          // dh / dp
 };
 inline constexpr double kEdgeRounding = 1e-3;
 

@@ -73,7 +73,7 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
     }
     UprightObservation observation = MakeUprightObservation(sequence, detection, *prior, options);
     if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[static_cast<size_t>(i)];
-    const YawObjective objective = BoxObjective(observation);
+    const YawObjective objective;
     const YawSweep sweep =
         SweepYaw(observation, objective, options.yaw_grid_deg * std::numbers::pi / 180.0);
     for (const UprightSolution& optimum :

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "initialisation/box_on_ground.h"
 #include "initialisation/view_weights.h"
 #include "initialisation/yaw_sweep.h"
 
@@ -19,10 +20,31 @@ constexpr double kSettled = 1e-6;  // relative change of the half axes
 constexpr double kMinInformationShare = 1e-9;
 
 // Foot x, foot y, a, b, c and, where it is free, the foot's height over the plane.
-constexpr int kMaxUnknowns = 6;
-using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxUnknowns, 1>;
-using NormalMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxUnknowns, kMaxUnknowns>;
+template <int kUnknowns>
+struct LinearSystem {
+  using Row = Eigen::Matrix<double, kUnknowns, 1>;
+
+  // weight (row . unknowns + constant)^2
+  void Add(const Row& row, double constant, double weight) {
+    const Row weighted = weight * row;
+    normal_matrix += weighted * row.transpose();
+    right_side -= constant * weighted;
+  }
+
+  // None where a direction is not known.
+  std::optional<Row> Solve() const {
+    const Eigen::SelfAdjointEigenSolver<decltype(normal_matrix)> eigen(normal_matrix);
+    const Row& information = eigen.eigenvalues();  // ascending, 1 / m^2
+    if (!(information(0) > kMinInformationShare * information(kUnknowns - 1))) return std::nullopt;
+    const Row unknowns = eigen.eigenvectors() * information.cwiseInverse().asDiagonal() *
+                         eigen.eigenvectors().transpose() * right_side;
+    return unknowns.allFinite() ? std::optional(unknowns) : std::nullopt;
+  }
+
+  Eigen::Matrix<double, kUnknowns, kUnknowns> normal_matrix =
+      Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
+  Row right_side = Row::Zero();
+};
 
 bool HasRatio(const MultiViewObservation& observation) {
   return observation.prior && !observation.ratio_is_free;
@@ -80,149 +102,185 @@ double CostOf(const LandmarkTerm& prior, const Landmark& landmark) {
   return 0.5 * residuals.squaredNorm();
 }
 
+// The views of an observation in the frame of its ground, where a yaw turns about z.
 class LinearViews {
  public:
-  LinearViews(const MultiViewObservation& observation, double yaw)
-      : observation_(observation),
-        world_from_object_(UprightRotation(observation.plane_in_world.normal, yaw)),
-        x_(UprightRotation(observation.plane_in_world.normal, 0.0) * Eigen::Vector3d::UnitX()),
-        y_(observation.plane_in_world.normal.cross(x_)) {
+  explicit LinearViews(const MultiViewObservation& observation)
+      : observation_(observation), ground_(observation.plane_in_world) {
+    for (const BoxView& view : observation.views) {
+      boxes_.emplace_back(view.edges, view.camera_from_world, ground_);
+    }
     Start();
   }
 
-  std::optional<UprightSolution> Solve() {
+  std::optional<UprightSolution> SolveAt(double yaw) const {
+    Body body = start_;
+    body.yaw = yaw;
+    body.cosine = std::cos(yaw);
+    body.sine = std::sin(yaw);
     for (int round = 0; round < kMaxRounds; ++round) {
-      const Eigen::Vector3d before = landmark_.half_axes;
-      if (!Step(/*is_first=*/round == 0)) return std::nullopt;
-      if ((landmark_.half_axes - before).norm() < kSettled * before.norm()) break;
+      const Eigen::Vector3d before = body.half_axes;
+      const bool is_first = round == 0;
+      if (!(observation_.height_is_free ? Step<6>(is_first, &body) : Step<5>(is_first, &body))) {
+        return std::nullopt;
+      }
+      if ((body.half_axes - before).norm() < kSettled * before.norm()) break;
     }
-    for (const BoxView& view : observation_.views) {
-      if (!IsInFront(Transform(view.camera_from_world, landmark_))) return std::nullopt;
+    for (const BoxOnGround& box : boxes_) {
+      const double reach = SupportOf(body, box.optical_axis).extent;
+      if (!(box.DepthOf(body.centre) > reach)) return std::nullopt;
     }
-    return UprightSolution{landmark_, Cost()};
+    const Landmark landmark = LandmarkOf(body);
+    return UprightSolution{landmark, Cost(body, landmark)};
   }
 
  private:
+  struct Body {
+    Eigen::Vector3d centre;
+    Eigen::Vector3d half_axes;
+    double yaw = 0.0;
+    double cosine = 1.0;
+    double sine = 0.0;
+  };
+
   // As large as the boxes are high, where their rays meet.
   void Start() {
     const Eigen::Vector3d point = NearestToAllRays(observation_);
-    Eigen::Vector3d proportions = Eigen::Vector3d::Ones();
-    if (observation_.prior) proportions.head<2>() = observation_.prior->ratio;
-    landmark_.frame_from_object = {world_from_object_, point};
-    landmark_.half_axes = proportions;
-    landmark_.shape_exponent = observation_.ShapeExponent();
+    const Eigen::Vector3d from_origin = point - ground_.origin;
+    start_.centre = {from_origin.dot(ground_.x), from_origin.dot(ground_.y),
+                     from_origin.dot(ground_.normal)};
+    start_.half_axes.setOnes();
+    if (observation_.prior) start_.half_axes.head<2>() = observation_.prior->ratio;
     double sum = 0.0;
     for (const BoxView& view : observation_.views) {
       const double depth = (view.camera_from_world * point).z();
       sum += 0.5 * std::abs(depth) * HeightAtUnitDepth(view);
     }
-    landmark_.half_axes *= sum / static_cast<double>(observation_.views.size());
+    start_.half_axes *= sum / static_cast<double>(observation_.views.size());
   }
 
-  Eigen::Index NumUnknowns() const { return observation_.height_is_free ? 6 : 5; }
+  Landmark LandmarkOf(const Body& body) const {
+    UprightVector parameters;
+    parameters << body.yaw, body.centre.head<2>(), body.half_axes.array().log().matrix();
+    Landmark landmark = ground_.LandmarkAt(parameters, observation_.ShapeExponent());
+    landmark.frame_from_object.translation +=
+        (body.centre.z() - body.half_axes.z()) * ground_.normal;
+    return landmark;
+  }
 
-  bool Step(bool is_first) {
-    NormalMatrix normal_matrix = NormalMatrix::Zero(NumUnknowns(), NumUnknowns());
-    Unknowns right_side = Unknowns::Zero(NumUnknowns());
-    const auto add = [&](const Unknowns& row, double constant, double weight) {
-      normal_matrix += weight * row * row.transpose();
-      right_side -= weight * constant * row;
-    };
-    for (const BoxView& view : observation_.views) {
-      const Landmark in_camera = Transform(view.camera_from_world, landmark_);
-      for (const BoxEdge& edge : view.edges) AddEdge(view, edge, in_camera, is_first, add);
+  // `direction` in the ground's frame.
+  SupportValue SupportOf(const Body& body, const Eigen::Vector3d& direction) const {
+    return SupportFunction(body.half_axes, observation_.ShapeExponent(),
+                           TurnedBack(direction, body.cosine, body.sine));
+  }
+
+  template <int kUnknowns>
+  bool Step(bool is_first, Body* body) const {
+    LinearSystem<kUnknowns> system;
+    for (size_t i = 0; i < boxes_.size(); ++i) {
+      const double weight = observation_.views[i].weight;
+      for (int edge = 0; edge < 4; ++edge) {
+        AddEdge(boxes_[i], edge, weight, *body, is_first, &system);
+      }
     }
-    if (HasRatio(observation_)) AddRatio(add);
-    if (HasSize(observation_)) AddSize(add);
-    const Eigen::SelfAdjointEigenSolver<NormalMatrix> eigen(normal_matrix);
-    const Unknowns& information = eigen.eigenvalues();  // ascending, 1 / m^2
-    if (!(information(0) > kMinInformationShare * information(NumUnknowns() - 1))) return false;
-    const Unknowns unknowns = eigen.eigenvectors() * information.cwiseInverse().asDiagonal() *
-                              eigen.eigenvectors().transpose() * right_side;
-    if (!unknowns.allFinite() || !(unknowns.segment<3>(2).minCoeff() > 0.0)) return false;
-    const Plane& plane = observation_.plane_in_world;
-    landmark_.half_axes = unknowns.segment<3>(2);
-    const double height = observation_.height_is_free ? unknowns(5) : 0.0;
-    landmark_.frame_from_object.translation =
-        unknowns(0) * x_ + unknowns(1) * y_ + (unknowns(4) + height - plane.offset) * plane.normal;
+    if (HasRatio(observation_)) AddRatio(*body, &system);
+    if (HasSize(observation_)) AddSize(*body, &system);
+    const auto unknowns = system.Solve();
+    if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;
+    body->half_axes = unknowns->template segment<3>(2);
+    const double height = kUnknowns == 6 ? (*unknowns)(kUnknowns - 1) : 0.0;
+    body->centre = {(*unknowns)(0), (*unknowns)(1), (*unknowns)(4) + height};
     return true;
   }
 
-  template <typename Add>
-  void AddEdge(const BoxView& view, const BoxEdge& edge, const Landmark& in_camera, bool is_first,
-               const Add& add) const {
-    const double start_depth = in_camera.Centre().z();
-    const double depth = is_first ? start_depth : TangentDepth(edge, in_camera);
-    if (!(depth > 0.0)) return;
-    const double residual = Tangency(edge, in_camera, depth, 0.0, nullptr);
+  // How far the body reaches outside an edge, as Tangency; the tangent point at its own depth, at
+  // first at that of the centre.
+  struct Contact {
+    SupportValue support;
+    double depth_m;
+    double excess;  // px / sigma
+  };
+  Contact Touch(const BoxOnGround& box, int edge, const Body& body, bool is_first) const {
+    const Eigen::Vector3d normal = box.normals.row(edge);
+    Contact contact{SupportOf(body, normal), box.DepthOf(body.centre), 0.0};
+    if (!is_first) {
+      contact.depth_m +=
+          TurnedBack(box.optical_axis, body.cosine, body.sine).dot(contact.support.contact);
+    }
+    const double outside = box.at_origin[edge] + normal.dot(body.centre) + contact.support.extent;
+    contact.excess = outside / (contact.depth_m * box.sigma_px[edge]);
+    return contact;
+  }
+
+  template <int kUnknowns>
+  void AddEdge(const BoxOnGround& box, int edge, double weight, const Body& body, bool is_first,
+               LinearSystem<kUnknowns>* system) const {
+    const Contact contact = Touch(box, edge, body, is_first);
+    if (!(contact.depth_m > 0.0)) return;
     // Where the body is at first says nothing about what a bound allows, and who is an outlier.
-    if (edge.is_bound && (is_first || residual == 0.0)) return;
-    const double size = std::abs(residual);
+    if (box.is_bound[edge] != 0.0 && (is_first || contact.excess >= 0.0)) return;
+    const double size = std::abs(contact.excess);
     const double robust =
         is_first || size <= observation_.huber_delta ? 1.0 : observation_.huber_delta / size;
-    const Plane& plane = observation_.plane_in_world;
-    const Eigen::Vector3d normal = view.camera_from_world.rotation.conjugate() * edge.plane;
-    const SupportValue support = SupportFunction(landmark_.half_axes, landmark_.shape_exponent,
-                                                 world_from_object_.conjugate() * normal);
-    Unknowns row(NumUnknowns());
-    row.head<5>() << normal.dot(x_), normal.dot(y_),
-        support.by_log_half_axes.cwiseQuotient(landmark_.half_axes);
-    row(4) += normal.dot(plane.normal);
-    if (observation_.height_is_free) row(5) = normal.dot(plane.normal);
-    const double constant = edge.plane.dot(view.camera_from_world.translation) -
-                            plane.offset * normal.dot(plane.normal);
-    const double scale = 1.0 / (depth * edge.sigma_px);
-    add(scale * row, scale * constant, view.weight * robust);
+    const Eigen::RowVector3d normal = box.normals.row(edge);
+    typename LinearSystem<kUnknowns>::Row row;
+    row.template head<2>() = normal.head<2>();
+    row.template segment<3>(2) = contact.support.by_log_half_axes.cwiseQuotient(body.half_axes);
+    row(4) += normal.z();
+    if (kUnknowns == 6) row(kUnknowns - 1) = normal.z();
+    const double scale = 1.0 / (contact.depth_m * box.sigma_px[edge]);
+    system->Add(scale * row, scale * box.at_origin[edge], weight * robust);
   }
 
   // As RatioTerm: log(s / (r c)) is (s - r c) / (r c) to first order, the second one given the
   // first.
-  template <typename Add>
-  void AddRatio(const Add& add) const {
+  template <int kUnknowns>
+  void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
     const ShapePrior& prior = *observation_.prior;
-    std::array<Unknowns, 2> rows;
+    using Row = typename LinearSystem<kUnknowns>::Row;
+    std::array<Row, 2> rows;
     for (int i = 0; i < 2; ++i) {
-      const double scale = 1.0 / (prior.log_sigma[i] * prior.ratio[i] * landmark_.half_axes.z());
-      rows[static_cast<size_t>(i)] = Unknowns::Zero(NumUnknowns());
+      const double scale = 1.0 / (prior.log_sigma[i] * prior.ratio[i] * body.half_axes.z());
+      rows[static_cast<size_t>(i)] = Row::Zero();
       rows[static_cast<size_t>(i)](2 + i) = scale;
       rows[static_cast<size_t>(i)](4) = -scale * prior.ratio[i];
     }
     const double unexplained = std::sqrt(1.0 - prior.log_correlation * prior.log_correlation);
-    add(rows[0], 0.0, 1.0);
-    add((rows[1] - prior.log_correlation * rows[0]) / unexplained, 0.0, 1.0);
+    system->Add(rows[0], 0.0, 1.0);
+    system->Add((rows[1] - prior.log_correlation * rows[0]) / unexplained, 0.0, 1.0);
   }
 
   // As HeightTerm: to first order about the height before.
-  template <typename Add>
-  void AddSize(const Add& add) const {
+  template <int kUnknowns>
+  void AddSize(const Body& body, LinearSystem<kUnknowns>* system) const {
     const LogNormal& height_m = *observation_.prior->height_m;
-    const double before = landmark_.half_axes.z();
-    Unknowns row = Unknowns::Zero(NumUnknowns());
+    const double before = body.half_axes.z();
+    typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
     row(4) = 1.0 / (height_m.log_sigma * before);
-    add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
+    system->Add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
   }
 
-  double Cost() const {
+  double Cost(const Body& body, const Landmark& landmark) const {
+    const double delta = observation_.huber_delta;
     double cost = 0.0;
-    for (const BoxView& view : observation_.views) {
-      const Landmark in_camera = Transform(view.camera_from_world, landmark_);
-      for (const BoxEdge& edge : view.edges) {
+    for (size_t i = 0; i < boxes_.size(); ++i) {
+      for (int edge = 0; edge < 4; ++edge) {
+        const double excess = Touch(boxes_[i], edge, body, /*is_first=*/false).excess;
         const double size =
-            std::abs(Tangency(edge, in_camera, TangentDepth(edge, in_camera), 0.0, nullptr));
-        const double delta = observation_.huber_delta;
-        cost += view.weight * (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
+            boxes_[i].is_bound[edge] != 0.0 ? std::max(0.0, -excess) : std::abs(excess);
+        cost += observation_.views[i].weight *
+                (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
       }
     }
-    if (HasRatio(observation_)) cost += CostOf(RatioTerm(*observation_.prior), landmark_);
-    if (HasSize(observation_)) cost += CostOf(HeightTerm(*observation_.prior->height_m), landmark_);
+    if (HasRatio(observation_)) cost += CostOf(RatioTerm(*observation_.prior), landmark);
+    if (HasSize(observation_)) cost += CostOf(HeightTerm(*observation_.prior->height_m), landmark);
     return cost;
   }
 
   const MultiViewObservation& observation_;
-  Eigen::Quaterniond world_from_object_;
-  Eigen::Vector3d x_;
-  Eigen::Vector3d y_;
-  Landmark landmark_;
+  UprightGround ground_;
+  std::vector<BoxOnGround> boxes_;  // of each view
+  Body start_;
 };
 
 // What is known of the body without its boxes.
@@ -295,15 +353,16 @@ LandmarkTerms OutlineTerms(const MultiViewObservation& observation) {
 
 std::optional<UprightSolution> SolveViewsAtYaw(const MultiViewObservation& observation,
                                                double yaw) {
-  return LinearViews(observation, yaw).Solve();
+  return LinearViews(observation).SolveAt(yaw);
 }
 
 std::vector<UprightSolution> SweepViews(const MultiViewObservation& observation, double step) {
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
+  const LinearViews views(observation);
   std::vector<std::optional<UprightSolution>> solutions;
   std::vector<double> costs;
   for (int i = 0; i < steps; ++i) {
-    solutions.push_back(SolveViewsAtYaw(observation, i * std::numbers::pi / steps));
+    solutions.push_back(views.SolveAt(i * std::numbers::pi / steps));
     costs.push_back(solutions.back() ? solutions.back()->cost
                                      : std::numeric_limits<double>::quiet_NaN());
   }

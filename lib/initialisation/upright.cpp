@@ -1,104 +1,86 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/upright.h"
 
-#include <ceres/tiny_solver.h>
-
 #include <cmath>
 #include <limits>
+
+#include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
 namespace {
 
 constexpr int kMaxIterations = 50;
 
-// Horizontal axes and the point that foot coordinates count from.
-struct Ground {
-  explicit Ground(const Plane& plane)
-      : x(UprightRotation(plane.normal, 0.0) * Eigen::Vector3d::UnitX()),
-        y(plane.normal.cross(x)),
-        origin(-plane.offset * plane.normal) {}
-
-  Eigen::Vector3d x;
-  Eigen::Vector3d y;
-  Eigen::Vector3d origin;
-};
-
-// The sum of all terms, as ceres::TinySolver wants it.
+// Sums the terms at upright parameters.
 class UprightCost {
  public:
-  using Scalar = double;
-  enum { NUM_PARAMETERS = 6, NUM_RESIDUALS = Eigen::Dynamic };
-
-  UprightCost(const Plane& plane, double shape_exponent, const LandmarkTerms& terms,
+  UprightCost(const UprightGround& ground, double shape_exponent, const LandmarkTerms& terms,
               bool yaw_is_free)
-      : plane_(plane), shape_exponent_(shape_exponent), terms_(terms), yaw_is_free_(yaw_is_free) {
-    for (const auto& term : terms) num_residuals_ += term->NumResiduals();
+      : ground_(ground), shape_exponent_(shape_exponent), terms_(terms), yaw_is_free_(yaw_is_free) {
+    for (const auto& term : terms) {
+      residuals_.emplace_back(term->NumResiduals());
+      jacobians_.emplace_back(term->NumResiduals(), kLandmarkDof);
+    }
   }
 
-  int NumResiduals() const { return num_residuals_; }
-
-  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
-    const Landmark landmark =
-        UprightLandmark(plane_, Eigen::Map<const UprightVector>(parameters), shape_exponent_);
-    Eigen::Map<Eigen::VectorXd> all(residuals, num_residuals_);
-    LandmarkTerm::Jacobian by_landmark(jacobian != nullptr ? num_residuals_ : 0, kLandmarkDof);
-    LandmarkTerm::Jacobian by_landmark_of_term;
-    int row = 0;
-    for (const auto& term : terms_) {
-      const int rows = term->NumResiduals();
-      if (jacobian != nullptr) by_landmark_of_term.resize(rows, kLandmarkDof);
-      term->Evaluate(landmark, all.segment(row, rows),
-                     jacobian != nullptr ? &by_landmark_of_term : nullptr);
-      if (jacobian != nullptr) by_landmark.middleRows(row, rows) = by_landmark_of_term;
-      row += rows;
+  NormalEquations<6> operator()(const UprightVector& parameters) {
+    const Landmark landmark = ground_.LandmarkAt(parameters, shape_exponent_);
+    const UprightJacobian by_parameters = ground_.ByParameters(landmark);
+    NormalEquations<6> sum;
+    for (size_t i = 0; i < terms_.size(); ++i) {
+      terms_[i]->Evaluate(landmark, residuals_[i], &jacobians_[i]);
+      for (Eigen::Index row = 0; row < residuals_[i].size(); ++row) {
+        sum.Add(residuals_[i][row], by_parameters.transpose() * jacobians_[i].row(row).transpose());
+      }
     }
-    if (jacobian != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6>> map(jacobian, num_residuals_, 6);
-      map = by_landmark * UprightByParameters(plane_, landmark);
-      if (!yaw_is_free_) map.col(0).setZero();
-    }
-    return all.allFinite();
+    if (!yaw_is_free_) sum.Hold(0);
+    return sum;
   }
 
  private:
-  const Plane& plane_;
+  const UprightGround& ground_;
   double shape_exponent_;
   const LandmarkTerms& terms_;
   bool yaw_is_free_;
-  int num_residuals_ = 0;
+  std::vector<Eigen::VectorXd> residuals_;  // of each term, here so that they are allocated once
+  std::vector<LandmarkTerm::Jacobian> jacobians_;
 };
 
 }  // namespace
 
-Landmark UprightLandmark(const Plane& plane, const UprightVector& parameters,
-                         double shape_exponent) {
-  const Ground ground(plane);
+UprightGround::UprightGround(const Plane& plane)
+    : rotation(UprightRotation(plane.normal, 0.0)),
+      x(rotation * Eigen::Vector3d::UnitX()),
+      y(plane.normal.cross(x)),
+      normal(plane.normal),
+      origin(-plane.offset * plane.normal) {}
+
+Landmark UprightGround::LandmarkAt(const UprightVector& parameters, double shape_exponent) const {
   Landmark landmark;
   landmark.half_axes = parameters.tail<3>().array().exp();
   landmark.shape_exponent = shape_exponent;
-  landmark.frame_from_object = {UprightRotation(plane.normal, parameters(0)),
-                                ground.origin + parameters(1) * ground.x +
-                                    parameters(2) * ground.y +
-                                    landmark.half_axes.z() * plane.normal};
+  const double half_yaw = 0.5 * parameters[0];
+  const Eigen::Quaterniond turn(std::cos(half_yaw), 0.0, 0.0, std::sin(half_yaw));
+  landmark.frame_from_object = {
+      (rotation * turn).normalized(),
+      origin + parameters[1] * x + parameters[2] * y + landmark.half_axes.z() * normal};
   return landmark;
 }
 
-UprightVector UprightParameters(const Plane& plane, const Landmark& landmark) {
-  const Ground ground(plane);
-  const Eigen::Vector3d from_origin = landmark.Centre() - ground.origin;
+UprightVector UprightGround::ParametersOf(const Landmark& landmark) const {
+  const Eigen::Vector3d from_origin = landmark.Centre() - origin;
   UprightVector parameters;
-  parameters << Yaw(plane.normal, landmark.frame_from_object.rotation), from_origin.dot(ground.x),
-      from_origin.dot(ground.y), landmark.half_axes.array().log().matrix();
+  parameters << Yaw(normal, landmark.frame_from_object.rotation), from_origin.dot(x),
+      from_origin.dot(y), landmark.half_axes.array().log().matrix();
   return parameters;
 }
 
-UprightJacobian UprightByParameters(const Plane& plane, const Landmark& landmark) {
-  const Ground ground(plane);
+UprightJacobian UprightGround::ByParameters(const Landmark& landmark) const {
   UprightJacobian jacobian = UprightJacobian::Zero();
-  jacobian.block<3, 1>(0, 0) = plane.normal;
-  jacobian.block<3, 1>(3, 1) = ground.x;
-  jacobian.block<3, 1>(3, 2) = ground.y;
-  jacobian.block<3, 1>(3, 5) = landmark.half_axes.z() * plane.normal;
+  jacobian.block<3, 1>(0, 0) = normal;
+  jacobian.block<3, 1>(3, 1) = x;
+  jacobian.block<3, 1>(3, 2) = y;
+  jacobian.block<3, 1>(3, 5) = landmark.half_axes.z() * normal;
   jacobian.block<3, 3>(6, 3).setIdentity();
   return jacobian;
 }
@@ -213,23 +195,15 @@ double TotalCost(const LandmarkTerms& terms, const Landmark& landmark) {
   return cost;
 }
 
-std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const Landmark& start,
+std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkTerms& terms, bool yaw_is_free) {
-  const UprightCost cost(plane_in_camera, start.shape_exponent, terms, yaw_is_free);
-  ceres::TinySolver<UprightCost> solver;
-  solver.options.max_num_iterations = kMaxIterations;
-  solver.options.gradient_tolerance = 1e-10;
-  solver.options.parameter_tolerance = 1e-8;
-  UprightVector parameters = UprightParameters(plane_in_camera, start);
-  // The solver takes a start without a cost for an optimum.
-  Eigen::VectorXd residuals(cost.NumResiduals());
-  if (!cost(parameters.data(), residuals.data(), nullptr)) return std::nullopt;
-  solver.Solve(cost, &parameters);
-  if (!std::isfinite(solver.summary.final_cost) || !parameters.allFinite()) return std::nullopt;
-  double constant_cost = 0.0;
-  for (const auto& term : terms) constant_cost += term->ConstantCost();
-  return UprightSolution{UprightLandmark(plane_in_camera, parameters, start.shape_exponent),
-                         solver.summary.final_cost + constant_cost};
+  const UprightGround ground(plane);
+  UprightVector parameters = ground.ParametersOf(start);
+  double cost = MinimiseSquares<6>(UprightCost(ground, start.shape_exponent, terms, yaw_is_free),
+                                   kMaxIterations, &parameters);
+  if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
+  for (const auto& term : terms) cost += term->ConstantCost();
+  return UprightSolution{ground.LandmarkAt(parameters, start.shape_exponent), cost};
 }
 
 }  // namespace soslam

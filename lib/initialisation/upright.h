@@ -16,17 +16,24 @@
 namespace soslam {
 
 // A body that stands upright on its support plane has six degrees of freedom: yaw (rad, see
-// UprightRotation), the foot of its centre on the plane along UprightRotation(normal, 0)'s x and y
-// axes from the plane's point nearest to the origin (m), and the logarithms of its half axes.
+// UprightRotation), the foot of its centre on the plane along x and y (m), and the logarithms of
+// its half axes.
 using UprightVector = Eigen::Matrix<double, 6, 1>;
-using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;
+using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;  // of kLandmarkDof's parameters
 
-Landmark UprightLandmark(const Plane& plane, const UprightVector& parameters,
-                         double shape_exponent);
-// The parameters of a landmark that is upright on the plane (of any: its nearest upright one's).
-UprightVector UprightParameters(const Plane& plane, const Landmark& landmark);
-// d (nine parameters of kLandmarkDof) / d parameters.
-UprightJacobian UprightByParameters(const Plane& plane, const Landmark& landmark);
+// The support plane as the frame of upright bodies: frame_from_ground of the plane's frame.
+struct UprightGround {
+  explicit UprightGround(const Plane& plane);
+
+  Landmark LandmarkAt(const UprightVector& parameters, double shape_exponent) const;
+  // Of a landmark that is upright on the plane (of any: its nearest upright one's).
+  UprightVector ParametersOf(const Landmark& landmark) const;
+  UprightJacobian ByParameters(const Landmark& landmark) const;
+
+  Eigen::Quaterniond rotation;  // UprightRotation(normal, 0)
+  Eigen::Vector3d x, y, normal;
+  Eigen::Vector3d origin;  // the plane's point nearest to its frame's origin
+};
 
 // Something that an upright landmark is fitted to: residuals with unit variance.
 class LandmarkTerm {
@@ -141,12 +148,12 @@ using LandmarkTerms = std::vector<std::unique_ptr<const LandmarkTerm>>;
 double TotalCost(const LandmarkTerms& terms, const Landmark& landmark);
 
 // Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
-// landmark and its cost; none when the solver runs away.
+// landmark and its cost; none when that is not finite at the start.
 struct UprightSolution {
   Landmark landmark;
   double cost;
 };
-std::optional<UprightSolution> FitUpright(const Plane& plane_in_camera, const Landmark& start,
+std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkTerms& terms, bool yaw_is_free);
 
 }  // namespace soslam

@@ -1,61 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "constraints/tangency.h"
-#include "geometry/camera.h"
-#include "geometry/plane.h"
 #include "initialisation/upright.h"
-#include "initialisation/upright_options.h"
-#include "initialisation/yaw_term.h"
-#include "model/sequence.h"
+#include "initialisation/upright_observation.h"
 
 namespace soslam {
 
-// One box of an object, and what is known beforehand.
-struct UprightObservation {
-  Camera camera;
-  std::array<BoxEdge, 4> edges;
-  Plane plane_in_camera;
-  ShapePrior prior;
-  Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();  // horizontal
-  double axes_weight = 0.0;
-  std::optional<YawPrior> yaw_prior = std::nullopt;
-};
-UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
-                                          const ShapePrior& prior, const UprightOptions& options);
-
-// A horizontal axis of the world at a detection's support plane: x, or y where x is vertical.
-Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection);
-
-// At a given yaw and with the prior's ratio, the tangencies are linear in the foot and the size:
-// the least squares solution over the measured edges, and over those bounds that it would not
-// reach. Tangent points are at their depths on the solution itself, found by repetition. None when
-// fewer than three edges are measured, which leaves the size open, or when the body would not be in
-// front of the camera.
-std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw);
-
-// The failure of an observation for which SolveAtYaw finds nothing at any yaw.
+// The failure of an observation for which ClosedForm finds nothing at any yaw.
 std::string WhyNoSolution(const UprightObservation& observation);
 
-// What makes one yaw better than another.
+// What an observation says of a landmark: box (tangent points at the depths of `start`), ratio
+// prior, world axes and yaw prior. BoxFit is the same.
+LandmarkTerms BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera);
+
+// What makes one yaw better than another, besides the observation's own terms.
 struct YawObjective {
-  // What the landmark at each yaw is fitted to, starting from the given one. Called again with the
-  // result, `rounds` times in all, where terms depend on their start.
-  std::function<LandmarkTerms(const Landmark& start_in_camera)> terms;
+  // What the landmark at each yaw is fitted to as well, starting from the given one; may be empty.
+  std::function<LandmarkTerms(const Landmark& start_in_camera)> further_terms;
+  // Terms are made anew of the result and fitted again, so many times in all, where they depend on
+  // their start.
   int rounds = 1;
   // What counts on top for the yaw, but not for the fit; may be empty.
   std::function<double(const Landmark& landmark_in_camera)> extra_cost;
 };
-
-// Box, ratio prior, world axes and yaw prior.
-YawObjective BoxObjective(const UprightObservation& observation);
 
 // The landmark that is best at each yaw of a grid over half a turn, and its cost. Entries without a
 // landmark are empty.

@@ -34,10 +34,10 @@ class OrientationProfile {
   const UprightObservation& observation() const { return observation_; }
 
   YawObjective Objective() const {
-    YawObjective objective = BoxObjective(observation_);
+    YawObjective objective;
     if (options_.edge_alignment) {
-      objective.terms = [this, box_terms = objective.terms](const Landmark& start) {
-        LandmarkTerms terms = box_terms(start);
+      objective.further_terms = [this](const Landmark& start) {
+        LandmarkTerms terms;
         terms.push_back(
             std::make_unique<EdgeTerm>(edge_image_, observation_.camera, start, options_.edges));
         return terms;

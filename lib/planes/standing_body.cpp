@@ -101,7 +101,7 @@ std::optional<StandingBody> Settled(StandingBody body) {
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot) {
   const Plane& plane = body.observation.plane_in_world;
   const auto by_motion = ByMotion(plane, pivot, body.landmark);
-  const UprightJacobian by_upright = UprightByParameters(plane, body.landmark);
+  const UprightJacobian by_upright = UprightGround(plane).ByParameters(body.landmark);
   PlaneEvidence evidence;
   Eigen::Matrix<double, 6, 6> of_body = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 3, 6> mixed = Eigen::Matrix<double, 3, 6>::Zero();

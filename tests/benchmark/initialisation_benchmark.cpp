@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "benchmark/inputs.h"
+#include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/yaw_sweep.h"
@@ -19,7 +20,6 @@ struct OneBox {
   std::vector<std::optional<ShapePrior>> priors = TruePriors(sequence);
   UprightObservation observation = MakeUprightObservation(sequence, sequence.detections.front(),
                                                           *priors.front(), UprightOptions());
-  YawObjective objective = BoxObjective(observation);
 };
 
 // The closed form for one yaw.
@@ -37,7 +37,7 @@ BENCHMARK(SolveOneYaw)->Name("single_frame/closed_form_at_yaw");
 void Polish(benchmark::State& state) {
   const OneBox box;
   const Landmark start = *SolveAtYaw(box.observation, 0.3);
-  const LandmarkTerms terms = box.objective.terms(start);
+  const LandmarkTerms terms = BoxTerms(box.observation, start);
   for (auto _ : state) {
     benchmark::DoNotOptimize(FitUpright(box.observation.plane_in_camera, start, terms,
                                         /*yaw_is_free=*/state.range(0) == 1));
@@ -49,7 +49,7 @@ BENCHMARK(Polish)->Name("single_frame/polish")->ArgName("yaw_is_free")->Arg(0)->
 void Sweep(benchmark::State& state) {
   const OneBox box;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(SweepYaw(box.observation, box.objective, kYawStep));
+    benchmark::DoNotOptimize(SweepYaw(box.observation, {}, kYawStep));
   }
 }
 BENCHMARK(Sweep)->Name("single_frame/sweep");

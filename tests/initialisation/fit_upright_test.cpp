@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "initialisation/closed_form.h"
 #include "initialisation/upright.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
@@ -24,10 +25,10 @@ LandmarkTerms BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior&
 }
 
 Landmark DisturbedFootAndSize(const Landmark& landmark, const Plane& plane) {
-  UprightVector parameters = UprightParameters(plane, landmark);
+  UprightVector parameters = UprightGround(plane).ParametersOf(landmark);
   parameters.segment<2>(1) += 0.2 * RandomVector(-1, 1).head<2>();
   parameters.tail<3>() += RandomVector(-0.2, 0.2);
-  return UprightLandmark(plane, parameters, landmark.shape_exponent);
+  return UprightGround(plane).LandmarkAt(parameters, landmark.shape_exponent);
 }
 
 // The solver stops where a step would gain less than a millionth of a squared standard deviation.

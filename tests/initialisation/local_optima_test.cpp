@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
@@ -21,8 +22,7 @@ constexpr size_t kAll = 1000;
 
 std::vector<UprightSolution> Optima(const UprightObservation& observation, size_t max_count = kAll,
                                     double step = kStep) {
-  const YawObjective objective = BoxObjective(observation);
-  return LocalOptima(observation, objective, SweepYaw(observation, objective, step), max_count);
+  return LocalOptima(observation, {}, SweepYaw(observation, {}, step), max_count);
 }
 
 // Yaws that all explain a box and are a few steps of the grid apart may be found as one, with next
@@ -65,17 +65,16 @@ Landmark RandomStart(const UprightObservation& observation) {
   std::optional<Landmark> solution;
   while (!solution) solution = SolveAtYaw(observation, RandomYaw());
   const Landmark& at_yaw = *solution;
-  UprightVector parameters = UprightParameters(observation.plane_in_camera, at_yaw);
+  UprightVector parameters = UprightGround(observation.plane_in_camera).ParametersOf(at_yaw);
   parameters.segment<2>(1) += 0.5 * at_yaw.half_axes.maxCoeff() * RandomVector(-1, 1).head<2>();
   parameters.tail<3>() += RandomVector(-0.3, 0.3);
-  return UprightLandmark(observation.plane_in_camera, parameters, at_yaw.shape_exponent);
+  return UprightGround(observation.plane_in_camera).LandmarkAt(parameters, at_yaw.shape_exponent);
 }
 
 TEST(LocalOptima, NoneOfManyRandomStartsIsBetter) {
   for (const double axes_weight : {0.0, 1.0}) {
     for (int i = 0; i < 20; ++i) {
       const UprightObservation observation = NoisyObservation(axes_weight);
-      const YawObjective objective = BoxObjective(observation);
       const auto optima = Optima(observation);
       ASSERT_FALSE(optima.empty());
       double lowest = std::numeric_limits<double>::infinity();
@@ -84,15 +83,16 @@ TEST(LocalOptima, NoneOfManyRandomStartsIsBetter) {
         // Until the tangent points' depths are those of the solution.
         for (int round = 0; round < 5 && solution; ++round) {
           const Landmark& landmark = solution->landmark;
-          solution = FitUpright(observation.plane_in_camera, landmark, objective.terms(landmark),
-                                /*yaw_is_free=*/true);
+          solution =
+              FitUpright(observation.plane_in_camera, landmark, BoxTerms(observation, landmark),
+                         /*yaw_is_free=*/true);
           if (solution && !IsInFront(solution->landmark)) solution.reset();
         }
         if (solution) {
-          lowest = std::min(lowest, CostAtOwnDepths(objective, solution->landmark));
+          lowest = std::min(lowest, CostAtOwnDepths(observation, solution->landmark));
         }
       }
-      const double found = CostAtOwnDepths(objective, optima.front().landmark);
+      const double found = CostAtOwnDepths(observation, optima.front().landmark);
       EXPECT_LE(found, lowest + 0.01 + 0.02 * lowest) << "body " << i << ", " << axes_weight;
     }
   }
@@ -119,11 +119,11 @@ TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
   int optima_seen = 0;
   for (int i = 0; i < 50; ++i) {
     const UprightObservation observation = NoisyObservation(i % 2);
-    YawObjective objective = BoxObjective(observation);
+    YawObjective objective;
     objective.rounds = 5;
     const YawSweep sweep = SweepYaw(observation, objective, kStep);
     for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
-      const auto terms = objective.terms(optimum.landmark);
+      const auto terms = BoxTerms(observation, optimum.landmark);
       for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
         const auto nearby =
             FitUpright(observation.plane_in_camera, Turned(optimum.landmark, offset_deg * kDegrees),
@@ -178,7 +178,7 @@ TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
   for (int i = 0; i < 20; ++i) {
     const StandingBody body(RandomUniform(1, 2), /*ratio_log_sigma=*/0.5);
     const double yaw = RandomYaw();
-    YawObjective objective = BoxObjective(body.observation);
+    YawObjective objective;
     objective.extra_cost = [&](const Landmark& landmark) {
       const double turn = Yaw(body.plane.normal, landmark.frame_from_object.rotation) - yaw;
       return 1e4 * std::pow(std::sin(turn), 2);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "evaluation/iou.h"
+#include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/shape_exponents.h"

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
@@ -20,7 +21,7 @@ Landmark BodyAt(const UprightObservation& observation, double yaw, const double*
   UprightVector parameters;
   parameters << yaw, foot_and_c[0], foot_and_c[1], std::log(prior.ratio.x() * c),
       std::log(prior.ratio.y() * c), std::log(c);
-  return UprightLandmark(observation.plane_in_camera, parameters, prior.shape_exponent);
+  return UprightGround(observation.plane_in_camera).LandmarkAt(parameters, prior.shape_exponent);
 }
 
 // Its tangencies, with tangent points at the depths of a given landmark.
@@ -36,7 +37,7 @@ class TangencyCost final : public ceres::SizedCostFunction<4, 3> {
     term_.Evaluate(landmark, Eigen::Map<Eigen::VectorXd>(residuals, 4), &by_landmark);
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     const Eigen::Matrix<double, 4, 6> by_parameters =
-        by_landmark * UprightByParameters(observation_.plane_in_camera, landmark);
+        by_landmark * UprightGround(observation_.plane_in_camera).ByParameters(landmark);
     Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> jacobian(jacobians[0]);
     jacobian.leftCols<2>() = by_parameters.middleCols<2>(1);
     jacobian.col(2) = by_parameters.rightCols<3>().rowwise().sum() / foot_and_c[2];
@@ -87,7 +88,8 @@ void Polish(const TangencyCost& cost, Eigen::Vector3d* foot_and_c) {
 
 // The optimum of the tangencies from a disturbed start.
 Landmark Optimum(const UprightObservation& observation, double yaw, const Landmark& landmark) {
-  const UprightVector parameters = UprightParameters(observation.plane_in_camera, landmark);
+  const UprightVector parameters =
+      UprightGround(observation.plane_in_camera).ParametersOf(landmark);
   Eigen::Vector3d foot_and_c(parameters(1), parameters(2), landmark.half_axes.z());
   foot_and_c.head<2>() += RandomVector(-0.2, 0.2).head<2>();
   foot_and_c.z() *= RandomUniform(0.8, 1.2);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"

@@ -12,7 +12,7 @@ TEST(UprightLandmark, StandsUprightOnItsPlane) {
   for (const double p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const Plane plane = RandomPlane();
-      const Landmark landmark = UprightLandmark(plane, RandomUprightParameters(), p);
+      const Landmark landmark = UprightGround(plane).LandmarkAt(RandomUprightParameters(), p);
       EXPECT_LT(
           (landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(),
           1e-12);
@@ -32,7 +32,7 @@ TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxes) {
   for (int i = 0; i < 100; ++i) {
     const Plane plane = RandomPlane();
     const UprightVector parameters = RandomUprightParameters();
-    const Landmark landmark = UprightLandmark(plane, parameters, 1.5);
+    const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, 1.5);
     EXPECT_NEAR(Yaw(plane.normal, landmark.frame_from_object.rotation), parameters(0), 1e-12);
     EXPECT_LT((landmark.half_axes.array() - parameters.tail<3>().array().exp()).matrix().norm(),
               1e-12);
@@ -50,8 +50,8 @@ TEST(UprightParameters, AreThoseThatTheLandmarkWasMadeOf) {
   for (int i = 0; i < 100; ++i) {
     const Plane plane = RandomPlane();
     const UprightVector parameters = RandomUprightParameters();
-    const Landmark landmark = UprightLandmark(plane, parameters, 1.5);
-    EXPECT_LT((UprightParameters(plane, landmark) - parameters).norm(), 1e-12);
+    const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, 1.5);
+    EXPECT_LT((UprightGround(plane).ParametersOf(landmark) - parameters).norm(), 1e-12);
   }
 }
 
@@ -66,7 +66,8 @@ TEST(UprightParameters, OfATiltedLandmarkOffThePlaneSetItUprightOnThePlane) {
     tilted.frame_from_object.rotation =
         ExpRotation(kTilt * tilt_axis) * upright.frame_from_object.rotation;
     tilted.frame_from_object.translation += RandomUniform(-0.3, 0.3) * plane.normal;
-    const Landmark found = UprightLandmark(plane, UprightParameters(plane, tilted), 1.5);
+    const Landmark found =
+        UprightGround(plane).LandmarkAt(UprightGround(plane).ParametersOf(tilted), 1.5);
     EXPECT_LT((found.Centre() - upright.Centre()).norm(), 1e-12);
     EXPECT_LT((found.half_axes - upright.half_axes).norm(), 1e-12);
     EXPECT_LT(found.frame_from_object.rotation.angularDistance(upright.frame_from_object.rotation),
@@ -79,12 +80,12 @@ TEST(UprightByParameters, AgreesWithNumbers) {
   for (int i = 0; i < 50; ++i) {
     const Plane plane = RandomPlane();
     const UprightVector parameters = RandomUprightParameters();
-    const Landmark landmark = UprightLandmark(plane, parameters, 1.5);
+    const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, 1.5);
     // The nine parameters of kLandmarkDof, from those of the landmark.
     const auto moved = [&](int k, double step) {
       UprightVector at = parameters;
       at(k) += step;
-      const Landmark other = UprightLandmark(plane, at, 1.5);
+      const Landmark other = UprightGround(plane).LandmarkAt(at, 1.5);
       Eigen::Matrix<double, kLandmarkDof, 1> tangent;
       tangent << LogRotation(other.frame_from_object.rotation *
                              landmark.frame_from_object.rotation.conjugate()),
@@ -92,7 +93,7 @@ TEST(UprightByParameters, AgreesWithNumbers) {
           (other.half_axes.array() / landmark.half_axes.array()).log().matrix();
       return tangent;
     };
-    const UprightJacobian jacobian = UprightByParameters(plane, landmark);
+    const UprightJacobian jacobian = UprightGround(plane).ByParameters(landmark);
     for (int k = 0; k < 6; ++k) {
       const Eigen::Matrix<double, kLandmarkDof, 1> numeric =
           (8.0 * (moved(k, kStep) - moved(k, -kStep)) -

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "initialisation/closed_form.h"
 #include "support/landmark_terms.h"
 #include "support/level_sequence.h"
 #include "support/shape_exponents.h"
@@ -21,38 +22,37 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr double kStep = 3.0 * kDegrees;
 
-TEST(BoxObjective, AddsThePreferenceForTheWorldsAxes) {
+TEST(BoxTerms, AddsThePreferenceForTheWorldsAxes) {
   for (int i = 0; i < 50; ++i) {
     const StandingBody body(RandomUniform(1, 2));
     UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
     const Landmark landmark = Turned(body.truth, RandomYaw());
-    const double without = CostAtOwnDepths(BoxObjective(observation), landmark);
+    const double without = CostAtOwnDepths(observation, landmark);
     observation.axes_weight = RandomUniform(0.5, 3.0);
     const Eigen::Vector3d front = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitX();
     const double angle =
         std::atan2(front.cross(observation.world_axis_in_camera).dot(body.plane.normal),
                    front.dot(observation.world_axis_in_camera));
-    const double with = CostAtOwnDepths(BoxObjective(observation), landmark);
+    const double with = CostAtOwnDepths(observation, landmark);
     EXPECT_NEAR(with - without, observation.axes_weight * std::pow(std::sin(2.0 * angle), 2),
                 1e-8 * (1.0 + without));
     // A quarter turn of the world is no change.
     observation.world_axis_in_camera = observation.world_axis_in_camera.cross(body.plane.normal);
-    EXPECT_NEAR(CostAtOwnDepths(BoxObjective(observation), landmark), with, 1e-8 * (1.0 + with));
+    EXPECT_NEAR(CostAtOwnDepths(observation, landmark), with, 1e-8 * (1.0 + with));
   }
 }
 
-TEST(BoxObjective, CostsNothingAtTheTruth) {
+TEST(BoxTerms, CostsNothingAtTheTruth) {
   for (const double p : kShapeExponents) {
     const StandingBody body(p);
-    EXPECT_LT(CostAtOwnDepths(BoxObjective(body.observation), body.truth), 1e-15);
+    EXPECT_LT(CostAtOwnDepths(body.observation, body.truth), 1e-15);
   }
 }
 
 TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
   for (const double step_deg : {1.0, 3.0, 7.0, 45.0}) {
     const StandingBody body(1.5);
-    const YawSweep sweep =
-        SweepYaw(body.observation, BoxObjective(body.observation), step_deg * kDegrees);
+    const YawSweep sweep = SweepYaw(body.observation, {}, step_deg * kDegrees);
     ASSERT_EQ(sweep.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
     ASSERT_EQ(sweep.solutions.size(), sweep.yaw.size());
     const std::vector<double> costs = sweep.Costs();
@@ -74,21 +74,19 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
 TEST(SweepYaw, IsEmptyWhereThePlaneIsNotInView) {
   StandingBody body(1.5);
   body.observation.plane_in_camera.offset = -1.0;
-  const YawObjective objective = BoxObjective(body.observation);
-  const YawSweep sweep = SweepYaw(body.observation, objective, kStep);
+  const YawSweep sweep = SweepYaw(body.observation, {}, kStep);
   for (const double cost : sweep.Costs()) EXPECT_TRUE(std::isnan(cost));
-  EXPECT_THAT(LocalOptima(body.observation, objective, sweep, /*max_count=*/1000), IsEmpty());
+  EXPECT_THAT(LocalOptima(body.observation, {}, sweep, /*max_count=*/1000), IsEmpty());
 }
 
 // Terms of the start, and again those of the result.
 TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
   const StandingBody body(1.5);
-  const YawObjective box = BoxObjective(body.observation);
   std::vector<Landmark> starts;
   YawObjective objective;
-  objective.terms = [&](const Landmark& start) {
+  objective.further_terms = [&](const Landmark& start) {
     starts.push_back(start);
-    return box.terms(start);
+    return LandmarkTerms();
   };
   objective.rounds = 3;
   objective.extra_cost = [](const Landmark&) { return 7.0; };
@@ -99,11 +97,12 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
     Landmark landmark = starts[4 * i];
     for (size_t round = 0; round < 3; ++round) {
       EXPECT_TRUE(IsSameBody(starts[4 * i + round], landmark, 1e-9));
-      landmark = FitUpright(body.plane, landmark, box.terms(landmark), false)->landmark;
+      landmark =
+          FitUpright(body.plane, landmark, BoxTerms(body.observation, landmark), false)->landmark;
     }
     EXPECT_TRUE(IsSameBody(starts[4 * i + 3], landmark, 1e-9));
     EXPECT_TRUE(IsSameBody(sweep.solutions[i]->landmark, landmark, 1e-9));
-    EXPECT_NEAR(sweep.solutions[i]->cost, CostAtOwnDepths(box, landmark) + 7.0, 1e-9);
+    EXPECT_NEAR(sweep.solutions[i]->cost, CostAtOwnDepths(body.observation, landmark) + 7.0, 1e-9);
   }
 }
 

@@ -23,9 +23,9 @@ inline double Cost(const LandmarkTerms& terms, const Landmark& landmark) {
   return cost;
 }
 
-// The sum of all terms, tangent points at the depths of the landmark itself.
-inline double CostAtOwnDepths(const YawObjective& objective, const Landmark& landmark) {
-  return Cost(objective.terms(landmark), landmark);
+// The sum of the observation's terms, tangent points at the depths of the landmark itself.
+inline double CostAtOwnDepths(const UprightObservation& observation, const Landmark& landmark) {
+  return Cost(BoxTerms(observation, landmark), landmark);
 }
 
 }  // namespace soslam

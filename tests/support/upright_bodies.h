@@ -26,7 +26,7 @@ inline UprightVector RandomUprightParameters() {
 
 // On any plane, not necessarily in view.
 inline Landmark RandomUprightLandmark(const Plane& plane) {
-  return UprightLandmark(plane, RandomUprightParameters(), RandomUniform(1, 2));
+  return UprightGround(plane).LandmarkAt(RandomUprightParameters(), RandomUniform(1, 2));
 }
 
 // A floor as a camera sees it that looks level or down.

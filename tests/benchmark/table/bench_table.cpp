@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// soslam-bench-table BENCH.JSON: what soslam-bench measured, as Markdown on stdout. Times are the
-// medians of its repetitions, of one thread's CPU time, which other load on the machine hardly
-// changes. Fails when a benchmark did.
+// soslam-bench-table BENCH.JSON PUBLISHED.JSON: what soslam-bench measured, as Markdown on stdout.
+// Times are the medians of its repetitions, of one thread's CPU time, which other load on the
+// machine hardly changes. Fails when a benchmark did.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -14,6 +14,7 @@
 
 #include "artefact/json_file.h"
 #include "base/table.h"
+#include "report/published.h"
 
 namespace soslam {
 namespace {
@@ -25,17 +26,17 @@ struct PaperColumn {
   const char* title;
   const char* ours;
   const char* baseline;
-  std::optional<double> published_ms = std::nullopt;  // on an Intel Core i5-7200U
+  const char* published = "";  // the variant's name in Table V
 };
 const PaperColumn kTableV[] = {
-    {"one frame", "single_frame/ours", "single_frame/paper_baseline", 5.8},
+    {"one frame", "single_frame/ours", "single_frame/paper_baseline", "InitP"},
     {"one frame, baseline from 12 yaws", "single_frame/ours",
      "single_frame/paper_baseline_12_yaws"},
     {"one frame, texture", "single_frame_texture/ours", "single_frame_texture/paper_baseline",
-     116.5},
-    {"12 frames", "12_frames/ours", "12_frames/paper_baseline", 6.9},
+     "InitPT"},
+    {"12 frames", "12_frames/ours", "12_frames/paper_baseline", "OursP"},
     {"12 frames, texture of the first", "12_frames_texture/ours",
-     "12_frames_texture/paper_baseline", 295.3},
+     "12_frames_texture/paper_baseline", "OursPT"},
     {"12 frames, texture of all", "12_frames_12_textures/ours",
      "12_frames_12_textures/paper_baseline"},
 };
@@ -55,10 +56,14 @@ Medians ReadMedians(const nlohmann::json& document) {
   return medians;
 }
 
+// Of one thread; of what runs programs, on the clock.
 double Seconds(const nlohmann::json& median) {
   static const std::map<std::string, double> units = {
       {"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}};
-  return median.at("cpu_time").get<double>() * units.at(median.at("time_unit"));
+  const bool is_on_the_clock =
+      median.at("run_name").get_ref<const std::string&>().ends_with("/real_time");
+  return median.at(is_on_the_clock ? "real_time" : "cpu_time").get<double>() *
+         units.at(median.at("time_unit"));
 }
 
 std::string Duration(double seconds) {
@@ -78,23 +83,31 @@ std::optional<std::pair<double, double>> TimesPerObject(const Medians& medians,
                    baseline->second.at("seconds_per_object").get<double>());
 }
 
-Table TableV(const Medians& medians) {
+std::optional<double> PublishedSeconds(const PublishedTimes& times, const std::string& variant) {
+  for (const PublishedTime& time : times.values) {
+    if (time.variant == variant) return 1e-3 * time.ms_mean;
+  }
+  return std::nullopt;
+}
+
+Table TableV(const Medians& medians, const PublishedTimes& published_times) {
   Table table{"table_v",
               "One object, beside the paper's method and its Table V",
               {"", "ours", "paper's method here", "ratio", "published", "ratio"},
               {},
               1,
               {"The paper's method: numeric derivatives, dense Levenberg-Marquardt; measured in "
-               "the same run on the same boxes and images. Published: on an Intel Core i5-7200U."}};
+               "the same run on the same boxes and images. Published: " +
+               published_times.source + ", on an " + published_times.machine + "."}};
   for (const PaperColumn& column : kTableV) {
     const auto times = TimesPerObject(medians, column);
     if (!times) continue;
     const auto& [ours, baseline] = *times;
-    const auto& published = column.published_ms;
+    const auto published = PublishedSeconds(published_times, column.published);
     table.rows.push_back({column.title, Duration(ours), Duration(baseline),
                           fmt::format("{:.3g}", baseline / ours),
-                          published ? Duration(1e-3 * *published) : kNoValue,
-                          published ? fmt::format("{:.3g}", 1e-3 * *published / ours) : kNoValue});
+                          published ? Duration(*published) : kNoValue,
+                          published ? fmt::format("{:.3g}", *published / ours) : kNoValue});
   }
   return table;
 }
@@ -157,14 +170,16 @@ Table PartsTable(const Medians& medians) {
   return table;
 }
 
-void Print(const std::string& path) {
+void Print(const std::string& path, const std::string& published_path) {
   const nlohmann::json document = ParseJsonFile(path);
+  const PublishedTimes published_times = ReadPublished(published_path).times;
   const Medians medians = ReadMedians(document);
   const nlohmann::json& context = document.at("context");
   fmt::print("# Benchmarks\n\n{}, {} cores, load {:.2g}; one thread, CPU time, medians.\n\n",
              context.value("cpu", "unknown"), context.at("num_cpus").get<int>(),
              context.at("load_avg").empty() ? 0.0 : context.at("load_avg").at(0).get<double>());
-  for (const Table& table : {TableV(medians), ScaleTable(medians), PartsTable(medians)}) {
+  for (const Table& table :
+       {TableV(medians, published_times), ScaleTable(medians), PartsTable(medians)}) {
     if (!table.rows.empty()) fmt::print("{}\n", ToMarkdown(table));
   }
 }
@@ -173,12 +188,12 @@ void Print(const std::string& path) {
 }  // namespace soslam
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    fmt::print(stderr, "usage: soslam-bench-table BENCH.JSON\n");
+  if (argc != 3) {
+    fmt::print(stderr, "usage: soslam-bench-table BENCH.JSON PUBLISHED.JSON\n");
     return 2;
   }
   try {
-    soslam::Print(argv[1]);
+    soslam::Print(argv[1], argv[2]);
   } catch (const std::exception& error) {
     fmt::print(stderr, "soslam-bench-table: {}\n", error.what());
     return 3;

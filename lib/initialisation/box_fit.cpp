@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/box_fit.h"
+
+#include <cmath>
+
+namespace soslam {
+namespace {
+
+constexpr int kMaxIterations = 50;
+enum { kYaw, kFootX, kFootY, kLogA, kLogB, kLogC };
+
+}  // namespace
+
+BoxFit::BoxFit(const UprightObservation& observation)
+    : observation_(observation),
+      ground_(observation.plane_in_camera),
+      box_(observation.edges, Rigid3d(), ground_),
+      log_ratio_(observation.prior.ratio.array().log()),
+      axis_yaw_(std::atan2(observation.world_axis_in_camera.dot(ground_.y),
+                           observation.world_axis_in_camera.dot(ground_.x))) {}
+
+Eigen::Array4d BoxFit::TangentDepths(const UprightVector& start) const {
+  const double cosine = std::cos(start[kYaw]);
+  const double sine = std::sin(start[kYaw]);
+  const Eigen::Vector3d half_axes = start.tail<3>().array().exp();
+  const Eigen::Vector3d axis_in_object = TurnedBack(box_.optical_axis, cosine, sine);
+  const double centre_depth = box_.DepthOf({start[kFootX], start[kFootY], half_axes.z()});
+  Eigen::Array4d depths_m;
+  for (int i = 0; i < 4; ++i) {
+    const SupportValue support = SupportFunction(half_axes, observation_.prior.shape_exponent,
+                                                 TurnedBack(box_.normals.row(i), cosine, sine));
+    depths_m[i] = centre_depth + axis_in_object.dot(support.contact);
+  }
+  return depths_m;
+}
+
+void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
+                           NormalEquations<6>* sum) const {
+  const double cosine = std::cos(at[kYaw]);
+  const double sine = std::sin(at[kYaw]);
+  const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
+  const Eigen::Vector3d centre(at[kFootX], at[kFootY], half_axes.z());
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d normal = box_.normals.row(i);
+    const Eigen::Vector3d in_object = TurnedBack(normal, cosine, sine);
+    const SupportValue support =
+        SupportFunction(half_axes, observation_.prior.shape_exponent, in_object);
+    const double outside = box_.at_origin[i] + normal.dot(centre) + support.extent;
+    const double weight = 1.0 / (depths_m[i] * box_.sigma_px[i]);
+    if (box_.is_bound[i] != 0.0 && weight * outside > 0.0) continue;
+    UprightVector by_parameters;
+    by_parameters[kYaw] = support.contact.x() * in_object.y() - support.contact.y() * in_object.x();
+    by_parameters.segment<2>(kFootX) = normal.head<2>();
+    by_parameters.tail<3>() = support.by_log_half_axes;
+    by_parameters[kLogC] += normal.z() * half_axes.z();
+    sum->Add(weight * outside, weight * by_parameters);
+  }
+}
+
+void BoxFit::AddRatio(const UprightVector& at, NormalEquations<6>* sum) const {
+  const ShapePrior& prior = observation_.prior;
+  const Eigen::Vector2d weight = prior.log_sigma.cwiseInverse();
+  const double a = weight.x() * (at[kLogA] - at[kLogC] - log_ratio_.x());
+  const double b = weight.y() * (at[kLogB] - at[kLogC] - log_ratio_.y());
+  UprightVector by_a = UprightVector::Zero();
+  by_a[kLogA] = weight.x();
+  by_a[kLogC] = -weight.x();
+  UprightVector by_b = UprightVector::Zero();
+  by_b[kLogB] = weight.y();
+  by_b[kLogC] = -weight.y();
+  const double correlation = prior.log_correlation;
+  const double unexplained = std::sqrt(1.0 - correlation * correlation);
+  sum->Add(a, by_a);
+  sum->Add((b - correlation * a) / unexplained, (by_b - correlation * by_a) / unexplained);
+}
+
+void BoxFit::AddYaw(double yaw, NormalEquations<6>* sum) const {
+  const double amplitude = std::sqrt(2.0 * observation_.axes_weight);
+  const double angle = 2.0 * (yaw - axis_yaw_);
+  const UprightVector by_yaw = UprightVector::Unit(kYaw);
+  sum->Add(amplitude * std::sin(angle), 2.0 * amplitude * std::cos(angle) * by_yaw);
+  if (!observation_.yaw_prior) return;
+  const YawPrior& prior = *observation_.yaw_prior;
+  sum->Add(YawDifferenceModuloPi(yaw, prior.yaw) / prior.sigma, by_yaw / prior.sigma);
+}
+
+NormalEquations<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
+  NormalEquations<6> sum;
+  AddTangencies(depths_m, at, &sum);
+  AddRatio(at, &sum);
+  AddYaw(at[kYaw], &sum);
+  return sum;
+}
+
+double BoxFit::Minimise(bool yaw_is_free, UprightVector* start) const {
+  const Eigen::Array4d depths_m = TangentDepths(*start);
+  const auto evaluate = [&](const UprightVector& at) {
+    NormalEquations<6> sum = Evaluate(depths_m, at);
+    if (!yaw_is_free) sum.Hold(kYaw);
+    return sum;
+  };
+  return MinimiseSquares<6>(evaluate, kMaxIterations, start);
+}
+
+}  // namespace soslam

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "initialisation/box_on_ground.h"
+#include "initialisation/levenberg_marquardt.h"
+#include "initialisation/upright_observation.h"
+
+namespace soslam {
+
+// What BoxTerm, RatioTerm, AxisTerm and YawTerm say together of an upright body, by its parameters
+// on the ground of the observation's plane. A sweep over yaw spends its time here: nothing is
+// allocated, and nothing but the sines of the yaw turned.
+class BoxFit {
+ public:
+  // Keeps a reference to the observation.
+  explicit BoxFit(const UprightObservation& observation);
+
+  // The sum of the terms, tangent points at the depths (m) that they have on `start`.
+  NormalEquations<6> Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const;
+  Eigen::Array4d TangentDepths(const UprightVector& start) const;
+
+  // Levenberg-Marquardt from `start`, whose tangent depths count; yaw fixed or free. Returns the
+  // cost, which is not finite when it is not at the start.
+  double Minimise(bool yaw_is_free, UprightVector* start) const;
+
+  double CostAtOwnDepths(const UprightVector& at) const {
+    return Evaluate(TangentDepths(at), at).cost;
+  }
+  const UprightGround& ground() const { return ground_; }
+
+ private:
+  void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
+                     NormalEquations<6>* sum) const;
+  void AddRatio(const UprightVector& at, NormalEquations<6>* sum) const;
+  void AddYaw(double yaw, NormalEquations<6>* sum) const;
+
+  const UprightObservation& observation_;
+  UprightGround ground_;
+  BoxOnGround box_;
+  Eigen::Vector2d log_ratio_;
+  double axis_yaw_;
+};
+
+}  // namespace soslam

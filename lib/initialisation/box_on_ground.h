@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "constraints/tangency.h"
+#include "initialisation/upright.h"
+
+namespace soslam {
+
+// A box in the frame of the ground that its object stands on, where a yaw turns about z.
+struct BoxOnGround {
+  // `ground` lives in the reference frame.
+  BoxOnGround(const std::array<BoxEdge, 4>& edges, const Rigid3d& camera_from_reference,
+              const UprightGround& ground);
+
+  // In the camera, m.
+  double DepthOf(const Eigen::Vector3d& point) const {
+    return origin_depth + optical_axis.dot(point);
+  }
+
+  // The planes behind the edges: normals by row, and their values at the ground's origin.
+  Eigen::Matrix<double, 4, 3> normals;
+  Eigen::Array4d at_origin;
+  Eigen::Array4d sigma_px;
+  Eigen::Array4d is_bound;       // 1 or 0
+  Eigen::Vector3d optical_axis;  // of the camera
+  double origin_depth;           // of the ground's origin, m
+};
+
+// A direction of the ground's frame as seen from a body at a yaw with this cosine and sine.
+inline Eigen::Vector3d TurnedBack(const Eigen::Vector3d& direction, double cosine, double sine) {
+  return {cosine * direction.x() + sine * direction.y(),
+          cosine * direction.y() - sine * direction.x(), direction.z()};
+}
+
+}  // namespace soslam

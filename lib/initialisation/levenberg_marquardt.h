@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace soslam {
+
+// A small least squares problem to second order about a point: what its residuals r and their
+// Jacobian J leave of it.
+template <int kSize>
+struct NormalEquations {
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+  double cost = 0.0;                    // half the sum of r^2; not finite where undefined
+  Vector gradient = Vector::Zero();     // J^T r
+  Matrix information = Matrix::Zero();  // J^T J
+
+  void Add(double residual, const Vector& by_parameters) {
+    cost += 0.5 * residual * residual;
+    gradient += residual * by_parameters;
+    information += by_parameters * by_parameters.transpose();
+  }
+  // As if nothing depended on a parameter.
+  void Hold(int parameter) {
+    gradient[parameter] = 0.0;
+    information.row(parameter).setZero();
+    information.col(parameter).setZero();
+  }
+};
+
+// Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
+// least squares problems, 2004, section 3.2). `evaluate` makes the normal equations at parameters.
+// Ends where the next step would hardly lower the cost any more, after `max_iterations`,
+// or where no step lowers it. Parameters that nothing depends on stay as they
+// are. Returns the cost at the parameters that it leaves: not finite when it was not at the start.
+template <int kSize, typename Evaluate>
+double MinimiseSquares(Evaluate evaluate, int max_iterations,
+                       Eigen::Matrix<double, kSize, 1>* parameters) {
+  constexpr double kNegligibleDecrease = 1e-11;
+  constexpr double kMinDiagonal = 1e-6;
+  constexpr double kMaxDamping = 1e16;
+  NormalEquations<kSize> at = evaluate(*parameters);
+  double damping = 1e-4;
+  double growth = 2.0;
+  for (int i = 0; i < max_iterations && damping < kMaxDamping; ++i) {
+    const Eigen::Matrix<double, kSize, 1> weights =
+        damping * at.information.diagonal().cwiseMax(kMinDiagonal);
+    typename NormalEquations<kSize>::Matrix damped = at.information;
+    damped.diagonal() += weights;
+    const Eigen::Matrix<double, kSize, 1> step = damped.llt().solve(-at.gradient);
+    // Of the undamped cost to second order.
+    const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
+    if (!(decrease > kNegligibleDecrease * (1.0 + at.cost))) break;
+    const Eigen::Matrix<double, kSize, 1> moved = *parameters + step;
+    const NormalEquations<kSize> there = evaluate(moved);
+    const double gain = (at.cost - there.cost) / decrease;
+    if (gain > 0.0) {
+      *parameters = moved;
+      at = there;
+      const double surprise = 2.0 * gain - 1.0;
+      damping *= std::max(1.0 / 3.0, 1.0 - surprise * surprise * surprise);
+      growth = 2.0;
+    } else {
+      damping *= growth;
+      growth *= 2.0;
+    }
+  }
+  return at.cost;
+}
+
+}  // namespace soslam

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/box_fit.h"
+
+#include <gtest/gtest.h>
+
+#include "initialisation/closed_form.h"
+#include "initialisation/yaw_sweep.h"
+#include "support/landmark_terms.h"
+#include "support/shape_exponents.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+// A body's box with errors, any edge of which may be a bound, and a prior of everything.
+UprightObservation RandomObservation(double p, int i) {
+  const StandingBody body(p);
+  const std::array<bool, 4> is_bound = {i % 5 == 0, i % 5 == 1, i % 5 == 2, i % 5 == 3};
+  UprightObservation observation = body.Observe(Disturbed(body.box, 0.05), is_bound);
+  observation.prior.log_correlation = RandomUniform(-0.9, 0.9);
+  observation.axes_weight = RandomUniform(0.0, 3.0);
+  if (i % 2 == 0) observation.yaw_prior = YawPrior{RandomUniform(-1.5, 1.5), 0.3};
+  return observation;
+}
+
+NormalEquations<6> SumOfTerms(const LandmarkTerms& terms, const UprightGround& ground,
+                              const Landmark& landmark) {
+  NormalEquations<6> sum;
+  for (const auto& term : terms) {
+    Eigen::VectorXd residuals(term->NumResiduals());
+    LandmarkTerm::Jacobian jacobian(term->NumResiduals(), kLandmarkDof);
+    term->Evaluate(landmark, residuals, &jacobian);
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> by_parameters =
+        jacobian * ground.ByParameters(landmark);
+    sum.cost += 0.5 * residuals.squaredNorm();
+    sum.gradient += by_parameters.transpose() * residuals;
+    sum.information += by_parameters.transpose() * by_parameters;
+  }
+  return sum;
+}
+
+TEST(BoxFit, SaysWhatTheTermsSay) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 40; ++i) {
+      const UprightObservation observation = RandomObservation(p, i);
+      const auto start = ClosedForm(observation).At(RandomYaw());
+      if (!start) continue;
+      const BoxFit fit(observation);
+      UprightVector at = *start;
+      at.tail<3>() += RandomVector(-0.1, 0.1);
+      const auto landmark = [&](const UprightVector& parameters) {
+        return fit.ground().LandmarkAt(parameters, p);
+      };
+      const NormalEquations<6> expected =
+          SumOfTerms(BoxTerms(observation, landmark(*start)), fit.ground(), landmark(at));
+      const NormalEquations<6> sum = fit.Evaluate(fit.TangentDepths(*start), at);
+      EXPECT_NEAR(sum.cost, expected.cost, 1e-9 * (1.0 + expected.cost));
+      EXPECT_LT((sum.gradient - expected.gradient).norm(), 1e-9 * (1.0 + expected.gradient.norm()));
+      EXPECT_LT((sum.information - expected.information).norm(),
+                1e-9 * (1.0 + expected.information.norm()));
+    }
+  }
+}
+
+TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
+  for (const double p : kShapeExponents) {
+    for (int i = 0; i < 40; ++i) {
+      const UprightObservation observation = RandomObservation(p, i);
+      const auto start = ClosedForm(observation).At(RandomYaw());
+      if (!start) continue;
+      const BoxFit fit(observation);
+      const Landmark landmark = fit.ground().LandmarkAt(*start, p);
+      for (const bool yaw_is_free : {false, true}) {
+        const auto of_terms = FitUpright(observation.plane_in_camera, landmark,
+                                         BoxTerms(observation, landmark), yaw_is_free);
+        UprightVector parameters = *start;
+        const double cost = fit.Minimise(yaw_is_free, &parameters);
+        ASSERT_TRUE(of_terms);
+        EXPECT_NEAR(cost, of_terms->cost, 1e-9 * (1.0 + cost));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam
