@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "artefact/json_file.h"
 #include "base/table.h"
@@ -140,6 +141,27 @@ Table ScaleTable(const Medians& medians) {
   return table;
 }
 
+// What each stage takes of a whole run, and the run on the clock.
+Table PipelineTable(const Medians& medians) {
+  constexpr std::string_view kSuffix = "_cpu_s";
+  Table table{"pipeline",
+              "All variants of data/room_a (60 frames), from images, on two threads",
+              {"stage", "time"},
+              {},
+              1,
+              {"Of stages CPU time, all of their runs together."}};
+  for (const auto& [name, median] : medians) {
+    if (name.rfind("pipeline/", 0) != 0) continue;
+    for (const auto& [counter, seconds] : median.items()) {
+      if (!counter.ends_with(kSuffix)) continue;
+      table.rows.push_back({counter.substr(0, counter.size() - kSuffix.size()),
+                            Duration(seconds.template get<double>())});
+    }
+    table.rows.push_back({"the run, on the clock", Duration(Seconds(median))});
+  }
+  return table;
+}
+
 // Of one frame where a benchmark goes through several.
 Cell PartName(const std::string& part, const nlohmann::json& median) {
   return median.contains("seconds_per_frame") ? part + ", per frame" : part;
@@ -154,7 +176,8 @@ double PartSeconds(const nlohmann::json& median) {
 Table PartsTable(const Medians& medians) {
   Table table{"parts", "Parts", {"", "time", "OpenCV", "of OpenCV's"}, {}, 1, {}};
   for (const auto& [name, median] : medians) {
-    const bool is_elsewhere = name.rfind("table_v/", 0) == 0 || name.rfind("scale/", 0) == 0;
+    const bool is_elsewhere = name.rfind("table_v/", 0) == 0 || name.rfind("scale/", 0) == 0 ||
+                              name.rfind("pipeline/", 0) == 0;
     if (is_elsewhere || name.ends_with("/opencv")) continue;
     const bool is_ours = name.ends_with("/ours");
     const std::string part = is_ours ? name.substr(0, name.rfind('/')) : name;
@@ -178,8 +201,8 @@ void Print(const std::string& path, const std::string& published_path) {
   fmt::print("# Benchmarks\n\n{}, {} cores, load {:.2g}; one thread, CPU time, medians.\n\n",
              context.value("cpu", "unknown"), context.at("num_cpus").get<int>(),
              context.at("load_avg").empty() ? 0.0 : context.at("load_avg").at(0).get<double>());
-  for (const Table& table :
-       {TableV(medians, published_times), ScaleTable(medians), PartsTable(medians)}) {
+  for (const Table& table : {TableV(medians, published_times), ScaleTable(medians),
+                             PipelineTable(medians), PartsTable(medians)}) {
     if (!table.rows.empty()) fmt::print("{}\n", ToMarkdown(table));
   }
 }
