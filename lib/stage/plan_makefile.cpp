@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "stage/work_units.h"
 
 namespace soslam {
 namespace {
@@ -30,6 +31,7 @@ BIN ?= build/bin
 THREADS ?= 0
 QUIET ?=
 OUTSIDE_PATHS ?=
+LAUNCH ?=
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .PHONY: all {variants} FORCE
@@ -41,15 +43,17 @@ dry_run := $(findstring n,$(firstword -$(MAKEFLAGS)))$(findstring q,$(firstword 
 # $(call missing,FILES): forces a rule when one of the files it made is gone.
 missing = $(if $(filter-out $(wildcard $(1)),$(1)),FORCE)
 
-# $(call stage,TITLE,COMMAND): runs a stage unless nothing but stamps is newer than its own. When it
-# fails, `failed` beside the stamp says how; a stage that crashes cannot write that itself.
+# $(call stage,TITLE,COMMAND): runs a stage, through LAUNCH, unless nothing but stamps is newer than
+# its own. When it fails, `failed` beside the stamp says how; a stage that crashes, or that LAUNCH
+# did not start, cannot write that itself.
 define run-stage
 @echo '[{dataset}] $(1)'
 @rm -f $(@D)/failed
 @touch $@.begun
-@$(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) $(OUTSIDE_PATHS) \
-  --failure_record $(@D)/failed || {{ code=$$?; \
-  test -s $(@D)/failed || echo "exit code $$code" > $(@D)/failed; exit $$code; }}
+@$(LAUNCH) $(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) $(OUTSIDE_PATHS) \
+  --failure_record $(@D)/failed || {{ code=$$?; test -s $(@D)/failed || \
+  echo "exit code $$code$(if $(LAUNCH), of LAUNCH or of a stage that was killed)" > $(@D)/failed; \
+  exit $$code; }}
 @mv $@.begun $@
 endef
 stage = $(if $(dry_run)$(filter-out %/done,$?),$(run-stage),@touch $@)
@@ -70,7 +74,7 @@ class Writer {
                     fmt::arg("dataset_folder", folders_.dataset.string()));
     for (const VariantChain& variant : plan_.variants) text += VariantRules(variant);
     for (const StageInstance& instance : plan_.instances) text += InstanceRules(instance);
-    return text;
+    return text + UnitRules();
   }
 
  private:
@@ -90,10 +94,9 @@ class Writer {
   // keeps the stages.txt that they are of.
   std::string VariantRules(const VariantChain& variant) const {
     const std::string folder = "$(results)/" + variant.name;
-    std::vector<std::string> stamps, links, targets;
+    std::vector<std::string> links, targets;
     std::map<std::string, std::string> last_maker;  // of each file: what later stages read
     for (const std::string& id : variant.instances) {
-      stamps.push_back(Shared(id, "done"));
       for (const StageOutput& output : OutputsOfStage(plan_.Instance(id).stage)) {
         last_maker[output.file] = id;
       }
@@ -109,8 +112,8 @@ class Writer {
         "\t@ln -s {targets} {folder}/\n"
         "\t@cp $< $@\n",
         fmt::arg("variant", variant.name), fmt::arg("folder", folder),
-        fmt::arg("stamps", fmt::join(stamps, " ")), fmt::arg("links", fmt::join(links, " ")),
-        fmt::arg("targets", fmt::join(targets, " ")));
+        fmt::arg("stamps", fmt::join(Stamps(variant.instances), " ")),
+        fmt::arg("links", fmt::join(links, " ")), fmt::arg("targets", fmt::join(targets, " ")));
   }
 
   static std::string InstanceRules(const StageInstance& instance) {
@@ -124,6 +127,33 @@ class Writer {
         fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
         fmt::arg("variants", fmt::join(instance.variants, " ")),
         fmt::arg("command", Command(instance)));
+  }
+
+  // A goal for each job of a cluster, one for what it needs from the trunk, and which instances it
+  // is made of.
+  std::string UnitRules() const {
+    const std::vector<WorkUnit> units = WorkUnitsOf(plan_);
+    std::vector<std::string> names;
+    for (const WorkUnit& unit : units) names.push_back(unit.name);
+    std::string text =
+        fmt::format("\nunits := {}\n.PHONY: $(units) $(units:%=before-%)\n", fmt::join(names, " "));
+    for (const WorkUnit& unit : units) {
+      text += fmt::format(
+          "\nunit-{name} := {instances}\n"
+          "{name}: {stamps} {variants}\n"
+          "before-{name}: {needs}\n",
+          fmt::arg("name", unit.name), fmt::arg("instances", fmt::join(unit.instances, " ")),
+          fmt::arg("stamps", fmt::join(Stamps(unit.instances), " ")),
+          fmt::arg("variants", fmt::join(unit.variants, " ")),
+          fmt::arg("needs", fmt::join(Stamps(unit.needs), " ")));
+    }
+    return text;
+  }
+
+  static std::vector<std::string> Stamps(const std::vector<std::string>& ids) {
+    std::vector<std::string> stamps;
+    for (const std::string& id : ids) stamps.push_back(Shared(id, "done"));
+    return stamps;
   }
 
   static std::vector<std::string> Prerequisites(const StageInstance& instance) {

@@ -16,7 +16,10 @@ struct PlanFolders {
 };
 
 // The text of the makefile that carries a plan out: one goal per variant, "all" first, and one rule
-// per stage instance. It is for GNU make >= 4.3; $(BIN) is the folder of the executables.
+// per stage instance. It is for GNU make >= 4.3; $(BIN) is the folder of the executables, $(LAUNCH)
+// what starts them ("srun -n1"; empty: nothing). For clusters there is a goal per work unit, as
+// $(units) lists them, and `before-<unit>`, which is up to date when all that it needs from the
+// trunk is.
 std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders);
 
 // The folders that a makefile by PlanMakefile names. Throws InputError when there is no such file.

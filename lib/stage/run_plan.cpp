@@ -16,6 +16,7 @@
 #include "stage/pipeline_settings.h"
 #include "stage/plan.h"
 #include "stage/plan_makefile.h"
+#include "stage/work_units.h"
 
 namespace soslam {
 namespace {
@@ -39,7 +40,7 @@ void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
 void RefuseIfNotAFolderName(const std::string& name, const std::string& what) {
   RefuseIfUnfitForMake(name, what);
   if (name.find('/') != std::string::npos || name.front() == '.' || name == "shared" ||
-      name == "all" || name == "FORCE") {
+      name == "all" || name == "FORCE" || name == kTrunk) {
     throw SettingsError(fmt::format("{} '{}': cannot be the name of a results folder", what, name));
   }
 }

@@ -111,6 +111,48 @@ TEST_F(RerunTest, FailingStageLeavesEarlierResults) {
   EXPECT_TRUE(Artefacts() == before);
 }
 
+// A command that notes how it was called and starts the rest, unless that is an `edges`.
+class LaunchTest : public testing::Test {
+ protected:
+  LaunchTest() {
+    WriteBytes(launcher_, "#!/bin/sh\necho \"$1, $2\" >> " + log_.string() +
+                              "\ncase $2 in *-edges) exit 9;; esac\nshift\nexec \"$@\"\n");
+    fs::permissions(launcher_, fs::perms::owner_all);
+  }
+  std::string FailureOf(const std::string& stage) const {
+    for (const auto& entry : fs::directory_iterator(pipeline_.Results() / "shared")) {
+      const bool is_stage = entry.path().filename().string().rfind(stage, 0) == 0;
+      if (is_stage && fs::exists(entry.path() / "failed")) {
+        return FileBytes(entry.path() / "failed");
+      }
+    }
+    return "";
+  }
+
+  SmallPipeline pipeline_{kFrames};
+  fs::path launcher_ = pipeline_.Folder() / "launch";
+  fs::path log_ = pipeline_.Folder() / "log";
+};
+
+TEST_F(LaunchTest, StartsEveryStageAndItsFailuresAreToldFromThoseOfStages) {
+  const std::string launch = "LAUNCH=" + launcher_.string() + " \"two words, \"";
+  const CommandResult first = pipeline_.Run(kVariants, {launch, "--keep-going"});
+  EXPECT_NE(first.exit_code, 0);
+  for (const std::string stage : {"import", "edges", "initialise", "evaluate"}) {
+    EXPECT_THAT(FileBytes(log_), HasSubstr("two words, , " + StageProgram(stage) + "\n"));
+  }
+  EXPECT_EQ(FailureOf("edges"), "exit code 9 of LAUNCH or of a stage that was killed\n");
+  EXPECT_TRUE(fs::exists(pipeline_.Results() / "InitP/metrics.json"));
+
+  EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
+  const auto unlaunched = SmallPipeline::Artefacts(pipeline_.Results() / "InitP");
+  WriteBytes(pipeline_.Dataset() / "objects.json", "[");
+  EXPECT_NE(pipeline_.Run("InitP", {launch}).exit_code, 0);
+  EXPECT_THAT(FailureOf("import"), HasSubstr("exit code 3: "));
+  EXPECT_THAT(FailureOf("import"), HasSubstr("objects.json"));
+  EXPECT_EQ(SmallPipeline::Artefacts(pipeline_.Results() / "InitP"), unlaunched);
+}
+
 // The project's Makefile, up to what would build the executables.
 TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
   const SmallPipeline pipeline(kFrames);
