@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "artefact/json_file.h"
+#include "base/error.h"
 #include "base/file_kind.h"
 #include "report/run_folder.h"
 
@@ -33,8 +35,9 @@ std::vector<std::string> LinesOf(const fs::path& file) {
 
 class StateFinder {
  public:
-  StateFinder(const Plan& plan, const PlanFolders& folders, const fs::path& executables)
-      : plan_(plan), folders_(folders), executables_(executables) {}
+  StateFinder(const Plan& plan, const PlanFolders& folders, const fs::path& executables,
+              const StagesUnderWay& under_way)
+      : plan_(plan), folders_(folders), executables_(executables), under_way_(under_way) {}
 
   std::map<std::string, InstanceState> Find() {
     for (const StageInstance& instance : plan_.instances) states_[instance.Id()] = Find(instance);
@@ -74,6 +77,8 @@ class StateFinder {
     if (found.state == StageState::kDone && !found.reasons.empty()) {
       found.state = StageState::kStale;
     }
+    const auto job = under_way_.find(instance.Id());
+    if (found.state != StageState::kDone && job != under_way_.end()) found.state = job->second;
     return found;
   }
 
@@ -141,6 +146,7 @@ class StateFinder {
   const Plan& plan_;
   const PlanFolders& folders_;
   const fs::path& executables_;
+  const StagesUnderWay& under_way_;
   std::map<std::string, InstanceState> states_;
 };
 
@@ -171,15 +177,39 @@ const char* NameOf(StageState state) {
       return "stale";
     case StageState::kFailed:
       return "failed";
+    case StageState::kQueued:
+      return "queued";
+    case StageState::kRunning:
+      return "running";
     case StageState::kMissing:
       break;
   }
   return "missing";
 }
 
+std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
+  std::map<std::string, StagesUnderWay> under_way;
+  for (const std::string& line : LinesOf(file)) {
+    std::istringstream words(line);
+    std::string dataset, id, state, more;
+    words >> dataset >> id >> state;
+    const bool is_running = state == NameOf(StageState::kRunning);
+    if ((!is_running && state != NameOf(StageState::kQueued)) || words >> more) {
+      throw InputError(
+          fmt::format("{}: a line is '{}'; expected '<dataset> <stage run> queued' or "
+                      "'... running'",
+                      file.string(), line));
+    }
+    const auto known = under_way[dataset].try_emplace(id, StageState::kQueued).first;
+    if (is_running) known->second = StageState::kRunning;
+  }
+  return under_way;
+}
+
 std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
-                                              const fs::path& executables) {
-  return StateFinder(plan, folders, executables).Find();
+                                              const fs::path& executables,
+                                              const StagesUnderWay& under_way) {
+  return StateFinder(plan, folders, executables, under_way).Find();
 }
 
 std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChain& variant,

@@ -33,7 +33,8 @@ std::vector<std::string> PlannedDatasets(const fs::path& results) {
 // What is known of one dataset's runs.
 class Status {
  public:
-  Status(std::string name, const StatusOptions& options, const StageFiles& files)
+  Status(std::string name, const StatusOptions& options, const StageFiles& files,
+         const StagesUnderWay& under_way)
       : name_(std::move(name)), folders_(ReadPlanFolders(files.at("results") / name_ / "plan.mk")) {
     folders_.results = files.at("results") / name_;
     // So that changed settings and files count; without the dataset the last plan has to do.
@@ -46,7 +47,7 @@ class Status {
               1);
     }
     plan_ = MakePlan(folders_.pipelines, name_, Variants(options));
-    states_ = StatesOf(plan_, folders_, files.at("executables"));
+    states_ = StatesOf(plan_, folders_, files.at("executables"), under_way);
   }
 
   void PrintTable() const {
@@ -156,10 +157,12 @@ void RunStatus(const StatusOptions& options, const StageFiles& files, int /*thre
   if (datasets.empty()) {
     fmt::print("nothing ran yet: there is no {}\n", (results / "<dataset>/plan.mk").string());
   }
+  std::map<std::string, StagesUnderWay> under_way;
+  if (files.contains("under_way")) under_way = ReadStagesUnderWay(files.at("under_way"));
   std::optional<SettingsError> failure;  // the last one, once all others have been shown
   for (const std::string& name : datasets) {
     try {
-      const Status status(name, options, files);
+      const Status status(name, options, files, under_way[name]);
       if (options.explain.empty()) {
         status.PrintTable();
       } else {

@@ -24,8 +24,9 @@ struct StatusOptions {
 
 // Plans the datasets in folder "results" anew, and prints which stages of which variants are done,
 // stale, failed or missing, or why one stage would run. "executables" is the folder of the stages'
-// programs. Throws InputError when that dataset was never planned; SettingsError for an unknown
-// variant or stage, and as RunPlan.
+// programs; "under_way", if given, says what is queued or running, see ReadStagesUnderWay. Throws
+// InputError when that dataset was never planned; SettingsError for an unknown variant or stage,
+// and as RunPlan.
 void RunStatus(const StatusOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

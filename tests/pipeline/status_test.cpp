@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "support/background_command.h"
+#include "support/eventually.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
@@ -115,6 +117,32 @@ TEST_F(StatusTest, CrashIsAFailure) {
   EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + programs.string()}).exit_code, 0);
   EXPECT_THAT(Status({"--variants", "InitP"}),
               ContainsRegex("evaluate-[0-9a-f]+: its last run failed: exit code 139"));
+}
+
+// As a run leaves it: whoever runs stages has the lock, and what began has not ended.
+TEST_F(StatusTest, WhatBeganRunsAsLongAsTheLockIsHeld) {
+  const fs::path stage = fs::canonical(pipeline_.Results() / "InitP/metrics.json").parent_path();
+  WriteBytes(stage / "done.begun", "");
+  const fs::path results = pipeline_.Results().parent_path();
+  const auto under_way = [&] {
+    const CommandResult result =
+        RunCommand({SOSLAM_SOURCE_DIR "/pipelines/under-way", results.string()});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.output;
+  };
+  WriteBytes(results / ".small.lock", "");
+  EXPECT_EQ(under_way(), "");
+  {
+    const BackgroundCommand run({"flock", (results / ".small.lock").string(), "sleep", "600"});
+    const std::string line = "small " + stage.filename().string() + " running\n";
+    EXPECT_TRUE(Eventually([&] { return under_way() == line; }));
+    WriteBytes(pipeline_.Folder() / "under_way", line);
+    fs::remove(stage / "done");
+    EXPECT_THAT(
+        Status({"--variants", "InitP", "--under_way", (pipeline_.Folder() / "under_way").string()}),
+        ContainsRegex("InitP +done +done +running"));
+  }
+  EXPECT_EQ(under_way(), "");
 }
 
 TEST(StatusOfNothingTest, UnknownStageIsRefused) {

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include "base/error.h"
+#include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -131,6 +133,33 @@ TEST_F(PlanStateTest, FailureIsSaidFirst) {
   EXPECT_THAT(Reasons("import"),
               ElementsAre("its last run failed: exit code 3: poses.txt: is empty",
                           HasSubstr("soslam-import")));
+}
+
+TEST_F(PlanStateTest, WhatIsQueuedOrRunsSaysSoUnlessItIsDone) {
+  Write("bin/soslam-initialise", "");
+  Write(ResultOf("evaluate", "failed"), "exit code 4: nothing\n");
+  const std::string import = "room " + InstanceOf("import").Id();
+  const std::string initialise = "room " + InstanceOf("initialise").Id();
+  const std::string evaluate = "room " + InstanceOf("evaluate").Id();
+  const std::string other = "desk " + InstanceOf("evaluate").Id();
+  Write("under_way", import + " queued\n" + initialise + " running\n" + initialise + " queued\n" +
+                         evaluate + " queued\n" + other + " running\n");
+  auto under_way = ReadStagesUnderWay(folder_ / "under_way");
+  const auto states = StatesOf(plan_, folders_, folder_ / "bin", under_way["room"]);
+  const auto state = [&](const std::string& stage) {
+    return std::string(NameOf(states.at(InstanceOf(stage).Id()).state));
+  };
+  EXPECT_EQ(state("import"), "done");
+  EXPECT_EQ(state("initialise"), "running");
+  EXPECT_EQ(state("evaluate"), "queued");
+}
+
+TEST_F(PlanStateTest, StagesUnderWayAreRefusedUnlessTheyAreQueuedOrRunning) {
+  for (const char* line : {"room import-0123456789 done", "room queued", "a b queued c", ""}) {
+    Write("under_way", std::string(line) + "\n");
+    ExpectError<InputError>([&] { ReadStagesUnderWay(folder_ / "under_way"); },
+                            {"under_way", line, "expected"});
+  }
 }
 
 TEST_F(PlanStateTest, ChangesSinceTheLastCompleteRun) {
