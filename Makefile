@@ -12,6 +12,11 @@ THREADS ?= 0
 BUILD ?= build
 CMAKE_ARGS ?=
 OUTSIDE_PATHS ?=
+LAUNCH ?=
+DATASETS ?=
+SCENES ?=
+SEEDS ?= 1
+SBATCH ?=
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -23,13 +28,22 @@ SOURCES = $(shell find lib stages tests -name '*.h' -o -name '*.cpp')
 PLAN = $(RESULTS)/$(DATASET)/plan.mk
 PLAN_COMMAND = $(BIN)/soslam-plan --dataset $(DATA_ROOT)/$(DATASET) --name $(DATASET) \
   --pipelines $(PIPELINES) --results $(RESULTS) --variants '$(filter-out all,$(VARIANT))'
-STATUS_COMMAND = $(BIN)/soslam-status --results $(RESULTS) --executables $(BIN) \
-  --name '$(DATASET)' --variants '$(filter-out all,$(VARIANT))'
+STATUS_COMMAND = pipelines/under-way $(RESULTS) | $(BIN)/soslam-status --results $(RESULTS) --executables $(BIN) \
+  --under_way /dev/stdin --name '$(DATASET)' --variants '$(filter-out all,$(VARIANT))'
+
+# A sweep: datasets, and each scene rendered with each seed of its noise, as dataset <scene>-seed<seed> in DATA_ROOT.
+scene-name = $(basename $(notdir $(1)))
+SEEDED = $(foreach scene,$(SCENES),$(SEEDS:%=$(call scene-name,$(scene))-seed%))
+SWEEP = $(DATASETS) $(SEEDED)
 
 one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
 $(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
 ifneq ($(filter run ablation export explain,$(MAKECMDGOALS)),)
 $(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
+endif
+ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
+$(if $(DATASETS)$(SCENES),,$(error expected DATASETS='<name> ...', SCENES='<file> ...' or both))
+$(if $(filter-out $(words $(sort $(SEEDED))),$(words $(SEEDED))),$(error SCENES or SEEDS='$(SEEDS)' has a name twice))
 endif
 ifneq ($(filter explain,$(MAKECMDGOALS)),)
 $(call one-word,STAGE,expected the name of one stage)
@@ -45,7 +59,9 @@ help: ## List the targets
 	@echo 'DATASET=<name of a folder in DATA_ROOT>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
 	@echo 'RESULTS=results, PIPELINES=pipelines, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
 	@echo 'OUTSIDE_PATHS=--allow_outside_paths (images may lie outside their dataset: see docs/datasets.md)'
-	@echo 'STAGE=<name> as in the table of `make status`'
+	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
+	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
+	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
 	@echo 'Variants: $(sort $(basename $(notdir $(wildcard $(PIPELINES)/variants/*.json))))'
 
 .PHONY: demo
@@ -64,21 +80,56 @@ LOCK = $(RESULTS)/.$(DATASET).lock
 
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
+	+@$(MAKE) run-built
+
+.PHONY: run-built
+run-built:
 	@mkdir -p $(RESULTS)
 	@flock --nonblock --conflict-exit-code 75 $(LOCK) true || test $$? -ne 75 || \
 	  echo 'run: waiting for another run of $(DATASET) in $(RESULTS)'
 	+@if test -e $(LOCK); then flock $(LOCK) $(MAKE) locked-run; else $(MAKE) locked-run; fi
 
-# Killed stages leave temporaries. (Those of exports and pages may be of a run beside this one.) After the clock was set back, files from the future would pass for
-# newer than what changes from now on: their stamps go, and they are of now.
 .PHONY: locked-run
-locked-run:
-	@if test -d $(RESULTS)/$(DATASET); then \
-	  find $(RESULTS)/$(DATASET) -name '.*.tmp' -not -path '*/export/*' -not -name '.report.*' -delete; \
-	  find $(RESULTS)/$(DATASET) -type f -newermt now \( -name done -delete -o -exec touch {} + \); fi
-	$(if $(wildcard $(BIN)/soslam-plan),+)@$(PLAN_COMMAND)
+locked-run: locked-plan
 	+@if test -e $(PLAN); then $(MAKE) --keep-going $(SEVERAL_JOBS) -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
 	else echo '# then the stages that $(PLAN) lists'; fi
+
+# Killed stages leave temporaries and what says that they began. (Those of exports and pages may be of a run beside
+# this one.) After the clock was set back, files from the future would pass for newer than what changes from now on:
+# their stamps go, and they are of now.
+.PHONY: locked-plan
+locked-plan:
+	@if test -d $(RESULTS)/$(DATASET); then \
+	  find $(RESULTS)/$(DATASET) -name '.*.tmp' -not -path '*/export/*' -not -name '.report.*' -delete; \
+	  find $(RESULTS)/$(DATASET) -name done.begun -delete; \
+	  find $(RESULTS)/$(DATASET) -type f -newermt now \( -name done -delete -o -exec touch {} + \); fi
+	$(if $(wildcard $(BIN)/soslam-plan),$(if $(wildcard $(DATA_ROOT)/$(DATASET)),+))@$(PLAN_COMMAND)
+
+# Rendered once, and again when the scene changes.
+define scene-rule
+$(DATA_ROOT)/$(call scene-name,$(1))-seed%/run.json: $(1) | $(BIN)/soslam-synthesise
+	@echo '[$$(notdir $$(@D))] synthesise'
+	@$$(LAUNCH) $(BIN)/soslam-synthesise --scene $(1) --seed $$* --output $$(@D) --threads $(THREADS) $$(QUIET)
+endef
+$(foreach scene,$(SCENES),$(eval $(call scene-rule,$(scene))))
+$(foreach name,$(SEEDED),$(eval swept/$(name): $(DATA_ROOT)/$(name)/run.json))
+
+.PHONY: scenes
+scenes: $(SEEDED:%=$(DATA_ROOT)/%/run.json)
+
+.PHONY: sweep
+sweep: build ## Run DATASETS and SCENES with SEEDS through VARIANT=<name>|all; with -j, side by side
+	+@$(MAKE) --keep-going $(SEVERAL_JOBS) $(SWEEP:%=swept/%)
+
+.PHONY: $(SWEEP:%=swept/%)
+$(SWEEP:%=swept/%):
+	+@$(MAKE) run-built DATASET=$(@F)
+
+.PHONY: submit
+submit: build ## Queue with Slurm what `make sweep` would run; `make status` then shows it
+	+@$(MAKE) --keep-going $(SEVERAL_JOBS) scenes
+	@mkdir -p $(RESULTS)
+	$(if $(findstring n,$(firstword -$(MAKEFLAGS))),,+)@pipelines/slurm/submit $(RESULTS) $(BIN) '$(SWEEP)' $(SBATCH)
 
 .PHONY: ablation
 ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RESULTS/ablation
@@ -107,7 +158,7 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	done; exit $$status
 
 .PHONY: status
-status: ## Say for each dataset, variant and stage: done, stale, failed or missing
+status: ## Say for each dataset, variant and stage: done, stale, failed, missing, queued or running
 	@$(STATUS_COMMAND)
 
 .PHONY: explain
@@ -142,6 +193,12 @@ test: $(BUILD)/build.ninja ## Build everything and run all tests
 	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
 	@flock $(BUILD) cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2
+
+.PHONY: test-slurm
+test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of two nodes on this machine
+	@pipelines/install-packages.sh pipelines/slurm-packages.txt
+	@flock $(BUILD) cmake --build $(BUILD) --target slurm_test
+	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm\.'
 
 # Five repetitions, each of a tenth of a second or more: the table has their medians.
 .PHONY: bench
