@@ -3,16 +3,23 @@
 
 #include <ceres/sized_cost_function.h>
 
+#include "constraints/tangent_space.h"
+
 namespace soslam {
 
-// Keeps a nuisance parameter near zero: value / sigma. Residuals: 1. Block: the value.
-class BiasResidual final : public ceres::SizedCostFunction<1, 1> {
+// Keeps a detector's bias near zero. Residuals: 4 (left, top, right and bottom edges), each divided
+// by sigma. Block: the bias (px).
+class BiasResidual final : public ceres::SizedCostFunction<kBiasSize, kBiasSize> {
  public:
-  explicit BiasResidual(double sigma) : weight_(1.0 / sigma) {}
+  explicit BiasResidual(double sigma_px) : weight_(1.0 / sigma_px) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    residuals[0] = weight_ * blocks[0][0];
-    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = weight_;
+    Eigen::Map<Eigen::Vector4d> values(residuals);
+    values = weight_ * Eigen::Vector4d(blocks[0]);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix4d> by_bias(jacobians[0]);
+      by_bias = weight_ * Eigen::Matrix4d::Identity();
+    }
     return true;
   }
 

@@ -71,23 +71,4 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   return 0.0;
 }
 
-TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera)
-    : edge_(edge),
-      depth_m_(TangentDepth(edge, start_in_camera)),
-      shape_exponent_(start_in_camera.shape_exponent) {}
-
-bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
-                                double** jacobians) const {
-  const RelativeObservation observation(blocks, shape_exponent_);
-  LandmarkJacobian1 by_landmark;
-  residuals[0] =
-      Tangency(edge_, observation.landmark_in_camera(), depth_m_, blocks[2][0], &by_landmark);
-  observation.WriteJacobians<1>(by_landmark, blocks, jacobians);
-  if (jacobians != nullptr && jacobians[2] != nullptr) {
-    const bool is_free = edge_.is_bound && residuals[0] == 0.0;
-    jacobians[2][0] = is_free ? 0.0 : -1.0 / edge_.sigma_px;
-  }
-  return std::isfinite(residuals[0]);
-}
-
 }  // namespace soslam

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/sized_cost_function.h>
-
 #include <Eigen/Core>
 #include <array>
 
@@ -43,20 +41,5 @@ double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
 // front of the camera.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian);
-
-// Tangency of one edge of a detection, less a bias of the detector. Residuals: 1, no unit. Blocks:
-// world_from_camera, landmark in the world, bias (px, how far this edge of all boxes has to move
-// outwards). The shape exponent and the depth of the tangent point are those of `start_in_camera`.
-class TangencyResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize, 1> {
- public:
-  TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera);
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
-
- private:
-  BoxEdge edge_;
-  double depth_m_;
-  double shape_exponent_;
-};
 
 }  // namespace soslam

@@ -23,10 +23,10 @@ double Change(const Landmark& from, const Landmark& to) {
 }
 
 // In the world, where the variables are; none for objects without a start.
-std::vector<std::optional<Landmark>> LandmarksOf(BackEndProblem* problem, size_t objects) {
+std::vector<std::optional<Landmark>> LandmarksOf(const BackEndProblem& problem, size_t objects) {
   std::vector<std::optional<Landmark>> landmarks;
   for (size_t i = 0; i < objects; ++i) {
-    landmarks.push_back(problem->variables().LandmarkValue(i));
+    landmarks.push_back(problem.variables().LandmarkValue(i));
   }
   return landmarks;
 }
@@ -34,10 +34,10 @@ std::vector<std::optional<Landmark>> LandmarksOf(BackEndProblem* problem, size_t
 // Whether they settled.
 bool SettleWithImages(size_t objects, BackEndProblem* problem) {
   for (int round = 0; round < kMaxImageRounds; ++round) {
-    const std::vector<std::optional<Landmark>> before = LandmarksOf(problem, objects);
+    const std::vector<std::optional<Landmark>> before = LandmarksOf(*problem, objects);
     problem->RenewImageTerms();
     problem->Solve();
-    const std::vector<std::optional<Landmark>> after = LandmarksOf(problem, objects);
+    const std::vector<std::optional<Landmark>> after = LandmarksOf(*problem, objects);
     double change = 0.0;
     for (size_t i = 0; i < before.size(); ++i) {
       if (before[i]) change = std::max(change, Change(*before[i], *after[i]));
@@ -47,7 +47,7 @@ bool SettleWithImages(size_t objects, BackEndProblem* problem) {
   return false;
 }
 
-void AddObjects(const BackEndInput& input, BackEndProblem* problem, MapEstimate* map) {
+void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEstimate* map) {
   const auto detections = DetectionsByObject(input.sequence);
   const std::vector<std::optional<Landmark>> landmarks = LandmarksOf(problem, input.starts.size());
   for (size_t i = 0; i < landmarks.size(); ++i) {
@@ -65,8 +65,7 @@ void AddObjects(const BackEndInput& input, BackEndProblem* problem, MapEstimate*
   }
 }
 
-void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndVariables* variables,
-                            MapEstimate* map) {
+void AddLandmarkCovariances(const MarginalCovariances& covariances, MapEstimate* map) {
   int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
@@ -74,24 +73,28 @@ void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndVaria
       ++without;
       continue;
     }
-    object.covariance =
-        covariances.OfLandmark(variables->Landmark(static_cast<size_t>(object.object_index)));
+    object.covariance = covariances.OfLandmark(static_cast<size_t>(object.object_index));
   }
   if (without > 0) map->solver.gated["covariance_of_undetermined_problem"] = without;
 }
 
+bool DependOn(int variable, const Terms& terms) {
+  return std::ranges::any_of(terms, [variable](const Term* term) {
+    return std::ranges::count(term->variables(), variable) > 0;
+  });
+}
+
 void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
-                         BackEndProblem* problem, MapEstimate* map) {
+                         const BackEndProblem& problem, MapEstimate* map) {
   if (!covariances.AreDetermined()) return;
-  BackEndVariables& variables = problem->variables();
+  const BackEndVariables& variables = problem.variables();
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
-    const bool holds_something = problem->problem().HasParameterBlock(variables.Offset(i));
+    const bool holds_something = DependOn(variables.Offset(i), problem.AllTerms());
     if (!sequence.planes[i].attitude_information || !holds_something) continue;
     Eigen::Vector4d sides = Eigen::Vector4d::Ones();
     sides.head<3>() *= variables.NormalSide(i);
     map->plane_covariances[static_cast<int>(i)] =
-        sides.asDiagonal() * covariances.OfPlane(variables.Normal(i), variables.Offset(i)) *
-        sides.asDiagonal();
+        sides.asDiagonal() * covariances.OfPlane(i) * sides.asDiagonal();
   }
 }
 
@@ -119,11 +122,11 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   for (size_t i = 0; i < input.sequence.planes.size(); ++i) {
     map.planes_in_world.push_back(variables.PlaneValue(i));
   }
-  AddObjects(input, &problem, &map);
+  AddObjects(input, problem, &map);
   if (options.covariances) {
-    const MarginalCovariances covariances(&problem.problem());
-    AddLandmarkCovariances(covariances, &problem.variables(), &map);
-    AddPlaneCovariances(input.sequence, covariances, &problem, &map);
+    const MarginalCovariances covariances(problem.variables(), problem.AllTerms());
+    AddLandmarkCovariances(covariances, &map);
+    AddPlaneCovariances(input.sequence, covariances, problem, &map);
   }
   return map;
 }

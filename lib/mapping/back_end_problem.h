@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/ceres.h>
+#include <ceres/cost_function.h>
 
-#include <deque>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "mapping/back_end.h"
 #include "mapping/back_end_variables.h"
+#include "mapping/normal_equations.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
 
@@ -26,19 +27,20 @@ class BackEndProblem {
   // of an earlier call are replaced.
   void RenewImageTerms();
 
-  // Minimises from where the variables are. Throws NumericalError when there is no usable solution.
+  // Minimises from where the variables are. Throws NumericalError where the cost is not defined
+  // there.
   void Solve();
 
   const SolverSummary& summary() const { return summary_; }
-  ceres::Problem& problem() { return problem_; }
   // Where Solve has left them.
   BackEndVariables& variables() { return variables_; }
+  const BackEndVariables& variables() const { return variables_; }
+  Terms AllTerms() const;
 
  private:
   void HoldPoses();
   void WeighViews();
   void AddOdometry();
-  void AddPlanes();
   void AddLandmark(size_t object_index);
   void AddStanding(size_t object_index);
   void AddRatio(size_t object_index);
@@ -50,26 +52,26 @@ class BackEndProblem {
   void AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
                     const Landmark& landmark_in_camera);
   void AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image);
-  void HoldBias();
+  void AddBias();
   // A detection's landmark as its camera sees it, where the variables are.
   Landmark LandmarkInCamera(const Detection& detection) const;
-  double* Pose(const Detection& detection) {
+  int Pose(const Detection& detection) const {
     return variables_.Pose(static_cast<size_t>(detection.frame_index));
   }
-  double* LandmarkOf(const Detection& detection) {
+  int LandmarkOf(const Detection& detection) const {
     return variables_.Landmark(static_cast<size_t>(detection.object_index));
   }
-  std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();
-  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering();
+  // A residual block of these variables.
+  std::unique_ptr<const Term> TermOf(std::unique_ptr<const ceres::CostFunction> residual,
+                                     const std::vector<int>& variables, double huber_delta) const;
 
   const BackEndInput& input_;
   const OptimiseOptions& options_;
-  ceres::HuberLoss loss_;
   std::vector<double> view_weights_;  // one per detection
-  std::deque<ceres::ScaledLoss> view_losses_;
-  ceres::Problem problem_;
   BackEndVariables variables_;
-  std::vector<ceres::ResidualBlockId> image_terms_;
+  std::set<int> normals_under_objects_;
+  std::vector<std::unique_ptr<const Term>> terms_;
+  std::vector<std::unique_ptr<const Term>> image_terms_;
   SolverSummary summary_;
 };
 

@@ -6,8 +6,6 @@
 namespace soslam {
 namespace {
 
-constexpr size_t kEdges = 4;
-
 std::vector<size_t> SharedNormals(const std::vector<SupportPlane>& planes) {
   const auto are_parallel = [](const SupportPlane& one, const SupportPlane& other) {
     const Eigen::Vector3d& normal = one.plane_in_world.normal;
@@ -27,36 +25,48 @@ std::vector<size_t> SharedNormals(const std::vector<SupportPlane>& planes) {
 }  // namespace
 
 BackEndVariables::BackEndVariables(const BackEndInput& input)
-    : input_(input),
-      normal_of_plane_(SharedNormals(input.sequence.planes)),
-      landmarks_begin_(kPoseSize * input.sequence.frames.size()),
-      normals_begin_(landmarks_begin_ + kLandmarkSize * input.starts.size()),
-      offsets_begin_(normals_begin_ + kNormalSize * input.sequence.planes.size()),
-      biases_begin_(offsets_begin_ + kOffsetSize * input.sequence.planes.size()),
-      values_(biases_begin_ + kEdges, 0.0) {
+    : input_(input), normal_of_plane_(SharedNormals(input.sequence.planes)) {
   const Sequence& sequence = input.sequence;
+  const auto add = [&](VariableKind kind, size_t count) {
+    const auto first = static_cast<int>(all_.size());
+    all_.insert(all_.end(), count, {kind, nullptr});
+    return first;
+  };
+  add(VariableKind::kPose, sequence.frames.size());
+  first_landmark_ = add(VariableKind::kLandmark, input.starts.size());
+  first_normal_ = add(VariableKind::kNormal, sequence.planes.size());
+  first_offset_ = add(VariableKind::kOffset, sequence.planes.size());
+  add(VariableKind::kBias, 1);
+  size_t size = 0;
+  for (const Variable& variable : all_) size += static_cast<size_t>(NumValues(variable.kind));
+  values_.assign(size, 0.0);
+  double* next = values_.data();
+  for (Variable& variable : all_) {
+    variable.values = next;
+    next += NumValues(variable.kind);
+  }
+  const auto values = [&](int index) { return all_[static_cast<size_t>(index)].values; };
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    std::ranges::copy(Pack(sequence.frames[i].world_from_camera), Pose(i));
+    std::ranges::copy(Pack(sequence.frames[i].world_from_camera), values(Pose(i)));
   }
   for (size_t i = 0; i < input.starts.size(); ++i) {
-    if (input.starts[i]) std::ranges::copy(Pack(*input.starts[i]), Landmark(i));
+    if (input.starts[i]) std::ranges::copy(Pack(*input.starts[i]), values(Landmark(i)));
   }
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const Plane& plane = sequence.planes[i].plane_in_world;
-    if (normal_of_plane_[i] == i) Eigen::Map<Eigen::Vector3d>(Normal(i)) = plane.normal;
-    const Eigen::Map<const Eigen::Vector3d> shared(Normal(i));
+    if (normal_of_plane_[i] == i) Eigen::Map<Eigen::Vector3d>(values(Normal(i))) = plane.normal;
+    const Eigen::Map<const Eigen::Vector3d> shared(values(Normal(i)));
     side_of_plane_.push_back(shared == plane.normal ? 1.0 : -1.0);
-    *Offset(i) = plane.offset;
+    *values(Offset(i)) = plane.offset;
   }
 }
 
 Rigid3d BackEndVariables::PoseValue(size_t frame_index) const {
-  return UnpackPose(&values_[kPoseSize * frame_index]);
+  return UnpackPose(Values(Pose(frame_index)));
 }
 
 Plane BackEndVariables::PlaneValue(size_t plane_index) const {
-  Plane plane = UnpackPlane(&values_[normals_begin_ + kNormalSize * normal_of_plane_[plane_index]],
-                            &values_[offsets_begin_ + plane_index]);
+  Plane plane = UnpackPlane(Values(Normal(plane_index)), Values(Offset(plane_index)));
   plane.normal *= NormalSide(plane_index);
   return plane;
 }
@@ -64,15 +74,14 @@ Plane BackEndVariables::PlaneValue(size_t plane_index) const {
 std::optional<soslam::Landmark> BackEndVariables::LandmarkValue(size_t object_index) const {
   const auto& start = input_.starts[object_index];
   if (!start) return std::nullopt;
-  soslam::Landmark landmark =
-      UnpackLandmark(&values_[landmarks_begin_ + kLandmarkSize * object_index]);
+  soslam::Landmark landmark = UnpackLandmark(Values(Landmark(object_index)));
   landmark.shape_exponent = start->shape_exponent;
   return landmark;
 }
 
 std::array<double, 4> BackEndVariables::BiasValues() const {
-  std::array<double, kEdges> biases;
-  std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(biases_begin_), kEdges, biases.begin());
+  std::array<double, kBiasSize> biases;
+  std::copy_n(Values(Bias()), kBiasSize, biases.begin());
   return biases;
 }
 

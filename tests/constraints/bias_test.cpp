@@ -8,15 +8,14 @@
 namespace soslam {
 namespace {
 
-TEST(BiasResidual, IsTheValueInStandardDeviations) {
+TEST(BiasResidual, IsTheBiasInStandardDeviations) {
   const BiasResidual residual(0.25);
-  for (const double bias : {-1.5, 0.0, 2.0}) {
-    const double* blocks[] = {&bias};
-    double value = 0.0;
-    EXPECT_TRUE(residual.Evaluate(blocks, &value, nullptr));
-    EXPECT_DOUBLE_EQ(value, 4.0 * bias);
-    ExpectCorrectJacobians(residual, {&bias});
-  }
+  const double bias[] = {-1.5, 0.0, 2.0, 0.5};
+  const double* blocks[] = {bias};
+  Eigen::Vector4d values;
+  EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
+  EXPECT_EQ(values, 4.0 * Eigen::Vector4d(bias));
+  ExpectCorrectJacobians(residual, {bias});
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "support/jacobians.h"
 #include "support/random_scene.h"
 #include "support/shape_exponents.h"
 
@@ -182,44 +181,6 @@ TEST(Tangency, OfABoundCountsOnlyWhatIsMissing) {
   }
   EXPECT_GT(reached, 10);
   EXPECT_LT(reached, 90);
-}
-
-TEST(TangencyResidual, JacobiansAgreeWithNumbers) {
-  for (const double p : kShapeExponents) {
-    SCOPED_TRACE(p);
-    for (int i = 0; i < 20; ++i) {
-      RandomView view;
-      BoxEdge edge = RandomEdge();
-      // Off the rounded kinks, whose scale is not far from the steps of the numeric differences.
-      const Eigen::Vector3d in_object =
-          view.LandmarkInCamera().frame_from_object.rotation.conjugate() * edge.plane.normalized();
-      if (p < 1.2 && in_object.cwiseAbs().minCoeff() < 0.1) continue;
-      for (const bool is_bound : {false, true}) {
-        edge.is_bound = is_bound;
-        const TangencyResidual residual(edge, WithShape(view.LandmarkInCamera(), p));
-        const double bias_px = RandomUniform(-2, 2);
-        ExpectCorrectJacobians(residual,
-                               {view.camera_block.data(), view.landmark_block.data(), &bias_px});
-      }
-    }
-  }
-}
-
-TEST(TangencyResidual, IsTheTangencyAtItsStartAndDoesNotChangeWithTheWorld) {
-  RandomView view;
-  const Landmark start = WithShape(view.LandmarkInCamera(), 1.4);
-  const BoxEdge edge = RandomEdge();
-  const TangencyResidual residual(edge, start);
-  const double bias_px = 0.7;
-  const auto evaluate = [&] {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    const double* blocks[] = {view.camera_block.data(), view.landmark_block.data(), &bias_px};
-    EXPECT_TRUE(residual.Evaluate(blocks, &value, nullptr));
-    return value;
-  };
-  EXPECT_NEAR(evaluate(), AtOwnDepth(edge, start, bias_px), 1e-9);
-  view.Move(RandomRigid(10.0));
-  EXPECT_NEAR(evaluate(), AtOwnDepth(edge, start, bias_px), 1e-9);
 }
 
 }  // namespace

@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/covariance.h"
 
-#include <ceres/ceres.h>
+#include <ceres/sized_cost_function.h>
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <utility>
+#include <memory>
 
 #include "mapping/back_end_problem.h"
-#include "mapping/choose_starts.h"
+#include "mapping/cost_function_term.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
 
 namespace soslam {
 namespace {
-
-ceres::Covariance::Options CeresOptions() {
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::SPARSE_QR;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  return options;
-}
 
 // Of two floors that share a normal and six bodies on them, with poses and biases to estimate.
 class MarginalCovariancesTest : public testing::Test {
@@ -42,74 +35,91 @@ class MarginalCovariancesTest : public testing::Test {
   BackEndProblem problem_{input_, options_};
 };
 
-TEST_F(MarginalCovariancesTest, OfLandmarksAreThoseOfCeres) {
-  problem_.Solve();
-  const MarginalCovariances covariances(&problem_.problem());
-  ASSERT_TRUE(covariances.AreDetermined());
-  for (size_t i = 0; i < sequence_.objects.size(); ++i) {
-    const double* block = problem_.variables().Landmark(i);
-    ceres::Covariance by_ceres(CeresOptions());
-    ASSERT_TRUE(by_ceres.Compute({std::pair(block, block)}, &problem_.problem()));
-    Eigen::Matrix<double, 9, 9, Eigen::RowMajor> expected;
-    by_ceres.GetCovarianceBlockInTangentSpace(block, block, expected.data());
-    expected.topRows<3>() *= 2.0;  // half a rotation vector there
-    expected.leftCols<3>() *= 2.0;
-    EXPECT_TRUE(covariances.OfLandmark(block).isApprox(expected, 1e-6));
+// The inverse of the whole information matrix, rows and columns in the order of the blocks.
+Eigen::MatrixXd DenseCovariance(const SymmetricBlocks& information) {
+  Eigen::MatrixXd dense(information.NumRows(), information.NumRows());
+  dense.setZero();
+  for (const auto& block : information.blocks()) {
+    dense.block(information.FirstRow(block.row), information.FirstRow(block.column),
+                information.Size(block.row), information.Size(block.column)) =
+        information.At(block.row, block.column);
   }
+  return Eigen::MatrixXd(dense.selfadjointView<Eigen::Lower>()).inverse();
 }
 
-TEST_F(MarginalCovariancesTest, OfPlanesAreThoseOfCeres) {
+TEST_F(MarginalCovariancesTest, AreBlocksOfTheInverseOfTheInformation) {
   problem_.Solve();
-  const MarginalCovariances covariances(&problem_.problem());
+  const BackEndVariables& variables = problem_.variables();
+  const Terms terms = problem_.AllTerms();
+  NormalEquations equations(variables.all(), terms);
+  equations.Linearise(std::vector<Hessian>(terms.size(), Hessian::kInformation));
+  const SymmetricBlocks& information = equations.hessian();
+  const Eigen::MatrixXd expected = DenseCovariance(information);
+  const auto row = [&](int variable) { return information.FirstRow(equations.BlockOf(variable)); };
+
+  const MarginalCovariances covariances(variables, terms);
+  ASSERT_TRUE(covariances.AreDetermined());
+  for (size_t i = 0; i < sequence_.objects.size(); ++i) {
+    const int first = row(variables.Landmark(i));
+    EXPECT_TRUE(covariances.OfLandmark(i).isApprox(
+        (expected.block<kLandmarkDof, kLandmarkDof>(first, first)), 1e-6));
+  }
   for (size_t i = 0; i < 2; ++i) {
-    const double* normal = problem_.variables().Normal(i);
-    const double* offset = problem_.variables().Offset(i);
-    ceres::Covariance by_ceres(CeresOptions());
-    ASSERT_TRUE(by_ceres.Compute(
-        {std::pair(normal, normal), std::pair(normal, offset), std::pair(offset, offset)},
-        &problem_.problem()));
-    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> of_normal;
-    Eigen::Vector3d mixed;
-    double of_offset = 0.0;
-    by_ceres.GetCovarianceBlock(normal, normal, of_normal.data());
-    by_ceres.GetCovarianceBlock(normal, offset, mixed.data());
-    by_ceres.GetCovarianceBlock(offset, offset, &of_offset);
-    Eigen::Matrix4d expected;
-    expected << of_normal, mixed, mixed.transpose(), of_offset;
-    EXPECT_TRUE(covariances.OfPlane(normal, offset).isApprox(expected, 1e-6));
+    const Eigen::MatrixXd by_step =
+        ByStep(VariableKind::kNormal, variables.Values(variables.Normal(i)));
+    const int normal = row(variables.Normal(i));
+    const int offset = row(variables.Offset(i));
+    const Eigen::MatrixXd of_normal =
+        by_step * expected.block<2, 2>(normal, normal) * by_step.transpose();
+    const Eigen::Vector3d mixed = by_step * expected.block<2, 1>(normal, offset);
+    Eigen::Matrix4d of_plane;
+    of_plane << of_normal, mixed, mixed.transpose(), expected(offset, offset);
+    EXPECT_TRUE(covariances.OfPlane(i).isApprox(of_plane, 1e-6));
   }
 }
 
 TEST_F(MarginalCovariancesTest, OfAPlaneThatIsHeldAreZero) {
   problem_.Solve();
-  double* normal = problem_.variables().Normal(0);
-  double* offset = problem_.variables().Offset(0);
-  problem_.problem().SetParameterBlockConstant(normal);
+  BackEndVariables& variables = problem_.variables();
+  variables.Hold(variables.Normal(0));
   const Eigen::Matrix4d held_normal =
-      MarginalCovariances(&problem_.problem()).OfPlane(normal, offset);
+      MarginalCovariances(variables, problem_.AllTerms()).OfPlane(0);
   EXPECT_TRUE(held_normal.topRows<3>().isZero(0.0));
   EXPECT_GT(held_normal(3, 3), 0.0);
-  problem_.problem().SetParameterBlockConstant(offset);
-  EXPECT_TRUE(MarginalCovariances(&problem_.problem()).OfPlane(normal, offset).isZero(0.0));
+  variables.Hold(variables.Offset(0));
+  EXPECT_TRUE(MarginalCovariances(variables, problem_.AllTerms()).OfPlane(0).isZero(0.0));
 }
 
 // The difference of two numbers and, with some weight, the first of them.
-struct TwoNumbers {
-  bool operator()(const double* numbers, double* residuals) const {
-    residuals[0] = numbers[0] - numbers[1];
-    residuals[1] = weight * numbers[0];
+class TwoNumbers final : public ceres::SizedCostFunction<2, 1, 1> {
+ public:
+  explicit TwoNumbers(double weight) : weight_(weight) {}
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    residuals[0] = blocks[0][0] - blocks[1][0];
+    residuals[1] = weight_ * blocks[0][0];
+    if (jacobians == nullptr) return true;
+    Eigen::Map<Eigen::Vector2d>(jacobians[0]) << 1.0, weight_;
+    Eigen::Map<Eigen::Vector2d>(jacobians[1]) << -1.0, 0.0;
     return true;
   }
-  double weight;
+
+ private:
+  double weight_;
 };
 
+// Of the offsets of two planes.
 bool AreDetermined(double weight) {
-  double numbers[2] = {0.0, 0.0};
-  ceres::Problem problem;
-  problem.AddResidualBlock(
-      new ceres::NumericDiffCostFunction<TwoNumbers, ceres::CENTRAL, 2, 2>(new TwoNumbers{weight}),
-      nullptr, numbers);
-  return MarginalCovariances(&problem).AreDetermined();
+  Sequence sequence;
+  sequence.planes = {{0, Plane{}}, {1, Plane{}}};
+  const BackEndInput input{sequence, {}, {}, {}, {}};
+  const BackEndVariables variables(input);
+  std::vector<CostFunctionTerm::Block> blocks;
+  for (size_t i = 0; i < 2; ++i) {
+    const int offset = variables.Offset(i);
+    blocks.push_back({offset, VariableKind::kOffset, variables.Values(offset)});
+  }
+  const CostFunctionTerm term(std::make_unique<TwoNumbers>(weight), blocks);
+  return MarginalCovariances(variables, {&term}).AreDetermined();
 }
 
 TEST(MarginalCovariances, AreNoneWhereResidualsDoNotDetermineAllVariables) {
@@ -121,8 +131,9 @@ TEST(MarginalCovariances, AreNoneWhereResidualsDoNotDetermineAllVariables) {
 }
 
 TEST(MarginalCovariances, AreNoneOfAProblemWithoutVariables) {
-  ceres::Problem problem;
-  EXPECT_FALSE(MarginalCovariances(&problem).AreDetermined());
+  const Sequence sequence;
+  const BackEndInput input{sequence, {}, {}, {}, {}};
+  EXPECT_FALSE(MarginalCovariances(BackEndVariables(input), {}).AreDetermined());
 }
 
 }  // namespace

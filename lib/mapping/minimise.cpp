@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/minimise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "mapping/block_cholesky.h"
+#include "mapping/landmark_fit.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kTolerance = 1e-10;  // of the cost
+// Costs of residuals that are all but zero.
+constexpr double kNoCost = 1e-18;
+// Of each landmark for itself, after a step of all variables, as long as they lower its cost by
+// this share of a landmark's mean cost.
+constexpr int kLandmarkSteps = 20;
+constexpr double kLandmarkTolerance = 1e-3;
+// Where an iteration lowers the cost by less than this share, the minimum is near.
+constexpr double kNear = 1e-2;
+
+class Minimiser {
+ public:
+  Minimiser(const Terms& terms, std::vector<Variable>* variables)
+      : terms_(terms), variables_(variables) {
+    std::vector<Terms> of_landmark(variables->size());
+    std::vector<int> landmarks;  // by term
+    for (const Term* term : terms) {
+      const auto landmark = std::ranges::find_if(term->variables(), [&](int index) {
+        const Variable& variable = At(index);
+        return variable.kind == VariableKind::kLandmark && !variable.is_held;
+      });
+      others_vary_ |= std::ranges::any_of(term->variables(), [&](int index) {
+        return !At(index).is_held && At(index).kind != VariableKind::kLandmark;
+      });
+      landmarks.push_back(landmark == term->variables().end() ? -1 : *landmark);
+      if (landmark == term->variables().end()) {
+        terms_without_landmark_.push_back(term);
+      } else {
+        of_landmark[static_cast<size_t>(*landmark)].push_back(term);
+      }
+    }
+    std::vector<int> fit_of(variables->size(), -1);
+    for (size_t i = 0; i < of_landmark.size(); ++i) {
+      if (of_landmark[i].empty()) continue;
+      fit_of[i] = static_cast<int>(fits_.size());
+      fits_.emplace_back(&(*variables)[i], static_cast<int>(i), std::move(of_landmark[i]));
+    }
+    for (const int landmark : landmarks) {
+      fit_of_term_.push_back(landmark < 0 ? -1 : fit_of[static_cast<size_t>(landmark)]);
+    }
+  }
+
+  Minimisation Run(int max_iterations) {
+    Minimisation result;
+    cost_ = Cost();
+    if (!std::isfinite(cost_)) {
+      throw NumericalError("back end: the cost is not finite at the start");
+    }
+    result.costs.push_back(cost_);
+    if (others_vary_) {
+      equations_.emplace(*variables_, terms_);
+      factor_.emplace(equations_->hessian());
+    }
+    Progress progress("iterations", Progress::kUnknownCount);
+    while (!result.converged && static_cast<int>(result.costs.size()) <= max_iterations) {
+      result.converged = !(others_vary_ ? StepOfAll() : StepOfEachLandmark());
+      result.costs.push_back(cost_);
+      progress.Step();
+    }
+    return result;
+  }
+
+ private:
+  const Variable& At(int index) const { return (*variables_)[static_cast<size_t>(index)]; }
+  double Tolerance() const { return kTolerance * cost_ + kNoCost; }
+
+  // Linearises the landmarks' costs.
+  double Cost() {
+    double cost = 0.0;
+    for (LandmarkFit& fit : fits_) cost += fit.Linearise(hessian_);
+    return cost + CostWithoutLandmarks();
+  }
+  // Of the landmarks where they are.
+  double CostOfFits() const {
+    double cost = CostWithoutLandmarks();
+    for (const LandmarkFit& fit : fits_) cost += fit.cost();
+    return cost;
+  }
+  double CostWithoutLandmarks() const {
+    double cost = 0.0;
+    for (const Term* term : terms_without_landmark_) cost += term->Cost();
+    return cost;
+  }
+
+  // Whether any of them moves or may do so.
+  bool StepOfEachLandmark() {
+    const double tolerance = Tolerance() / NumLandmarks();
+    bool moves = false;
+    for (LandmarkFit& fit : fits_) moves |= fit.Step(hessian_, tolerance);
+    const double before = cost_;
+    cost_ = CostOfFits();
+    hessian_ = before - cost_ < kNear * before ? Hessian::kNear : Hessian::kFar;
+    return moves;
+  }
+  double NumLandmarks() const { return static_cast<double>(std::max<size_t>(1, fits_.size())); }
+
+  // Each term in the way that its landmark is.
+  void Linearise() {
+    std::vector<Hessian> kinds;
+    for (const int fit : fit_of_term_) {
+      kinds.push_back(fit < 0 || hessian_ == Hessian::kFar
+                          ? hessian_
+                          : fits_[static_cast<size_t>(fit)].hessian());
+    }
+    equations_->Linearise(kinds);
+  }
+  bool Factor() {
+    damping_diagonal_ = damping_.Of(equations_->hessian().Diagonal());
+    return factor_->Factor(equations_->hessian(), damping_diagonal_);
+  }
+
+  bool StepOfAll() {
+    if (!is_linearised_) Linearise();
+    is_linearised_ = true;
+    bool is_factored = Factor();
+    if (!is_factored && hessian_ == Hessian::kNear) {
+      hessian_ = Hessian::kFar;
+      Linearise();
+      is_factored = Factor();
+    }
+    if (!is_factored) {
+      damping_.StepRefused();
+      return !damping_.IsExhausted();
+    }
+    const Eigen::VectorXd step = -factor_->Solve(equations_->gradient());
+    const double predicted =
+        0.5 * step.dot(damping_diagonal_.cwiseProduct(step) - equations_->gradient());
+    if (!(predicted > Tolerance())) return false;
+
+    const double before = cost_;
+    const std::vector<double> values = Values();
+    MoveAll(step);
+    cost_ = Cost();
+    const double tolerance = kLandmarkTolerance * std::min(before, cost_) / NumLandmarks();
+    for (LandmarkFit& fit : fits_) {
+      for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance); ++i) {
+      }
+    }
+    cost_ = CostOfFits();
+    const double gain = before - cost_;
+    hessian_ = gain < kNear * before && gain >= 0.0 ? Hessian::kNear : Hessian::kFar;
+    is_linearised_ = false;
+    if (gain > 0.0) {
+      damping_.StepTaken(gain / predicted);
+      return true;
+    }
+    Restore(values);
+    cost_ = before;
+    damping_.StepRefused();
+    return !damping_.IsExhausted();
+  }
+
+  std::vector<double> Values() const {
+    std::vector<double> values;
+    for (const Variable& variable : *variables_) {
+      values.insert(values.end(), variable.values, variable.values + NumValues(variable.kind));
+    }
+    return values;
+  }
+  void Restore(const std::vector<double>& values) {
+    auto next = values.begin();
+    for (Variable& variable : *variables_) {
+      std::copy_n(next, NumValues(variable.kind), variable.values);
+      next += NumValues(variable.kind);
+    }
+  }
+  void MoveAll(const Eigen::VectorXd& step) {
+    for (size_t i = 0; i < variables_->size(); ++i) {
+      const int block = equations_->BlockOf(static_cast<int>(i));
+      if (block < 0) continue;
+      Variable& variable = (*variables_)[i];
+      Move(variable.kind, &step[equations_->hessian().FirstRow(block)], variable.values);
+    }
+  }
+
+  const Terms& terms_;
+  std::vector<Variable>* variables_;
+  Terms terms_without_landmark_;
+  bool others_vary_ = false;
+  std::vector<LandmarkFit> fits_;
+  std::optional<NormalEquations> equations_;
+  std::optional<BlockCholesky> factor_;
+  Damping damping_;
+  bool is_linearised_ = false;
+  Hessian hessian_ = Hessian::kFar;
+  std::vector<int> fit_of_term_;  // by term, -1 without a landmark
+  Eigen::VectorXd damping_diagonal_;
+  double cost_ = 0.0;
+};
+
+}  // namespace
+
+Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables) {
+  return Minimiser(terms, variables).Run(max_iterations);
+}
+
+}  // namespace soslam

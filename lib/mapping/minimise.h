@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "mapping/back_end_variables.h"
+#include "mapping/normal_equations.h"
+
+namespace soslam {
+
+// How a minimisation went.
+struct Minimisation {
+  std::vector<double> costs;  // at the start and after each iteration
+  bool converged = false;     // no step is expected to lower the cost by more than 1e-10 of it
+};
+
+// Minimises the sum of all terms over all variables that are not held, from where they are, by
+// Levenberg-Marquardt. In each iteration one step of all variables together is followed by steps of
+// each landmark for itself: a landmark that its boxes hardly determine so does not shorten the step
+// of all others. Throws NumericalError where the cost is not defined at the start.
+Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables);
+
+}  // namespace soslam

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapping/back_end_variables.h"
+#include "mapping/symmetric_blocks.h"
+#include "mapping/term.h"
+
+namespace soslam {
+
+using Terms = std::vector<const Term*>;
+
+// Gradient and Hessian of the sum of all terms by a step of all variables that are not held and
+// that a term depends on. Keeps references to its arguments.
+class NormalEquations {
+ public:
+  NormalEquations(const std::vector<Variable>& variables, const Terms& terms);
+
+  // At the variables' values, each term's Hessian of its own kind. Returns the cost, infinite where
+  // a term is not defined.
+  double Linearise(const std::vector<Hessian>& kinds);
+
+  const SymmetricBlocks& hessian() const { return hessian_; }
+  const Eigen::VectorXd& gradient() const { return gradient_; }
+
+  // Of a variable; -1 if it is held or no term depends on it.
+  int BlockOf(int variable) const { return block_of_[static_cast<size_t>(variable)]; }
+
+ private:
+  static std::vector<int> Blocks(const std::vector<Variable>& variables, const Terms& terms);
+  static SymmetricBlocks Pattern(const std::vector<Variable>& variables, const Terms& terms,
+                                 const std::vector<int>& block_of);
+  TermPlaces PlacesOf(const Term& term);
+
+  const Terms& terms_;
+  std::vector<int> block_of_;  // by variable
+  SymmetricBlocks hessian_;
+  Eigen::VectorXd gradient_;
+  std::vector<TermPlaces> places_;  // by term
+};
+
+}  // namespace soslam

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/tangency_term.h"
+
+#include <cmath>
+#include <limits>
+
+#include "constraints/tangent_space.h"
+#include "geometry/support_curvature.h"
+
+namespace soslam {
+namespace {
+
+using ByPose = Eigen::Matrix<double, 4, kPoseDof>;
+using ByLandmark = Eigen::Matrix<double, 4, kLandmarkDof>;
+using PosePose = Eigen::Map<Eigen::Matrix<double, kPoseDof, kPoseDof>>;
+using LandmarkPose = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kPoseDof>>;
+using LandmarkLandmark = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>>;
+
+}  // namespace
+
+// What the edges are compared with. All is in the object frame, where derivatives are simplest, and
+// turned into the world at the end.
+class TangencyTerm::View {
+ public:
+  View(const Blocks& blocks, double shape_exponent)
+      : world_from_object_(Eigen::Quaterniond(blocks.landmark_in_world).toRotationMatrix()),
+        object_from_camera_(world_from_object_.transpose() *
+                            Eigen::Quaterniond(blocks.world_from_camera).toRotationMatrix()),
+        offset_(world_from_object_.transpose() * (Eigen::Vector3d(blocks.landmark_in_world + 4) -
+                                                  Eigen::Vector3d(blocks.world_from_camera + 4))),
+        half_axes_(Eigen::Vector3d(blocks.landmark_in_world + kPoseSize).array().exp()),
+        shape_exponent_(shape_exponent),
+        bias_px_(blocks.bias_px) {}
+
+  // How far the body reaches outside an edge.
+  struct Excess {
+    double value;
+    Eigen::Vector3d normal;  // of the plane behind the edge
+    SupportValue support;
+  };
+  Excess Of(const Edge& edge) const {
+    Excess excess;
+    excess.normal = object_from_camera_ * edge.plane;
+    excess.support = SupportFunction(half_axes_, shape_exponent_, excess.normal);
+    excess.value =
+        excess.normal.dot(offset_) + excess.support.extent - edge.per_px * bias_px_[edge.side];
+    return excess;
+  }
+  SupportCurvature CurvatureOf(const Excess& excess) const {
+    return CurvatureOfSupport(half_axes_, shape_exponent_, excess.normal, excess.support);
+  }
+
+  const Eigen::Matrix3d& world_from_object() const { return world_from_object_; }
+  const Eigen::Vector3d& offset() const { return offset_; }  // from the camera to the centre
+
+ private:
+  Eigen::Matrix3d world_from_object_, object_from_camera_;
+  Eigen::Vector3d offset_;
+  Eigen::Vector3d half_axes_;
+  double shape_exponent_;
+  const double* bias_px_;
+};
+
+// One row per edge: first derivatives of its excess, and what its loss makes of them.
+struct TangencyTerm::Rows {
+  using ByVector = Eigen::Matrix<double, 4, 3>;
+
+  double cost = 0.0;
+  Eigen::Vector4d slopes = Eigen::Vector4d::Zero();
+  Eigen::Vector4d curvatures = Eigen::Vector4d::Zero();
+  ByVector by_turn = ByVector::Zero();    // of the landmark
+  ByVector by_centre = ByVector::Zero();  // and the opposite by the camera's place
+  ByVector by_axes = ByVector::Zero();    // log half axes
+  ByVector by_camera_turn = ByVector::Zero();
+};
+
+// The sum over the edges of slope times second derivatives of the excess n . d + h(n): n the
+// plane's normal, d the offset, q the point of contact. Turns w of the landmark and v of the camera
+// turn n.
+class TangencyTerm::SecondDerivatives {
+ public:
+  // Where the body turns past an edge or a face that should come nearer, it is held there. Not so
+  // where it should go away from it.
+  void AddKink(const View& view, const View::Excess& excess, double slope) {
+    if (slope > 0.0) AddTurn(excess, slope * view.CurvatureOf(excess).by_direction);
+  }
+
+  void AddAll(const View& view, const View::Excess& excess, double slope) {
+    const SupportCurvature curvature = view.CurvatureOf(excess);
+    const Eigen::Vector3d n = slope * excess.normal;
+    const Eigen::Vector3d& q = excess.support.contact;
+    const Eigen::Matrix3d of_contact = OfTurnedNormal(n, q);
+    AddTurn(excess, slope * curvature.by_direction);
+    turn_turn_ += of_contact;
+    camera_camera_ += of_contact + OfTurnedNormal(n, view.offset());
+    turn_camera_ -= n * q.transpose();
+    turn_camera_.diagonal().array() += q.dot(n);
+    axes_turn_ += curvature.mixed * Skew(n);
+    axes_axes_ += slope * curvature.by_log_half_axes;
+    normal_ += n;
+  }
+
+  void TurnToWorld(const Eigen::Matrix3d& world_from_object) {
+    for (Eigen::Matrix3d* both : {&turn_turn_, &camera_camera_, &turn_camera_}) {
+      *both = (world_from_object * *both * world_from_object.transpose()).eval();
+    }
+    axes_turn_ = (axes_turn_ * world_from_object.transpose()).eval();
+    normal_ = (world_from_object * normal_).eval();
+  }
+
+  void AddTo(LandmarkLandmark* square) const {
+    square->topLeftCorner<3, 3>() += turn_turn_;
+    square->bottomLeftCorner<3, 3>() += axes_turn_;
+    square->bottomRightCorner<3, 3>() += axes_axes_;
+  }
+  void AddTo(PosePose* square) const {
+    square->topLeftCorner<3, 3>() += camera_camera_;
+    square->bottomLeftCorner<3, 3>() += Skew(normal_);
+  }
+  void AddTo(LandmarkPose* mixed) const {
+    mixed->topLeftCorner<3, 3>() += turn_camera_;
+    mixed->block<3, 3>(3, 0) -= Skew(normal_);
+    mixed->bottomLeftCorner<3, 3>() -= axes_turn_;
+  }
+
+ private:
+  // Of x . exp(w) n by w at zero.
+  static Eigen::Matrix3d OfTurnedNormal(const Eigen::Vector3d& n, const Eigen::Vector3d& x) {
+    const Eigen::Matrix3d half = 0.5 * x * n.transpose();
+    Eigen::Matrix3d second = half + half.transpose();
+    second.diagonal().array() -= x.dot(n);
+    return second;
+  }
+
+  void AddTurn(const View::Excess& excess, const Eigen::Matrix3d& by_direction) {
+    const Eigen::Matrix3d by_turn = Skew(excess.normal);
+    const Eigen::Matrix3d turn = by_turn.transpose() * by_direction * by_turn;
+    turn_turn_ += turn;
+    camera_camera_ += turn;
+    turn_camera_ -= turn;
+  }
+
+  Eigen::Matrix3d turn_turn_ = Eigen::Matrix3d::Zero();      // w w
+  Eigen::Matrix3d camera_camera_ = Eigen::Matrix3d::Zero();  // v v
+  Eigen::Matrix3d turn_camera_ = Eigen::Matrix3d::Zero();    // w v
+  Eigen::Matrix3d axes_turn_ = Eigen::Matrix3d::Zero();      // log half axes, w; the opposite by v
+  Eigen::Matrix3d axes_axes_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // v and d: v . (n x d)
+};
+
+TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks,
+                           const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera,
+                           double huber_delta, double weight)
+    : Term({variables.begin(), variables.end()}),
+      blocks_(blocks),
+      shape_exponent_(start_in_camera.shape_exponent),
+      loss_{huber_delta},
+      weight_(weight) {
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const double depth_m = TangentDepth(edges[i], start_in_camera);
+    if (!(depth_m > 0.0)) continue;
+    edges_[static_cast<size_t>(num_edges_++)] = {edges[i].plane / (depth_m * edges[i].sigma_px),
+                                                 1.0 / edges[i].sigma_px, static_cast<int>(i),
+                                                 edges[i].is_bound};
+  }
+}
+
+double TangencyTerm::Cost() const {
+  const View view(blocks_, shape_exponent_);
+  double cost = 0.0;
+  for (int i = 0; i < num_edges_; ++i) {
+    const Edge& edge = edges_[static_cast<size_t>(i)];
+    const double excess = view.Of(edge).value;
+    if (!(edge.is_bound && excess > 0.0)) cost += loss_(std::abs(excess)).cost;
+  }
+  return std::isfinite(cost) ? weight_ * cost : std::numeric_limits<double>::infinity();
+}
+
+double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
+  const View view(blocks_, shape_exponent_);
+  Rows rows;
+  SecondDerivatives second;
+  for (int i = 0; i < num_edges_; ++i) {
+    const Edge& edge = edges_[static_cast<size_t>(i)];
+    const View::Excess excess = view.Of(edge);
+    if (edge.is_bound && excess.value > 0.0) continue;
+    const HuberLoss::Value loss = loss_(std::abs(excess.value));
+    rows.cost += weight_ * loss.cost;
+    rows.slopes[i] = weight_ * loss.weight * excess.value;
+    rows.curvatures[i] = weight_ * (hessian == Hessian::kNear ? loss.curvature : loss.weight);
+    const Eigen::Vector3d& contact = excess.support.contact;
+    rows.by_turn.row(i) = contact.cross(excess.normal);
+    rows.by_centre.row(i) = excess.normal;
+    rows.by_axes.row(i) = excess.support.by_log_half_axes;
+    rows.by_camera_turn.row(i) = excess.normal.cross(view.offset() + contact);
+    if (hessian == Hessian::kNear) {
+      second.AddAll(view, excess, rows.slopes[i]);
+    } else if (hessian == Hessian::kFar && shape_exponent_ < kEllipsoidExponent) {
+      second.AddKink(view, excess, rows.slopes[i]);
+    }
+  }
+  if (!std::isfinite(rows.cost)) return std::numeric_limits<double>::infinity();
+  second.TurnToWorld(view.world_from_object());
+  Add(rows, view.world_from_object(), second, places);
+  return rows.cost;
+}
+
+void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,
+                       const SecondDerivatives& second, const TermPlaces& places) const {
+  const auto [of_pose, of_landmark, of_bias] = places.gradient;
+  const Eigen::Matrix3d to_world = world_from_object.transpose();
+  ByLandmark by_landmark;
+  by_landmark.leftCols<3>().noalias() = rows.by_turn.lazyProduct(to_world);
+  by_landmark.middleCols<3>(3).noalias() = rows.by_centre.lazyProduct(to_world);
+  by_landmark.rightCols<3>() = rows.by_axes;
+  const ByLandmark weighted = rows.curvatures.asDiagonal() * by_landmark;
+  if (of_landmark != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, kLandmarkDof, 1>>(of_landmark).noalias() +=
+        by_landmark.transpose().lazyProduct(rows.slopes);
+    LandmarkLandmark square(places.hessian[1][1]);
+    square.noalias() += by_landmark.transpose().lazyProduct(weighted);
+    second.AddTo(&square);
+  }
+  ByPose by_pose;
+  if (of_pose != nullptr) {
+    by_pose.leftCols<3>().noalias() = rows.by_camera_turn.lazyProduct(to_world);
+    by_pose.rightCols<3>() = -by_landmark.middleCols<3>(3);
+    Eigen::Map<Eigen::Matrix<double, kPoseDof, 1>>(of_pose).noalias() +=
+        by_pose.transpose().lazyProduct(rows.slopes);
+    const ByPose weighted_pose = rows.curvatures.asDiagonal() * by_pose;
+    PosePose square(places.hessian[0][0]);
+    square.noalias() += by_pose.transpose().lazyProduct(weighted_pose);
+    second.AddTo(&square);
+    if (of_landmark != nullptr) {
+      LandmarkPose mixed(places.hessian[1][0]);
+      mixed.noalias() += weighted.transpose().lazyProduct(by_pose);
+      second.AddTo(&mixed);
+    }
+  }
+  if (of_bias == nullptr) return;
+  for (int i = 0; i < num_edges_; ++i) {
+    const Edge& edge = edges_[static_cast<size_t>(i)];
+    of_bias[edge.side] -= edge.per_px * rows.slopes[i];
+    places.hessian[2][2][(kBiasSize + 1) * edge.side] +=
+        edge.per_px * edge.per_px * rows.curvatures[i];
+    if (of_landmark != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, kBiasSize, kLandmarkDof>>(places.hessian[2][1])
+          .row(edge.side) -= edge.per_px * weighted.row(i);
+    }
+    if (of_pose != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, kBiasSize, kPoseDof>>(places.hessian[2][0]).row(edge.side) -=
+          edge.per_px * rows.curvatures[i] * by_pose.row(i);
+    }
+  }
+}
+
+}  // namespace soslam

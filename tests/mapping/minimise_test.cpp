@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/minimise.h"
+
+#include <ceres/ceres.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <limits>
+
+#include "base/error.h"
+#include "constraints/manifolds.h"
+#include "constraints/odometry.h"
+#include "constraints/standing.h"
+#include "initialisation/landmark_term_residual.h"
+#include "mapping/back_end_problem.h"
+#include "mapping/cost_function_term.h"
+#include "support/cuboid_map.h"
+#include "support/random.h"
+#include "support/standing_scene.h"
+
+namespace soslam {
+namespace {
+
+// One edge of a detection, for Ceres.
+class TangencyResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize> {
+ public:
+  TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera)
+      : edge_(edge),
+        depth_m_(TangentDepth(edge, start_in_camera)),
+        shape_exponent_(start_in_camera.shape_exponent) {}
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const RelativeObservation observation(blocks, shape_exponent_);
+    LandmarkJacobian1 by_landmark;
+    residuals[0] = Tangency(edge_, observation.landmark_in_camera(), depth_m_, 0.0, &by_landmark);
+    observation.WriteJacobians<1>(by_landmark, blocks, jacobians);
+    return true;
+  }
+
+ private:
+  BoxEdge edge_;
+  double depth_m_;
+  double shape_exponent_;
+};
+
+// The final cost of what BackEndProblem makes of given planes without a bias, by Ceres.
+double CostByCeres(const BackEndInput& input, const OptimiseOptions& options) {
+  const Sequence& sequence = input.sequence;
+  BackEndVariables variables(input);
+  const auto values = [&](int index) { return variables.all()[static_cast<size_t>(index)].values; };
+  ceres::HuberLoss loss(options.huber_delta);
+  ceres::Problem::Options borrow;
+  borrow.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(borrow);
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    double* pose = values(variables.Pose(i));
+    problem.AddParameterBlock(pose, kPoseSize, NewPoseManifold());
+    if (i == 0) {
+      problem.SetParameterBlockConstant(pose);
+      continue;
+    }
+    const Rigid3d step =
+        sequence.frames[i - 1].world_from_camera.Inverse() * sequence.frames[i].world_from_camera;
+    problem.AddResidualBlock(
+        new OdometryResidual(step, options.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
+                             options.odometry_translation_sigma_m),
+        &loss, values(variables.Pose(i - 1)), pose);
+  }
+  for (size_t i = 0; i < input.starts.size(); ++i) {
+    double* landmark = values(variables.Landmark(i));
+    problem.AddParameterBlock(landmark, kLandmarkSize, NewLandmarkManifold());
+    const auto plane = static_cast<size_t>(sequence.objects[i].plane_index);
+    double* normal = values(variables.Normal(plane));
+    double* offset = values(variables.Offset(plane));
+    problem.AddResidualBlock(
+        new StandingResidual(options.standing_angle_sigma_deg * std::numbers::pi / 180.0,
+                             options.standing_height_sigma_m),
+        nullptr, landmark, normal, offset);
+    problem.SetParameterBlockConstant(normal);
+    problem.SetParameterBlockConstant(offset);
+    problem.AddResidualBlock(
+        new LandmarkTermResidual(std::make_unique<RatioTerm>(*input.priors[i])), nullptr, landmark);
+  }
+  for (const Detection& detection : sequence.detections) {
+    const auto frame = static_cast<size_t>(detection.frame_index);
+    const auto object = static_cast<size_t>(detection.object_index);
+    const Landmark start =
+        Transform(sequence.frames[frame].world_from_camera.Inverse(), *input.starts[object]);
+    for (const BoxEdge& edge : BoxEdges(sequence.camera, detection.box, detection.is_bound,
+                                        options.detection_sigma_fraction)) {
+      problem.AddResidualBlock(new TangencyResidual(edge, start), &loss,
+                               values(variables.Pose(frame)), values(variables.Landmark(object)));
+    }
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = 2000;
+  solver.function_tolerance = 1e-13;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return summary.final_cost;
+}
+
+// Both end in the same minimum when they start near it.
+TEST(Minimise, FindsTheMinimumThatCeresFinds) {
+  for (const double p : {1.0, 1.4, 2.0}) {
+    const Sequence sequence = SyntheticSequence(RandomScene(3, 3, 8, {Shape::kBox}), true);
+    BackEndInput input = TruthInput(sequence);
+    for (auto& start : input.starts) {
+      *start = Turned(*start, 0.05);
+      start->shape_exponent = p;
+    }
+    for (auto& prior : input.priors) prior->log_sigma = {0.1, 0.1};
+    const OptimiseOptions options = TangencyOptions();
+    BackEndProblem problem(input, options);
+    problem.Solve();
+    const double by_ceres = CostByCeres(input, options);
+    EXPECT_TRUE(problem.summary().converged);
+    EXPECT_LT(problem.summary().final_cost, by_ceres * (1.0 + 1e-7)) << p;
+    EXPECT_GT(problem.summary().final_cost, by_ceres * (1.0 - 1e-3)) << p;
+    EXPECT_LT(problem.summary().iterations, 60) << p;
+  }
+}
+
+// The offset of a plane, and terms of it.
+class OffsetTest : public testing::Test {
+ protected:
+  OffsetTest() {
+    sequence_.planes.push_back({0, Plane{}});
+    variables_.emplace(input_);
+  }
+  std::unique_ptr<Term> TermOf(std::unique_ptr<const ceres::CostFunction> function,
+                               double huber_delta) {
+    const int offset = variables_->Offset(0);
+    return std::make_unique<CostFunctionTerm>(
+        std::move(function),
+        std::vector<CostFunctionTerm::Block>{
+            {offset, VariableKind::kOffset, variables_->Values(offset)}},
+        huber_delta);
+  }
+  double& Offset() { return *variables_->all()[static_cast<size_t>(variables_->Offset(0))].values; }
+
+  Sequence sequence_;
+  BackEndInput input_{sequence_, {}, {}, {}, {}};
+  std::optional<BackEndVariables> variables_;
+};
+
+// value - place; not defined from 10 on.
+class Distance final : public ceres::SizedCostFunction<1, 1> {
+ public:
+  explicit Distance(double place) : place_(place) {}
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    residuals[0] = blocks[0][0] - place_;
+    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1.0;
+    return blocks[0][0] < 10.0;
+  }
+
+ private:
+  double place_;
+};
+
+// At the middle one of three places the outer two, both farther than the loss's width of 0.5, pull
+// against each other with the same force.
+TEST_F(OffsetTest, OutliersPullNoHarderThanTheLossSays) {
+  std::vector<std::unique_ptr<Term>> terms;
+  for (const double place : {0.0, 1.0, 9.0}) {
+    terms.push_back(TermOf(std::make_unique<Distance>(place), 0.5));
+  }
+  const Minimisation result =
+      Minimise({terms[0].get(), terms[1].get(), terms[2].get()}, 50, &variables_->all());
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(Offset(), 1.0, 1e-5);
+  EXPECT_NEAR(result.costs.back(), 0.5 * (1.0 - 0.25) + 0.5 * (8.0 - 0.25), 1e-9);
+  EXPECT_TRUE(std::ranges::is_sorted(result.costs, std::greater<>()));
+}
+
+TEST_F(OffsetTest, StepsIntoWhereACostIsNotDefinedAreShortened) {
+  const auto term = TermOf(std::make_unique<Distance>(9.999), 1e9);
+  const auto pull = TermOf(std::make_unique<Distance>(10.5), 1e9);
+  const Minimisation result = Minimise({term.get(), pull.get()}, 100, &variables_->all());
+  EXPECT_LT(Offset(), 10.0);
+  EXPECT_GT(Offset(), 9.0);
+  EXPECT_LT(result.costs.back(), result.costs.front());
+}
+
+TEST_F(OffsetTest, AStartWhereACostIsNotDefinedIsRefused) {
+  Offset() = 11.0;
+  const auto term = TermOf(std::make_unique<Distance>(0.0), 1e9);
+  EXPECT_THROW(Minimise({term.get()}, 10, &variables_->all()), NumericalError);
+}
+
+TEST_F(OffsetTest, WhatIsHeldStays) {
+  Offset() = 3.0;
+  variables_->Hold(variables_->Offset(0));
+  const auto term = TermOf(std::make_unique<Distance>(0.0), 1e9);
+  const Minimisation result = Minimise({term.get()}, 10, &variables_->all());
+  EXPECT_EQ(Offset(), 3.0);
+  EXPECT_EQ(result.costs.back(), 4.5);
+}
+
+}  // namespace
+}  // namespace soslam
