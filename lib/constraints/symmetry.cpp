@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/symmetry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "image/brief.h"
 
 namespace soslam {
 
 SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
-    : box(own_box), maps(std::move(edge_maps)), smoothed_grey(SmoothForBrief(maps.grey)) {
-  for (int y = 0; y < maps.edges.rows; ++y) {
-    for (int x = 0; x < maps.edges.cols; ++x) {
-      const Eigen::Vector2d pixel(x, y);
-      if (maps.edges.at<unsigned char>(y, x) != 0 && box.Contains(pixel)) {
-        edge_pixels.push_back(pixel);
-      }
+    : box(own_box), maps(std::move(edge_maps)), smoothed_grey(maps.grey) {
+  // The pixels of the image from one edge of the box to the other.
+  const auto first = [](double edge, int size) {
+    return static_cast<int>(std::ceil(std::max(0.0, std::min<double>(size, edge))));
+  };
+  const auto last = [](double edge, int size) {
+    return static_cast<int>(std::floor(std::max(-1.0, std::min(size - 1.0, edge))));
+  };
+  const int width = maps.edges.cols;
+  const int height = maps.edges.rows;
+  for (int y = first(box.y_min, height); y <= last(box.y_max, height); ++y) {
+    const auto* row = maps.edges.ptr<unsigned char>(y);
+    for (int x = first(box.x_min, width); x <= last(box.x_max, width); ++x) {
+      if (row[x] != 0) edge_pixels.emplace_back(x, y);
     }
   }
 }
@@ -147,8 +153,8 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::LookUp(
 
 std::optional<double> SymmetryDescriptor::BriefDistance(const Eigen::Vector2d& pixel,
                                                         const Eigen::Vector2d& mirror_pixel) const {
-  const auto descriptor = BriefDescriptor(image_.smoothed_grey, pixel, false);
-  const auto mirrored = BriefDescriptor(image_.smoothed_grey, mirror_pixel, true);
+  const auto descriptor = BriefDescriptor(image_.smoothed_grey.Get(), pixel, false);
+  const auto mirrored = BriefDescriptor(image_.smoothed_grey.Get(), mirror_pixel, true);
   if (!descriptor || !mirrored) return std::nullopt;
   return HammingDistance(*descriptor, *mirrored);
 }

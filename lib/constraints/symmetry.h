@@ -14,6 +14,7 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/mirror_mapping.h"
+#include "image/brief.h"
 #include "image/edge_maps.h"
 
 namespace soslam {
@@ -41,7 +42,7 @@ struct SymmetryImage {
 
   Box box;  // of the observation
   EdgeMaps maps;
-  cv::Mat smoothed_grey;                     // for BRIEF
+  SmoothedImage smoothed_grey;               // for BRIEF
   std::vector<Eigen::Vector2d> edge_pixels;  // in the box, row by row
 };
 

@@ -55,6 +55,11 @@ cv::Mat SmoothForBrief(const cv::Mat& grey) {
   return smoothed;
 }
 
+const cv::Mat& SmoothedImage::Get() const {
+  std::call_once(smoothed_->once, [&] { smoothed_->image = SmoothForBrief(grey_); });
+  return smoothed_->image;
+}
+
 std::optional<BriefBits> BriefDescriptor(const cv::Mat& smoothed_grey, const Eigen::Vector2d& pixel,
                                          bool mirrored) {
   CV_Assert(smoothed_grey.type() == CV_8UC1);

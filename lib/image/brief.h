@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <bitset>
+#include <memory>
+#include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
@@ -15,6 +17,21 @@ using BriefBits = std::bitset<256>;
 // The smoothing that makes single pixels comparable (Calonder et al.: sigma 2 px). CV_8UC1 to
 // CV_8UC1.
 cv::Mat SmoothForBrief(const cv::Mat& grey);
+
+// An image that is smoothed when it is first asked for. By several threads, if need be.
+class SmoothedImage {
+ public:
+  explicit SmoothedImage(const cv::Mat& grey) : grey_(grey) {}
+  const cv::Mat& Get() const;
+
+ private:
+  struct Smoothed {
+    std::once_flag once;
+    cv::Mat image;
+  };
+  cv::Mat grey_;
+  std::shared_ptr<Smoothed> smoothed_ = std::make_shared<Smoothed>();  // by all copies
+};
 
 // The descriptor of the patch around the pixel that `pixel` lies in. `mirrored` reads the pattern
 // with its x offsets negated (section V-B, fig. 3(a)): what it gives at a mirror pixel equals what
