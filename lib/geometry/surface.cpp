@@ -15,6 +15,8 @@ namespace {
 constexpr double kLargestQ = 200.0;
 constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;
+// Newton's steps square the error: what is left after one of this size is rounding.
+constexpr double kBatchNewtonTolerance = 1e-9;
 
 // The part of a ray's line inside the cuboid |x_i| <= 1; none when the line misses it, or the
 // cuboid is behind the origin.
@@ -34,6 +36,75 @@ std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& o
   }
   if (!(entry < exit) || !(exit > 0.0)) return std::nullopt;
   return std::pair(entry, exit);
+}
+
+// The same for many rays: from entry to exit where entry < exit and exit > 0.
+struct CuboidIntervals {
+  CuboidIntervals(const Eigen::Vector3d& origin, const BatchOfVectors& direction) {
+    for (size_t i = 0; i < 3; ++i) {
+      const double o = origin[static_cast<Eigen::Index>(i)];
+      const Batch one = (-1.0 - o) / direction[i];
+      const Batch other = (1.0 - o) / direction[i];
+      entry = entry.max(one.min(other));
+      exit = exit.min(one.max(other));
+    }
+  }
+
+  bool IsHit(int i) const { return entry[i] < exit[i] && exit[i] > 0.0; }
+
+  Batch entry = Batch::Constant(-std::numeric_limits<double>::infinity());
+  Batch exit = Batch::Constant(std::numeric_limits<double>::infinity());
+};
+
+// F along rays, with half axes of one, and its slope.
+struct NormsAlongRays {
+  NormsAlongRays(const Eigen::Vector3d& origin, const BatchOfVectors& direction, const Batch& depth,
+                 double q) {
+    BatchOfVectors x;
+    for (size_t i = 0; i < 3; ++i) {
+      x[i] = origin[static_cast<Eigen::Index>(i)] + depth * direction[i];
+    }
+    const Batch largest = x[0].abs().max(x[1].abs()).max(x[2].abs());
+    Batch sum = Batch::Zero(), weighted = Batch::Zero();
+    for (size_t i = 0; i < 3; ++i) {
+      const Batch power = (q * (x[i].abs() / largest).log()).exp();  // 0 for 0
+      sum += power;
+      // power * direction / x, which vanishes with x
+      weighted +=
+          power * direction[i] * x[i] / (x[i].square() + std::numeric_limits<double>::min());
+    }
+    norm = largest * (sum.log() / q).exp();
+    slope = norm * weighted / sum;
+  }
+
+  Batch norm;
+  Batch slope;
+};
+
+// As SuperquadricEntry, for many rays; -1 where there is none.
+Batch SuperquadricEntries(const Eigen::Vector3d& origin, const BatchOfVectors& direction,
+                          double q) {
+  constexpr int kNone = -1;
+  const CuboidIntervals interval(origin, direction);
+  Batch depth = interval.entry.max(0.0);
+  Eigen::Array<bool, kBatchSize, 1> is_open;
+  for (int i = 0; i < kBatchSize; ++i) {
+    is_open[i] = interval.IsHit(i);
+    if (!is_open[i]) depth[i] = kNone;
+  }
+  for (int step = 0; step < kMaxNewtonSteps && is_open.any(); ++step) {
+    const NormsAlongRays at(origin, direction, depth, q);
+    for (int i = 0; i < kBatchSize; ++i) {
+      if (!is_open[i]) continue;
+      const bool is_inside = depth[i] == 0.0 && !(at.norm[i] > 1.0);
+      const double by = (at.norm[i] - 1.0) / -at.slope[i];
+      const double next = depth[i] + by;
+      const bool is_missed = is_inside || !(at.slope[i] < 0.0) || !(next < interval.exit[i]);
+      is_open[i] = !is_missed && !(by < kBatchNewtonTolerance * next);
+      depth[i] = is_missed ? kNone : next;
+    }
+  }
+  return is_open.select(Batch::Constant(kNone), depth);  // open: rays that graze the surface
 }
 
 }  // namespace
@@ -85,6 +156,60 @@ std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& orig
     if (step < kNewtonTolerance * depth) return depth;
   }
   return std::nullopt;  // the ray grazes the surface
+}
+
+void BodySurface::Meet(const Eigen::Vector3d& origin, RayBatch* rays) const {
+  if (q_ == kEllipsoidExponent) {
+    MeetQuadric(origin, rays);
+    return;
+  }
+  // With half axes of one.
+  const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
+  BatchOfVectors d;
+  for (size_t i = 0; i < 3; ++i) {
+    d[i] = inverse_axes_[static_cast<Eigen::Index>(i)] * rays->direction[i];
+  }
+  if (is_cuboid_) {
+    const CuboidIntervals interval(o, d);
+    for (int i = 0; i < kBatchSize; ++i) {
+      rays->depth[i] = interval.IsHit(i) ? interval.entry[i] : -1.0;
+    }
+  } else {
+    rays->depth = SuperquadricEntries(o, d, q_);
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    rays->point[i] = origin[axis] + rays->depth * rays->direction[i];
+    if (is_cuboid_) continue;
+    const Batch x = inverse_axes_[axis] * rays->point[i];
+    rays->gradient[i] = ((q_ - 1.0) * x.abs().log()).exp() * x.sign() * inverse_axes_[axis];
+  }
+  for (int i = 0; i < kBatchSize && is_cuboid_; ++i) {
+    const Eigen::Vector3d gradient =
+        Gradient({rays->point[0][i], rays->point[1][i], rays->point[2][i]});
+    for (size_t k = 0; k < 3; ++k) {
+      rays->gradient[k][i] = gradient[static_cast<Eigen::Index>(k)];
+    }
+  }
+}
+
+void BodySurface::MeetQuadric(const Eigen::Vector3d& origin, RayBatch* rays) const {
+  // With half axes of one; see QuadricEntry.
+  const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
+  const double c = o.squaredNorm() - 1.0;
+  Batch a = Batch::Zero(), half_b = Batch::Zero();
+  for (size_t i = 0; i < 3; ++i) {
+    const Batch d = inverse_axes_[i] * rays->direction[i];
+    a += d.square();
+    half_b += o[i] * d;
+  }
+  // NaN for a ray that misses, negative for one that leads away.
+  rays->depth = c / ((half_b.square() - a * c).sqrt() - half_b);
+  if (!(c > 0.0)) rays->depth.setConstant(-1.0);  // inside
+  for (int i = 0; i < 3; ++i) {
+    rays->point[i] = origin[i] + rays->depth * rays->direction[i];
+    rays->gradient[i] = (inverse_axes_[i] * inverse_axes_[i]) * rays->point[i];
+  }
 }
 
 Eigen::Vector3d BodySurface::Gradient(const Eigen::Vector3d& point) const {

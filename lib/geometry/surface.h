@@ -4,7 +4,17 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "geometry/batch.h"
+
 namespace soslam {
+
+// Rays from one origin, and where they first meet a surface.
+struct RayBatch {
+  BatchOfVectors direction;
+  Batch depth;  // point = origin + depth * direction; not positive (maybe NaN) where there is none
+  BatchOfVectors point;
+  BatchOfVectors gradient;  // see BodySurface::Gradient
+};
 
 // The surface of a body in its own frame: F(x) = || (x / a, y / b, z / c) ||_q = 1 with
 // 1 / p + 1 / q = 1, p the shape exponent of SupportFunction. p = 2 is the paper's quadric (eq.
@@ -21,6 +31,9 @@ class BodySurface {
   std::optional<double> Entry(const Eigen::Vector3d& origin,
                               const Eigen::Vector3d& direction) const;
 
+  // The same for many rays: fills what comes after the directions.
+  void Meet(const Eigen::Vector3d& origin, RayBatch* rays) const;
+
   // dF / dx at a surface point: along the outward normal, with Gradient(x) . x = 1. On an edge of
   // the cuboid, that of one of its faces.
   Eigen::Vector3d Gradient(const Eigen::Vector3d& point) const;
@@ -36,6 +49,7 @@ class BodySurface {
                                      const Eigen::Vector3d& direction) const;
   std::optional<double> SuperquadricEntry(const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction) const;
+  void MeetQuadric(const Eigen::Vector3d& origin, RayBatch* rays) const;
 
   Eigen::Vector3d inverse_axes_;
   double q_;

@@ -5,6 +5,8 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
+#include "geometry/batch.h"
+
 namespace soslam {
 
 struct Sample {
@@ -16,5 +18,8 @@ struct Sample {
 // maps of at least 2 x 2 pixels; none outside it (no clamping, which would have zero gradients),
 // and none where one of the four pixels around is not finite.
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
+
+// The values of many pixels: NaN where there is none.
+Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels);
 
 }  // namespace soslam

@@ -29,11 +29,12 @@ class OrientationProfile {
         symmetry_options_(symmetry_options),
         observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
         edge_image_{edges, detection.box, detection.nearer_boxes},
-        symmetry_image_(edges->maps, detection.box) {}
+        symmetry_image_(edges->maps, detection.box),
+        asymmetry_(symmetry_image_, observation_.camera, options.texture, symmetry_options) {}
 
   const UprightObservation& observation() const { return observation_; }
 
-  YawObjective Objective() const {
+  YawObjective Objective() {
     YawObjective objective;
     if (options_.edge_alignment) {
       objective.further_terms = [this](const Landmark& start) {
@@ -50,10 +51,7 @@ class OrientationProfile {
     return objective;
   }
 
-  double TextureCost(const Landmark& landmark) const {
-    return AsymmetryCost(symmetry_image_, observation_.camera, landmark, options_.texture,
-                         symmetry_options_);
-  }
+  double TextureCost(const Landmark& landmark) { return asymmetry_.Cost(landmark); }
 
   double EdgeCost(const Landmark& landmark) const {
     LandmarkTerms terms;
@@ -62,9 +60,8 @@ class OrientationProfile {
     return TotalCost(terms, landmark);
   }
 
-  void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
-    const auto texture = FindMirroredTexture(symmetry_image_, observation_.camera, landmark,
-                                             options_.texture, symmetry_options_);
+  void RecordPairs(const Landmark& landmark, SymmetryRecord* record) {
+    const auto texture = asymmetry_.Find(landmark);
     if (!texture) return;
     const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_,
                                         observation_.camera, landmark);
@@ -81,12 +78,16 @@ class OrientationProfile {
   UprightObservation observation_;
   EdgeImage edge_image_;
   SymmetryImage symmetry_image_;
+  TextureAsymmetry asymmetry_;
 };
 
+// `texture_costs` are those of the sweep's landmarks.
 void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
-                  const ProfileOptions& options, SymmetryRecord* record) {
+                  const std::vector<double>& texture_costs, const ProfileOptions& options,
+                  SymmetryRecord* record) {
   record->yaw = sweep.yaw;
   record->cost["total"] = sweep.Costs();
+  auto texture_cost = texture_costs.begin();
   for (const auto& solution : sweep.solutions) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     if (options.edge_alignment) {
@@ -94,10 +95,20 @@ void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
                                                         : none);
     }
     if (options.texture_symmetry) {
-      record->cost["texture_symmetry"].push_back(solution ? profile.TextureCost(solution->landmark)
-                                                          : none);
+      record->cost["texture_symmetry"].push_back(solution ? *texture_cost++ : none);
     }
   }
+}
+
+// Sweeps, and keeps the texture's part of the costs of the landmarks it finds, yaw by yaw.
+YawSweep SweepYaw(const UprightObservation& observation, YawObjective objective, double step,
+                  std::vector<double>* texture_costs) {
+  if (objective.extra_cost) {
+    objective.extra_cost = [texture_costs, cost = objective.extra_cost](const Landmark& landmark) {
+      return texture_costs->emplace_back(cost(landmark));
+    };
+  }
+  return SweepYaw(observation, objective, step);
 }
 
 }  // namespace
@@ -117,10 +128,12 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     result.estimate.failure = "no_ratio_for_label";
     return result;
   }
-  const OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
+  OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
   const YawObjective objective = profile.Objective();
-  const YawSweep sweep = SweepYaw(profile.observation(), objective,
-                                  options.upright.yaw_grid_deg * std::numbers::pi / 180.0);
+  std::vector<double> texture_costs;
+  const YawSweep sweep =
+      SweepYaw(profile.observation(), objective,
+               options.upright.yaw_grid_deg * std::numbers::pi / 180.0, &texture_costs);
   std::vector<YawSweep::Optimum> optima;
   for (const UprightSolution& optimum :
        LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
@@ -134,7 +147,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     return result;
   }
   const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-  RecordCurves(profile, sweep, options, &result.record);
+  RecordCurves(profile, sweep, texture_costs, options, &result.record);
   profile.RecordPairs(best, &result.record);
   result.record.refined_yaw =
       Yaw(detection.plane_in_camera.normal, best.frame_from_object.rotation);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "image/brief.h"
@@ -32,9 +33,8 @@ double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptio
   }
 }
 
-bool AreEnough(Eigen::Index pairs, size_t samples, const SymmetryOptions& options) {
-  return static_cast<double>(pairs) >=
-         std::max(static_cast<double>(options.min_pairs),
+double MinPairs(size_t samples, const SymmetryOptions& options) {
+  return std::max(static_cast<double>(options.min_pairs),
                   options.min_pair_fraction * static_cast<double>(samples));
 }
 
@@ -45,6 +45,17 @@ std::vector<double> MirrorPlanePlaces(double range) {
     places.push_back(range * i / kMirrorPlaneSteps);
   }
   return places;
+}
+
+std::optional<MirrorSearch> MakeSearch(const SymmetryImage& image, const Camera& camera,
+                                       const SymmetryOptions& options) {
+  SampleCandidates candidates(image, options);
+  const bool is_in_a_map = options.descriptor == Descriptor::kGrey ||
+                           options.descriptor == Descriptor::kDistanceTransform;
+  if (!is_in_a_map || candidates.corners.size() > candidates.max_corners) return std::nullopt;
+  std::vector<Eigen::Vector2d> pixels = std::move(candidates.corners);
+  pixels.insert(pixels.end(), candidates.others.begin(), candidates.others.end());
+  return MirrorSearch(image, camera, options.descriptor, std::move(pixels));
 }
 
 }  // namespace
@@ -59,32 +70,60 @@ void CheckMirrorPlane(const TextureOptions& options, Descriptor descriptor) {
                                   kDescriptorNames[static_cast<size_t>(descriptor)]));
 }
 
-std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
-                                                   const Landmark& landmark_in_camera,
-                                                   const TextureOptions& options,
-                                                   const SymmetryOptions& symmetry_options) {
-  const SymmetryDescriptor descriptor(symmetry_options.descriptor, image, camera,
+TextureAsymmetry::TextureAsymmetry(const SymmetryImage& image, const Camera& camera,
+                                   const TextureOptions& options,
+                                   const SymmetryOptions& symmetry_options)
+    : image_(image),
+      camera_(camera),
+      options_(options),
+      symmetry_options_(symmetry_options),
+      places_(MirrorPlanePlaces(options.mirror_plane_range)),
+      search_(MakeSearch(image, camera, symmetry_options)) {}
+
+std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_in_camera) {
+  if (!search_) return FindPairByPair(landmark_in_camera);
+  auto found = FindByMap(landmark_in_camera);
+  if (found) found->pixels = search_->PixelsOfPairs(found->mirror_plane);
+  return found;
+}
+
+double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) {
+  const auto texture = search_ ? FindByMap(landmark_in_camera) : FindPairByPair(landmark_in_camera);
+  return options_.asymmetry_cost * (texture ? texture->asymmetry : 1.0);
+}
+
+std::optional<MirroredTexture> TextureAsymmetry::FindByMap(const Landmark& landmark_in_camera) {
+  search_->See(landmark_in_camera, symmetry_options_.min_viewing_cosine);
+  const auto least =
+      search_->FindLeast(places_, Scale(landmark_in_camera, symmetry_options_.descriptor, options_),
+                         MinPairs(search_->NumSamples(), symmetry_options_));
+  if (!least) return std::nullopt;
+  return MirroredTexture{least->mean, places_[least->place], {}};
+}
+
+std::optional<MirroredTexture> TextureAsymmetry::FindPairByPair(
+    const Landmark& landmark_in_camera) const {
+  const SymmetryDescriptor descriptor(symmetry_options_.descriptor, image_, camera_,
                                       landmark_in_camera);
   const double squared_scale =
-      std::pow(Scale(landmark_in_camera, symmetry_options.descriptor, options), 2);
-  const auto samples = SamplePixels(image, camera, landmark_in_camera, symmetry_options);
-  const std::vector<double> places = MirrorPlanePlaces(options.mirror_plane_range);
+      std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
+  const auto samples = SamplePixels(image_, camera_, landmark_in_camera, symmetry_options_);
   // One row per sample, one column per place; NaN where there is no pair.
-  Eigen::ArrayXXd residuals(samples.size(), places.size());
+  Eigen::ArrayXXd residuals(samples.size(), places_.size());
   for (size_t i = 0; i < samples.size(); ++i) {
     residuals.row(static_cast<Eigen::Index>(i)) =
-        descriptor.Residuals(samples[i], symmetry_options.min_viewing_cosine, places);
+        descriptor.Residuals(samples[i], symmetry_options_.min_viewing_cosine, places_);
   }
   std::optional<MirroredTexture> best;
   Eigen::Index best_place = 0;
   for (Eigen::Index place = 0; place < residuals.cols(); ++place) {
     const Eigen::ArrayXd squared = residuals.col(place).square();
-    const Eigen::Index pairs = squared.isFinite().count();
-    if (!AreEnough(pairs, samples.size(), symmetry_options)) continue;
+    const auto pairs = static_cast<double>(squared.isFinite().count());
+    if (pairs < MinPairs(samples.size(), symmetry_options_)) continue;
     const double sum = squared.isFinite().select(squared / (squared + squared_scale), 0.0).sum();
-    const double asymmetry = sum / static_cast<double>(pairs);
+    const double asymmetry = sum / pairs;
     if (best && best->asymmetry <= asymmetry) continue;
-    best = MirroredTexture{asymmetry, places[static_cast<size_t>(place)], {}};
+    best = MirroredTexture{asymmetry, places_[static_cast<size_t>(place)], {}};
     best_place = place;
   }
   if (!best) return std::nullopt;
@@ -96,12 +135,17 @@ std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, c
   return best;
 }
 
+std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
+                                                   const Landmark& landmark_in_camera,
+                                                   const TextureOptions& options,
+                                                   const SymmetryOptions& symmetry_options) {
+  return TextureAsymmetry(image, camera, options, symmetry_options).Find(landmark_in_camera);
+}
+
 double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options) {
-  const auto texture =
-      FindMirroredTexture(image, camera, landmark_in_camera, options, symmetry_options);
-  return options.asymmetry_cost * (texture ? texture->asymmetry : 1.0);
+  return TextureAsymmetry(image, camera, options, symmetry_options).Cost(landmark_in_camera);
 }
 
 AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,

@@ -10,6 +10,7 @@
 
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
+#include "orientation/mirror_search.h"
 #include "orientation/options.h"
 #include "symmetry/options.h"
 
@@ -31,14 +32,38 @@ struct MirroredTexture {
   double mirror_plane = 0.0;
   std::vector<Eigen::Vector2d> pixels;  // one of each pair
 };
-// None where too few pairs are visible.
+
+// Finds it for many landmarks. None where too few pairs are visible. Not for several threads at
+// once.
+class TextureAsymmetry {
+ public:
+  // `image` has to outlive it.
+  TextureAsymmetry(const SymmetryImage& image, const Camera& camera, const TextureOptions& options,
+                   const SymmetryOptions& symmetry_options);
+
+  std::optional<MirroredTexture> Find(const Landmark& landmark_in_camera);
+  // What it costs a landmark, as a negative logarithm of a likelihood: options.asymmetry_cost times
+  // the asymmetry; all of it where too few pairs are visible.
+  double Cost(const Landmark& landmark_in_camera);
+
+ private:
+  // Without pixels.
+  std::optional<MirroredTexture> FindByMap(const Landmark& landmark_in_camera);
+  std::optional<MirroredTexture> FindPairByPair(const Landmark& landmark_in_camera) const;
+
+  const SymmetryImage& image_;
+  Camera camera_;
+  TextureOptions options_;
+  SymmetryOptions symmetry_options_;
+  std::vector<double> places_;          // of the mirror plane
+  std::optional<MirrorSearch> search_;  // where the descriptor and the samples allow it
+};
+
+// Of one landmark.
 std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
                                                    const Landmark& landmark_in_camera,
                                                    const TextureOptions& options,
                                                    const SymmetryOptions& symmetry_options);
-
-// What this costs a landmark, as a negative logarithm of a likelihood: options.asymmetry_cost times
-// the asymmetry; all of it where too few pairs are visible.
 double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options);

@@ -11,8 +11,19 @@
 
 namespace soslam {
 
-// The pixels to compare, section V-D: corners in the box and/or a uniform grid over it, or its edge
-// pixels, as far as their rays meet the landmark. Corners first, strongest first.
+// The pixels to compare as far as their rays meet a landmark, section V-D: corners in the box
+// and/or a uniform grid over it, or its edge pixels. Corners first, strongest first.
+struct SampleCandidates {
+  SampleCandidates(const SymmetryImage& image, const SymmetryOptions& options);
+
+  std::vector<Eigen::Vector2d> corners;
+  // Of those corners that meet the landmark, no more than this. When there are no more in all, all
+  // candidates that meet it are compared, whichever they are.
+  size_t max_corners;
+  std::vector<Eigen::Vector2d> others;
+};
+
+// Those whose rays meet the landmark.
 std::vector<Eigen::Vector2d> SamplePixels(const SymmetryImage& image, const Camera& camera,
                                           const Landmark& landmark_in_camera,
                                           const SymmetryOptions& options);

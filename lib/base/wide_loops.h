@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Before a function whose loops the compiler turns into vector code: compiles it twice, for any
+// processor and for those with AVX2, which take twice as many numbers at once; the program chooses
+// when it starts. Both do the same operations in the same order (AVX2 alone has no fused multiply
+// and add), so the results are the same to the last bit. ThreadSanitizer cannot start programs that
+// choose.
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define SOSLAM_WIDE_LOOPS
+#endif
+#elif defined(__SANITIZE_THREAD__)
+#define SOSLAM_WIDE_LOOPS
+#endif
+#if !defined(SOSLAM_WIDE_LOOPS) && defined(__x86_64__) && defined(__ELF__)
+#define SOSLAM_WIDE_LOOPS [[gnu::target_clones("avx2", "default")]]
+#elif !defined(SOSLAM_WIDE_LOOPS)
+#define SOSLAM_WIDE_LOOPS
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/mirrored_points.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/mirror_mapping.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+std::vector<Eigen::Vector2d> PixelsAroundTheMiddle(int count) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (int i = 0; i < count; ++i) {
+    pixels.emplace_back(RandomUniform(150, 490), RandomUniform(100, 380));
+  }
+  return pixels;
+}
+
+// Points are the same up to rounding, 1e-12 of a metre at most here. Which ones are visible is the
+// same but for pixels that miss the limit by as little; there are none among these.
+TEST(MirroredPoints, AreThoseOfEachPixel) {
+  constexpr double kMinCosine = 0.3;
+  const Camera camera = TestCamera();
+  const std::vector<Eigen::Vector2d> pixels = PixelsAroundTheMiddle(500);  // no whole batches
+  const PixelRays rays(camera, pixels);
+  MirroredPoints points;
+  size_t found = 0;
+  for (const double shape_exponent : {kCuboidExponent, 1.1, 1.5, kEllipsoidExponent}) {
+    for (int i = 0; i < 10; ++i) {
+      Landmark landmark = RandomLandmarkInCamera();
+      landmark.shape_exponent = shape_exponent;
+      points.Find(landmark, rays, kMinCosine);
+      const VisibleSurface surface(camera, landmark);
+      size_t on_surface = 0;
+      size_t next = 0;
+      for (size_t k = 0; k < pixels.size(); ++k) {
+        const auto point = surface.FromPixel(pixels[k]);
+        if (!point) continue;
+        ++on_surface;
+        const VisibleSurface::Point mirrored = surface.MirrorImage(*point);
+        if (!(surface.ViewingCosine(*point) >= kMinCosine) ||
+            !(surface.ViewingCosine(mirrored) >= kMinCosine)) {
+          continue;
+        }
+        ASSERT_LT(next, points.ray.size());
+        EXPECT_EQ(points.ray[next], k);
+        const BatchOfVectors& batch = points.in_camera[next / kBatchSize];
+        const auto at = static_cast<Eigen::Index>(next % kBatchSize);
+        const Eigen::Vector3d in_camera(batch[0][at], batch[1][at], batch[2][at]);
+        EXPECT_LT((in_camera - landmark.frame_from_object * mirrored.in_object).norm(), 1e-12);
+        ++next;
+      }
+      EXPECT_EQ(points.on_surface, on_surface);
+      EXPECT_EQ(points.ray.size(), next);
+      found += next;
+    }
+  }
+  EXPECT_GT(found, 500u);
+}
+
+TEST(MirroredPoints, WhatIsLeftOfTheLastBatchIsNaN) {
+  const Landmark landmark{{Eigen::Quaterniond::Identity(), {0, 0, 3}}, {0.5, 0.5, 0.5}};
+  MirroredPoints points;
+  points.Find(landmark, PixelRays(TestCamera(), {{318, 242}, {320, 240}, {0, 0}}), 0.0);
+  EXPECT_EQ(points.on_surface, 2u);
+  ASSERT_EQ(points.in_camera.size(), 1u);
+  EXPECT_TRUE(points.in_camera[0][2].head<2>().isFinite().all());
+  EXPECT_TRUE(points.in_camera[0][2].tail<kBatchSize - 2>().isNaN().all());
+}
+
+TEST(MirroredPoints, ThereAreNoneFromInsideTheBody) {
+  MirroredPoints points;
+  for (const double shape_exponent : {kCuboidExponent, 1.5, kEllipsoidExponent}) {
+    const Landmark around{{Eigen::Quaterniond::Identity(), {0, 0, 0.1}}, {1, 1, 1}, shape_exponent};
+    points.Find(around, PixelRays(TestCamera(), PixelsAroundTheMiddle(10)), 0.0);
+    EXPECT_EQ(points.on_surface, 0u);
+    EXPECT_TRUE(points.in_camera.empty());
+  }
+}
+
+}  // namespace
+}  // namespace soslam
