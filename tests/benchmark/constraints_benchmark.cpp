@@ -14,6 +14,7 @@
 #include "constraints/support.h"
 #include "constraints/symmetry.h"
 #include "constraints/tangency.h"
+#include "constraints/tangent_space.h"
 #include "initialisation/landmark_term_residual.h"
 #include "mapping/tangency_term.h"
 #include "orientation/edge_alignment.h"
