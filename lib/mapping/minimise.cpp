@@ -14,6 +14,9 @@ namespace soslam {
 namespace {
 
 constexpr double kTolerance = 1e-10;  // of the cost
+// An iteration that lowers the cost by less than this share is the last: what images say has kinks
+// at every pixel, between which steps would go on to and fro.
+constexpr double kLeastGain = 1e-8;
 // Costs of residuals that are all but zero.
 constexpr double kNoCost = 1e-18;
 // Of each landmark for itself, after a step of all variables, as long as they lower its cost by
@@ -157,7 +160,7 @@ class Minimiser {
     is_linearised_ = false;
     if (gain > 0.0) {
       damping_.StepTaken(gain / predicted);
-      return true;
+      return gain > kLeastGain * before;
     }
     Restore(values);
     cost_ = before;
