@@ -145,10 +145,15 @@ std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& orig
   double depth = std::max(interval->first, 0.0);
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const Eigen::Array3d x = (origin + depth * direction).array();
-    const Eigen::Array3d ratio = x.abs() / x.abs().maxCoeff();
-    const double norm = x.abs().maxCoeff() * std::pow(ratio.pow(q_).sum(), 1.0 / q_);
+    const double largest = x.abs().maxCoeff();
+    const Eigen::Array3d ratio = x.abs() / largest;
+    // r^q = r r^(q - 1): one power serves the norm and its derivative.
+    const Eigen::Array3d power = ratio.pow(q_ - 1.0);
+    const double sum = (ratio * power).sum();
+    const double root = std::pow(sum, 1.0 / q_);
+    const double norm = largest * root;
     if (depth == 0.0 && !(norm > 1.0)) return std::nullopt;  // the origin is inside
-    const double slope = ((x.abs() / norm).pow(q_ - 1.0) * x.sign() * direction.array()).sum();
+    const double slope = root / sum * (power * x.sign() * direction.array()).sum();
     if (!(slope < 0.0)) return std::nullopt;
     const double step = (norm - 1.0) / -slope;
     depth += step;

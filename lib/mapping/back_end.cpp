@@ -12,7 +12,9 @@ namespace {
 
 // What of texture and edges is visible, and where the mirror planes are, settles with the
 // landmarks: renewed until none changes by more than this (m per m of size, rad).
-constexpr int kMaxImageRounds = 12;
+constexpr int kMaxImageRounds = 25;
+// A round need not end at the minimum of what is renewed in the next one.
+constexpr int kIterationsPerRound = 10;
 constexpr double kSettled = 1e-3;
 
 double Change(const Landmark& from, const Landmark& to) {
@@ -36,7 +38,7 @@ bool SettleWithImages(size_t objects, BackEndProblem* problem) {
   for (int round = 0; round < kMaxImageRounds; ++round) {
     const std::vector<std::optional<Landmark>> before = LandmarksOf(*problem, objects);
     problem->RenewImageTerms();
-    problem->Solve();
+    problem->Solve(kIterationsPerRound);
     const std::vector<std::optional<Landmark>> after = LandmarksOf(*problem, objects);
     double change = 0.0;
     for (size_t i = 0; i < before.size(); ++i) {
@@ -103,15 +105,16 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options) {
   BackEndProblem problem(input, options);
   MapEstimate map;
-  problem.Solve();
+  problem.Solve(options.max_iterations);
   bool settled = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
       settled = SettleWithImages(input.starts.size(), &problem);
+      problem.Solve(options.max_iterations);
     }
   } else if (!input.symmetry_images.empty()) {
     problem.RenewImageTerms();  // the paper's pairs are those of the start
-    problem.Solve();
+    problem.Solve(options.max_iterations);
   }
   map.solver = problem.summary();
   map.solver.converged = map.solver.converged && settled;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/back_end_problem.h"
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
@@ -300,9 +301,9 @@ void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImag
       TermOf(std::move(residual), {Pose(detection), LandmarkOf(detection)}, kNoLoss));
 }
 
-void BackEndProblem::Solve() {
+void BackEndProblem::Solve(int max_iterations) {
   const Minimisation minimisation =
-      Minimise(AllTerms(), options_.max_iterations, &variables_.all());
+      Minimise(AllTerms(), std::min(max_iterations, options_.max_iterations), &variables_.all());
   const std::vector<double>& costs = minimisation.costs;
   if (summary_.cost_per_iteration.empty()) summary_.initial_cost = costs.front();
   summary_.final_cost = costs.back();

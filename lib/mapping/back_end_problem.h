@@ -27,9 +27,9 @@ class BackEndProblem {
   // of an earlier call are replaced.
   void RenewImageTerms();
 
-  // Minimises from where the variables are. Throws NumericalError where the cost is not defined
-  // there.
-  void Solve();
+  // Minimises from where the variables are, with so many iterations at most and no more than the
+  // options say. Throws NumericalError where the cost is not defined there.
+  void Solve(int max_iterations);
 
   const SolverSummary& summary() const { return summary_; }
   // Where Solve has left them.
