@@ -93,7 +93,9 @@ TEST(SampleBilinearTest, ManyPixelsHaveTheValuesOfEach) {
       for (int i = 0; i < kBatchSize; ++i) {
         const auto expected = SampleBilinear(part, Eigen::Vector2d(pixels[0][i], pixels[1][i]));
         EXPECT_EQ(std::isfinite(values[i]), expected.has_value());
-        if (expected) EXPECT_EQ(values[i], expected->value);
+        if (expected) {
+          EXPECT_EQ(values[i], expected->value);
+        }
       }
     }
   }
