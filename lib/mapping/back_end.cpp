@@ -105,16 +105,16 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options) {
   BackEndProblem problem(input, options);
   MapEstimate map;
-  problem.Solve(options.max_iterations);
+  problem.Solve();
   bool settled = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
       settled = SettleWithImages(input.starts.size(), &problem);
-      problem.Solve(options.max_iterations);
+      problem.Solve();
     }
   } else if (!input.symmetry_images.empty()) {
     problem.RenewImageTerms();  // the paper's pairs are those of the start
-    problem.Solve(options.max_iterations);
+    problem.Solve();
   }
   map.solver = problem.summary();
   map.solver.converged = map.solver.converged && settled;

@@ -3,6 +3,7 @@
 
 #include <ceres/cost_function.h>
 
+#include <limits>
 #include <memory>
 #include <set>
 #include <vector>
@@ -29,7 +30,7 @@ class BackEndProblem {
 
   // Minimises from where the variables are, with so many iterations at most and no more than the
   // options say. Throws NumericalError where the cost is not defined there.
-  void Solve(int max_iterations);
+  void Solve(int max_iterations = std::numeric_limits<int>::max());
 
   const SolverSummary& summary() const { return summary_; }
   // Where Solve has left them.
