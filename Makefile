@@ -117,6 +117,10 @@ $(foreach name,$(SEEDED),$(eval swept/$(name): $(DATA_ROOT)/$(name)/run.json))
 .PHONY: scenes
 scenes: $(SEEDED:%=$(DATA_ROOT)/%/run.json)
 
+ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
+$(if $(findstring /,$(DATASETS)),$(error DATASETS='$(DATASETS)': expected names of folders in DATA_ROOT = $(DATA_ROOT), without /))
+endif
+
 .PHONY: sweep
 sweep: build ## Run DATASETS and SCENES with SEEDS through VARIANT=<name>|all; with -j, side by side
 	+@$(MAKE) --keep-going $(SEVERAL_JOBS) $(SWEEP:%=swept/%)

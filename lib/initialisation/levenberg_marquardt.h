@@ -50,7 +50,13 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
         damping * at.information.diagonal().cwiseMax(kMinDiagonal);
     typename NormalEquations<kSize>::Matrix damped = at.information;
     damped.diagonal() += weights;
-    const Eigen::Matrix<double, kSize, 1> step = damped.llt().solve(-at.gradient);
+    const Eigen::LLT<typename NormalEquations<kSize>::Matrix> factor(damped);
+    if (factor.info() != Eigen::Success) {
+      damping *= growth;
+      growth *= 2.0;
+      continue;
+    }
+    const Eigen::Matrix<double, kSize, 1> step = factor.solve(-at.gradient);
     // Of the undamped cost to second order.
     const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
     if (!(decrease > kNegligibleDecrease * (1.0 + at.cost))) break;

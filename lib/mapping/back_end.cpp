@@ -33,19 +33,26 @@ std::vector<std::optional<Landmark>> LandmarksOf(const BackEndProblem& problem, 
   return landmarks;
 }
 
-// Whether they settled.
+double LargestChange(const std::vector<std::optional<Landmark>>& from,
+                     const std::vector<std::optional<Landmark>>& to) {
+  double change = 0.0;
+  for (size_t i = 0; i < from.size(); ++i) {
+    if (from[i]) change = std::max(change, Change(*from[i], *to[i]));
+  }
+  return change;
+}
+
+// Whether they settled: the minimum is where the image terms were made.
 bool SettleWithImages(size_t objects, BackEndProblem* problem) {
   for (int round = 0; round < kMaxImageRounds; ++round) {
     const std::vector<std::optional<Landmark>> before = LandmarksOf(*problem, objects);
     problem->RenewImageTerms();
     problem->Solve(kIterationsPerRound);
-    const std::vector<std::optional<Landmark>> after = LandmarksOf(*problem, objects);
-    double change = 0.0;
-    for (size_t i = 0; i < before.size(); ++i) {
-      if (before[i]) change = std::max(change, Change(*before[i], *after[i]));
-    }
-    if (change < kSettled) return true;
+    if (LargestChange(before, LandmarksOf(*problem, objects)) >= kSettled) continue;
+    problem->Solve();
+    if (LargestChange(before, LandmarksOf(*problem, objects)) < kSettled) return true;
   }
+  problem->Solve();
   return false;
 }
 
@@ -71,11 +78,12 @@ void AddLandmarkCovariances(const MarginalCovariances& covariances, MapEstimate*
   int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
-    if (!covariances.AreDetermined()) {
+    const auto index = static_cast<size_t>(object.object_index);
+    if (!covariances.HasLandmark(index)) {
       ++without;
       continue;
     }
-    object.covariance = covariances.OfLandmark(static_cast<size_t>(object.object_index));
+    object.covariance = covariances.OfLandmark(index);
   }
   if (without > 0) map->solver.gated["covariance_of_undetermined_problem"] = without;
 }
@@ -110,7 +118,6 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
       settled = SettleWithImages(input.starts.size(), &problem);
-      problem.Solve();
     }
   } else if (!input.symmetry_images.empty()) {
     problem.RenewImageTerms();  // the paper's pairs are those of the start

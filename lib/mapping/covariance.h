@@ -23,6 +23,11 @@ class MarginalCovariances {
   // Of an object's landmark, over (rotation vector in the world frame, rad; centre, m; log half
   // axes).
   Covariance9 OfLandmark(size_t object_index) const;
+  // Whether there is one: something has to depend on the landmark.
+  bool HasLandmark(size_t object_index) const {
+    return AreDetermined() &&
+           block_of_[static_cast<size_t>(variables_.Landmark(object_index))] >= 0;
+  }
 
   // Of a plane's variables, over (normal, offset): of rank 3, as the normal has unit length; zero
   // for what is held.

@@ -11,7 +11,9 @@ namespace soslam {
 // How a minimisation went.
 struct Minimisation {
   std::vector<double> costs;  // at the start and after each iteration
-  bool converged = false;     // no step is expected to lower the cost by more than 1e-10 of it
+  // The last iteration lowered the cost by less than 1e-8 of it, or is expected to by less than
+  // 1e-10, or no step lowers it.
+  bool converged = false;
 };
 
 // Minimises the sum of all terms over all variables that are not held, from where they are, by

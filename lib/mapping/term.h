@@ -20,7 +20,7 @@ struct TermPlaces {
 enum class Hessian {
   kInformation,  // J^T W J, W the weights that the losses give to the residuals
   kFar,          // and where a body turns past its edges and faces
-  kNear,         // and how losses curve along the residuals: only good near a minimum
+  kNear,  // all, where residuals have them, and of losses: may be indefinite far from a minimum
 };
 
 // A part of the cost, a sum of squares under a loss, as a function of at most three variables. It
@@ -38,8 +38,9 @@ class Term {
   // Infinite where the term is not defined.
   virtual double Cost() const = 0;
 
-  // Returns the cost and adds its gradient and a positive semidefinite approximation of its Hessian
-  // by the variables' steps (tangent_space.h); neither where the cost is infinite.
+  // Returns the cost and adds its gradient and what of its Hessian is asked for, by the variables'
+  // steps (tangent_space.h); neither where the cost is infinite. Positive semidefinite but for
+  // kNear.
   virtual double Linearise(Hessian hessian, const TermPlaces& places) const = 0;
 
  private:

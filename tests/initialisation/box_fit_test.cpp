@@ -40,11 +40,13 @@ NormalEquations<6> SumOfTerms(const LandmarkTerms& terms, const UprightGround& g
 }
 
 TEST(BoxFit, SaysWhatTheTermsSay) {
+  int checked = 0;
   for (const double p : kShapeExponents) {
     for (int i = 0; i < 40; ++i) {
       const UprightObservation observation = RandomObservation(p, i);
       const auto start = ClosedForm(observation).At(RandomYaw());
       if (!start) continue;
+      ++checked;
       const BoxFit fit(observation);
       UprightVector at = *start;
       at.tail<3>() += RandomVector(-0.1, 0.1);
@@ -60,14 +62,17 @@ TEST(BoxFit, SaysWhatTheTermsSay) {
                 1e-9 * (1.0 + expected.information.norm()));
     }
   }
+  EXPECT_GT(checked, 50);
 }
 
 TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
+  int checked = 0;
   for (const double p : kShapeExponents) {
     for (int i = 0; i < 40; ++i) {
       const UprightObservation observation = RandomObservation(p, i);
       const auto start = ClosedForm(observation).At(RandomYaw());
       if (!start) continue;
+      ++checked;
       const BoxFit fit(observation);
       const Landmark landmark = fit.ground().LandmarkAt(*start, p);
       for (const bool yaw_is_free : {false, true}) {
@@ -80,6 +85,7 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
       }
     }
   }
+  EXPECT_GT(checked, 50);
 }
 
 }  // namespace
