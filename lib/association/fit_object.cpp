@@ -42,19 +42,15 @@ ByParameters LandmarkByParameters(const MultiViewObservation& observation,
 Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark& landmark,
                          const Eigen::Matrix3d& up_covariance) {
   const ByParameters by_parameters = LandmarkByParameters(observation, landmark);
-  Information information = PriorInformation(by_parameters.cols());
-  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed(by_parameters.cols(), 3);
-  mixed.setZero();
-  const LandmarkTerms terms =
-      observation.height_is_free ? OutlineTerms(observation) : ViewTerms(observation, landmark);
-  for (const auto& term : terms) {
-    Eigen::VectorXd residuals(term->NumResiduals());
-    LandmarkTerm::Jacobian by_landmark(term->NumResiduals(), kLandmarkDof);
-    term->Evaluate(landmark, residuals, &by_landmark);
-    const Eigen::MatrixXd jacobian = by_landmark * by_parameters;
-    information += jacobian.transpose() * jacobian;
-    mixed += jacobian.transpose() * by_landmark.leftCols<3>();
+  LandmarkModel model;
+  for (const auto& term :
+       observation.height_is_free ? OutlineTerms(observation) : ViewTerms(observation, landmark)) {
+    term->AddTo(landmark, &model);
   }
+  const Information information = PriorInformation(by_parameters.cols()) +
+                                  by_parameters.transpose() * model.information * by_parameters;
+  const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed =
+      by_parameters.transpose() * model.information.leftCols<3>();
   const Eigen::LDLT<Information> solver(information);
   Eigen::Matrix<double, kLandmarkDof, 3> by_turn = -by_parameters * solver.solve(mixed);
   by_turn.topRows<3>() += Eigen::Matrix3d::Identity();

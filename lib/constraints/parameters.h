@@ -72,6 +72,8 @@ class RelativeObservation {
                                double shape_exponent = kEllipsoidExponent);
 
   const Landmark& landmark_in_camera() const { return landmark_in_camera_; }
+  const Eigen::Matrix3d& camera_from_world() const { return camera_from_world_; }  // rotation
+  const Eigen::Vector3d& offset_in_world() const { return offset_in_world_; }  // from the camera
 
   template <int kRows>
   void WriteJacobians(const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,

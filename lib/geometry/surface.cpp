@@ -2,6 +2,7 @@
 #include "geometry/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -56,55 +57,76 @@ struct CuboidIntervals {
   Batch exit = Batch::Constant(std::numeric_limits<double>::infinity());
 };
 
-// F along rays, with half axes of one, and its slope.
+// Rays that have not met the surface yet, the first `count` of each.
+struct OpenRays {
+  void Add(int number, const BatchOfVectors& directions, int from, double at, double until) {
+    ray[static_cast<size_t>(count)] = number;
+    for (size_t k = 0; k < 3; ++k) direction[k][count] = directions[k][from];
+    depth[count] = at;
+    exit[count] = until;
+    ++count;
+  }
+  // In whole steps of the processor's loops, so that what a ray meets does not depend on its place.
+  int PaddedCount() const { return (count + 3) / 4 * 4; }
+
+  int count = 0;
+  std::array<int, kBatchSize> ray{};  // number in the batch
+  BatchOfVectors direction = {Batch::Zero(), Batch::Zero(), Batch::Zero()};
+  Batch depth = Batch::Zero();
+  Batch exit = Batch::Zero();
+};
+
+// F along rays inside the cuboid, with half axes of one, and its slope.
 struct NormsAlongRays {
-  NormsAlongRays(const Eigen::Vector3d& origin, const BatchOfVectors& direction, const Batch& depth,
-                 double q) {
-    BatchOfVectors x;
-    for (size_t i = 0; i < 3; ++i) {
-      x[i] = origin[static_cast<Eigen::Index>(i)] + depth * direction[i];
+  using Some = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBatchSize, 1>;
+
+  NormsAlongRays(const Eigen::Vector3d& origin, const OpenRays& rays, double q) {
+    const int size = rays.PaddedCount();
+    Some sum = Some::Zero(size), by_depth = Some::Zero(size);
+    for (size_t k = 0; k < 3; ++k) {
+      const auto direction = rays.direction[k].head(size);
+      const Some x = origin[static_cast<Eigen::Index>(k)] + rays.depth.head(size) * direction;
+      // |x|^q = x (x |x|^(q - 2)): one power serves the norm and its derivative.
+      const Some product =
+          x * ((q - 2.0) * (x.abs() + std::numeric_limits<double>::min()).log()).exp();
+      sum += x * product;
+      by_depth += product * direction;
     }
-    const Batch largest = x[0].abs().max(x[1].abs()).max(x[2].abs());
-    Batch sum = Batch::Zero(), weighted = Batch::Zero();
-    for (size_t i = 0; i < 3; ++i) {
-      const Batch power = (q * (x[i].abs() / largest).log()).exp();  // 0 for 0
-      sum += power;
-      // power * direction / x, which vanishes with x
-      weighted +=
-          power * direction[i] * x[i] / (x[i].square() + std::numeric_limits<double>::min());
-    }
-    norm = largest * (sum.log() / q).exp();
-    slope = norm * weighted / sum;
+    norm = (sum.log() / q).exp();
+    slope = norm * by_depth / sum;
   }
 
-  Batch norm;
-  Batch slope;
+  Some norm;
+  Some slope;
 };
 
 // As SuperquadricEntry, for many rays; -1 where there is none.
 Batch SuperquadricEntries(const Eigen::Vector3d& origin, const BatchOfVectors& direction,
                           double q) {
-  constexpr int kNone = -1;
   const CuboidIntervals interval(origin, direction);
-  Batch depth = interval.entry.max(0.0);
-  Eigen::Array<bool, kBatchSize, 1> is_open;
+  Batch entries = Batch::Constant(-1.0);
+  OpenRays rays;
   for (int i = 0; i < kBatchSize; ++i) {
-    is_open[i] = interval.IsHit(i);
-    if (!is_open[i]) depth[i] = kNone;
-  }
-  for (int step = 0; step < kMaxNewtonSteps && is_open.any(); ++step) {
-    const NormsAlongRays at(origin, direction, depth, q);
-    for (int i = 0; i < kBatchSize; ++i) {
-      if (!is_open[i]) continue;
-      const bool is_inside = depth[i] == 0.0 && !(at.norm[i] > 1.0);
-      const double by = (at.norm[i] - 1.0) / -at.slope[i];
-      const double next = depth[i] + by;
-      const bool is_missed = is_inside || !(at.slope[i] < 0.0) || !(next < interval.exit[i]);
-      is_open[i] = !is_missed && !(by < kBatchNewtonTolerance * next);
-      depth[i] = is_missed ? kNone : next;
+    if (interval.IsHit(i)) {
+      rays.Add(i, direction, i, std::max(interval.entry[i], 0.0), interval.exit[i]);
     }
   }
-  return is_open.select(Batch::Constant(kNone), depth);  // open: rays that graze the surface
+  for (int step = 0; step < kMaxNewtonSteps && rays.count > 0; ++step) {
+    const NormsAlongRays at(origin, rays, q);
+    const int count = std::exchange(rays.count, 0);
+    for (int i = 0; i < count; ++i) {
+      const bool is_inside = rays.depth[i] == 0.0 && !(at.norm[i] > 1.0);
+      const double by = (at.norm[i] - 1.0) / -at.slope[i];
+      const double next = rays.depth[i] + by;
+      if (is_inside || !(at.slope[i] < 0.0) || !(next < rays.exit[i])) continue;
+      if (by < kBatchNewtonTolerance * next) {
+        entries[rays.ray[static_cast<size_t>(i)]] = next;
+      } else {
+        rays.Add(rays.ray[static_cast<size_t>(i)], rays.direction, i, next, rays.exit[i]);
+      }
+    }
+  }
+  return entries;  // none for those still open: they graze the surface
 }
 
 }  // namespace

@@ -87,6 +87,18 @@ SOSLAM_WIDE_LOOPS void Interpolate(const Corners& corners, const Cells& cells, B
   }
 }
 
+SOSLAM_WIDE_LOOPS void Differentiate(const Corners& corners, const Cells& cells,
+                                     BatchOfPixels* gradients) {
+  for (int i = 0; i < kBatchSize; ++i) {
+    const double dx = cells.dx[i];
+    const double dy = cells.dy[i];
+    (*gradients)[0][i] = (1.0 - dy) * (corners[1][i] - corners[0][i]) +  //
+                         dy * (corners[3][i] - corners[2][i]);
+    (*gradients)[1][i] = (1.0 - dx) * (corners[2][i] - corners[0][i]) +  //
+                         dx * (corners[3][i] - corners[1][i]);
+  }
+}
+
 }  // namespace
 
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel) {
@@ -99,7 +111,7 @@ std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& 
                                : SampleTyped<float>(map, pixel);
 }
 
-Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels) {
+Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels, BatchOfPixels* gradients) {
   CV_Assert(map.type() == CV_8UC1 || map.type() == CV_32FC1);
   if (map.cols < 2 || map.rows < 2) {
     return Batch::Constant(kNone);
@@ -111,6 +123,7 @@ Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels) {
                         : Gather<float>(map, cells, &corners);
   Batch values;
   Interpolate(corners, cells, &values);
+  if (gradients != nullptr) Differentiate(corners, cells, gradients);
   return values;
 }
 

@@ -19,7 +19,9 @@ struct Sample {
 // and none where one of the four pixels around is not finite.
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
 
-// The values of many pixels: NaN where there is none.
-Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels);
+// The values of many pixels: NaN where there is none. `gradients` may be null; they are not defined
+// where there is no value.
+Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels,
+                     BatchOfPixels* gradients = nullptr);
 
 }  // namespace soslam

@@ -35,7 +35,7 @@ Eigen::Array4d BoxFit::TangentDepths(const UprightVector& start) const {
 }
 
 void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
-                           NormalEquations<6>* sum) const {
+                           QuadraticModel<6>* sum) const {
   const double cosine = std::cos(at[kYaw]);
   const double sine = std::sin(at[kYaw]);
   const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
@@ -57,7 +57,7 @@ void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& 
   }
 }
 
-void BoxFit::AddRatio(const UprightVector& at, NormalEquations<6>* sum) const {
+void BoxFit::AddRatio(const UprightVector& at, QuadraticModel<6>* sum) const {
   const ShapePrior& prior = observation_.prior;
   const Eigen::Vector2d weight = prior.log_sigma.cwiseInverse();
   const double a = weight.x() * (at[kLogA] - at[kLogC] - log_ratio_.x());
@@ -74,7 +74,7 @@ void BoxFit::AddRatio(const UprightVector& at, NormalEquations<6>* sum) const {
   sum->Add((b - correlation * a) / unexplained, (by_b - correlation * by_a) / unexplained);
 }
 
-void BoxFit::AddYaw(double yaw, NormalEquations<6>* sum) const {
+void BoxFit::AddYaw(double yaw, QuadraticModel<6>* sum) const {
   const double amplitude = std::sqrt(2.0 * observation_.axes_weight);
   const double angle = 2.0 * (yaw - axis_yaw_);
   const UprightVector by_yaw = UprightVector::Unit(kYaw);
@@ -84,22 +84,27 @@ void BoxFit::AddYaw(double yaw, NormalEquations<6>* sum) const {
   sum->Add(YawDifferenceModuloPi(yaw, prior.yaw) / prior.sigma, by_yaw / prior.sigma);
 }
 
-NormalEquations<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
-  NormalEquations<6> sum;
+QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
+  QuadraticModel<6> sum;
   AddTangencies(depths_m, at, &sum);
   AddRatio(at, &sum);
   AddYaw(at[kYaw], &sum);
   return sum;
 }
 
-double BoxFit::Minimise(bool yaw_is_free, UprightVector* start) const {
+double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
+                        UprightVector* start) const {
   const Eigen::Array4d depths_m = TangentDepths(*start);
+  const double shape_exponent = observation_.prior.shape_exponent;
   const auto evaluate = [&](const UprightVector& at) {
-    NormalEquations<6> sum = Evaluate(depths_m, at);
+    QuadraticModel<6> sum = Evaluate(depths_m, at);
+    if (!further.empty()) {
+      sum.Add(UprightModel(further, ground_, ground_.LandmarkAt(at, shape_exponent)));
+    }
     if (!yaw_is_free) sum.Hold(kYaw);
     return sum;
   };
-  return MinimiseSquares<6>(evaluate, kMaxIterations, start);
+  return MinimiseSquares<6>(evaluate, kMaxIterations, start) + ConstantCost(further);
 }
 
 }  // namespace soslam

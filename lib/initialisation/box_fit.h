@@ -18,12 +18,12 @@ class BoxFit {
   explicit BoxFit(const UprightObservation& observation);
 
   // The sum of the terms, tangent points at the depths (m) that they have on `start`.
-  NormalEquations<6> Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const;
+  QuadraticModel<6> Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const;
   Eigen::Array4d TangentDepths(const UprightVector& start) const;
 
-  // Levenberg-Marquardt from `start`, whose tangent depths count; yaw fixed or free. Returns the
-  // cost, which is not finite when it is not at the start.
-  double Minimise(bool yaw_is_free, UprightVector* start) const;
+  // Levenberg-Marquardt of this and further costs from `start`, whose tangent depths count; yaw
+  // fixed or free. Returns the total cost, which is not finite when it is not at the start.
+  double Minimise(const LandmarkCosts& further, bool yaw_is_free, UprightVector* start) const;
 
   double CostAtOwnDepths(const UprightVector& at) const {
     return Evaluate(TangentDepths(at), at).cost;
@@ -32,9 +32,9 @@ class BoxFit {
 
  private:
   void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
-                     NormalEquations<6>* sum) const;
-  void AddRatio(const UprightVector& at, NormalEquations<6>* sum) const;
-  void AddYaw(double yaw, NormalEquations<6>* sum) const;
+                     QuadraticModel<6>* sum) const;
+  void AddRatio(const UprightVector& at, QuadraticModel<6>* sum) const;
+  void AddYaw(double yaw, QuadraticModel<6>* sum) const;
 
   const UprightObservation& observation_;
   UprightGround ground_;

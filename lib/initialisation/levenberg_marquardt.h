@@ -5,34 +5,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "initialisation/quadratic_model.h"
+
 namespace soslam {
 
-// A small least squares problem to second order about a point: what its residuals r and their
-// Jacobian J leave of it.
-template <int kSize>
-struct NormalEquations {
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
-
-  double cost = 0.0;                    // half the sum of r^2; not finite where undefined
-  Vector gradient = Vector::Zero();     // J^T r
-  Matrix information = Matrix::Zero();  // J^T J
-
-  void Add(double residual, const Vector& by_parameters) {
-    cost += 0.5 * residual * residual;
-    gradient += residual * by_parameters;
-    information += by_parameters * by_parameters.transpose();
-  }
-  // As if nothing depended on a parameter.
-  void Hold(int parameter) {
-    gradient[parameter] = 0.0;
-    information.row(parameter).setZero();
-    information.col(parameter).setZero();
-  }
-};
-
 // Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
-// least squares problems, 2004, section 3.2). `evaluate` makes the normal equations at parameters.
+// least squares problems, 2004, section 3.2). `evaluate` makes the model at parameters.
 // Ends where the next step would hardly lower the cost any more, after `max_iterations`,
 // or where no step lowers it. Parameters that nothing depends on stay as they
 // are. Returns the cost at the parameters that it leaves: not finite when it was not at the start.
@@ -42,15 +20,15 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
   constexpr double kNegligibleDecrease = 1e-11;
   constexpr double kMinDiagonal = 1e-6;
   constexpr double kMaxDamping = 1e16;
-  NormalEquations<kSize> at = evaluate(*parameters);
+  QuadraticModel<kSize> at = evaluate(*parameters);
   double damping = 1e-4;
   double growth = 2.0;
   for (int i = 0; i < max_iterations && damping < kMaxDamping; ++i) {
     const Eigen::Matrix<double, kSize, 1> weights =
         damping * at.information.diagonal().cwiseMax(kMinDiagonal);
-    typename NormalEquations<kSize>::Matrix damped = at.information;
+    typename QuadraticModel<kSize>::Matrix damped = at.information;
     damped.diagonal() += weights;
-    const Eigen::LLT<typename NormalEquations<kSize>::Matrix> factor(damped);
+    const Eigen::LLT<typename QuadraticModel<kSize>::Matrix> factor(damped);
     if (factor.info() != Eigen::Success) {
       damping *= growth;
       growth *= 2.0;
@@ -61,7 +39,7 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
     const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
     if (!(decrease > kNegligibleDecrease * (1.0 + at.cost))) break;
     const Eigen::Matrix<double, kSize, 1> moved = *parameters + step;
-    const NormalEquations<kSize> there = evaluate(moved);
+    const QuadraticModel<kSize> there = evaluate(moved);
     const double gain = (at.cost - there.cost) / decrease;
     if (gain > 0.0) {
       *parameters = moved;

@@ -96,12 +96,6 @@ Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
   return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
 }
 
-double CostOf(const LandmarkTerm& prior, const Landmark& landmark) {
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1> residuals(prior.NumResiduals());
-  prior.Evaluate(landmark, residuals, nullptr);
-  return 0.5 * residuals.squaredNorm();
-}
-
 // The views of an observation in the frame of its ground, where a yaw turns about z.
 class LinearViews {
  public:
@@ -272,8 +266,8 @@ class LinearViews {
                 (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
       }
     }
-    if (HasRatio(observation_)) cost += CostOf(RatioTerm(*observation_.prior), landmark);
-    if (HasSize(observation_)) cost += CostOf(HeightTerm(*observation_.prior->height_m), landmark);
+    if (HasRatio(observation_)) cost += RatioTerm(*observation_.prior).Value(landmark);
+    if (HasSize(observation_)) cost += HeightTerm(*observation_.prior->height_m).Value(landmark);
     return cost;
   }
 
@@ -284,8 +278,8 @@ class LinearViews {
 };
 
 // What is known of the body without its boxes.
-LandmarkTerms PriorTerms(const MultiViewObservation& observation) {
-  LandmarkTerms terms;
+LandmarkCosts PriorTerms(const MultiViewObservation& observation) {
+  LandmarkCosts terms;
   const Plane& plane = observation.plane_in_world;
   if (HasRatio(observation)) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
   if (HasSize(observation)) {
@@ -332,8 +326,8 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
   return observation;
 }
 
-LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {
-  LandmarkTerms terms = PriorTerms(observation);
+LandmarkCosts ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {
+  LandmarkCosts terms = PriorTerms(observation);
   for (const BoxView& view : observation.views) {
     const Landmark in_camera = Transform(view.camera_from_world, start_in_world);
     if (!IsInFront(in_camera)) continue;
@@ -343,8 +337,8 @@ LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark&
   return terms;
 }
 
-LandmarkTerms OutlineTerms(const MultiViewObservation& observation) {
-  LandmarkTerms terms = PriorTerms(observation);
+LandmarkCosts OutlineTerms(const MultiViewObservation& observation) {
+  LandmarkCosts terms = PriorTerms(observation);
   for (const BoxView& view : observation.views) {
     terms.push_back(TermOfView(observation, view, std::make_unique<OutlineTerm>(view.edges)));
   }

@@ -43,11 +43,11 @@ MultiViewObservation MakeMultiViewObservation(
 
 // What a landmark in the world is fitted to; tangent points are at their depths on `start`. Views
 // that it is not wholly in front of are left out.
-LandmarkTerms ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world);
+LandmarkCosts ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world);
 
 // The same with exact residuals: nothing depends on a start. A landmark that is not wholly in front
 // of all views has no finite cost.
-LandmarkTerms OutlineTerms(const MultiViewObservation& observation);
+LandmarkCosts OutlineTerms(const MultiViewObservation& observation);
 
 // At a given yaw, the tangencies of a cuboid are linear in its foot and its three half axes: the
 // least squares solution over all views with the prior's ratio as soft equations, repeated with

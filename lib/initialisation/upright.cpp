@@ -11,40 +11,7 @@ namespace {
 
 constexpr int kMaxIterations = 50;
 
-// Sums the terms at upright parameters.
-class UprightCost {
- public:
-  UprightCost(const UprightGround& ground, double shape_exponent, const LandmarkTerms& terms,
-              bool yaw_is_free)
-      : ground_(ground), shape_exponent_(shape_exponent), terms_(terms), yaw_is_free_(yaw_is_free) {
-    for (const auto& term : terms) {
-      residuals_.emplace_back(term->NumResiduals());
-      jacobians_.emplace_back(term->NumResiduals(), kLandmarkDof);
-    }
-  }
-
-  NormalEquations<6> operator()(const UprightVector& parameters) {
-    const Landmark landmark = ground_.LandmarkAt(parameters, shape_exponent_);
-    const UprightJacobian by_parameters = ground_.ByParameters(landmark);
-    NormalEquations<6> sum;
-    for (size_t i = 0; i < terms_.size(); ++i) {
-      terms_[i]->Evaluate(landmark, residuals_[i], &jacobians_[i]);
-      for (Eigen::Index row = 0; row < residuals_[i].size(); ++row) {
-        sum.Add(residuals_[i][row], by_parameters.transpose() * jacobians_[i].row(row).transpose());
-      }
-    }
-    if (!yaw_is_free_) sum.Hold(0);
-    return sum;
-  }
-
- private:
-  const UprightGround& ground_;
-  double shape_exponent_;
-  const LandmarkTerms& terms_;
-  bool yaw_is_free_;
-  std::vector<Eigen::VectorXd> residuals_;  // of each term, here so that they are allocated once
-  std::vector<LandmarkTerm::Jacobian> jacobians_;
-};
+using Residuals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, LandmarkTerm::kMaxResiduals>;
 
 }  // namespace
 
@@ -83,6 +50,21 @@ UprightJacobian UprightGround::ByParameters(const Landmark& landmark) const {
   jacobian.block<3, 1>(3, 5) = landmark.half_axes.z() * normal;
   jacobian.block<3, 3>(6, 3).setIdentity();
   return jacobian;
+}
+
+double LandmarkTerm::Value(const Landmark& landmark) const {
+  Residuals residuals(NumResiduals());
+  Evaluate(landmark, residuals, nullptr);
+  return 0.5 * residuals.squaredNorm();
+}
+
+void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
+  Residuals residuals(NumResiduals());
+  Jacobian jacobian(NumResiduals(), kLandmarkDof);
+  Evaluate(landmark, residuals, &jacobian);
+  for (Eigen::Index row = 0; row < residuals.size(); ++row) {
+    sum->Add(residuals[row], jacobian.row(row).transpose());
+  }
 }
 
 BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera)
@@ -185,25 +167,26 @@ void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Ve
   jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * normal_.transpose();
 }
 
-double TotalCost(const LandmarkTerms& terms, const Landmark& landmark) {
-  double cost = 0.0;
-  for (const auto& term : terms) {
-    Eigen::VectorXd residuals(term->NumResiduals());
-    term->Evaluate(landmark, residuals, nullptr);
-    cost += 0.5 * residuals.squaredNorm() + term->ConstantCost();
-  }
-  return cost;
+QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& ground,
+                               const Landmark& landmark) {
+  LandmarkModel sum;
+  for (const auto& cost : costs) cost->AddTo(landmark, &sum);
+  return sum.Chained(ground.ByParameters(landmark));
 }
 
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
-                                          const LandmarkTerms& terms, bool yaw_is_free) {
+                                          const LandmarkCosts& costs, bool yaw_is_free) {
   const UprightGround ground(plane);
+  const double shape_exponent = start.shape_exponent;
+  const auto evaluate = [&](const UprightVector& at) {
+    QuadraticModel<6> sum = UprightModel(costs, ground, ground.LandmarkAt(at, shape_exponent));
+    if (!yaw_is_free) sum.Hold(0);
+    return sum;
+  };
   UprightVector parameters = ground.ParametersOf(start);
-  double cost = MinimiseSquares<6>(UprightCost(ground, start.shape_exponent, terms, yaw_is_free),
-                                   kMaxIterations, &parameters);
+  const double cost = MinimiseSquares<6>(evaluate, kMaxIterations, &parameters);
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
-  for (const auto& term : terms) cost += term->ConstantCost();
-  return UprightSolution{ground.LandmarkAt(parameters, start.shape_exponent), cost};
+  return UprightSolution{ground.LandmarkAt(parameters, shape_exponent), cost + ConstantCost(costs)};
 }
 
 }  // namespace soslam

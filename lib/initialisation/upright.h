@@ -6,11 +6,11 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "initialisation/landmark_cost.h"
 #include "initialisation/semantic_table.h"
 
 namespace soslam {
@@ -35,19 +35,19 @@ struct UprightGround {
   Eigen::Vector3d origin;  // the plane's point nearest to its frame's origin
 };
 
-// Something that an upright landmark is fitted to: residuals with unit variance.
-class LandmarkTerm {
+// A cost of few residuals, each with unit variance.
+class LandmarkTerm : public LandmarkCost {
  public:
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof>;
+  static constexpr int kMaxResiduals = 4;
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof, 0, kMaxResiduals>;
 
-  virtual ~LandmarkTerm() = default;
   virtual int NumResiduals() const = 0;
   // `jacobian` (NumResiduals() x 9) may be null.
-  virtual void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  virtual void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                         Jacobian* jacobian) const = 0;
-  // What is added to half the sum of squares and does not change with the landmark, but may with
-  // what the term was made for.
-  virtual double ConstantCost() const { return 0.0; }
+
+  double Value(const Landmark& landmark) const final;
+  void AddTo(const Landmark& landmark, LandmarkModel* sum) const final;
 };
 
 // The tangencies of one detection's four edges, tangent points at the depths of `start_in_camera`.
@@ -114,9 +114,6 @@ class RobustViewTerm final : public LandmarkTerm {
   int NumResiduals() const override { return term_->NumResiduals(); }
   void Evaluate(const Landmark& landmark_in_reference, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
-  double ConstantCost() const override {
-    return root_weight_ * root_weight_ * term_->ConstantCost();
-  }
 
  private:
   std::unique_ptr<const LandmarkTerm> term_;
@@ -143,17 +140,17 @@ class AxisTerm final : public LandmarkTerm {
   double amplitude_;
 };
 
-using LandmarkTerms = std::vector<std::unique_ptr<const LandmarkTerm>>;
-// Half the sum of all squared residuals, and the constant costs.
-double TotalCost(const LandmarkTerms& terms, const Landmark& landmark);
+// The sum of costs by upright parameters.
+QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& ground,
+                               const Landmark& landmark);
 
 // Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
-// landmark and its cost; none when that is not finite at the start.
+// landmark and its total cost; none when that is not finite at the start.
 struct UprightSolution {
   Landmark landmark;
   double cost;
 };
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
-                                          const LandmarkTerms& terms, bool yaw_is_free);
+                                          const LandmarkCosts& costs, bool yaw_is_free);
 
 }  // namespace soslam

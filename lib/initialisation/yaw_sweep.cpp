@@ -26,16 +26,25 @@ constexpr int kLikelihoodSteps = 100;
 class Fitter {
  public:
   Fitter(const UprightObservation& observation, const YawObjective& objective)
-      : observation_(observation), objective_(objective), box_fit_(observation) {}
+      : objective_(objective), box_fit_(observation) {}
 
-  // Of terms that depend on their start, again to those of the result; the cost is then that of the
-  // result's own terms.
+  // Of costs that depend on their start, again to those of the result; the cost is then that of the
+  // result's own.
   std::optional<UprightSolution> Fit(const Landmark& start, bool yaw_is_free) const {
-    std::optional<UprightSolution> solution =
-        objective_.further_terms ? FitTerms(start, yaw_is_free) : FitBox(start, yaw_is_free);
-    if (solution && objective_.extra_cost) {
-      solution->cost += objective_.extra_cost(solution->landmark);
+    const UprightGround& ground = box_fit_.ground();
+    UprightVector parameters = ground.ParametersOf(start);
+    UprightSolution solution{start, 0.0};
+    for (int round = 0; round < objective_.rounds; ++round) {
+      const LandmarkCosts further = FurtherCosts(solution.landmark);
+      solution.cost = box_fit_.Minimise(further, yaw_is_free, &parameters);
+      solution.landmark = ground.LandmarkAt(parameters, start.shape_exponent);
+      if (!std::isfinite(solution.cost) || !IsInFront(solution.landmark)) return std::nullopt;
     }
+    if (objective_.rounds > 1) {
+      solution.cost = box_fit_.CostAtOwnDepths(parameters) +
+                      TotalCost(FurtherCosts(solution.landmark), solution.landmark);
+    }
+    if (objective_.extra_cost) solution.cost += objective_.extra_cost(solution.landmark);
     return solution;
   }
 
@@ -52,39 +61,10 @@ class Fitter {
   }
 
  private:
-  LandmarkTerms Terms(const Landmark& start) const {
-    LandmarkTerms terms = BoxTerms(observation_, start);
-    for (auto& term : objective_.further_terms(start)) terms.push_back(std::move(term));
-    return terms;
+  LandmarkCosts FurtherCosts(const Landmark& start) const {
+    return objective_.further_costs ? objective_.further_costs(start) : LandmarkCosts();
   }
 
-  std::optional<UprightSolution> FitTerms(const Landmark& start, bool yaw_is_free) const {
-    std::optional<UprightSolution> solution = UprightSolution{start, 0.0};
-    for (int round = 0; round < objective_.rounds; ++round) {
-      solution = FitUpright(observation_.plane_in_camera, solution->landmark,
-                            Terms(solution->landmark), yaw_is_free);
-      if (!solution || !IsInFront(solution->landmark)) return std::nullopt;
-    }
-    if (objective_.rounds > 1) {
-      solution->cost = TotalCost(Terms(solution->landmark), solution->landmark);
-    }
-    return solution;
-  }
-
-  std::optional<UprightSolution> FitBox(const Landmark& start, bool yaw_is_free) const {
-    const UprightGround& ground = box_fit_.ground();
-    UprightVector parameters = ground.ParametersOf(start);
-    UprightSolution solution;
-    for (int round = 0; round < objective_.rounds; ++round) {
-      solution.cost = box_fit_.Minimise(yaw_is_free, &parameters);
-      solution.landmark = ground.LandmarkAt(parameters, start.shape_exponent);
-      if (!std::isfinite(solution.cost) || !IsInFront(solution.landmark)) return std::nullopt;
-    }
-    if (objective_.rounds > 1) solution.cost = box_fit_.CostAtOwnDepths(parameters);
-    return solution;
-  }
-
-  const UprightObservation& observation_;
   const YawObjective& objective_;
   BoxFit box_fit_;
 };
@@ -96,8 +76,8 @@ std::string WhyNoSolution(const UprightObservation& observation) {
                                                   : "fewer_than_three_measured_edges";
 }
 
-LandmarkTerms BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera) {
-  LandmarkTerms terms;
+LandmarkCosts BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera) {
+  LandmarkCosts terms;
   terms.push_back(std::make_unique<BoxTerm>(observation.edges, start_in_camera));
   terms.push_back(std::make_unique<RatioTerm>(observation.prior));
   terms.push_back(std::make_unique<AxisTerm>(

@@ -16,13 +16,13 @@ std::string WhyNoSolution(const UprightObservation& observation);
 
 // What an observation says of a landmark: box (tangent points at the depths of `start`), ratio
 // prior, world axes and yaw prior. BoxFit is the same.
-LandmarkTerms BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera);
+LandmarkCosts BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera);
 
 // What makes one yaw better than another, besides the observation's own terms.
 struct YawObjective {
   // What the landmark at each yaw is fitted to as well, starting from the given one; may be empty.
-  std::function<LandmarkTerms(const Landmark& start_in_camera)> further_terms;
-  // Terms are made anew of the result and fitted again, so many times in all, where they depend on
+  std::function<LandmarkCosts(const Landmark& start_in_camera)> further_costs;
+  // Costs are made anew of the result and fitted again, so many times in all, where they depend on
   // their start.
   int rounds = 1;
   // What counts on top for the yaw, but not for the fit; may be empty.

@@ -18,6 +18,7 @@
 #include "mapping/cost_function_term.h"
 #include "mapping/minimise.h"
 #include "mapping/tangency_term.h"
+#include "mapping/view_term.h"
 #include "orientation/texture_asymmetry.h"
 #include "symmetry/sampling.h"
 
@@ -250,17 +251,15 @@ void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const Symme
 void BackEndProblem::AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
                                   const Landmark& landmark_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
-  auto residual = std::make_unique<AsymmetryResidual>(
-      image, input_.sequence.CameraOf(detection), landmark_in_camera, options_.texture,
-      options_.symmetry_options, view_weights_[index]);
-  if (residual->num_residuals() == 0) {
+  auto texture = std::make_unique<AsymmetryTerm>(image, input_.sequence.CameraOf(detection),
+                                                 landmark_in_camera, options_.texture,
+                                                 options_.symmetry_options, view_weights_[index]);
+  if (texture->NumPairs() == 0) {
     ++summary_.gated[kTooFewPairs];
     return;
   }
-  summary_.residuals["symmetry"] += residual->num_residuals();
-  // No further loss: a pair's residual is bounded.
-  image_terms_.push_back(
-      TermOf(std::move(residual), {Pose(detection), LandmarkOf(detection)}, kNoLoss));
+  summary_.residuals["symmetry"] += texture->NumPairs();
+  AddViewTerm(detection, landmark_in_camera, std::move(texture));
 }
 
 void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
@@ -288,17 +287,26 @@ void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const Symmetry
 
 void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image) {
   const Detection& detection = input_.sequence.detections[index];
-  auto residual = std::make_unique<EdgeAlignmentResidual>(
-      image, input_.sequence.CameraOf(detection), LandmarkInCamera(detection), options_.edges,
-      view_weights_[index]);
-  if (residual->num_residuals() == 0) {
+  const Landmark in_camera = LandmarkInCamera(detection);
+  auto edges = std::make_unique<EdgeTerm>(SupportedEdgeTerm(
+      image, input_.sequence.CameraOf(detection), in_camera, options_.edges, view_weights_[index]));
+  if (edges->NumPoints() == 0) {
     ++summary_.gated[kNoEdgeCounts];
     return;
   }
   ++summary_.residuals["edges"];
-  // No further loss: a point's residual is bounded.
-  image_terms_.push_back(
-      TermOf(std::move(residual), {Pose(detection), LandmarkOf(detection)}, kNoLoss));
+  AddViewTerm(detection, in_camera, std::move(edges));
+}
+
+// No loss: what a pair or a point costs is bounded.
+void BackEndProblem::AddViewTerm(const Detection& detection, const Landmark& landmark_in_camera,
+                                 std::unique_ptr<const LandmarkCost> cost) {
+  const int pose = Pose(detection);
+  const int landmark = LandmarkOf(detection);
+  image_terms_.push_back(std::make_unique<ViewTerm>(
+      std::array{pose, landmark},
+      ViewTerm::Blocks{variables_.Values(pose), variables_.Values(landmark)},
+      landmark_in_camera.shape_exponent, std::move(cost)));
 }
 
 void BackEndProblem::Solve(int max_iterations) {

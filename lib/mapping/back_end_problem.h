@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "initialisation/landmark_cost.h"
 #include "mapping/back_end.h"
 #include "mapping/back_end_variables.h"
 #include "mapping/normal_equations.h"
@@ -53,6 +54,8 @@ class BackEndProblem {
   void AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
                     const Landmark& landmark_in_camera);
   void AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image);
+  void AddViewTerm(const Detection& detection, const Landmark& landmark_in_camera,
+                   std::unique_ptr<const LandmarkCost> cost);
   void AddBias();
   // A detection's landmark as its camera sees it, where the variables are.
   Landmark LandmarkInCamera(const Detection& detection) const;

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
-#include <limits>
 #include <numbers>
 
 #include "initialisation/multi_view.h"
@@ -22,8 +21,6 @@ constexpr size_t kMinViews = 2;
 // Enough to see an object from all sides that it is seen from.
 constexpr size_t kMaxViews = 16;
 constexpr size_t kMaxCandidates = 12;
-// A point's residual is bounded as it is.
-constexpr double kNoHuberLoss = std::numeric_limits<double>::infinity();
 // Tangent depths and visible edges depend on the landmark: fitted twice.
 constexpr int kRounds = 2;
 
@@ -84,17 +81,17 @@ class ObjectFit {
     return input_.sequence.detections[static_cast<size_t>(detections_[view])];
   }
 
-  LandmarkTerms Terms(const Landmark& landmark_in_world) const {
-    LandmarkTerms terms = ViewTerms(boxes_, landmark_in_world);
+  LandmarkCosts Terms(const Landmark& landmark_in_world) const {
+    LandmarkCosts terms = ViewTerms(boxes_, landmark_in_world);
     for (size_t i = 0; i < detections_.size(); ++i) {
       const BoxView& view = boxes_.views[i];
       const Landmark in_camera = Transform(view.camera_from_world, landmark_in_world);
       const auto image = input_.edge_images.find(detections_[i]);
       if (image == input_.edge_images.end() || !IsInFront(in_camera)) continue;
-      terms.push_back(std::make_unique<RobustViewTerm>(
-          std::make_unique<EdgeTerm>(*image->second, input_.sequence.CameraOf(Of(i)), in_camera,
+      terms.push_back(std::make_unique<ViewCost>(
+          std::make_unique<EdgeTerm>(image->second, input_.sequence.CameraOf(Of(i)), in_camera,
                                      options_.edges),
-          view.camera_from_world, kNoHuberLoss, view.weight));
+          view.camera_from_world, view.weight));
     }
     return terms;
   }

@@ -28,7 +28,8 @@ class OrientationProfile {
       : options_(options),
         symmetry_options_(symmetry_options),
         observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
-        edge_image_{edges, detection.box, detection.nearer_boxes},
+        edge_image_(std::make_shared<const EdgeImage>(
+            EdgeImage{edges, detection.box, detection.nearer_boxes})),
         symmetry_image_(edges->maps, detection.box),
         asymmetry_(symmetry_image_, observation_.camera, options.texture, symmetry_options) {}
 
@@ -37,12 +38,7 @@ class OrientationProfile {
   YawObjective Objective() {
     YawObjective objective;
     if (options_.edge_alignment) {
-      objective.further_terms = [this](const Landmark& start) {
-        LandmarkTerms terms;
-        terms.push_back(
-            std::make_unique<EdgeTerm>(edge_image_, observation_.camera, start, options_.edges));
-        return terms;
-      };
+      objective.further_costs = [this](const Landmark& start) { return EdgeCosts(start); };
       objective.rounds = kEdgeRounds;
     }
     if (options_.texture_symmetry) {
@@ -54,10 +50,7 @@ class OrientationProfile {
   double TextureCost(const Landmark& landmark) { return asymmetry_.Cost(landmark); }
 
   double EdgeCost(const Landmark& landmark) const {
-    LandmarkTerms terms;
-    terms.push_back(
-        std::make_unique<EdgeTerm>(edge_image_, observation_.camera, landmark, options_.edges));
-    return TotalCost(terms, landmark);
+    return TotalCost(EdgeCosts(landmark), landmark);
   }
 
   void RecordPairs(const Landmark& landmark, SymmetryRecord* record) {
@@ -73,10 +66,17 @@ class OrientationProfile {
   }
 
  private:
+  LandmarkCosts EdgeCosts(const Landmark& start) const {
+    LandmarkCosts costs;
+    costs.push_back(
+        std::make_unique<EdgeTerm>(edge_image_, observation_.camera, start, options_.edges));
+    return costs;
+  }
+
   const ProfileOptions& options_;
   const SymmetryOptions& symmetry_options_;
   UprightObservation observation_;
-  EdgeImage edge_image_;
+  std::shared_ptr<const EdgeImage> edge_image_;
   SymmetryImage symmetry_image_;
   TextureAsymmetry asymmetry_;
 };

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "image/brief.h"
+#include "initialisation/residual_batch.h"
 #include "symmetry/sampling.h"
 
 namespace soslam {
@@ -148,44 +149,50 @@ double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
   return TextureAsymmetry(image, camera, options, symmetry_options).Cost(landmark_in_camera);
 }
 
-AsymmetryResidual::AsymmetryResidual(std::shared_ptr<const SymmetryImage> image,
-                                     const Camera& camera, const Landmark& start_in_camera,
-                                     const TextureOptions& options,
-                                     const SymmetryOptions& symmetry_options, double weight)
+AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+                             const Landmark& start_in_camera, const TextureOptions& options,
+                             const SymmetryOptions& symmetry_options, double weight)
     : image_(std::move(image)),
       camera_(camera),
       descriptor_(symmetry_options.descriptor),
       texture_(FindMirroredTexture(*image_, camera, start_in_camera, options, symmetry_options)
                    .value_or(MirroredTexture())),
-      shape_exponent_(start_in_camera.shape_exponent),
       scale_(Scale(start_in_camera, descriptor_, options)),
-      amplitude_(std::sqrt(2.0 * weight * options.asymmetry_cost /
-                           static_cast<double>(std::max<size_t>(1, texture_.pixels.size())))) {
-  set_num_residuals(static_cast<int>(texture_.pixels.size()));
-  *mutable_parameter_block_sizes() = {kPoseSize, kLandmarkSize};
+      weight_(2.0 * weight * options.asymmetry_cost /
+              static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {}
+
+double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
+  const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
+  double sum = 0.0;
+  for (const Eigen::Vector2d& pixel : texture_.pixels) {
+    const auto pair = descriptor.Evaluate(pixel, std::nullopt, false, texture_.mirror_plane);
+    const double squared = pair ? pair->residual * pair->residual : 0.0;
+    sum += pair ? squared / (squared + scale_ * scale_) : 1.0;
+  }
+  return 0.5 * weight_ * sum;
 }
 
-bool AsymmetryResidual::Evaluate(double const* const* blocks, double* residuals,
-                                 double** jacobians) const {
-  const RelativeObservation observation(blocks, shape_exponent_);
-  const SymmetryDescriptor descriptor(descriptor_, *image_, camera_,
-                                      observation.landmark_in_camera());
-  Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> by_landmark(num_residuals(), kLandmarkDof);
-  by_landmark.setZero();
-  for (size_t i = 0; i < texture_.pixels.size(); ++i) {
-    const auto pair = descriptor.Evaluate(texture_.pixels[i], std::nullopt, jacobians != nullptr,
-                                          texture_.mirror_plane);
-    residuals[i] = amplitude_;
-    if (!pair) continue;
-    // d / sqrt(d^2 + s^2)
-    const double norm = std::hypot(pair->residual, scale_);
-    residuals[i] = amplitude_ * pair->residual / norm;
-    if (jacobians == nullptr) continue;
-    by_landmark.row(static_cast<Eigen::Index>(i)) =
-        amplitude_ * scale_ * scale_ / (norm * norm * norm) * pair->jacobian;
+void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
+  const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
+  const std::vector<Eigen::Vector2d>& pixels = texture_.pixels;
+  for (size_t first = 0; first < pixels.size(); first += kBatchSize) {
+    ResidualBatch batch = ResidualBatch::Zero();
+    const size_t count = std::min<size_t>(kBatchSize, pixels.size() - first);
+    for (size_t i = 0; i < count; ++i) {
+      const auto pair =
+          descriptor.Evaluate(pixels[first + i], std::nullopt, true, texture_.mirror_plane);
+      // d / sqrt(d^2 + s^2)
+      const double norm = pair ? std::hypot(pair->residual, scale_) : 1.0;
+      const auto place = static_cast<Eigen::Index>(i);
+      batch.residual[place] = pair ? pair->residual / norm : 1.0;
+      if (!pair) continue;
+      const double slope = scale_ * scale_ / (norm * norm * norm);
+      for (size_t k = 0; k < kLandmarkDof; ++k) {
+        batch.by_landmark[k][place] = slope * pair->jacobian[static_cast<Eigen::Index>(k)];
+      }
+    }
+    batch.AddTo(weight_, sum);
   }
-  observation.WriteJacobians<Eigen::Dynamic>(by_landmark, blocks, jacobians);
-  return true;
 }
 
 }  // namespace soslam

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/cost_function.h>
-
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
@@ -10,6 +8,7 @@
 
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
+#include "initialisation/landmark_cost.h"
 #include "orientation/mirror_search.h"
 #include "orientation/options.h"
 #include "symmetry/options.h"
@@ -68,26 +67,28 @@ double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
                      const Landmark& landmark_in_camera, const TextureOptions& options,
                      const SymmetryOptions& symmetry_options);
 
-// The same for the back end, of the pairs and the mirror plane that are the start's, the cost
-// multiplied by `weight`. A pair whose pixel leaves the surface counts as asymmetric, the limit of
-// one that differs more and more. Residuals: one per pair, none where too few are visible. Blocks:
-// world_from_camera, landmark in the world. Not for kBrief, which has no derivative.
-class AsymmetryResidual final : public ceres::CostFunction {
+// The same for the back end, of the pairs and the mirror plane that are the start's, multiplied by
+// `weight`. A pair whose pixel leaves the surface counts as asymmetric, the limit of one that
+// differs more and more. Not for kBrief, which has no derivative.
+class AsymmetryTerm final : public LandmarkCost {
  public:
-  AsymmetryResidual(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
-                    const Landmark& start_in_camera, const TextureOptions& options,
-                    const SymmetryOptions& symmetry_options, double weight);
+  AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+                const Landmark& start_in_camera, const TextureOptions& options,
+                const SymmetryOptions& symmetry_options, double weight);
 
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  // None where too few are visible.
+  int NumPairs() const { return static_cast<int>(texture_.pixels.size()); }
+
+  double Value(const Landmark& landmark_in_camera) const override;
+  void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
 
  private:
   std::shared_ptr<const SymmetryImage> image_;
   Camera camera_;
   Descriptor descriptor_;
   MirroredTexture texture_;
-  double shape_exponent_;
-  double scale_;  // s
-  double amplitude_;
+  double scale_;   // s
+  double weight_;  // of one pair's share
 };
 
 }  // namespace soslam

@@ -102,25 +102,16 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   const Plane& plane = body.observation.plane_in_world;
   const auto by_motion = ByMotion(plane, pivot, body.landmark);
   const UprightJacobian by_upright = UprightGround(plane).ByParameters(body.landmark);
+  LandmarkModel model;
+  for (const auto& term : OutlineTerms(body.observation)) term->AddTo(body.landmark, &model);
+  const QuadraticModel<6> of_body = model.Chained(by_upright);
+  const Eigen::Matrix<double, 3, 6> mixed = by_motion.transpose() * model.information * by_upright;
+  const Eigen::Matrix<double, 3, 6> follows = mixed * InverseOfKnown(of_body.information);
   PlaneEvidence evidence;
-  Eigen::Matrix<double, 6, 6> of_body = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 3, 6> mixed = Eigen::Matrix<double, 3, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> slope = Eigen::Matrix<double, 6, 1>::Zero();
-  for (const auto& term : OutlineTerms(body.observation)) {
-    Eigen::VectorXd residuals(term->NumResiduals());
-    LandmarkTerm::Jacobian jacobian(term->NumResiduals(), kLandmarkDof);
-    term->Evaluate(body.landmark, residuals, &jacobian);
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> plane_part = jacobian * by_motion;
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> body_part = jacobian * by_upright;
-    evidence.cost += 0.5 * residuals.squaredNorm() + term->ConstantCost();
-    evidence.gradient += plane_part.transpose() * residuals;
-    evidence.information += plane_part.transpose() * plane_part;
-    mixed += plane_part.transpose() * body_part;
-    of_body += body_part.transpose() * body_part;
-    slope += body_part.transpose() * residuals;
-  }
-  const Eigen::Matrix<double, 3, 6> follows = mixed * InverseOfKnown(of_body);
-  evidence.gradient -= follows * slope;
+  evidence.cost = model.cost;
+  evidence.gradient = by_motion.transpose() * model.gradient;
+  evidence.information = by_motion.transpose() * model.information * by_motion;
+  evidence.gradient -= follows * of_body.gradient;
   evidence.information -= follows * mixed.transpose();
   return evidence;
 }

@@ -58,6 +58,16 @@ void Evaluate(benchmark::State& state, const ceres::CostFunction& cost,
   state.counters["residuals"] = static_cast<double>(residuals.size());
 }
 
+void Evaluate(benchmark::State& state, const LandmarkCost& cost, int residuals,
+              const Landmark& landmark) {
+  for (auto _ : state) {
+    LandmarkModel model;
+    cost.AddTo(landmark, &model);
+    benchmark::DoNotOptimize(model);
+  }
+  state.counters["residuals"] = residuals;
+}
+
 void QuadricOfBox(benchmark::State& state) {
   const View view;
   Evaluate(state, DetectionResidual(view.sequence.camera, view.detection.box, 10.0),
@@ -155,10 +165,9 @@ void Asymmetry(benchmark::State& state) {
   const View view;
   const auto image =
       std::make_shared<const SymmetryImage>(EdgesOfTwelveViews()[0]->maps, view.detection.box);
-  Evaluate(state,
-           AsymmetryResidual(image, view.sequence.camera, view.landmark_in_camera, TextureOfST(),
-                             SymmetryOfST(), 1.0),
-           {view.pose.data(), view.landmark.data()});
+  const AsymmetryTerm term(image, view.sequence.camera, view.landmark_in_camera, TextureOfST(),
+                           SymmetryOfST(), 1.0);
+  Evaluate(state, term, term.NumPairs(), view.landmark_in_camera);
 }
 BENCHMARK(Asymmetry)->Name("residual/asymmetry_of_observation");
 
@@ -167,10 +176,8 @@ void EdgeAlignment(benchmark::State& state) {
   const View view;
   const auto image =
       std::make_shared<const EdgeImage>(EdgeImage{EdgesOfTwelveViews()[0], view.detection.box, {}});
-  Evaluate(state,
-           EdgeAlignmentResidual(image, view.sequence.camera, view.landmark_in_camera,
-                                 EdgeOptions(), 1.0),
-           {view.pose.data(), view.landmark.data()});
+  const EdgeTerm term(image, view.sequence.camera, view.landmark_in_camera, EdgeOptions());
+  Evaluate(state, term, term.NumPoints(), view.landmark_in_camera);
 }
 BENCHMARK(EdgeAlignment)->Name("residual/edge_alignment_of_observation");
 

@@ -37,7 +37,7 @@ BENCHMARK(SolveOneYaw)->Name("single_frame/closed_form_at_yaw");
 void Polish(benchmark::State& state) {
   const OneBox box;
   const Landmark start = *SolveAtYaw(box.observation, 0.3);
-  const LandmarkTerms terms = BoxTerms(box.observation, start);
+  const LandmarkCosts terms = BoxTerms(box.observation, start);
   for (auto _ : state) {
     benchmark::DoNotOptimize(FitUpright(box.observation.plane_in_camera, start, terms,
                                         /*yaw_is_free=*/state.range(0) == 1));

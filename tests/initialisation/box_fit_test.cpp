@@ -23,22 +23,6 @@ UprightObservation RandomObservation(double p, int i) {
   return observation;
 }
 
-NormalEquations<6> SumOfTerms(const LandmarkTerms& terms, const UprightGround& ground,
-                              const Landmark& landmark) {
-  NormalEquations<6> sum;
-  for (const auto& term : terms) {
-    Eigen::VectorXd residuals(term->NumResiduals());
-    LandmarkTerm::Jacobian jacobian(term->NumResiduals(), kLandmarkDof);
-    term->Evaluate(landmark, residuals, &jacobian);
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> by_parameters =
-        jacobian * ground.ByParameters(landmark);
-    sum.cost += 0.5 * residuals.squaredNorm();
-    sum.gradient += by_parameters.transpose() * residuals;
-    sum.information += by_parameters.transpose() * by_parameters;
-  }
-  return sum;
-}
-
 TEST(BoxFit, SaysWhatTheTermsSay) {
   int checked = 0;
   for (const double p : kShapeExponents) {
@@ -53,9 +37,9 @@ TEST(BoxFit, SaysWhatTheTermsSay) {
       const auto landmark = [&](const UprightVector& parameters) {
         return fit.ground().LandmarkAt(parameters, p);
       };
-      const NormalEquations<6> expected =
-          SumOfTerms(BoxTerms(observation, landmark(*start)), fit.ground(), landmark(at));
-      const NormalEquations<6> sum = fit.Evaluate(fit.TangentDepths(*start), at);
+      const QuadraticModel<6> expected =
+          UprightModel(BoxTerms(observation, landmark(*start)), fit.ground(), landmark(at));
+      const QuadraticModel<6> sum = fit.Evaluate(fit.TangentDepths(*start), at);
       EXPECT_NEAR(sum.cost, expected.cost, 1e-9 * (1.0 + expected.cost));
       EXPECT_LT((sum.gradient - expected.gradient).norm(), 1e-9 * (1.0 + expected.gradient.norm()));
       EXPECT_LT((sum.information - expected.information).norm(),
@@ -76,12 +60,19 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
       const BoxFit fit(observation);
       const Landmark landmark = fit.ground().LandmarkAt(*start, p);
       for (const bool yaw_is_free : {false, true}) {
-        const auto of_terms = FitUpright(observation.plane_in_camera, landmark,
-                                         BoxTerms(observation, landmark), yaw_is_free);
-        UprightVector parameters = *start;
-        const double cost = fit.Minimise(yaw_is_free, &parameters);
-        ASSERT_TRUE(of_terms);
-        EXPECT_NEAR(cost, of_terms->cost, 1e-9 * (1.0 + cost));
+        for (const bool with_height : {false, true}) {
+          const LogNormal height_m{2.2 * landmark.half_axes.z(), 0.3};
+          LandmarkCosts all = BoxTerms(observation, landmark);
+          LandmarkCosts further;
+          for (LandmarkCosts* costs : {&all, &further}) {
+            if (with_height) costs->push_back(std::make_unique<HeightTerm>(height_m));
+          }
+          const auto of_terms = FitUpright(observation.plane_in_camera, landmark, all, yaw_is_free);
+          UprightVector parameters = *start;
+          const double cost = fit.Minimise(further, yaw_is_free, &parameters);
+          ASSERT_TRUE(of_terms);
+          EXPECT_NEAR(cost, of_terms->cost, 1e-9 * (1.0 + cost));
+        }
       }
     }
   }

@@ -16,9 +16,9 @@
 namespace soslam {
 namespace {
 
-LandmarkTerms BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior& prior,
+LandmarkCosts BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior& prior,
                           const Landmark& start) {
-  LandmarkTerms terms;
+  LandmarkCosts terms;
   terms.push_back(std::make_unique<BoxTerm>(edges, start));
   terms.push_back(std::make_unique<RatioTerm>(prior));
   return terms;
@@ -59,8 +59,8 @@ TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
       const auto solution = FitUpright(body.plane, start, terms, yaw_is_free);
       ASSERT_TRUE(solution);
       const Landmark& landmark = solution->landmark;
-      EXPECT_NEAR(solution->cost, Cost(terms, landmark), 1e-9 * (1.0 + solution->cost));
-      EXPECT_LE(solution->cost, Cost(terms, start));
+      EXPECT_NEAR(solution->cost, TotalCost(terms, landmark), 1e-9 * (1.0 + solution->cost));
+      EXPECT_LE(solution->cost, TotalCost(terms, start));
       EXPECT_EQ(landmark.shape_exponent, start.shape_exponent);
       EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
       if (yaw_is_free) continue;
@@ -101,7 +101,7 @@ TEST(FitUpright, FindsTheBodyThatSeveralViewsSee) {
       const StandingBody body(p);
       const Landmark start =
           Turned(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.1, 0.1));
-      LandmarkTerms terms;
+      LandmarkCosts terms;
       for (const double turn : {0.0, 0.6, 1.3, 2.2}) {
         // The camera goes round the body.
         const Rigid3d round = {ExpRotation(turn * body.plane.normal), {0, 0, 0}};
@@ -143,7 +143,7 @@ class UndefinedTerm final : public LandmarkTerm {
 
 TEST(FitUpright, HasNoSolutionWhereTheCostIsNoNumberAtTheStart) {
   const StandingBody body(1.5);
-  LandmarkTerms terms = BoxAndRatio(body.observation.edges, body.observation.prior, body.truth);
+  LandmarkCosts terms = BoxAndRatio(body.observation.edges, body.observation.prior, body.truth);
   terms.push_back(std::make_unique<UndefinedTerm>([](const Landmark&) { return true; }));
   EXPECT_FALSE(FitUpright(body.plane, body.truth, terms, /*yaw_is_free=*/true));
 }
@@ -152,7 +152,7 @@ TEST(FitUpright, StaysWhereTheCostIsANumber) {
   for (int i = 0; i < 20; ++i) {
     const StandingBody body(1.5);
     const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
-    LandmarkTerms terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
+    LandmarkCosts terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
     const double between = 0.5 * (start.half_axes.z() + body.truth.half_axes.z());
     const bool is_beyond_below = body.truth.half_axes.z() < between;
     terms.push_back(std::make_unique<UndefinedTerm>([=](const Landmark& landmark) {
@@ -160,8 +160,8 @@ TEST(FitUpright, StaysWhereTheCostIsANumber) {
     }));
     const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
     if (!solution) continue;
-    EXPECT_TRUE(std::isfinite(Cost(terms, solution->landmark)));
-    EXPECT_LE(solution->cost, Cost(terms, start));
+    EXPECT_TRUE(std::isfinite(TotalCost(terms, solution->landmark)));
+    EXPECT_LE(solution->cost, TotalCost(terms, start));
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "initialisation/upright.h"
 #include "support/jacobians.h"
+#include "support/landmark_costs.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 
@@ -49,6 +50,15 @@ class TermResidual final : public ceres::CostFunction {
 void ExpectCorrectTermJacobian(const LandmarkTerm& term, const Landmark& landmark) {
   const LandmarkBlock block = Pack(landmark);
   ExpectCorrectJacobians(TermResidual(term, landmark.shape_exponent), {block.data()});
+
+  Eigen::VectorXd residuals(term.NumResiduals());
+  LandmarkTerm::Jacobian jacobian(term.NumResiduals(), kLandmarkDof);
+  term.Evaluate(landmark, residuals, &jacobian);
+  LandmarkModel model;
+  term.AddTo(landmark, &model);
+  ExpectSameModels(model, {0.5 * residuals.squaredNorm(), jacobian.transpose() * residuals,
+                           jacobian.transpose() * jacobian});
+  EXPECT_EQ(term.Value(landmark), 0.5 * residuals.squaredNorm());
 }
 
 // A landmark's own box, with errors of up to 10 % of its sides; any of its edges may be a bound.
@@ -184,10 +194,10 @@ TEST(AxisTerm, CostsNothingAlongAndAcrossTheAxisAndItsWeightHalfWayBetween) {
     const double weight = RandomUniform(0.1, 10.0);
     for (int eighth = 0; eighth < 8; ++eighth) {
       const AxisTerm term(plane, AxisAt(plane, landmark, eighth * kPi / 4.0), weight);
-      EXPECT_NEAR(Cost(term, landmark), eighth % 2 == 0 ? 0.0 : weight, 1e-9) << eighth;
+      EXPECT_NEAR(term.Value(landmark), eighth % 2 == 0 ? 0.0 : weight, 1e-9) << eighth;
     }
     const double angle = RandomUniform(-3.1, 3.1);
-    EXPECT_NEAR(Cost(AxisTerm(plane, AxisAt(plane, landmark, angle), weight), landmark),
+    EXPECT_NEAR(AxisTerm(plane, AxisAt(plane, landmark, angle), weight).Value(landmark),
                 weight * std::pow(std::sin(2.0 * angle), 2), 1e-9);
   }
 }
@@ -227,6 +237,21 @@ TEST(RobustViewTerm, HalfOfItsSquareIsTheWeightedHuberLoss) {
   }
   EXPECT_GT(within, 50);
   EXPECT_GT(beyond, 50);
+}
+
+TEST(ViewCost, IsTheViewTermWithoutALoss) {
+  for (int i = 0; i < 50; ++i) {
+    const ReferenceView view;
+    const auto box = [&] { return std::make_unique<BoxTerm>(view.edges, view.in_camera); };
+    const RobustViewTerm expected(box(), view.camera_from_reference,
+                                  std::numeric_limits<double>::infinity(), view.weight);
+    const ViewCost cost(box(), view.camera_from_reference, view.weight);
+    LandmarkModel of_term, of_cost;
+    expected.AddTo(view.in_reference, &of_term);
+    cost.AddTo(view.in_reference, &of_cost);
+    ExpectSameModels(of_cost, of_term);
+    EXPECT_NEAR(cost.Value(view.in_reference), of_term.cost, 1e-9 * (1.0 + of_term.cost));
+  }
 }
 
 TEST(RobustViewTerm, JacobianAgreesWithNumbers) {

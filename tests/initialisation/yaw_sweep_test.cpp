@@ -84,9 +84,9 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
   const StandingBody body(1.5);
   std::vector<Landmark> starts;
   YawObjective objective;
-  objective.further_terms = [&](const Landmark& start) {
+  objective.further_costs = [&](const Landmark& start) {
     starts.push_back(start);
-    return LandmarkTerms();
+    return LandmarkCosts();
   };
   objective.rounds = 3;
   objective.extra_cost = [](const Landmark&) { return 7.0; };

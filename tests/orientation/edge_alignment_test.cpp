@@ -7,7 +7,7 @@
 
 #include "initialisation/upright.h"
 #include "support/drawn_cuboids.h"
-#include "support/jacobians.h"
+#include "support/landmark_costs.h"
 #include "support/random_scene.h"
 
 namespace soslam {
@@ -19,21 +19,17 @@ Landmark Cuboid(double yaw) {
   return StandingCuboid(TestCamera(), kFloor, {310, 320}, yaw, {0.4, 0.25, 0.3});
 }
 
-EdgeImage ImageOf(const Landmark& landmark, const std::vector<Box>& nearer_boxes = {}) {
-  return {std::make_shared<const FrameEdges>(
-              ComputeEdgeMaps(DrawCuboids(TestCamera(), {landmark}), EdgesOptions())),
-          *OutlineBox(TestCamera(), landmark), nearer_boxes};
-}
-
-double SumOfSquares(const EdgeTerm& term, const Landmark& landmark) {
-  Eigen::VectorXd residuals(term.NumResiduals());
-  term.Evaluate(landmark, residuals, nullptr);
-  return residuals.squaredNorm();
+std::shared_ptr<const EdgeImage> ImageOf(const Landmark& landmark,
+                                         const std::vector<Box>& nearer_boxes = {}) {
+  return std::make_shared<const EdgeImage>(
+      EdgeImage{std::make_shared<const FrameEdges>(
+                    ComputeEdgeMaps(DrawCuboids(TestCamera(), {landmark}), EdgesOptions())),
+                *OutlineBox(TestCamera(), landmark), nearer_boxes});
 }
 
 // With the points that do not count.
 double TwiceTheCost(const EdgeTerm& term, const Landmark& landmark) {
-  return SumOfSquares(term, landmark) + 2.0 * term.ConstantCost();
+  return 2.0 * (term.Value(landmark) + term.ConstantCost());
 }
 
 // What all points cost together when none is near an edge.
@@ -59,9 +55,9 @@ double MeanMotion(const Landmark& one, const Landmark& other) {
 TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
   for (const double yaw : {0.3, 1.0, -0.8}) {
     const Landmark truth = Cuboid(yaw);
-    const EdgeImage image = ImageOf(truth);
+    const auto image = ImageOf(truth);
     const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
-    const double largest = LargestCost(image.box, EdgeOptions());
+    const double largest = LargestCost(image->box, EdgeOptions());
     const double at_truth = TwiceTheCost(term, truth);
     // Edges are found to half a pixel, and none at the corners: (0.5 / 8)^2 and a few points.
     EXPECT_LT(at_truth, 0.05 * largest) << yaw;
@@ -84,9 +80,9 @@ TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
 
 TEST(EdgeTerm, IsBounded) {
   const Landmark truth = Cuboid(0.3);
-  const EdgeImage image = ImageOf(truth);
+  const auto image = ImageOf(truth);
   const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
-  const double largest = LargestCost(image.box, EdgeOptions());
+  const double largest = LargestCost(image->box, EdgeOptions());
   for (int i = 0; i < 100; ++i) {
     Landmark landmark = RandomLandmarkInCamera();
     landmark.frame_from_object.translation += RandomVector(-3.0, 3.0);  // also out of the image
@@ -100,26 +96,24 @@ TEST(EdgeTerm, IsBounded) {
   EXPECT_NEAR(term.Support(behind), 0.0, 1e-12);
   // A body that no point of is in front of the camera has no edge in the image.
   const EdgeTerm of_none(image, TestCamera(), behind, EdgeOptions());
-  EXPECT_EQ(of_none.NumResiduals(), 0);
+  EXPECT_EQ(of_none.NumPoints(), 0);
   EXPECT_NEAR(2.0 * of_none.ConstantCost(), largest, 1e-9);
   EXPECT_NEAR(of_none.Support(behind), 0.0, 1e-12);
 }
 
-TEST(EdgeAlignmentResidual, IsScaledByItsWeightAndTheSquaredSupport) {
+TEST(SupportedEdgeTerm, IsScaledByItsWeightAndTheSquaredSupport) {
   const Landmark truth = Cuboid(0.3);
-  const auto image = std::make_shared<const EdgeImage>(ImageOf(truth));
+  const auto image = ImageOf(truth);
   const Landmark start = Turned(truth, 0.1);
-  const EdgeTerm term(*image, TestCamera(), start, EdgeOptions());
+  const EdgeTerm term(image, TestCamera(), start, EdgeOptions());
   EXPECT_GT(term.Support(start), 0.1);
   EXPECT_LT(term.Support(start), 0.9);
-  const EdgeAlignmentResidual residual(image, TestCamera(), start, EdgeOptions(), 0.25);
-  const PoseBlock pose = Pack(Rigid3d());
-  const LandmarkBlock block = Pack(start);
-  Eigen::VectorXd residuals(residual.num_residuals());
-  const std::array<const double*, 2> blocks = {pose.data(), block.data()};
-  ASSERT_TRUE(residual.Evaluate(blocks.data(), residuals.data(), nullptr));
-  EXPECT_NEAR(residuals.squaredNorm(),
-              0.25 * std::pow(term.Support(start), 2) * SumOfSquares(term, start), 1e-9);
+  const EdgeTerm supported = SupportedEdgeTerm(image, TestCamera(), start, EdgeOptions(), 0.25);
+  const double factor = 0.25 * std::pow(term.Support(start), 2);
+  const Landmark elsewhere = Turned(truth, 0.12);
+  EXPECT_NEAR(supported.Value(elsewhere), factor * term.Value(elsewhere), 1e-9);
+  EXPECT_NEAR(supported.ConstantCost(), factor * term.ConstantCost(), 1e-9);
+  EXPECT_NEAR(supported.Support(elsewhere), term.Support(elsewhere), 1e-9);
 }
 
 EdgeOptions AnyDirection() {
@@ -135,7 +129,7 @@ TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
   for (const double right : {0.0, 1.0}) {
     Landmark truth = Cuboid(0.3);
     truth.frame_from_object.translation.x() += right;
-    const EdgeImage image = ImageOf(truth, {half});
+    const auto image = ImageOf(truth, {half});
     const auto points = VisibleModelPoints(camera, truth, options.edge_spacing_px);
     const auto visible = std::count_if(points.begin(), points.end(), [&](const ModelPoint& point) {
       const Eigen::Vector2d pixel = *camera.Project(
@@ -144,15 +138,15 @@ TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
     });
     ASSERT_GT(visible, 0);
     const EdgeTerm term(image, camera, truth, options);
-    EXPECT_EQ(term.NumResiduals(), visible);
+    EXPECT_EQ(term.NumPoints(), visible);
     const double share = 1.0 - static_cast<double>(visible) / static_cast<double>(points.size());
-    EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image.box, options), 1e-9);
+    EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image->box, options), 1e-9);
   }
   const Landmark truth = Cuboid(0.3);
-  const EdgeImage hidden = ImageOf(truth, {{0, 0, 640, 480}});
+  const auto hidden = ImageOf(truth, {{0, 0, 640, 480}});
   const EdgeTerm term(hidden, camera, truth, options);
-  EXPECT_EQ(term.NumResiduals(), 0);
-  EXPECT_NEAR(2.0 * term.ConstantCost(), LargestCost(hidden.box, options), 1e-9);
+  EXPECT_EQ(term.NumPoints(), 0);
+  EXPECT_NEAR(2.0 * term.ConstantCost(), LargestCost(hidden->box, options), 1e-9);
   EXPECT_NEAR(term.Support(truth), 0.0, 1e-12);
 }
 
@@ -174,8 +168,9 @@ EdgeMaps LinearMaps() {
   return maps;
 }
 
-EdgeImage LinearImage() {
-  return {std::make_shared<const FrameEdges>(LinearMaps()), {200, 150, 400, 330}, {}};
+std::shared_ptr<const EdgeImage> ImageOf(const EdgeMaps& maps) {
+  return std::make_shared<const EdgeImage>(
+      EdgeImage{std::make_shared<const FrameEdges>(maps), {200, 150, 400, 330}, {}});
 }
 
 // A cuboid in front of a camera anywhere, all of it in the image.
@@ -188,34 +183,30 @@ RandomView CuboidView() {
   }
 }
 
-TEST(EdgeAlignmentResidual, JacobiansAgreeWithNumbers) {
-  const auto image = std::make_shared<const EdgeImage>(LinearImage());
+TEST(EdgeTerm, DerivativesAgreeWithNumbers) {
+  const auto image = ImageOf(LinearMaps());
   for (int i = 0; i < 10; ++i) {
-    const RandomView view = CuboidView();
-    const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
-                                         AnyDirection(), 1.0);
-    ASSERT_GT(residual.num_residuals(), 0);
-    ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
+    const Landmark landmark = CuboidView().LandmarkInCamera();
+    const EdgeTerm term(image, TestCamera(), landmark, AnyDirection());
+    ASSERT_GT(term.NumPoints(), kBatchSize);
+    ExpectCorrectGradient(term, landmark);
   }
 }
 
-TEST(EdgeAlignmentResidual, IsTheSameWhereverTheWorldIs) {
-  const auto image = std::make_shared<const EdgeImage>(LinearImage());
-  for (int i = 0; i < 10; ++i) {
-    RandomView view = CuboidView();
-    const EdgeAlignmentResidual residual(image, TestCamera(), view.LandmarkInCamera(),
-                                         EdgeOptions(), 1.0);
-    const auto evaluate = [&] {
-      Eigen::VectorXd residuals(residual.num_residuals());
-      const std::array<const double*, 2> blocks = {view.camera_block.data(),
-                                                   view.landmark_block.data()};
-      EXPECT_TRUE(residual.Evaluate(blocks.data(), residuals.data(), nullptr));
-      return residuals;
-    };
-    const Eigen::VectorXd before = evaluate();
-    view.Move(RandomRigid());
-    EXPECT_LT((evaluate() - before).norm(), 1e-9);
+// So far apart that some bodies have a single one.
+TEST(EdgeTerm, InformationOfOnePointIsThatOfItsGradient) {
+  const auto image = ImageOf(LinearMaps());
+  EdgeOptions options = AnyDirection();
+  options.edge_spacing_px = 1000.0;
+  int checked = 0;
+  for (int i = 0; i < 1000 && checked < 10; ++i) {
+    const Landmark landmark = CuboidView().LandmarkInCamera();
+    const EdgeTerm term(image, TestCamera(), landmark, options);
+    if (term.NumPoints() != 1) continue;
+    ExpectInformationOfOneResidual(term, landmark);
+    ++checked;
   }
+  EXPECT_EQ(checked, 10);
 }
 
 // Seen from right in front, all edges of a cuboid are vertical or horizontal in the image: of a
@@ -223,17 +214,17 @@ TEST(EdgeAlignmentResidual, IsTheSameWhereverTheWorldIs) {
 TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
   EdgeMaps maps = LinearMaps();
   maps.distance = cv::Scalar(0.0);
-  const EdgeImage image = {std::make_shared<const FrameEdges>(maps), {200, 150, 400, 330}, {}};
+  const auto image = ImageOf(maps);
   const Landmark landmark{{{1, 0, 0, 0}, {0, 0, 3}}, {0.5, 0.4, 0.3}, kCuboidExponent};
   const EdgeTerm term(image, TestCamera(), landmark, EdgeOptions());
   const auto points = VisibleModelPoints(TestCamera(), landmark, EdgeOptions().edge_spacing_px);
   const auto vertical = std::count_if(points.begin(), points.end(), [](const ModelPoint& point) {
     return std::abs(point.along.y()) > 0.5;
   });
-  EXPECT_EQ(term.NumResiduals(), vertical);
-  EXPECT_NEAR(SumOfSquares(term, landmark), 0.0, 1e-12);
+  EXPECT_EQ(term.NumPoints(), vertical);
+  EXPECT_NEAR(term.Value(landmark), 0.0, 1e-12);
   const double share = 1.0 - static_cast<double>(vertical) / static_cast<double>(points.size());
-  EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image.box, EdgeOptions()), 1e-9);
+  EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image->box, EdgeOptions()), 1e-9);
 }
 
 }  // namespace

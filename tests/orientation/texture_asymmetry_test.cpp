@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "support/facing_view.h"
-#include "support/jacobians.h"
+#include "support/landmark_costs.h"
 
 namespace soslam {
 namespace {
@@ -23,14 +23,6 @@ TextureOptions Texture(double cost, double scale) {
   options.asymmetry_cost = cost;
   options.asymmetry_scale = scale;
   return options;
-}
-
-double Cost(const AsymmetryResidual& residual, const RandomView& view) {
-  Eigen::VectorXd residuals(residual.num_residuals());
-  const std::array<const double*, 2> blocks = {view.camera_block.data(),
-                                               view.landmark_block.data()};
-  EXPECT_TRUE(residual.Evaluate(blocks.data(), residuals.data(), nullptr));
-  return 0.5 * residuals.squaredNorm();
 }
 
 // All pixels the same: whatever is mirrored, nothing differs.
@@ -114,7 +106,7 @@ TEST(MirrorPlane, MayNotLieBesideTheCentreOfWhatIsMeasuredOnTheSurface) {
   EXPECT_NO_THROW(CheckMirrorPlane(texture, Descriptor::kDistanceTransform));
 }
 
-TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
+TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
   const auto image = std::make_shared<const SymmetryImage>(SparseImage());
   for (const Descriptor descriptor : {Descriptor::kLinearisedDt, Descriptor::kDistanceTransform}) {
     SymmetryOptions options = EverywhereInTheImage();
@@ -123,65 +115,81 @@ TEST(AsymmetryResidual, IsTheCostAtItsStartTimesItsWeight) {
     // The cost's own mirror plane, wherever it is best.
     texture.mirror_plane_range = descriptor == Descriptor::kDistanceTransform ? 0.3 : 0.0;
     for (int i = 0; i < 10; ++i) {
-      RandomView view = FacingView();
-      const Landmark start = view.LandmarkInCamera();
-      const AsymmetryResidual residual(image, TestCamera(), start, texture, options, 0.25);
-      ASSERT_GT(residual.num_residuals(), 50);
+      const Landmark start = FacingView().LandmarkInCamera();
+      const AsymmetryTerm term(image, TestCamera(), start, texture, options, 0.25);
+      ASSERT_GT(term.NumPairs(), 50);
       const double expected = 0.25 * AsymmetryCost(*image, TestCamera(), start, texture, options);
       EXPECT_GT(expected, 1e-3);
-      EXPECT_NEAR(Cost(residual, view), expected, 1e-9);
-      view.Move(RandomRigid(10.0));
-      EXPECT_NEAR(Cost(residual, view), expected, 1e-6);
+      EXPECT_NEAR(term.Value(start), expected, 1e-9);
     }
   }
 }
 
 constexpr Box kMiddle{250, 180, 390, 300};
 
-void ExpectCorrectJacobians(std::shared_ptr<const SymmetryImage> image,
+void ExpectCorrectGradients(std::shared_ptr<const SymmetryImage> image,
                             const TextureOptions& texture, Descriptor descriptor) {
   SymmetryOptions options = EverywhereInTheImage();
   options.uniform_columns = 12;
   options.descriptor = descriptor;
   for (int i = 0; i < 10; ++i) {
-    const RandomView view = FacingView();
-    const AsymmetryResidual residual(image, TestCamera(), view.LandmarkInCamera(), texture, options,
-                                     0.7);
-    ASSERT_GT(residual.num_residuals(), 50);
-    ExpectCorrectJacobians(residual, {view.camera_block.data(), view.landmark_block.data()});
+    const Landmark landmark = FacingView().LandmarkInCamera();
+    const AsymmetryTerm term(image, TestCamera(), landmark, texture, options, 0.7);
+    ASSERT_GT(term.NumPairs(), 50);
+    ExpectCorrectGradient(term, landmark);
   }
 }
 
-TEST(AsymmetryResidual, JacobiansAgreeWithNumbers) {
+TEST(AsymmetryTerm, DerivativesAgreeWithNumbers) {
   SymmetryImage image = SparseImage();
   image.box = kMiddle;
-  ExpectCorrectJacobians(std::make_shared<const SymmetryImage>(std::move(image)), Texture(4.0, 0.3),
+  ExpectCorrectGradients(std::make_shared<const SymmetryImage>(std::move(image)), Texture(4.0, 0.3),
                          Descriptor::kLinearisedDt);
 }
 
-TEST(AsymmetryResidual, JacobiansAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) {
+TEST(AsymmetryTerm, DerivativesAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) {
   SymmetryImage image = SparseImage();
   image.box = kMiddle;
   TextureOptions texture = Texture(4.0, 0.3);
   texture.mirror_plane_range = 0.4;
   texture.asymmetry_scale_px = 1000.0;  // differences here are hundreds of pixels
-  ExpectCorrectJacobians(std::make_shared<const SymmetryImage>(std::move(image)), texture,
+  ExpectCorrectGradients(std::make_shared<const SymmetryImage>(std::move(image)), texture,
                          Descriptor::kDistanceTransform);
 }
 
-TEST(AsymmetryResidual, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
+TEST(AsymmetryTerm, InformationOfOnePairIsThatOfItsGradient) {
+  SymmetryImage image = SparseImage();
+  image.box = {300, 220, 340, 260};
+  const auto middle = std::make_shared<const SymmetryImage>(std::move(image));
+  SymmetryOptions options = EverywhereInTheImage();
+  options.uniform_columns = 1;
+  options.min_pairs = 1;
+  options.descriptor = Descriptor::kLinearisedDt;
+  int checked = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Landmark landmark = FacingView().LandmarkInCamera();
+    const AsymmetryTerm term(middle, TestCamera(), landmark, Texture(4.0, 0.3), options, 0.7);
+    if (term.NumPairs() != 1) continue;
+    ExpectInformationOfOneResidual(term, landmark);
+    ++checked;
+  }
+  EXPECT_GT(checked, 10);
+}
+
+TEST(AsymmetryTerm, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
   const auto image = std::make_shared<const SymmetryImage>(SparseImage());
-  RandomView view = FacingView();
+  Landmark landmark = FacingView().LandmarkInCamera();
   SymmetryOptions options = EverywhereInTheImage();
   options.descriptor = Descriptor::kDistanceTransform;
-  const AsymmetryResidual residual(image, TestCamera(), view.LandmarkInCamera(), Texture(4.0, 0.3),
-                                   options, 1.0);
-  ASSERT_GT(residual.num_residuals(), 50);
+  const AsymmetryTerm term(image, TestCamera(), landmark, Texture(4.0, 0.3), options, 1.0);
+  ASSERT_GT(term.NumPairs(), 50);
   // Beside the image: no pixel's ray meets it any more.
-  view.landmark_in_world.frame_from_object.translation +=
-      view.world_from_camera.rotation * Eigen::Vector3d(20.0, 0.0, 0.0);
-  view.Move(Rigid3d());
-  EXPECT_NEAR(Cost(residual, view), 4.0, 1e-9);
+  landmark.frame_from_object.translation.x() += 20.0;
+  EXPECT_NEAR(term.Value(landmark), 4.0, 1e-9);
+  LandmarkModel model;
+  term.AddTo(landmark, &model);
+  EXPECT_NEAR(model.cost, 4.0, 1e-9);
+  EXPECT_EQ(model.gradient.norm(), 0.0);
 }
 
 }  // namespace

@@ -13,19 +13,9 @@ inline Eigen::VectorXd Residuals(const LandmarkTerm& term, const Landmark& landm
   return residuals;
 }
 
-inline double Cost(const LandmarkTerm& term, const Landmark& landmark) {
-  return 0.5 * Residuals(term, landmark).squaredNorm();
-}
-
-inline double Cost(const LandmarkTerms& terms, const Landmark& landmark) {
-  double cost = 0.0;
-  for (const auto& term : terms) cost += Cost(*term, landmark);
-  return cost;
-}
-
 // The sum of the observation's terms, tangent points at the depths of the landmark itself.
 inline double CostAtOwnDepths(const UprightObservation& observation, const Landmark& landmark) {
-  return Cost(BoxTerms(observation, landmark), landmark);
+  return TotalCost(BoxTerms(observation, landmark), landmark);
 }
 
 }  // namespace soslam

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/landmark_cost.h"
+
+#include <utility>
+
+namespace soslam {
+
+double ConstantCost(const LandmarkCosts& costs) {
+  double sum = 0.0;
+  for (const auto& cost : costs) sum += cost->ConstantCost();
+  return sum;
+}
+
+double TotalCost(const LandmarkCosts& costs, const Landmark& landmark) {
+  double sum = ConstantCost(costs);
+  for (const auto& cost : costs) sum += cost->Value(landmark);
+  return sum;
+}
+
+ViewCost::ViewCost(std::unique_ptr<const LandmarkCost> in_camera,
+                   const Rigid3d& camera_from_reference, double weight)
+    : in_camera_(std::move(in_camera)),
+      camera_from_reference_(camera_from_reference),
+      weight_(weight) {}
+
+double ViewCost::Value(const Landmark& landmark_in_reference) const {
+  return weight_ * in_camera_->Value(Transform(camera_from_reference_, landmark_in_reference));
+}
+
+void ViewCost::AddTo(const Landmark& landmark_in_reference, LandmarkModel* sum) const {
+  LandmarkModel in_camera;
+  in_camera_->AddTo(Transform(camera_from_reference_, landmark_in_reference), &in_camera);
+  const LandmarkModel model =
+      in_camera.Chained(LandmarkInCameraBy(camera_from_reference_.rotation.toRotationMatrix()));
+  sum->cost += weight_ * model.cost;
+  sum->gradient += weight_ * model.gradient;
+  sum->information += weight_ * model.information;
+}
+
+Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> LandmarkInCameraBy(
+    const Eigen::Matrix3d& rotation_camera_from_reference) {
+  Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> jacobian;
+  jacobian.setIdentity();
+  jacobian.block<3, 3>(0, 0) = rotation_camera_from_reference;
+  jacobian.block<3, 3>(3, 3) = rotation_camera_from_reference;
+  return jacobian;
+}
+
+}  // namespace soslam

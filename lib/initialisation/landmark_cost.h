@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/landmark.h"
+#include "geometry/mirror_mapping.h"
+#include "geometry/rigid3.h"
+#include "initialisation/quadratic_model.h"
+
+namespace soslam {
+
+// A cost of a landmark by its nine parameters, in the order of kLandmarkDof.
+using LandmarkModel = QuadraticModel<kLandmarkDof>;
+
+// Something that a landmark in a frame is fitted to: half a sum of squares with unit variance.
+class LandmarkCost {
+ public:
+  virtual ~LandmarkCost() = default;
+  // Not finite where it is undefined.
+  virtual double Value(const Landmark& landmark) const = 0;
+  virtual void AddTo(const Landmark& landmark, LandmarkModel* sum) const = 0;
+  // What is added to the value and does not change with the landmark, but may with what the cost
+  // was made for.
+  virtual double ConstantCost() const { return 0.0; }
+};
+
+using LandmarkCosts = std::vector<std::unique_ptr<const LandmarkCost>>;
+double ConstantCost(const LandmarkCosts& costs);
+// Of all values, and the constant costs.
+double TotalCost(const LandmarkCosts& costs, const Landmark& landmark);
+
+// What one camera says, for a landmark in another frame, multiplied by a weight.
+class ViewCost final : public LandmarkCost {
+ public:
+  ViewCost(std::unique_ptr<const LandmarkCost> in_camera, const Rigid3d& camera_from_reference,
+           double weight);
+  double Value(const Landmark& landmark_in_reference) const override;
+  void AddTo(const Landmark& landmark_in_reference, LandmarkModel* sum) const override;
+  double ConstantCost() const override { return weight_ * in_camera_->ConstantCost(); }
+
+ private:
+  std::unique_ptr<const LandmarkCost> in_camera_;
+  Rigid3d camera_from_reference_;
+  double weight_;
+};
+
+// d landmark in a camera / d landmark in another frame, by the parameters of both.
+Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> LandmarkInCameraBy(
+    const Eigen::Matrix3d& rotation_camera_from_reference);
+
+}  // namespace soslam

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace soslam {
+
+// A least squares problem of few parameters to second order about a point: what its residuals r and
+// their Jacobian J leave of it.
+template <int kSize>
+struct QuadraticModel {
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+  double cost = 0.0;                    // half the sum of r^2; not finite where undefined
+  Vector gradient = Vector::Zero();     // J^T r
+  Matrix information = Matrix::Zero();  // J^T J
+
+  void Add(double residual, const Vector& by_parameters) {
+    cost += 0.5 * residual * residual;
+    gradient += residual * by_parameters;
+    information += by_parameters * by_parameters.transpose();
+  }
+  void Add(const QuadraticModel& other) {
+    cost += other.cost;
+    gradient += other.gradient;
+    information += other.information;
+  }
+  // As if nothing depended on a parameter.
+  void Hold(int parameter) {
+    gradient[parameter] = 0.0;
+    information.row(parameter).setZero();
+    information.col(parameter).setZero();
+  }
+  // The same problem by others that the parameters depend on, `by_others` their derivatives.
+  template <int kOthers>
+  QuadraticModel<kOthers> Chained(const Eigen::Matrix<double, kSize, kOthers>& by_others) const {
+    const Eigen::Matrix<double, kSize, kOthers> half = information.lazyProduct(by_others);
+    QuadraticModel<kOthers> chained;
+    chained.cost = cost;
+    chained.gradient = by_others.transpose().lazyProduct(gradient);
+    chained.information = by_others.transpose().lazyProduct(half);
+    return chained;
+  }
+};
+
+}  // namespace soslam

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "constraints/tangent_space.h"
+#include "initialisation/landmark_cost.h"
+#include "support/shape_exponents.h"
+
+namespace soslam {
+
+// Where a step of its nine parameters leads.
+inline Landmark Moved(const Landmark& landmark,
+                      const Eigen::Matrix<double, kLandmarkDof, 1>& step) {
+  LandmarkBlock block = Pack(landmark);
+  Move(VariableKind::kLandmark, step.data(), block.data());
+  return WithShape(UnpackLandmark(block.data()), landmark.shape_exponent);
+}
+
+// The model's cost is the value, and its gradient what central differences of fourth order say.
+inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& landmark) {
+  constexpr double kStep = 1e-4;
+  LandmarkModel model;
+  cost.AddTo(landmark, &model);
+  EXPECT_NEAR(model.cost, cost.Value(landmark), 1e-12 * (1.0 + model.cost));
+  for (int i = 0; i < kLandmarkDof; ++i) {
+    const auto moved = [&](double step) {
+      return cost.Value(Moved(landmark, step * LandmarkModel::Vector::Unit(i)));
+    };
+    const double numeric =
+        (8.0 * (moved(kStep) - moved(-kStep)) - (moved(2.0 * kStep) - moved(-2.0 * kStep))) /
+        (12.0 * kStep);
+    EXPECT_NEAR(model.gradient[i], numeric, 1e-7 * (1.0 + model.gradient.norm()))
+        << "parameter " << i;
+  }
+}
+
+// Of one residual r, J^T J is that of the gradient J^T r: its square over r^2.
+inline void ExpectInformationOfOneResidual(const LandmarkCost& cost, const Landmark& landmark) {
+  LandmarkModel model;
+  cost.AddTo(landmark, &model);
+  ASSERT_GT(model.gradient.norm(), 0.0);
+  const LandmarkModel::Matrix expected =
+      model.gradient * model.gradient.transpose() / (2.0 * model.cost);
+  EXPECT_LT((model.information - expected).norm(), 1e-9 * expected.norm());
+}
+
+inline void ExpectSameModels(const LandmarkModel& one, const LandmarkModel& other) {
+  EXPECT_NEAR(one.cost, other.cost, 1e-9 * (1.0 + other.cost));
+  EXPECT_LT((one.gradient - other.gradient).norm(), 1e-9 * (1.0 + other.gradient.norm()));
+  EXPECT_LT((one.information - other.information).norm(), 1e-9 * (1.0 + other.information.norm()));
+}
+
+}  // namespace soslam
