@@ -7,35 +7,10 @@
 #include <limits>
 
 #include "base/wide_loops.h"
-#include "geometry/surface.h"
+#include "geometry/body_in_camera.h"
 
 namespace soslam {
 namespace {
-
-struct BodyInCamera {
-  explicit BodyInCamera(const Landmark& landmark_in_camera)
-      : rotation(landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
-        centre(landmark_in_camera.Centre()),
-        camera_in_object(-(rotation.transpose() * centre)),
-        surface(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent) {}
-
-  // Where rays of the camera frame (x, y, 1) meet the surface; all in the object frame.
-  void Meet(const double* x, const double* y, size_t count, RayBatch* rays) const {
-    Batch ray_x = Batch::Zero(), ray_y = Batch::Zero();
-    std::copy_n(x, count, ray_x.data());
-    std::copy_n(y, count, ray_y.data());
-    for (int i = 0; i < 3; ++i) {
-      rays->direction[static_cast<size_t>(i)] =
-          rotation(0, i) * ray_x + rotation(1, i) * ray_y + rotation(2, i);
-    }
-    surface.Meet(camera_in_object, rays);
-  }
-
-  Eigen::Matrix3d rotation;  // camera_from_object
-  Eigen::Vector3d centre;
-  Eigen::Vector3d camera_in_object;
-  BodySurface surface;
-};
 
 std::array<const double*, 3> Data(const BatchOfVectors& vectors) {
   return {vectors[0].data(), vectors[1].data(), vectors[2].data()};

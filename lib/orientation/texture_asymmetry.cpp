@@ -48,12 +48,16 @@ std::vector<double> MirrorPlanePlaces(double range) {
   return places;
 }
 
+// Whether a descriptor is a map's value at a pixel.
+bool IsInAMap(Descriptor descriptor) {
+  return descriptor == Descriptor::kGrey || descriptor == Descriptor::kDistanceTransform;
+}
+
 std::optional<MirrorSearch> MakeSearch(const SymmetryImage& image, const Camera& camera,
                                        const SymmetryOptions& options) {
   SampleCandidates candidates(image, options);
-  const bool is_in_a_map = options.descriptor == Descriptor::kGrey ||
-                           options.descriptor == Descriptor::kDistanceTransform;
-  if (!is_in_a_map || candidates.corners.size() > candidates.max_corners) return std::nullopt;
+  if (!IsInAMap(options.descriptor) || candidates.corners.size() > candidates.max_corners)
+    return std::nullopt;
   std::vector<Eigen::Vector2d> pixels = std::move(candidates.corners);
   pixels.insert(pixels.end(), candidates.others.begin(), candidates.others.end());
   return MirrorSearch(image, camera, options.descriptor, std::move(pixels));
@@ -159,9 +163,15 @@ AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const C
                    .value_or(MirroredTexture())),
       scale_(Scale(start_in_camera, descriptor_, options)),
       weight_(2.0 * weight * options.asymmetry_cost /
-              static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {}
+              static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {
+  if (!IsInAMap(descriptor_)) return;
+  const bool is_grey = descriptor_ == Descriptor::kGrey;
+  by_map_.emplace(is_grey ? image_->maps.grey : image_->maps.distance, is_grey ? 1.0 / 255.0 : 1.0,
+                  camera, texture_.pixels, texture_.mirror_plane, scale_);
+}
 
 double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
+  if (by_map_) return weight_ * by_map_->Value(landmark_in_camera);
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
   double sum = 0.0;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {
@@ -173,6 +183,10 @@ double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
 }
 
 void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
+  if (by_map_) {
+    by_map_->AddTo(landmark_in_camera, weight_, sum);
+    return;
+  }
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
   const std::vector<Eigen::Vector2d>& pixels = texture_.pixels;
   for (size_t first = 0; first < pixels.size(); first += kBatchSize) {

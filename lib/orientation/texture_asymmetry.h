@@ -9,6 +9,7 @@
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
 #include "initialisation/landmark_cost.h"
+#include "orientation/mirror_residuals.h"
 #include "orientation/mirror_search.h"
 #include "orientation/options.h"
 #include "symmetry/options.h"
@@ -87,8 +88,9 @@ class AsymmetryTerm final : public LandmarkCost {
   Camera camera_;
   Descriptor descriptor_;
   MirroredTexture texture_;
-  double scale_;   // s
-  double weight_;  // of one pair's share
+  double scale_;                           // s
+  double weight_;                          // of one pair's share
+  std::optional<MirrorResiduals> by_map_;  // where the descriptor is a map's value
 };
 
 }  // namespace soslam

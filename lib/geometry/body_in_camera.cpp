@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/body_in_camera.h"
+
+#include <algorithm>
+
+namespace soslam {
+
+BodyInCamera::BodyInCamera(const Landmark& landmark_in_camera)
+    : rotation(landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
+      centre(landmark_in_camera.Centre()),
+      camera_in_object(-(rotation.transpose() * centre)),
+      surface(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent) {}
+
+void BodyInCamera::Meet(const double* x, const double* y, size_t count, RayBatch* rays) const {
+  Batch ray_x = Batch::Zero(), ray_y = Batch::Zero();
+  std::copy_n(x, count, ray_x.data());
+  std::copy_n(y, count, ray_y.data());
+  for (int i = 0; i < 3; ++i) {
+    rays->direction[static_cast<size_t>(i)] =
+        rotation(0, i) * ray_x + rotation(1, i) * ray_y + rotation(2, i);
+  }
+  surface.Meet(camera_in_object, rays);
+}
+
+}  // namespace soslam
