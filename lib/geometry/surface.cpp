@@ -16,8 +16,8 @@ namespace {
 constexpr double kLargestQ = 200.0;
 constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;
-// Newton's steps square the error: what is left after one of this size is rounding.
-constexpr double kBatchNewtonTolerance = 1e-9;
+// Newton's steps square the error: what is left after one of this size is near rounding.
+constexpr double kBatchNewtonTolerance = 1e-8;
 
 // The part of a ray's line inside the cuboid |x_i| <= 1; none when the line misses it, or the
 // cuboid is behind the origin.
@@ -76,57 +76,70 @@ struct OpenRays {
   Batch exit = Batch::Zero();
 };
 
-// F along rays inside the cuboid, with half axes of one, and its slope.
-struct NormsAlongRays {
+// F^q along rays inside the cuboid, with half axes of one.
+struct PowersAlongRays {
   using Some = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBatchSize, 1>;
 
-  NormsAlongRays(const Eigen::Vector3d& origin, const OpenRays& rays, double q) {
+  PowersAlongRays(const Eigen::Vector3d& origin, const OpenRays& rays, double q) {
     const int size = rays.PaddedCount();
-    Some sum = Some::Zero(size), by_depth = Some::Zero(size);
+    excess.setConstant(size, -1.0);
+    slope.setZero(size);
     for (size_t k = 0; k < 3; ++k) {
       const auto direction = rays.direction[k].head(size);
-      const Some x = origin[static_cast<Eigen::Index>(k)] + rays.depth.head(size) * direction;
-      // |x|^q = x (x |x|^(q - 2)): one power serves the norm and its derivative.
-      const Some product =
-          x * ((q - 2.0) * (x.abs() + std::numeric_limits<double>::min()).log()).exp();
-      sum += x * product;
-      by_depth += product * direction;
+      x[k] = origin[static_cast<Eigen::Index>(k)] + rays.depth.head(size) * direction;
+      power[k] = ((q - 2.0) * (x[k].abs() + std::numeric_limits<double>::min()).log()).exp();
+      excess += x[k].square() * power[k];
+      slope += q * x[k] * power[k] * direction;
     }
-    norm = (sum.log() / q).exp();
-    slope = norm * by_depth / sum;
   }
 
-  Some norm;
-  Some slope;
+  std::array<Some, 3> x;
+  std::array<Some, 3> power;  // |x_k|^(q - 2): serves the sum, its slope and the gradient
+  Some excess;                // F^q - 1, at most 2
+  Some slope;                 // of F^q
 };
 
-// As SuperquadricEntry, for many rays; -1 where there is none.
-Batch SuperquadricEntries(const Eigen::Vector3d& origin, const BatchOfVectors& direction,
-                          double q) {
+// Newton's step to F = 1, F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q; its
+// series to the third power of u, which is not more. F is closer to linear than F^q is, and convex
+// as well, so that steps do not pass the root.
+double StepToSurface(double excess, double slope, double q) {
+  const double second = 0.5 * (1.0 - 1.0 / q);
+  const double third = second / 3.0 * (1.0 + 1.0 / q);
+  return excess * (1.0 + excess * (second - excess * third)) / -slope;
+}
+
+// As SuperquadricEntry and Gradient, for many rays. Depths are -1 where there is none.
+void MeetSuperquadric(const Eigen::Vector3d& origin, const BatchOfVectors& direction, double q,
+                      Batch* depth, BatchOfVectors* gradient) {
   const CuboidIntervals interval(origin, direction);
-  Batch entries = Batch::Constant(-1.0);
+  depth->setConstant(-1.0);
+  for (Batch& component : *gradient) component.setZero();
   OpenRays rays;
   for (int i = 0; i < kBatchSize; ++i) {
     if (interval.IsHit(i)) {
       rays.Add(i, direction, i, std::max(interval.entry[i], 0.0), interval.exit[i]);
     }
   }
+  // Those still open in the end graze the surface.
   for (int step = 0; step < kMaxNewtonSteps && rays.count > 0; ++step) {
-    const NormsAlongRays at(origin, rays, q);
+    const PowersAlongRays at(origin, rays, q);
     const int count = std::exchange(rays.count, 0);
     for (int i = 0; i < count; ++i) {
-      const bool is_inside = rays.depth[i] == 0.0 && !(at.norm[i] > 1.0);
-      const double by = (at.norm[i] - 1.0) / -at.slope[i];
+      const bool is_inside = rays.depth[i] == 0.0 && !(at.excess[i] > 0.0);
+      const double by = StepToSurface(at.excess[i], at.slope[i], q);
       const double next = rays.depth[i] + by;
       if (is_inside || !(at.slope[i] < 0.0) || !(next < rays.exit[i])) continue;
-      if (by < kBatchNewtonTolerance * next) {
-        entries[rays.ray[static_cast<size_t>(i)]] = next;
-      } else {
-        rays.Add(rays.ray[static_cast<size_t>(i)], rays.direction, i, next, rays.exit[i]);
+      const int ray = rays.ray[static_cast<size_t>(i)];
+      if (!(by < kBatchNewtonTolerance * next)) {
+        rays.Add(ray, rays.direction, i, next, rays.exit[i]);
+        continue;
+      }
+      (*depth)[ray] = next;
+      for (size_t k = 0; k < 3; ++k) {
+        (*gradient)[k][ray] = at.power[k][i] * (at.x[k][i] + (q - 1.0) * by * rays.direction[k][i]);
       }
     }
   }
-  return entries;  // none for those still open: they graze the surface
 }
 
 }  // namespace
@@ -202,14 +215,12 @@ void BodySurface::Meet(const Eigen::Vector3d& origin, RayBatch* rays) const {
       rays->depth[i] = interval.IsHit(i) ? interval.entry[i] : -1.0;
     }
   } else {
-    rays->depth = SuperquadricEntries(o, d, q_);
+    MeetSuperquadric(o, d, q_, &rays->depth, &rays->gradient);
   }
   for (size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     rays->point[i] = origin[axis] + rays->depth * rays->direction[i];
-    if (is_cuboid_) continue;
-    const Batch x = inverse_axes_[axis] * rays->point[i];
-    rays->gradient[i] = ((q_ - 1.0) * x.abs().log()).exp() * x.sign() * inverse_axes_[axis];
+    if (!is_cuboid_) rays->gradient[i] *= inverse_axes_[axis];
   }
   for (int i = 0; i < kBatchSize && is_cuboid_; ++i) {
     const Eigen::Vector3d gradient =
