@@ -12,8 +12,7 @@ SupportCurvature OfEllipsoid(const Eigen::Vector3d& half_axes, const SupportValu
   curvature.by_direction.diagonal() += less * half_axes.cwiseAbs2();
   curvature.mixed = -value.by_log_half_axes * contact.transpose();
   curvature.mixed.diagonal() += 2.0 * value.contact;
-  curvature.by_log_half_axes =
-      -less * value.by_log_half_axes * value.by_log_half_axes.transpose();
+  curvature.by_log_half_axes = -less * value.by_log_half_axes * value.by_log_half_axes.transpose();
   curvature.by_log_half_axes.diagonal() += 2.0 * value.by_log_half_axes;
   return curvature;
 }
@@ -52,7 +51,8 @@ SupportCurvature CurvatureOfSupport(const Eigen::Vector3d& half_axes, double sha
     const double k = by_log[i] * inverse_square;
     curvature.by_direction(i, i) += k;
     curvature.by_direction.diagonal().array() += k * e2;
-    curvature.by_direction -= (2.0 - p) * k * inverse_square * by_direction * by_direction.transpose();
+    curvature.by_direction -=
+        (2.0 - p) * k * inverse_square * by_direction * by_direction.transpose();
     curvature.mixed.row(i) += p * k * by_direction.transpose();
   }
   return curvature;

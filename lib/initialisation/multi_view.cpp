@@ -31,13 +31,17 @@ struct LinearSystem {
     right_side -= constant * weighted;
   }
 
-  // None where a direction is not known.
-  std::optional<Row> Solve() const {
-    const Eigen::SelfAdjointEigenSolver<decltype(normal_matrix)> eigen(normal_matrix);
+  bool KnowsAllDirections() const {
+    const Eigen::SelfAdjointEigenSolver<decltype(normal_matrix)> eigen(normal_matrix,
+                                                                       Eigen::EigenvaluesOnly);
     const Row& information = eigen.eigenvalues();  // ascending, 1 / m^2
-    if (!(information(0) > kMinInformationShare * information(kUnknowns - 1))) return std::nullopt;
-    const Row unknowns = eigen.eigenvectors() * information.cwiseInverse().asDiagonal() *
-                         eigen.eigenvectors().transpose() * right_side;
+    return information(0) > kMinInformationShare * information(kUnknowns - 1);
+  }
+
+  std::optional<Row> Solve() const {
+    const Eigen::LLT<decltype(normal_matrix)> factor(normal_matrix);
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    const Row unknowns = factor.solve(right_side);
     return unknowns.allFinite() ? std::optional(unknowns) : std::nullopt;
   }
 
@@ -179,6 +183,8 @@ class LinearViews {
     }
     if (HasRatio(observation_)) AddRatio(*body, &system);
     if (HasSize(observation_)) AddSize(*body, &system);
+    // What is not known at first is no better known later.
+    if (is_first && !system.KnowsAllDirections()) return false;
     const auto unknowns = system.Solve();
     if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;
     body->half_axes = unknowns->template segment<3>(2);
