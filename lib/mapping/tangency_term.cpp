@@ -12,6 +12,8 @@ namespace {
 
 using ByPose = Eigen::Matrix<double, 4, kPoseDof>;
 using ByLandmark = Eigen::Matrix<double, 4, kLandmarkDof>;
+using PoseGradient = Eigen::Matrix<double, kPoseDof, 1>;
+using LandmarkGradient = Eigen::Matrix<double, kLandmarkDof, 1>;
 using PosePose = Eigen::Map<Eigen::Matrix<double, kPoseDof, kPoseDof>>;
 using LandmarkPose = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kPoseDof>>;
 using LandmarkLandmark = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>>;
@@ -28,13 +30,16 @@ class TangencyTerm::View {
                             Eigen::Quaterniond(blocks.world_from_camera).toRotationMatrix()),
         offset_(world_from_object_.transpose() * (Eigen::Vector3d(blocks.landmark_in_world + 4) -
                                                   Eigen::Vector3d(blocks.world_from_camera + 4))),
+        axis_(object_from_camera_.col(2)),
+        depth_(axis_.dot(offset_)),
         half_axes_(Eigen::Vector3d(blocks.landmark_in_world + kPoseSize).array().exp()),
         shape_exponent_(shape_exponent),
         bias_px_(blocks.bias_px) {}
 
   // How far the body reaches outside an edge.
   struct Excess {
-    double value;
+    double value;            // less the bias
+    double without_bias;     // outside the plane, over the centre's depth
     Eigen::Vector3d normal;  // of the plane behind the edge
     SupportValue support;
   };
@@ -42,8 +47,8 @@ class TangencyTerm::View {
     Excess excess;
     excess.normal = object_from_camera_ * edge.plane;
     excess.support = SupportFunction(half_axes_, shape_exponent_, excess.normal);
-    excess.value =
-        excess.normal.dot(offset_) + excess.support.extent - edge.per_px * bias_px_[edge.side];
+    excess.without_bias = (excess.normal.dot(offset_) + excess.support.extent) / depth_;
+    excess.value = excess.without_bias - edge.per_px * bias_px_[edge.side];
     return excess;
   }
   SupportCurvature CurvatureOf(const Excess& excess) const {
@@ -52,10 +57,14 @@ class TangencyTerm::View {
 
   const Eigen::Matrix3d& world_from_object() const { return world_from_object_; }
   const Eigen::Vector3d& offset() const { return offset_; }  // from the camera to the centre
+  const Eigen::Vector3d& axis() const { return axis_; }      // the camera's, optical
+  double depth() const { return depth_; }                    // of the centre
 
  private:
   Eigen::Matrix3d world_from_object_, object_from_camera_;
   Eigen::Vector3d offset_;
+  Eigen::Vector3d axis_;
+  double depth_;
   Eigen::Vector3d half_axes_;
   double shape_exponent_;
   const double* bias_px_;
@@ -72,32 +81,67 @@ struct TangencyTerm::Rows {
   ByVector by_centre = ByVector::Zero();  // and the opposite by the camera's place
   ByVector by_axes = ByVector::Zero();    // log half axes
   ByVector by_camera_turn = ByVector::Zero();
+  // Relative change of the centre's depth, which divides them all.
+  Eigen::Vector3d depth_by_centre, depth_by_camera_turn;
+  bool with_depth_products = false;  // see DepthProducts
 };
 
-// The sum over the edges of slope times second derivatives of the excess n . d + h(n): n the
-// plane's normal, d the offset, q the point of contact. Turns w of the landmark and v of the camera
-// turn n.
+// What SecondDerivatives leaves out: less the gradient of the cost times the relative change of the
+// depth, both ways round.
+class TangencyTerm::DepthProducts {
+ public:
+  DepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object)
+      : by_landmark_(LandmarkGradient::Zero()) {
+    if (!rows.with_depth_products) return;
+    const Eigen::Vector3d by_centre = world_from_object * rows.depth_by_centre;
+    by_landmark_.segment<3>(3) = by_centre;
+    by_pose_ << world_from_object * rows.depth_by_camera_turn, -by_centre;
+  }
+
+  void AddTo(LandmarkLandmark* square, const LandmarkGradient& gradient) const {
+    *square -= gradient * by_landmark_.transpose() + by_landmark_ * gradient.transpose();
+  }
+  void AddTo(PosePose* square, const PoseGradient& gradient) const {
+    *square -= gradient * by_pose_.transpose() + by_pose_ * gradient.transpose();
+  }
+  void AddTo(LandmarkPose* mixed, const LandmarkGradient& of_landmark,
+             const PoseGradient& of_pose) const {
+    *mixed -= of_landmark * by_pose_.transpose() + by_landmark_ * of_pose.transpose();
+  }
+
+ private:
+  LandmarkGradient by_landmark_;
+  PoseGradient by_pose_ = PoseGradient::Zero();
+};
+
+// The sum over the edges of slope times second derivatives of the excess r = (n . d + h(n)) / (a .
+// d): n the plane's normal, d the offset, q the point of contact, a the optical axis. Turns w of
+// the landmark and v of the camera turn n, and v turns a. Without what is the product of the
+// gradients of r and a . d.
 class TangencyTerm::SecondDerivatives {
  public:
   // Where the body turns past an edge or a face that should come nearer, it is held there. Not so
   // where it should go away from it.
   void AddKink(const View& view, const View::Excess& excess, double slope) {
-    if (slope > 0.0) AddTurn(excess, slope * view.CurvatureOf(excess).by_direction);
+    if (!(slope > 0.0)) return;
+    AddTurn(excess, slope / view.depth() * view.CurvatureOf(excess).by_direction);
   }
 
   void AddAll(const View& view, const View::Excess& excess, double slope) {
     const SupportCurvature curvature = view.CurvatureOf(excess);
-    const Eigen::Vector3d n = slope * excess.normal;
+    const double factor = slope / view.depth();
+    const Eigen::Vector3d n = factor * excess.normal;
+    const Eigen::Vector3d n_less_depth = n - factor * excess.without_bias * view.axis();
     const Eigen::Vector3d& q = excess.support.contact;
     const Eigen::Matrix3d of_contact = OfTurnedNormal(n, q);
-    AddTurn(excess, slope * curvature.by_direction);
+    AddTurn(excess, factor * curvature.by_direction);
     turn_turn_ += of_contact;
-    camera_camera_ += of_contact + OfTurnedNormal(n, view.offset());
+    camera_camera_ += of_contact + OfTurnedNormal(n_less_depth, view.offset());
     turn_camera_ -= n * q.transpose();
     turn_camera_.diagonal().array() += q.dot(n);
     axes_turn_ += curvature.mixed * Skew(n);
-    axes_axes_ += slope * curvature.by_log_half_axes;
-    normal_ += n;
+    axes_axes_ += factor * curvature.by_log_half_axes;
+    normal_ += n_less_depth;
   }
 
   void TurnToWorld(const Eigen::Matrix3d& world_from_object) {
@@ -145,7 +189,7 @@ class TangencyTerm::SecondDerivatives {
   Eigen::Matrix3d turn_camera_ = Eigen::Matrix3d::Zero();    // w v
   Eigen::Matrix3d axes_turn_ = Eigen::Matrix3d::Zero();      // log half axes, w; the opposite by v
   Eigen::Matrix3d axes_axes_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // v and d: v . (n x d)
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // v and d: v . ((n - r a) x d)
 };
 
 TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks,
@@ -159,14 +203,16 @@ TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& bl
   for (size_t i = 0; i < edges.size(); ++i) {
     const double depth_m = TangentDepth(edges[i], start_in_camera);
     if (!(depth_m > 0.0)) continue;
-    edges_[static_cast<size_t>(num_edges_++)] = {edges[i].plane / (depth_m * edges[i].sigma_px),
-                                                 1.0 / edges[i].sigma_px, static_cast<int>(i),
-                                                 edges[i].is_bound};
+    const double by_centre_depth = depth_m / start_in_camera.Centre().z();
+    edges_[static_cast<size_t>(num_edges_++)] = {
+        edges[i].plane / (by_centre_depth * edges[i].sigma_px), 1.0 / edges[i].sigma_px,
+        static_cast<int>(i), edges[i].is_bound};
   }
 }
 
 double TangencyTerm::Cost() const {
   const View view(blocks_, shape_exponent_);
+  if (!(view.depth() > 0.0)) return std::numeric_limits<double>::infinity();
   double cost = 0.0;
   for (int i = 0; i < num_edges_; ++i) {
     const Edge& edge = edges_[static_cast<size_t>(i)];
@@ -178,7 +224,12 @@ double TangencyTerm::Cost() const {
 
 double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
   const View view(blocks_, shape_exponent_);
+  if (!(view.depth() > 0.0)) return std::numeric_limits<double>::infinity();
+  const double inverse_depth = 1.0 / view.depth();
   Rows rows;
+  rows.with_depth_products = hessian == Hessian::kNear;
+  rows.depth_by_centre = inverse_depth * view.axis();
+  rows.depth_by_camera_turn = inverse_depth * view.axis().cross(view.offset());
   SecondDerivatives second;
   for (int i = 0; i < num_edges_; ++i) {
     const Edge& edge = edges_[static_cast<size_t>(i)];
@@ -189,10 +240,12 @@ double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
     rows.slopes[i] = weight_ * loss.weight * excess.value;
     rows.curvatures[i] = weight_ * (hessian == Hessian::kNear ? loss.curvature : loss.weight);
     const Eigen::Vector3d& contact = excess.support.contact;
-    rows.by_turn.row(i) = contact.cross(excess.normal);
-    rows.by_centre.row(i) = excess.normal;
-    rows.by_axes.row(i) = excess.support.by_log_half_axes;
-    rows.by_camera_turn.row(i) = excess.normal.cross(view.offset() + contact);
+    const Eigen::Vector3d normal = inverse_depth * excess.normal;
+    rows.by_turn.row(i) = contact.cross(normal);
+    rows.by_centre.row(i) = normal - excess.without_bias * rows.depth_by_centre;
+    rows.by_axes.row(i) = inverse_depth * excess.support.by_log_half_axes;
+    rows.by_camera_turn.row(i) =
+        normal.cross(view.offset() + contact) - excess.without_bias * rows.depth_by_camera_turn;
     if (hessian == Hessian::kNear) {
       second.AddAll(view, excess, rows.slopes[i]);
     } else if (hessian == Hessian::kFar && shape_exponent_ < kEllipsoidExponent) {
@@ -214,27 +267,31 @@ void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_objec
   by_landmark.middleCols<3>(3).noalias() = rows.by_centre.lazyProduct(to_world);
   by_landmark.rightCols<3>() = rows.by_axes;
   const ByLandmark weighted = rows.curvatures.asDiagonal() * by_landmark;
+  const LandmarkGradient landmark_gradient = by_landmark.transpose().lazyProduct(rows.slopes);
+  const DepthProducts products(rows, world_from_object);
   if (of_landmark != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, kLandmarkDof, 1>>(of_landmark).noalias() +=
-        by_landmark.transpose().lazyProduct(rows.slopes);
+    Eigen::Map<LandmarkGradient>(of_landmark) += landmark_gradient;
     LandmarkLandmark square(places.hessian[1][1]);
     square.noalias() += by_landmark.transpose().lazyProduct(weighted);
     second.AddTo(&square);
+    products.AddTo(&square, landmark_gradient);
   }
   ByPose by_pose;
   if (of_pose != nullptr) {
     by_pose.leftCols<3>().noalias() = rows.by_camera_turn.lazyProduct(to_world);
     by_pose.rightCols<3>() = -by_landmark.middleCols<3>(3);
-    Eigen::Map<Eigen::Matrix<double, kPoseDof, 1>>(of_pose).noalias() +=
-        by_pose.transpose().lazyProduct(rows.slopes);
+    const PoseGradient pose_gradient = by_pose.transpose().lazyProduct(rows.slopes);
+    Eigen::Map<PoseGradient>(of_pose) += pose_gradient;
     const ByPose weighted_pose = rows.curvatures.asDiagonal() * by_pose;
     PosePose square(places.hessian[0][0]);
     square.noalias() += by_pose.transpose().lazyProduct(weighted_pose);
     second.AddTo(&square);
+    products.AddTo(&square, pose_gradient);
     if (of_landmark != nullptr) {
       LandmarkPose mixed(places.hessian[1][0]);
       mixed.noalias() += weighted.transpose().lazyProduct(by_pose);
       second.AddTo(&mixed);
+      products.AddTo(&mixed, landmark_gradient, pose_gradient);
     }
   }
   if (of_bias == nullptr) return;

@@ -11,9 +11,11 @@
 namespace soslam {
 
 // The tangencies (tangency.h) of a detection's edges, each less a bias of the detector and under a
-// Huber loss, all multiplied by a weight. Tangent points are at the depths that they have on
-// `start_in_camera`, whose shape exponent is that of the body; edges whose tangent point is not in
-// front of the camera there are left out. Variables: pose, landmark, bias.
+// Huber loss, all multiplied by a weight. The depth of a tangent point is that of the centre times
+// what it is of it on `start_in_camera`, whose shape exponent is that of the body: with depths that
+// stay as they were, a smaller world would have smaller residuals. Edges whose tangent point is not
+// in front of the camera at the start are left out; infinite where the centre is not. Variables:
+// pose, landmark, bias.
 class TangencyTerm final : public Term {
  public:
   struct Blocks {
@@ -34,7 +36,7 @@ class TangencyTerm final : public Term {
 
  private:
   struct Edge {
-    Eigen::Vector3d plane;  // in the camera frame, divided by depth and sigma
+    Eigen::Vector3d plane;  // in the camera frame; over sigma and the point's depth by the centre's
     double per_px;          // 1 / sigma
     int side;               // which one of the box
     bool is_bound;
@@ -42,6 +44,7 @@ class TangencyTerm final : public Term {
   class View;
   struct Rows;
   class SecondDerivatives;
+  class DepthProducts;
 
   // Adds derivatives in the object frame (second ones in the world) to where they go.
   void Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,

@@ -26,20 +26,23 @@ class TangencyResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLa
  public:
   TangencyResidual(const BoxEdge& edge, const Landmark& start_in_camera)
       : edge_(edge),
-        depth_m_(TangentDepth(edge, start_in_camera)),
+        depth_by_centre_(TangentDepth(edge, start_in_camera) / start_in_camera.Centre().z()),
         shape_exponent_(start_in_camera.shape_exponent) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const RelativeObservation observation(blocks, shape_exponent_);
     LandmarkJacobian1 by_landmark;
-    residuals[0] = Tangency(edge_, observation.landmark_in_camera(), depth_m_, 0.0, &by_landmark);
+    const double depth_m = observation.landmark_in_camera().Centre().z();
+    residuals[0] = Tangency(edge_, observation.landmark_in_camera(), depth_by_centre_ * depth_m,
+                            0.0, &by_landmark);
+    by_landmark[5] -= residuals[0] / depth_m;
     observation.WriteJacobians<1>(by_landmark, blocks, jacobians);
     return true;
   }
 
  private:
   BoxEdge edge_;
-  double depth_m_;
+  double depth_by_centre_;
   double shape_exponent_;
 };
 

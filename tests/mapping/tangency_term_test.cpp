@@ -104,9 +104,11 @@ TEST(TangencyTerm, CostsTheHuberLossOfTheTangencies) {
         p);
     double expected = 0.0;
     for (size_t i = 0; i < 4; ++i) {
+      const Landmark& landmark = observation.landmark_in_camera();
+      const double depth_m =
+          TangentDepth(view.edges[i], view.start) * landmark.Centre().z() / view.start.Centre().z();
       const double excess =
-          std::abs(Tangency(view.edges[i], observation.landmark_in_camera(),
-                            TangentDepth(view.edges[i], view.start), view.bias[i], nullptr));
+          std::abs(Tangency(view.edges[i], landmark, depth_m, view.bias[i], nullptr));
       expected += excess > 0.5 ? 0.5 * (excess - 0.25) : 0.5 * excess * excess;
     }
     EXPECT_NEAR(view.term->Cost(), ViewOfBox::kWeight * expected, 1e-9 * expected);
@@ -186,6 +188,33 @@ TEST(TangencyTerm, LeavesOutWhatIsHeld) {
   EXPECT_EQ(gradient, (all.gradient.segment<kLandmarkDof>(kPoseDof)));
   const Eigen::MatrixXd of_all = all.hessian.block<kLandmarkDof, kLandmarkDof>(kPoseDof, kPoseDof);
   EXPECT_TRUE(Eigen::MatrixXd(hessian.selfadjointView<Eigen::Lower>()).isApprox(of_all, 1e-12));
+}
+
+// Nothing says how large the world is, but that the box's errors are the same in any.
+TEST(TangencyTerm, IsTheSameInASmallerWorld) {
+  for (const double p : kShapeExponents) {
+    ViewOfBox view(p, {}, 1.0);
+    const double cost = view.term->Cost();
+    for (size_t i = 4; i < 7; ++i) {
+      view.view.camera_block[i] *= 0.6;
+      view.view.landmark_block[i] *= 0.6;
+    }
+    for (size_t i = 7; i < 10; ++i) view.view.landmark_block[i] += std::log(0.6);
+    EXPECT_NEAR(view.term->Cost(), cost, 1e-9 * cost);
+  }
+}
+
+TEST(TangencyTerm, IsInfiniteBehindTheCamera) {
+  ViewOfBox view(1.5, {}, 1.0);
+  const Eigen::Vector3d back = view.view.world_from_camera.rotation *
+                               Eigen::Vector3d(0.0, 0.0, 2.0 * view.start.Centre().z());
+  for (size_t i = 0; i < 3; ++i) {
+    view.view.landmark_block[4 + i] -= back[static_cast<Eigen::Index>(i)];
+  }
+  EXPECT_EQ(view.term->Cost(), std::numeric_limits<double>::infinity());
+  const Derivatives found = Linearised(*view.term, Hessian::kNear);
+  EXPECT_EQ(found.cost, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(found.gradient.norm(), 0.0);
 }
 
 TEST(TangencyTerm, LeavesOutEdgesBehindTheCamera) {

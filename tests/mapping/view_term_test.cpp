@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/view_term.h"
 
+#include <ceres/sized_cost_function.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "constraints/tangent_space.h"
 #include "initialisation/upright.h"
-#include "mapping/tangency_term.h"
+#include "mapping/cost_function_term.h"
 #include "support/random_scene.h"
 #include "support/shape_exponents.h"
 
@@ -44,36 +45,57 @@ void ExpectNear(const Matrix& one, const Matrix& other) {
   EXPECT_LT((one - other).norm(), 1e-9 * (1.0 + other.norm()));
 }
 
-// A box in one camera, by the term that knows boxes and as the cost of a landmark in the camera.
+// A box for Ceres. Blocks: world_from_camera, landmark in the world.
+class BoxResidual final : public ceres::SizedCostFunction<4, kPoseSize, kLandmarkSize> {
+ public:
+  explicit BoxResidual(const BoxTerm& box, double shape_exponent)
+      : box_(box), shape_exponent_(shape_exponent) {}
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const RelativeObservation observation(blocks, shape_exponent_);
+    LandmarkTerm::Jacobian by_landmark(4, kLandmarkDof);
+    box_.Evaluate(observation.landmark_in_camera(), Eigen::Map<Eigen::VectorXd>(residuals, 4),
+                  &by_landmark);
+    observation.WriteJacobians<4>(Eigen::Matrix<double, 4, kLandmarkDof>(by_landmark), blocks,
+                                  jacobians);
+    return true;
+  }
+
+ private:
+  BoxTerm box_;
+  double shape_exponent_;
+};
+
+// The same of one camera as two terms.
 struct TwoTerms {
   explicit TwoTerms(double shape_exponent) {
     const Landmark start = WithShape(view.LandmarkInCamera(), shape_exponent);
     Box box = *OutlineBox(TestCamera(), start);
     box.x_min += RandomUniform(-8, 8);
     box.y_max += RandomUniform(-8, 8);
-    const auto edges = BoxEdges(TestCamera(), box, {}, 0.05);
+    const BoxTerm tangencies(BoxEdges(TestCamera(), box, {}, 0.05), start);
     const double* pose = view.camera_block.data();
     const double* landmark = view.landmark_block.data();
-    tangency = std::make_unique<TangencyTerm>(
-        std::array{0, 1, 2}, TangencyTerm::Blocks{pose, landmark, bias.data()}, edges, start,
-        std::numeric_limits<double>::infinity(), 1.0);
+    residual = std::make_unique<CostFunctionTerm>(
+        std::make_unique<BoxResidual>(tangencies, shape_exponent),
+        std::vector<CostFunctionTerm::Block>{{0, VariableKind::kPose, pose},
+                                             {1, VariableKind::kLandmark, landmark}});
     term = std::make_unique<ViewTerm>(std::array{0, 1}, ViewTerm::Blocks{pose, landmark},
-                                      shape_exponent, std::make_unique<BoxTerm>(edges, start));
+                                      shape_exponent, std::make_unique<BoxTerm>(tangencies));
   }
 
   RandomView view;
-  std::array<double, kBiasSize> bias{};
-  std::unique_ptr<TangencyTerm> tangency;
+  std::unique_ptr<CostFunctionTerm> residual;
   std::unique_ptr<ViewTerm> term;
 };
 
-TEST(ViewTerm, SaysOfABoxWhatTheTangencyTermSays) {
+TEST(ViewTerm, SaysWhatItsResidualsSayInTheWorld) {
   for (const double p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const TwoTerms terms(p);
       for (const auto& [with_pose, with_landmark] :
            {std::pair(true, true), std::pair(true, false), std::pair(false, true)}) {
-        const Derivatives expected(*terms.tangency, with_pose, with_landmark);
+        const Derivatives expected(*terms.residual, with_pose, with_landmark);
         const Derivatives found(*terms.term, with_pose, with_landmark);
         EXPECT_NEAR(found.cost, expected.cost, 1e-9 * (1.0 + expected.cost));
         EXPECT_NEAR(terms.term->Cost(), expected.cost, 1e-9 * (1.0 + expected.cost));

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two SLAM problems with known truth (tests/support/real_data.h; skipped where they are not): poses
+// from dead reckoning, ellipsoids of any ratio, one thread.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "dataset/import.h"
+#include "evaluation/trajectory_error.h"
+#include "mapping/back_end.h"
+#include "support/real_data.h"
+
+namespace soslam {
+namespace {
+
+// The problem's own noise.
+OptimiseOptions OptionsOfProblem() {
+  OptimiseOptions options;
+  options.detection_model = DetectionModel::kTangency;
+  options.shape = ShapeSource::kEllipsoid;
+  options.ratio = false;
+  options.odometry_rotation_sigma_deg = 0.5;
+  options.odometry_translation_sigma_m = 0.01;
+  options.view_correlation_deg = 0.0;
+  options.axes_weight = 0.0;
+  options.huber_delta = 1e6;  // no outliers, but far starts
+  options.covariances = false;
+  return options;
+}
+
+// Starts are the true ellipsoids with errors: 5 cm, a fifth of the half axes, 0.2 rad of yaw.
+BackEndInput InputOf(const Sequence& sequence) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> gaussian;
+  const auto error = [&](double sigma) { return sigma * gaussian(random); };
+  BackEndInput input{sequence, {}, {}, {}, {}};
+  input.priors.resize(sequence.objects.size());
+  for (const Object& object : sequence.objects) {
+    Landmark start = Turned(object.ground_truth->landmark_in_world, error(0.2));
+    for (double& coordinate : start.frame_from_object.translation) coordinate += error(0.05);
+    for (double& half_axis : start.half_axes) half_axis *= std::exp(error(0.2));
+    input.starts.push_back(start);
+  }
+  return input;
+}
+
+double TrajectoryError(const Sequence& sequence, const MapEstimate& map) {
+  std::vector<std::optional<Rigid3d>> truth;
+  for (const Frame& frame : sequence.frames) truth.push_back(frame.true_world_from_camera);
+  return AbsoluteTrajectoryError(map.world_from_camera, truth).value();
+}
+
+// Of the centres, m.
+double MedianError(const Sequence& sequence, const MapEstimate& map) {
+  std::vector<double> errors;
+  for (const ObjectEstimate& object : map.objects) {
+    const Object& truth = sequence.objects[static_cast<size_t>(object.object_index)];
+    errors.push_back(
+        (object.landmark_in_world->Centre() - truth.ground_truth->landmark_in_world.Centre())
+            .norm());
+  }
+  std::ranges::nth_element(errors, errors.begin() + static_cast<long>(errors.size() / 2));
+  return errors[errors.size() / 2];
+}
+
+void Problem(benchmark::State& state, const char* name) {
+  const auto folder = RealDataset("slam_synthetic");
+  if (!std::filesystem::exists(folder)) {
+    state.SkipWithError("the dataset is not there");
+    return;
+  }
+  ImportOptions import;
+  import.format = DatasetFormat::kSlamSynthetic;
+  import.kitti.sequences = name;
+  import.border_px = 0.0;
+  const Sequence sequence = ImportDataset(folder, import);
+  const BackEndInput input = InputOf(sequence);
+  MapEstimate map;
+  for (auto _ : state) map = OptimiseMap(input, OptionsOfProblem());
+  state.counters["solver_iterations"] = map.solver.iterations;
+  state.counters["final_cost"] = map.solver.final_cost;
+  state.counters["trajectory_error_m"] = TrajectoryError(sequence, map);
+  state.counters["centre_error_m"] = MedianError(sequence, map);
+}
+BENCHMARK_CAPTURE(Problem, K10N100, "K10N100")
+    ->Name("scale/slam_synthetic/K10N100")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Problem, K40N200, "K40N200")
+    ->Name("scale/slam_synthetic/K40N200")
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace soslam
