@@ -52,6 +52,8 @@ TEST(BoxFit, SaysWhatTheTermsSay) {
 TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
   int checked = 0;
   for (const double p : kShapeExponents) {
+    // Where bodies have kinks, rounding decides on which side of one the last step ends.
+    const double tolerance = p == kEllipsoidExponent ? 1e-9 : 1e-6;
     for (int i = 0; i < 40; ++i) {
       const UprightObservation observation = RandomObservation(p, i);
       const auto start = ClosedForm(observation).At(RandomYaw());
@@ -71,7 +73,7 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
           UprightVector parameters = *start;
           const double cost = fit.Minimise(further, yaw_is_free, &parameters);
           ASSERT_TRUE(of_terms);
-          EXPECT_NEAR(cost, of_terms->cost, 1e-9 * (1.0 + cost));
+          EXPECT_NEAR(cost, of_terms->cost, tolerance * (1.0 + cost));
         }
       }
     }
