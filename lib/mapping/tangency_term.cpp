@@ -10,6 +10,8 @@
 namespace soslam {
 namespace {
 
+constexpr double kLeastDepth = 0.1;  // of the start's
+
 using ByPose = Eigen::Matrix<double, 4, kPoseDof>;
 using ByLandmark = Eigen::Matrix<double, 4, kLandmarkDof>;
 using PoseGradient = Eigen::Matrix<double, kPoseDof, 1>;
@@ -24,17 +26,21 @@ using LandmarkLandmark = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kLandmar
 // turned into the world at the end.
 class TangencyTerm::View {
  public:
-  View(const Blocks& blocks, double shape_exponent)
+  View(const Blocks& blocks, double shape_exponent, double least_depth_m)
       : world_from_object_(Eigen::Quaterniond(blocks.landmark_in_world).toRotationMatrix()),
         object_from_camera_(world_from_object_.transpose() *
                             Eigen::Quaterniond(blocks.world_from_camera).toRotationMatrix()),
         offset_(world_from_object_.transpose() * (Eigen::Vector3d(blocks.landmark_in_world + 4) -
                                                   Eigen::Vector3d(blocks.world_from_camera + 4))),
-        axis_(object_from_camera_.col(2)),
-        depth_(axis_.dot(offset_)),
+        depth_by_offset_(object_from_camera_.col(2)),
+        depth_(depth_by_offset_.dot(offset_)),
         half_axes_(Eigen::Vector3d(blocks.landmark_in_world + kPoseSize).array().exp()),
         shape_exponent_(shape_exponent),
-        bias_px_(blocks.bias_px) {}
+        bias_px_(blocks.bias_px) {
+    if (depth_ > least_depth_m) return;
+    depth_ = least_depth_m;
+    depth_by_offset_.setZero();
+  }
 
   // How far the body reaches outside an edge.
   struct Excess {
@@ -57,13 +63,14 @@ class TangencyTerm::View {
 
   const Eigen::Matrix3d& world_from_object() const { return world_from_object_; }
   const Eigen::Vector3d& offset() const { return offset_; }  // from the camera to the centre
-  const Eigen::Vector3d& axis() const { return axis_; }      // the camera's, optical
   double depth() const { return depth_; }                    // of the centre
+  // The camera's optical axis, 0 where the depth is held.
+  const Eigen::Vector3d& depth_by_offset() const { return depth_by_offset_; }
 
  private:
   Eigen::Matrix3d world_from_object_, object_from_camera_;
   Eigen::Vector3d offset_;
-  Eigen::Vector3d axis_;
+  Eigen::Vector3d depth_by_offset_;
   double depth_;
   Eigen::Vector3d half_axes_;
   double shape_exponent_;
@@ -83,35 +90,6 @@ struct TangencyTerm::Rows {
   ByVector by_camera_turn = ByVector::Zero();
   // Relative change of the centre's depth, which divides them all.
   Eigen::Vector3d depth_by_centre, depth_by_camera_turn;
-  bool with_depth_products = false;  // see DepthProducts
-};
-
-// What SecondDerivatives leaves out: less the gradient of the cost times the relative change of the
-// depth, both ways round.
-class TangencyTerm::DepthProducts {
- public:
-  DepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object)
-      : by_landmark_(LandmarkGradient::Zero()) {
-    if (!rows.with_depth_products) return;
-    const Eigen::Vector3d by_centre = world_from_object * rows.depth_by_centre;
-    by_landmark_.segment<3>(3) = by_centre;
-    by_pose_ << world_from_object * rows.depth_by_camera_turn, -by_centre;
-  }
-
-  void AddTo(LandmarkLandmark* square, const LandmarkGradient& gradient) const {
-    *square -= gradient * by_landmark_.transpose() + by_landmark_ * gradient.transpose();
-  }
-  void AddTo(PosePose* square, const PoseGradient& gradient) const {
-    *square -= gradient * by_pose_.transpose() + by_pose_ * gradient.transpose();
-  }
-  void AddTo(LandmarkPose* mixed, const LandmarkGradient& of_landmark,
-             const PoseGradient& of_pose) const {
-    *mixed -= of_landmark * by_pose_.transpose() + by_landmark_ * of_pose.transpose();
-  }
-
- private:
-  LandmarkGradient by_landmark_;
-  PoseGradient by_pose_ = PoseGradient::Zero();
 };
 
 // The sum over the edges of slope times second derivatives of the excess r = (n . d + h(n)) / (a .
@@ -131,7 +109,7 @@ class TangencyTerm::SecondDerivatives {
     const SupportCurvature curvature = view.CurvatureOf(excess);
     const double factor = slope / view.depth();
     const Eigen::Vector3d n = factor * excess.normal;
-    const Eigen::Vector3d n_less_depth = n - factor * excess.without_bias * view.axis();
+    const Eigen::Vector3d n_less_depth = n - factor * excess.without_bias * view.depth_by_offset();
     const Eigen::Vector3d& q = excess.support.contact;
     const Eigen::Matrix3d of_contact = OfTurnedNormal(n, q);
     AddTurn(excess, factor * curvature.by_direction);
@@ -198,6 +176,7 @@ TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& bl
     : Term({variables.begin(), variables.end()}),
       blocks_(blocks),
       shape_exponent_(start_in_camera.shape_exponent),
+      least_depth_m_(kLeastDepth * start_in_camera.Centre().z()),
       loss_{huber_delta},
       weight_(weight) {
   for (size_t i = 0; i < edges.size(); ++i) {
@@ -211,8 +190,7 @@ TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& bl
 }
 
 double TangencyTerm::Cost() const {
-  const View view(blocks_, shape_exponent_);
-  if (!(view.depth() > 0.0)) return std::numeric_limits<double>::infinity();
+  const View view(blocks_, shape_exponent_, least_depth_m_);
   double cost = 0.0;
   for (int i = 0; i < num_edges_; ++i) {
     const Edge& edge = edges_[static_cast<size_t>(i)];
@@ -223,13 +201,11 @@ double TangencyTerm::Cost() const {
 }
 
 double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
-  const View view(blocks_, shape_exponent_);
-  if (!(view.depth() > 0.0)) return std::numeric_limits<double>::infinity();
+  const View view(blocks_, shape_exponent_, least_depth_m_);
   const double inverse_depth = 1.0 / view.depth();
   Rows rows;
-  rows.with_depth_products = hessian == Hessian::kNear;
-  rows.depth_by_centre = inverse_depth * view.axis();
-  rows.depth_by_camera_turn = inverse_depth * view.axis().cross(view.offset());
+  rows.depth_by_centre = inverse_depth * view.depth_by_offset();
+  rows.depth_by_camera_turn = inverse_depth * view.depth_by_offset().cross(view.offset());
   SecondDerivatives second;
   for (int i = 0; i < num_edges_; ++i) {
     const Edge& edge = edges_[static_cast<size_t>(i)];
@@ -255,6 +231,7 @@ double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
   if (!std::isfinite(rows.cost)) return std::numeric_limits<double>::infinity();
   second.TurnToWorld(view.world_from_object());
   Add(rows, view.world_from_object(), second, places);
+  if (hessian == Hessian::kNear) AddDepthProducts(rows, view.world_from_object(), places);
   return rows.cost;
 }
 
@@ -267,31 +244,26 @@ void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_objec
   by_landmark.middleCols<3>(3).noalias() = rows.by_centre.lazyProduct(to_world);
   by_landmark.rightCols<3>() = rows.by_axes;
   const ByLandmark weighted = rows.curvatures.asDiagonal() * by_landmark;
-  const LandmarkGradient landmark_gradient = by_landmark.transpose().lazyProduct(rows.slopes);
-  const DepthProducts products(rows, world_from_object);
   if (of_landmark != nullptr) {
-    Eigen::Map<LandmarkGradient>(of_landmark) += landmark_gradient;
+    Eigen::Map<LandmarkGradient>(of_landmark).noalias() +=
+        by_landmark.transpose().lazyProduct(rows.slopes);
     LandmarkLandmark square(places.hessian[1][1]);
     square.noalias() += by_landmark.transpose().lazyProduct(weighted);
     second.AddTo(&square);
-    products.AddTo(&square, landmark_gradient);
   }
   ByPose by_pose;
   if (of_pose != nullptr) {
     by_pose.leftCols<3>().noalias() = rows.by_camera_turn.lazyProduct(to_world);
     by_pose.rightCols<3>() = -by_landmark.middleCols<3>(3);
-    const PoseGradient pose_gradient = by_pose.transpose().lazyProduct(rows.slopes);
-    Eigen::Map<PoseGradient>(of_pose) += pose_gradient;
+    Eigen::Map<PoseGradient>(of_pose).noalias() += by_pose.transpose().lazyProduct(rows.slopes);
     const ByPose weighted_pose = rows.curvatures.asDiagonal() * by_pose;
     PosePose square(places.hessian[0][0]);
     square.noalias() += by_pose.transpose().lazyProduct(weighted_pose);
     second.AddTo(&square);
-    products.AddTo(&square, pose_gradient);
     if (of_landmark != nullptr) {
       LandmarkPose mixed(places.hessian[1][0]);
       mixed.noalias() += weighted.transpose().lazyProduct(by_pose);
       second.AddTo(&mixed);
-      products.AddTo(&mixed, landmark_gradient, pose_gradient);
     }
   }
   if (of_bias == nullptr) return;
@@ -308,6 +280,36 @@ void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_objec
       Eigen::Map<Eigen::Matrix<double, kBiasSize, kPoseDof>>(places.hessian[2][0]).row(edge.side) -=
           edge.per_px * rows.curvatures[i] * by_pose.row(i);
     }
+  }
+}
+
+// What SecondDerivatives leaves out: less the gradient of the cost times the relative change of the
+// depth, both ways round.
+void TangencyTerm::AddDepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object,
+                                    const TermPlaces& places) const {
+  const Eigen::Vector3d depth_by_centre = world_from_object * rows.depth_by_centre;
+  const Eigen::Vector3d by_centre = world_from_object * (rows.by_centre.transpose() * rows.slopes);
+  LandmarkGradient depth_by_landmark = LandmarkGradient::Zero();
+  depth_by_landmark.segment<3>(3) = depth_by_centre;
+  LandmarkGradient by_landmark;
+  by_landmark << world_from_object * (rows.by_turn.transpose() * rows.slopes), by_centre,
+      rows.by_axes.transpose() * rows.slopes;
+  PoseGradient depth_by_pose, by_pose;
+  depth_by_pose << world_from_object * rows.depth_by_camera_turn, -depth_by_centre;
+  by_pose << world_from_object * (rows.by_camera_turn.transpose() * rows.slopes), -by_centre;
+  const bool with_landmark = places.gradient[1] != nullptr;
+  const bool with_pose = places.gradient[0] != nullptr;
+  if (with_landmark) {
+    LandmarkLandmark(places.hessian[1][1]) -= by_landmark * depth_by_landmark.transpose() +
+                                              depth_by_landmark * by_landmark.transpose();
+  }
+  if (with_pose) {
+    PosePose(places.hessian[0][0]) -=
+        by_pose * depth_by_pose.transpose() + depth_by_pose * by_pose.transpose();
+  }
+  if (with_landmark && with_pose) {
+    LandmarkPose(places.hessian[1][0]) -=
+        by_landmark * depth_by_pose.transpose() + depth_by_landmark * by_pose.transpose();
   }
 }
 

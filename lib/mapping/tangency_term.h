@@ -12,10 +12,11 @@ namespace soslam {
 
 // The tangencies (tangency.h) of a detection's edges, each less a bias of the detector and under a
 // Huber loss, all multiplied by a weight. The depth of a tangent point is that of the centre times
-// what it is of it on `start_in_camera`, whose shape exponent is that of the body: with depths that
-// stay as they were, a smaller world would have smaller residuals. Edges whose tangent point is not
-// in front of the camera at the start are left out; infinite where the centre is not. Variables:
-// pose, landmark, bias.
+// what it is of it on `start_in_camera`, whose shape exponent is that of the body and whose centre
+// is in front: with depths that stay as they were, a smaller world would have smaller residuals. A
+// centre nearer than a tenth of that, or behind the camera, counts as if it were there. Edges whose
+// tangent point is not in front of the camera at the start are left out. Variables: pose, landmark,
+// bias.
 class TangencyTerm final : public Term {
  public:
   struct Blocks {
@@ -44,14 +45,17 @@ class TangencyTerm final : public Term {
   class View;
   struct Rows;
   class SecondDerivatives;
-  class DepthProducts;
 
   // Adds derivatives in the object frame (second ones in the world) to where they go.
   void Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,
            const SecondDerivatives& second, const TermPlaces& places) const;
 
+  void AddDepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object,
+                        const TermPlaces& places) const;
+
   Blocks blocks_;
   double shape_exponent_;
+  double least_depth_m_;  // of the centre
   HuberLoss loss_;
   double weight_;
   int num_edges_ = 0;
