@@ -4,8 +4,8 @@
 // Before a function whose loops the compiler turns into vector code: compiles it twice, for any
 // processor and for those with AVX2, which take twice as many numbers at once; the program chooses
 // when it starts. Both do the same operations in the same order (AVX2 alone has no fused multiply
-// and add), so the results are the same to the last bit. Arrays that are read and written come by
-// `__restrict`: compilers compare no more than a few for overlap.
+// and add), so the results are the same to the last bit. Arrays come by `__restrict` where there
+// are more than compilers compare for overlap.
 //
 // ThreadSanitizer cannot start programs that choose.
 #if defined(__has_feature)

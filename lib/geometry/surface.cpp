@@ -67,7 +67,7 @@ struct OpenRays {
     ++count;
   }
   // In whole steps of the processor's loops, so that what a ray meets does not depend on its place.
-  int PaddedCount() const { return (count + 3) / 4 * 4; }
+  int PaddedCount() const { return (count + 7) / 8 * 8; }
 
   int count = 0;
   std::array<int, kBatchSize> ray{};  // number in the batch
@@ -130,7 +130,7 @@ void MeetSuperquadric(const Eigen::Vector3d& origin, const BatchOfVectors& direc
       const double next = rays.depth[i] + by;
       if (is_inside || !(at.slope[i] < 0.0) || !(next < rays.exit[i])) continue;
       const int ray = rays.ray[static_cast<size_t>(i)];
-      if (!(by < kBatchNewtonTolerance * next)) {
+      if (!(q * by < kBatchNewtonTolerance * next)) {  // powers of q change so much faster
         rays.Add(ray, rays.direction, i, next, rays.exit[i]);
         continue;
       }

@@ -92,10 +92,14 @@ SOSLAM_WIDE_LOOPS void Differentiate(const Corners& corners, const Cells& cells,
   for (int i = 0; i < kBatchSize; ++i) {
     const double dx = cells.dx[i];
     const double dy = cells.dy[i];
-    (*gradients)[0][i] = (1.0 - dy) * (corners[1][i] - corners[0][i]) +  //
-                         dy * (corners[3][i] - corners[2][i]);
-    (*gradients)[1][i] = (1.0 - dx) * (corners[2][i] - corners[0][i]) +  //
-                         dx * (corners[3][i] - corners[1][i]);
+    const double by_x = (1.0 - dy) * (corners[1][i] - corners[0][i]) +  //
+                        dy * (corners[3][i] - corners[2][i]);
+    const double by_y = (1.0 - dx) * (corners[2][i] - corners[0][i]) +  //
+                        dx * (corners[3][i] - corners[1][i]);
+    // Neither is 0 for what is infinite or NaN.
+    const double is_number = (by_x - by_x) + (by_y - by_y) + cells.nothing_outside[i];
+    (*gradients)[0][i] = is_number == 0.0 ? by_x : 0.0;
+    (*gradients)[1][i] = is_number == 0.0 ? by_y : 0.0;
   }
 }
 
@@ -114,6 +118,7 @@ std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& 
 Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels, BatchOfPixels* gradients) {
   CV_Assert(map.type() == CV_8UC1 || map.type() == CV_32FC1);
   if (map.cols < 2 || map.rows < 2) {
+    if (gradients != nullptr) gradients->fill(Batch::Zero());
     return Batch::Constant(kNone);
   }
   Cells cells;

@@ -18,11 +18,11 @@ using LandmarkModel = QuadraticModel<kLandmarkDof>;
 class LandmarkCost {
  public:
   virtual ~LandmarkCost() = default;
-  // Not finite where it is undefined.
+  // Without the constant cost; not finite where it is undefined.
   virtual double Value(const Landmark& landmark) const = 0;
+  // Adds the same to second order; whatever it adds to derivatives where the cost is not finite.
   virtual void AddTo(const Landmark& landmark, LandmarkModel* sum) const = 0;
-  // What is added to the value and does not change with the landmark, but may with what the cost
-  // was made for.
+  // What does not change with the landmark, but may with what the cost was made for.
   virtual double ConstantCost() const { return 0.0; }
 };
 

@@ -35,11 +35,11 @@ struct QuadraticModel {
   // The same problem by others that the parameters depend on, `by_others` their derivatives.
   template <int kOthers>
   QuadraticModel<kOthers> Chained(const Eigen::Matrix<double, kSize, kOthers>& by_others) const {
-    const Eigen::Matrix<double, kSize, kOthers> half = information.lazyProduct(by_others);
+    const Eigen::Matrix<double, kSize, kOthers> mixed = information.lazyProduct(by_others);
     QuadraticModel<kOthers> chained;
     chained.cost = cost;
     chained.gradient = by_others.transpose().lazyProduct(gradient);
-    chained.information = by_others.transpose().lazyProduct(half);
+    chained.information = by_others.transpose().lazyProduct(mixed);
     return chained;
   }
 };

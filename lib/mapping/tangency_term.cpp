@@ -300,8 +300,8 @@ void TangencyTerm::AddDepthProducts(const Rows& rows, const Eigen::Matrix3d& wor
   const bool with_landmark = places.gradient[1] != nullptr;
   const bool with_pose = places.gradient[0] != nullptr;
   if (with_landmark) {
-    LandmarkLandmark(places.hessian[1][1]) -= by_landmark * depth_by_landmark.transpose() +
-                                              depth_by_landmark * by_landmark.transpose();
+    LandmarkLandmark(places.hessian[1][1]) -=
+        by_landmark * depth_by_landmark.transpose() + depth_by_landmark * by_landmark.transpose();
   }
   if (with_pose) {
     PosePose(places.hessian[0][0]) -=

@@ -148,10 +148,9 @@ bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) 
                                      [&](const Box& box) { return box.Contains(*pixel); });
   if (!nearest || is_hidden) return false;
   const cv::Point at(static_cast<int>(nearest->x()), static_cast<int>(nearest->y()));
-  const Eigen::Vector2d across(frame.slope_x.at<float>(at), frame.slope_y.at<float>(at));
-  const double misalignment = std::abs(point.along.dot(across));
-  return misalignment <=
-         across.norm() * std::sin(options_.edge_direction_tolerance_deg * std::numbers::pi / 180.0);
+  const Eigen::Vector2d edge(-frame.slope_y.at<float>(at), frame.slope_x.at<float>(at));
+  const double tolerance = options_.edge_direction_tolerance_deg * std::numbers::pi / 180.0;
+  return std::abs(point.along.dot(edge)) >= edge.norm() * std::cos(tolerance);
 }
 
 double EdgeTerm::Support(const Landmark& landmark_in_camera) const {

@@ -56,8 +56,9 @@ bool IsInAMap(Descriptor descriptor) {
 std::optional<MirrorSearch> MakeSearch(const SymmetryImage& image, const Camera& camera,
                                        const SymmetryOptions& options) {
   SampleCandidates candidates(image, options);
-  if (!IsInAMap(options.descriptor) || candidates.corners.size() > candidates.max_corners)
+  if (!IsInAMap(options.descriptor) || candidates.corners.size() > candidates.max_corners) {
     return std::nullopt;
+  }
   std::vector<Eigen::Vector2d> pixels = std::move(candidates.corners);
   pixels.insert(pixels.end(), candidates.others.begin(), candidates.others.end());
   return MirrorSearch(image, camera, options.descriptor, std::move(pixels));

@@ -103,12 +103,13 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   const auto by_motion = ByMotion(plane, pivot, body.landmark);
   const UprightJacobian by_upright = UprightGround(plane).ByParameters(body.landmark);
   LandmarkModel model;
-  for (const auto& term : OutlineTerms(body.observation)) term->AddTo(body.landmark, &model);
+  const LandmarkCosts outlines = OutlineTerms(body.observation);
+  for (const auto& outline : outlines) outline->AddTo(body.landmark, &model);
   const QuadraticModel<6> of_body = model.Chained(by_upright);
   const Eigen::Matrix<double, 3, 6> mixed = by_motion.transpose() * model.information * by_upright;
   const Eigen::Matrix<double, 3, 6> follows = mixed * InverseOfKnown(of_body.information);
   PlaneEvidence evidence;
-  evidence.cost = model.cost;
+  evidence.cost = model.cost + ConstantCost(outlines);
   evidence.gradient = by_motion.transpose() * model.gradient;
   evidence.information = by_motion.transpose() * model.information * by_motion;
   evidence.gradient -= follows * of_body.gradient;

@@ -4,7 +4,11 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "dataset/import.h"
 #include "evaluation/statistics.h"
@@ -46,16 +50,23 @@ BackEndInput InputOf(const Sequence& sequence) {
   return input;
 }
 
-double TrajectoryError(const Sequence& sequence, const MapEstimate& map) {
+double TrajectoryError(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera) {
   std::vector<std::optional<Rigid3d>> truth;
   for (const Frame& frame : sequence.frames) truth.push_back(frame.true_world_from_camera);
-  return AbsoluteTrajectoryError(map.world_from_camera, truth).value();
+  return AbsoluteTrajectoryError(world_from_camera, truth).value();
+}
+
+std::vector<Rigid3d> DeadReckoning(const Sequence& sequence) {
+  std::vector<Rigid3d> world_from_camera;
+  for (const Frame& frame : sequence.frames) world_from_camera.push_back(frame.world_from_camera);
+  return world_from_camera;
 }
 
 // Of the centres, m.
 double MedianError(const Sequence& sequence, const MapEstimate& map) {
   std::vector<double> errors;
   for (const ObjectEstimate& object : map.objects) {
+    if (!object.landmark_in_world) continue;
     const Object& truth = sequence.objects[static_cast<size_t>(object.object_index)];
     errors.push_back(
         (object.landmark_in_world->Centre() - truth.ground_truth->landmark_in_world.Centre())
@@ -75,7 +86,8 @@ void Problem(benchmark::State& state, const char* name) {
   for (auto _ : state) map = OptimiseMap(input, OptionsOfProblem());
   state.counters["solver_iterations"] = map.solver.iterations;
   state.counters["final_cost"] = map.solver.final_cost;
-  state.counters["trajectory_error_m"] = TrajectoryError(sequence, map);
+  state.counters["trajectory_error_m"] = TrajectoryError(sequence, map.world_from_camera);
+  state.counters["dead_reckoning_error_m"] = TrajectoryError(sequence, DeadReckoning(sequence));
   state.counters["centre_error_m"] = MedianError(sequence, map);
 }
 [[maybe_unused]] const bool kAreRegistered = [] {

@@ -73,7 +73,8 @@ TEST(SampleBilinearTest, NothingFromInfiniteOrOneColumnMaps) {
   EXPECT_FALSE(SampleBilinear(cv::Mat(1, 5, CV_8UC1, cv::Scalar(3)), {2, 0}));
 }
 
-// Bit by bit, also at and beyond the border and with infinities in the map.
+// Values bit by bit, gradients up to rounding; also at and beyond the border and with infinities in
+// the map.
 TEST(SampleBilinearTest, ManyPixelsHaveTheValuesOfEach) {
   for (const int type : {CV_8UC1, CV_32FC1}) {
     cv::Mat map(20, 30, type);
@@ -89,19 +90,26 @@ TEST(SampleBilinearTest, ManyPixelsHaveTheValuesOfEach) {
       pixels[0][0] = 26.0;
       pixels[1][0] = 16.0;
       pixels[0][1] = std::numeric_limits<double>::quiet_NaN();
-      const Batch values = SampleBilinear(part, pixels);
+      BatchOfPixels gradients;
+      const Batch values = SampleBilinear(part, pixels, &gradients);
       for (int i = 0; i < kBatchSize; ++i) {
         const auto expected = SampleBilinear(part, Eigen::Vector2d(pixels[0][i], pixels[1][i]));
         EXPECT_EQ(std::isfinite(values[i]), expected.has_value());
         if (expected) {
           EXPECT_EQ(values[i], expected->value);
         }
+        const Eigen::Vector2d gradient(gradients[0][i], gradients[1][i]);
+        const Eigen::Vector2d expected_gradient =
+            expected ? expected->gradient : Eigen::Vector2d::Zero();
+        EXPECT_LE((gradient - expected_gradient).norm(), expected ? 1e-12 : 0.0);
       }
     }
   }
+  BatchOfPixels gradients;
   const Batch nothing = SampleBilinear(cv::Mat(5, 1, CV_8UC1, cv::Scalar(3)),
-                                       BatchOfPixels{Batch::Zero(), Batch::Zero()});
+                                       BatchOfPixels{Batch::Zero(), Batch::Zero()}, &gradients);
   EXPECT_TRUE(nothing.isNaN().all());
+  for (const Batch& of_nothing : gradients) EXPECT_TRUE((of_nothing == 0.0).all());
 }
 
 }  // namespace

@@ -208,7 +208,8 @@ TEST(TangencyTerm, ABodyBehindTheCameraIsComparedAtATenthOfItsDepth) {
   for (const double p : kShapeExponents) {
     ViewOfBox view(p, {}, 1e9);
     const double depth_m = view.start.Centre().z();
-    const Eigen::Vector3d back = view.view.world_from_camera.rotation * Eigen::Vector3d(0.0, 0.0, 2.0 * depth_m);
+    const Eigen::Vector3d back =
+        view.view.world_from_camera.rotation * Eigen::Vector3d(0.0, 0.0, 2.0 * depth_m);
     for (size_t i = 0; i < 3; ++i) {
       view.view.landmark_block[4 + i] -= back[static_cast<Eigen::Index>(i)];
     }

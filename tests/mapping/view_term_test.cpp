@@ -115,6 +115,7 @@ class UndefinedCost final : public LandmarkCost {
   void AddTo(const Landmark& landmark, LandmarkModel* sum) const override {
     sum->cost += Value(landmark);
     sum->gradient.setConstant(sum->cost);
+    sum->information.setConstant(sum->cost);
   }
 };
 
@@ -125,7 +126,10 @@ TEST(ViewTerm, IsInfiniteAndAddsNothingWhereTheCostIsUndefined) {
   EXPECT_EQ(term.Cost(), std::numeric_limits<double>::infinity());
   const Derivatives derivatives(term, true, true);
   EXPECT_EQ(derivatives.cost, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(derivatives.of_pose.norm(), 0.0);
   EXPECT_EQ(derivatives.of_landmark.norm(), 0.0);
+  EXPECT_EQ(derivatives.pose_pose.norm(), 0.0);
+  EXPECT_EQ(derivatives.landmark_pose.norm(), 0.0);
   EXPECT_EQ(derivatives.landmark_landmark.norm(), 0.0);
 }
 

@@ -94,6 +94,11 @@ TEST(EdgeTerm, IsBounded) {
   behind.frame_from_object.translation.z() = -3.0;
   EXPECT_NEAR(TwiceTheCost(term, behind), largest, 1e-9);
   EXPECT_NEAR(term.Support(behind), 0.0, 1e-12);
+  LandmarkModel model;
+  term.AddTo(behind, &model);
+  EXPECT_NEAR(model.cost, term.Value(behind), 1e-9);
+  EXPECT_EQ(model.gradient.norm(), 0.0);
+  EXPECT_EQ(model.information.norm(), 0.0);
   // A body that no point of is in front of the camera has no edge in the image.
   const EdgeTerm of_none(image, TestCamera(), behind, EdgeOptions());
   EXPECT_EQ(of_none.NumPoints(), 0);
