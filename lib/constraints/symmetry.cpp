@@ -30,18 +30,28 @@ SymmetryDescriptor::SymmetryDescriptor(Descriptor descriptor, const SymmetryImag
                                        const Camera& camera, const Landmark& landmark_in_camera)
     : descriptor_(descriptor), image_(image), surface_(camera, landmark_in_camera) {
   if (descriptor != Descriptor::kNearestEdge3d) return;
+  surface_edges_in_object_.resize(static_cast<Eigen::Index>(image.edge_pixels.size()), 3);
+  Eigen::Index count = 0;
   for (const Eigen::Vector2d& pixel : image.edge_pixels) {
     if (const auto point = surface_.FromPixel(pixel)) {
       surface_edge_pixels_.push_back(pixel);
-      surface_edges_in_object_.push_back(point->in_object);
+      surface_edges_in_object_.row(count++) = point->in_object.transpose();
     }
   }
+  surface_edges_in_object_.conservativeResize(count, 3);
 }
 
 std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Evaluate(
     const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine, bool with_jacobian,
     double mirror_plane) const {
-  const auto side = FirstSide(pixel, min_viewing_cosine, with_jacobian);
+  const auto point = VisiblePoint(pixel, min_viewing_cosine, with_jacobian);
+  return point ? EvaluateAt(pixel, *point, with_jacobian, mirror_plane) : std::nullopt;
+}
+
+std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::EvaluateAt(
+    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian,
+    double mirror_plane) const {
+  const auto side = FirstSide(pixel, point, with_jacobian);
   return side ? Compare(*side, mirror_plane, with_jacobian) : std::nullopt;
 }
 
@@ -50,7 +60,8 @@ Eigen::RowVectorXd SymmetryDescriptor::Residuals(const Eigen::Vector2d& pixel,
                                                  const std::vector<double>& mirror_planes) const {
   Eigen::RowVectorXd residuals = Eigen::RowVectorXd::Constant(
       static_cast<Eigen::Index>(mirror_planes.size()), std::numeric_limits<double>::quiet_NaN());
-  const auto side = FirstSide(pixel, min_viewing_cosine, false);
+  const auto point = VisiblePoint(pixel, min_viewing_cosine, false);
+  const auto side = point ? FirstSide(pixel, *point, false) : std::nullopt;
   if (!side) return residuals;
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
     const auto pair = Compare(*side, mirror_planes[static_cast<size_t>(i)], false);
@@ -59,7 +70,7 @@ Eigen::RowVectorXd SymmetryDescriptor::Residuals(const Eigen::Vector2d& pixel,
   return residuals;
 }
 
-std::optional<SymmetryDescriptor::Side> SymmetryDescriptor::FirstSide(
+std::optional<VisibleSurface::Point> SymmetryDescriptor::VisiblePoint(
     const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine,
     bool with_jacobian) const {
   const auto point = surface_.FromPixel(pixel, with_jacobian);
@@ -69,9 +80,14 @@ std::optional<SymmetryDescriptor::Side> SymmetryDescriptor::FirstSide(
         surface_.ViewingCosine(surface_.MirrorImage(*point)) >= *min_viewing_cosine)) {
     return std::nullopt;
   }
-  const auto value = Describe(pixel, *point, LandmarkJacobian2::Zero(), with_jacobian);
+  return point;
+}
+
+std::optional<SymmetryDescriptor::Side> SymmetryDescriptor::FirstSide(
+    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
+  const auto value = Describe(pixel, point, LandmarkJacobian2::Zero(), with_jacobian);
   if (!value) return std::nullopt;
-  return Side{pixel, *point, *value};
+  return Side{pixel, point, *value};
 }
 
 std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Compare(const Side& side,
@@ -113,14 +129,14 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
   std::optional<Eigen::Vector2d> edge_pixel;
   if (descriptor_ == Descriptor::kNearestEdge3d) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < surface_edges_in_object_.size(); ++i) {
-      const double distance = (surface_edges_in_object_[i] - point.in_object).squaredNorm();
-      if (distance < nearest) {
-        nearest = distance;
-        edge_pixel = surface_edge_pixels_[i];
-      }
-    }
+    if (surface_edge_pixels_.empty()) return std::nullopt;
+    const Eigen::Array3d& x = point.in_object.array();
+    const Eigen::ArrayXd squared_distance = (surface_edges_in_object_.col(0) - x[0]).square() +
+                                            (surface_edges_in_object_.col(1) - x[1]).square() +
+                                            (surface_edges_in_object_.col(2) - x[2]).square();
+    const auto nearest =
+        std::find(squared_distance.begin(), squared_distance.end(), squared_distance.minCoeff());
+    edge_pixel = surface_edge_pixels_[static_cast<size_t>(nearest - squared_distance.begin())];
   } else {
     edge_pixel = NearestEdge(image_.maps, pixel);
   }

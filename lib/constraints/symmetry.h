@@ -67,6 +67,15 @@ class SymmetryDescriptor {
                                std::optional<double> min_viewing_cosine, bool with_jacobian,
                                double mirror_plane = 0.0) const;
 
+  // The first half of Evaluate, which is the same for all descriptors: where the pixel's ray meets
+  // the surface.
+  std::optional<VisibleSurface::Point> VisiblePoint(const Eigen::Vector2d& pixel,
+                                                    std::optional<double> min_viewing_cosine,
+                                                    bool with_jacobian) const;
+  // The second half.
+  std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
+                                 bool with_jacobian, double mirror_plane = 0.0) const;
+
   // The residuals of Evaluate for several mirror planes: NaN where there is no pair.
   Eigen::RowVectorXd Residuals(const Eigen::Vector2d& pixel, double min_viewing_cosine,
                                const std::vector<double>& mirror_planes) const;
@@ -83,8 +92,8 @@ class SymmetryDescriptor {
     Value value;
   };
 
-  std::optional<Side> FirstSide(const Eigen::Vector2d& pixel,
-                                std::optional<double> min_viewing_cosine, bool with_jacobian) const;
+  std::optional<Side> FirstSide(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
+                                bool with_jacobian) const;
   std::optional<Pair> Compare(const Side& side, double mirror_plane, bool with_jacobian) const;
   std::optional<Value> Describe(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                 const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const;
@@ -99,8 +108,8 @@ class SymmetryDescriptor {
   Descriptor descriptor_;
   const SymmetryImage& image_;
   VisibleSurface surface_;
-  std::vector<Eigen::Vector2d> surface_edge_pixels_;      // for kNearestEdge3d: edge pixels whose
-  std::vector<Eigen::Vector3d> surface_edges_in_object_;  // rays meet the surface, and where
+  std::vector<Eigen::Vector2d> surface_edge_pixels_;  // for kNearestEdge3d: edge pixels whose
+  Eigen::ArrayX3d surface_edges_in_object_;           // rays meet the surface, and where
 };
 
 // Symmetry constraint, eq. (16): the descriptor of a pixel equals that of its mirror pixel, divided

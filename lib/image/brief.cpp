@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
@@ -14,6 +15,7 @@ namespace {
 constexpr int kPatchSize = 31;
 constexpr int kPatchRadius = kPatchSize / 2;
 constexpr std::uint32_t kPatternSeed = 2010;
+constexpr size_t kWordSize = 64;
 
 struct PointPair {
   cv::Point first;  // offsets from the centre of the patch, px
@@ -70,13 +72,20 @@ std::optional<BriefBits> BriefDescriptor(const cv::Mat& smoothed_grey, const Eig
       closest.y() >= kPatchRadius && closest.y() < smoothed_grey.rows - kPatchRadius;
   if (!inside) return std::nullopt;  // also for NaN
   const cv::Point centre(static_cast<int>(closest.x()), static_cast<int>(closest.y()));
-  const int side = mirrored ? -1 : 1;
+  const std::uint8_t* grey = smoothed_grey.ptr(centre.y, centre.x);
+  const auto step = static_cast<std::ptrdiff_t>(smoothed_grey.step1());
+  const std::ptrdiff_t side = mirrored ? -1 : 1;
   const auto grey_at = [&](const cv::Point& offset) {
-    return smoothed_grey.at<std::uint8_t>(centre.y + offset.y, centre.x + side * offset.x);
+    return grey[offset.y * step + offset.x * side];
   };
   BriefBits bits;
-  for (size_t i = 0; i < pattern.size(); ++i) {
-    bits[i] = grey_at(pattern[i].first) < grey_at(pattern[i].second);
+  for (size_t end = pattern.size(); end > 0; end -= kWordSize) {
+    std::uint64_t word = 0;
+    for (size_t i = 0; i < kWordSize; ++i) {
+      const PointPair& pair = pattern[end - kWordSize + i];
+      word |= static_cast<std::uint64_t>(grey_at(pair.first) < grey_at(pair.second)) << i;
+    }
+    bits = bits << kWordSize | BriefBits(word);
   }
   return bits;
 }

@@ -65,14 +65,17 @@ std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& s
 void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
   const RefineOptions& options = refinement.options;
   const double initial_yaw = YawInCamera(refinement, refinement.start);
+  std::vector<Descriptor> descriptors;
   for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
-    const YawProfile profile = ComputeYawProfile(
-        *refinement.image, refinement.observation.camera, refinement.start, refinement.samples,
-        static_cast<Descriptor>(i), options.symmetry, options.yaw_step_deg * kRadPerDeg);
-    record->cost[kDescriptorNames[i]] = profile.costs;
-    record->yaw.clear();
-    for (const double turn : profile.turns) record->yaw.push_back(initial_yaw + turn);
+    descriptors.push_back(static_cast<Descriptor>(i));
   }
+  const YawProfile profile = ComputeYawProfile(*refinement.image, refinement.observation.camera,
+                                               refinement.start, refinement.samples, descriptors,
+                                               options.symmetry, options.yaw_step_deg * kRadPerDeg);
+  for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
+    record->cost[kDescriptorNames[i]] = profile.costs[i];
+  }
+  for (const double turn : profile.turns) record->yaw.push_back(initial_yaw + turn);
 }
 
 void RecordPairs(const Refinement& refinement, const Landmark& landmark, SymmetryRecord* record) {

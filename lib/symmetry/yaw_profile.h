@@ -16,20 +16,22 @@ namespace soslam {
 // the pairs of visible points of the absolute descriptor difference (unit of the descriptor).
 // Absolute, because pairs for which the approximation of eq. (20) fails are few and far off; a
 // mean, because how many pairs are visible depends on the yaw. None when fewer pairs count than the
-// options ask for.
-std::optional<double> SymmetryCost(const SymmetryImage& image, const Camera& camera,
-                                   const Landmark& landmark_in_camera,
-                                   const std::vector<Eigen::Vector2d>& samples,
-                                   Descriptor descriptor, const SymmetryOptions& options);
+// options ask for. One cost for each descriptor.
+std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, const Camera& camera,
+                                                 const Landmark& landmark_in_camera,
+                                                 const std::vector<Eigen::Vector2d>& samples,
+                                                 const std::vector<Descriptor>& descriptors,
+                                                 const SymmetryOptions& options);
 
-// The symmetry cost of a landmark turned about its z axis, centre and half axes held (fig. 7).
+// The symmetry costs of a landmark turned about its z axis, centre and half axes held (fig. 7).
 struct YawProfile {
-  std::vector<double> turns;  // rad, from the landmark's own yaw, over [-pi/2, pi/2)
-  std::vector<double> costs;  // NaN where the cost is undefined
+  std::vector<double> turns;               // rad, from the landmark's own yaw, over [-pi/2, pi/2)
+  std::vector<std::vector<double>> costs;  // by descriptor and turn; NaN where undefined
 };
 YawProfile ComputeYawProfile(const SymmetryImage& image, const Camera& camera,
                              const Landmark& landmark_in_camera,
-                             const std::vector<Eigen::Vector2d>& samples, Descriptor descriptor,
+                             const std::vector<Eigen::Vector2d>& samples,
+                             const std::vector<Descriptor>& descriptors,
                              const SymmetryOptions& options, double step);
 
 // The turn of lowest cost, at most `range` either way: the best of a grid of `step`, refined on a

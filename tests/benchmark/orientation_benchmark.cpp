@@ -55,7 +55,7 @@ void Profile(benchmark::State& state, Descriptor descriptor) {
       SamplePixels(view.image, view.sequence.camera, view.landmark_in_camera, options);
   for (auto _ : state) {
     benchmark::DoNotOptimize(ComputeYawProfile(view.image, view.sequence.camera,
-                                               view.landmark_in_camera, samples, descriptor,
+                                               view.landmark_in_camera, samples, {descriptor},
                                                options, 2.0 * std::numbers::pi / 180.0));
   }
   state.counters["samples"] = static_cast<double>(samples.size());

@@ -58,13 +58,14 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
     const SymmetryImage image(maps->second, detection.box);
     const Landmark truth = TrueLandmark(detection);
     const auto samples = SamplePixels(image, sequence_->camera, truth, options);
-    const YawProfile profile = ComputeYawProfile(image, sequence_->camera, truth, samples,
-                                                 Descriptor::kImprovedDt, options, 1.0 * kDegrees);
+    const YawProfile profile =
+        ComputeYawProfile(image, sequence_->camera, truth, samples, {Descriptor::kImprovedDt},
+                          options, 1.0 * kDegrees);
     double best = 1e9;
     double turn = 1e9;
     for (size_t i = 0; i < profile.turns.size(); ++i) {
-      if (profile.costs[i] < best) {
-        best = profile.costs[i];
+      if (profile.costs.front()[i] < best) {
+        best = profile.costs.front()[i];
         turn = profile.turns[i];
       }
     }
