@@ -55,7 +55,7 @@ StandingBody Raised(StandingBody body, double rise) {
 std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, double rise,
                                          double least_rise) {
   for (; std::abs(rise) >= least_rise; rise *= 0.5) {
-    const auto raised = Settled(Raised(body, rise));
+    auto raised = Settled(Raised(body, rise));
     if (raised && TotalCost(OutlineTerms(raised->observation), raised->landmark) < cost) {
       return raised;
     }
