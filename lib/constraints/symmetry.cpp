@@ -73,7 +73,7 @@ Eigen::RowVectorXd SymmetryDescriptor::Residuals(const Eigen::Vector2d& pixel,
 std::optional<VisibleSurface::Point> SymmetryDescriptor::VisiblePoint(
     const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine,
     bool with_jacobian) const {
-  const auto point = surface_.FromPixel(pixel, with_jacobian);
+  auto point = surface_.FromPixel(pixel, with_jacobian);
   if (!point) return std::nullopt;
   if (min_viewing_cosine &&
       !(surface_.ViewingCosine(*point) >= *min_viewing_cosine &&

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <numbers>
+#include <tuple>
 
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
@@ -29,7 +29,9 @@ constexpr int kRounds = 2;
 struct FitCost {
   size_t views_behind;
   double cost;
-  auto operator<=>(const FitCost&) const = default;
+  bool operator<(const FitCost& other) const {
+    return std::tie(views_behind, cost) < std::tie(other.views_behind, other.cost);
+  }
 };
 
 struct Candidate {

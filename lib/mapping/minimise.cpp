@@ -20,7 +20,8 @@ constexpr double kLeastGain = 1e-8;
 // Costs of residuals that are all but zero.
 constexpr double kNoCost = 1e-18;
 // Of each landmark for itself, after a step of all variables, as long as they lower its cost by
-// this share of a landmark's mean cost.
+// this share of a landmark's mean cost, or bring more for their time than that step: of so many
+// landmarks, one or two that are far from their minimum would keep all others waiting.
 constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkTolerance = 1e-3;
 // Where an iteration lowers the cost by less than this share, the minimum is near.
@@ -149,7 +150,8 @@ class Minimiser {
     const std::vector<double> values = Values();
     MoveAll(step);
     cost_ = Cost();
-    const double tolerance = kLandmarkTolerance * std::min(before, cost_) / NumLandmarks();
+    const double tolerance =
+        std::min(kLandmarkTolerance * std::min(before, cost_), predicted) / NumLandmarks();
     for (LandmarkFit& fit : fits_) {
       for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance); ++i) {
       }
