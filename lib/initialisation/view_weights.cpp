@@ -15,14 +15,17 @@ std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
     directions.push_back((centre_in_world - frame.world_from_camera.translation).normalized());
   }
-  for (size_t i = 0; i < weights.size(); ++i) {
-    double views = 0.0;
-    for (const Eigen::Vector3d& other : directions) {
-      const double angle = std::atan2(directions[i].cross(other).norm(), directions[i].dot(other));
-      views += std::exp(-0.5 * std::pow(angle / correlation_rad, 2));
+  std::vector<double> similar_views(detections.size(), 1.0);
+  for (size_t i = 0; i < directions.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      const double angle =
+          std::atan2(directions[i].cross(directions[k]).norm(), directions[i].dot(directions[k]));
+      const double similarity = std::exp(-0.5 * std::pow(angle / correlation_rad, 2));
+      similar_views[i] += similarity;
+      similar_views[k] += similarity;
     }
-    weights[i] = 1.0 / views;
   }
+  for (size_t i = 0; i < weights.size(); ++i) weights[i] = 1.0 / similar_views[i];
   return weights;
 }
 
