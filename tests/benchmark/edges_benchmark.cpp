@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Edges, distance transform and nearest edge of an image of 640 x 480 pixels, against OpenCV's.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
 
+#include "artefact/edges_file.h"
 #include "benchmark/inputs.h"
 #include "image/edge_maps.h"
 #include "image/nearest_edge.h"
@@ -57,6 +61,18 @@ void EdgesAndDistances(benchmark::State& state, void (*distances)(const cv::Mat&
 BENCHMARK_CAPTURE(EdgesAndDistances, ours, ExactDistances)->Name("edges/canny_and_distances/ours");
 BENCHMARK_CAPTURE(EdgesAndDistances, opencv, OpenCvDistances)
     ->Name("edges/canny_and_distances/opencv");
+
+// From an image file into the artefact, as soslam-edges does; OpenCV's still without any file.
+void ImageToArtefact(benchmark::State& state) {
+  const auto path =
+      std::filesystem::temp_directory_path() / fmt::format("soslam-bench-edges-{}.h5", getpid());
+  EdgesWriter writer(path, {});
+  int frame_id = 0;
+  for (auto _ : state) writer.Write(frame_id++, ComputeEdgeMaps(RoomAImage(), EdgesOptions()));
+}
+BENCHMARK(ImageToArtefact)->Name("edges/canny_and_distances_with_files/ours");
+BENCHMARK_CAPTURE(EdgesAndDistances, opencv_without_files, OpenCvDistances)
+    ->Name("edges/canny_and_distances_with_files/opencv");
 
 // With corners: what soslam-edges computes for an image.
 void AllMaps(benchmark::State& state) {
