@@ -9,9 +9,9 @@
 
 namespace soslam {
 
-// What BoxTerm, RatioTerm, AxisTerm and YawTerm say together of an upright body, by its parameters
-// on the ground of the observation's plane. A sweep over yaw spends its time here: nothing is
-// allocated, and nothing but the sines of the yaw turned.
+// What BoxTerm, RatioTerm, AxisTerm and the yaw prior say together of an upright body, by its
+// parameters on the ground of the observation's plane. A sweep over yaw spends its time here:
+// nothing is allocated, and nothing but the sines of the yaw turned.
 class BoxFit {
  public:
   // Keeps a reference to the observation.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/upright_observation.h"
 
+#include "initialisation/upright.h"
+
 namespace soslam {
 
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,

@@ -10,10 +10,15 @@
 #include "geometry/plane.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_options.h"
-#include "initialisation/yaw_term.h"
 #include "model/sequence.h"
 
 namespace soslam {
+
+// What is known of an object's yaw (rad, see Yaw) before its box is looked at; modulo half a turn.
+struct YawPrior {
+  double yaw = 0.0;
+  double sigma = 1.0;  // standard deviation, rad
+};
 
 // One box of an object, and what is known beforehand.
 struct UprightObservation {

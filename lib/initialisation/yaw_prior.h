@@ -7,7 +7,7 @@
 
 #include "base/options.h"
 #include "initialisation/semantic_table.h"
-#include "initialisation/yaw_term.h"
+#include "initialisation/upright_observation.h"
 #include "model/sequence.h"
 
 namespace soslam {

@@ -76,18 +76,6 @@ std::string WhyNoSolution(const UprightObservation& observation) {
                                                   : "fewer_than_three_measured_edges";
 }
 
-LandmarkCosts BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera) {
-  LandmarkCosts terms;
-  terms.push_back(std::make_unique<BoxTerm>(observation.edges, start_in_camera));
-  terms.push_back(std::make_unique<RatioTerm>(observation.prior));
-  terms.push_back(std::make_unique<AxisTerm>(
-      observation.plane_in_camera, observation.world_axis_in_camera, observation.axes_weight));
-  if (observation.yaw_prior) {
-    terms.push_back(std::make_unique<YawTerm>(observation.plane_in_camera, *observation.yaw_prior));
-  }
-  return terms;
-}
-
 std::vector<double> YawSweep::Costs() const {
   std::vector<double> costs;
   for (const auto& solution : solutions) {

@@ -14,10 +14,6 @@ namespace soslam {
 // The failure of an observation for which ClosedForm finds nothing at any yaw.
 std::string WhyNoSolution(const UprightObservation& observation);
 
-// What an observation says of a landmark: box (tangent points at the depths of `start`), ratio
-// prior, world axes and yaw prior. BoxFit is the same.
-LandmarkCosts BoxTerms(const UprightObservation& observation, const Landmark& start_in_camera);
-
 // What makes one yaw better than another, besides the observation's own terms.
 struct YawObjective {
   // What the landmark at each yaw is fitted to as well, starting from the given one; may be empty.

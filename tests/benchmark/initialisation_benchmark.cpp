@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "benchmark/inputs.h"
+#include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/multi_view.h"
@@ -36,11 +37,11 @@ BENCHMARK(SolveOneYaw)->Name("single_frame/closed_form_at_yaw");
 // Levenberg-Marquardt from there, yaw held as in the sweep (0) or free as at its optima (1).
 void Polish(benchmark::State& state) {
   const OneBox box;
-  const Landmark start = *SolveAtYaw(box.observation, 0.3);
-  const LandmarkCosts terms = BoxTerms(box.observation, start);
+  const BoxFit fit(box.observation);
+  const UprightVector start = fit.ground().ParametersOf(*SolveAtYaw(box.observation, /*yaw=*/0.3));
   for (auto _ : state) {
-    benchmark::DoNotOptimize(FitUpright(box.observation.plane_in_camera, start, terms,
-                                        /*yaw_is_free=*/state.range(0) == 1));
+    UprightVector parameters = start;
+    benchmark::DoNotOptimize(fit.Minimise({}, /*yaw_is_free=*/state.range(0) == 1, &parameters));
   }
 }
 BENCHMARK(Polish)->Name("single_frame/polish")->ArgName("yaw_is_free")->Arg(0)->Arg(1);

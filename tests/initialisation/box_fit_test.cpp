@@ -5,6 +5,7 @@
 
 #include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
+#include "support/box_terms.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "initialisation/initialise.h"
+#include "support/box_terms.h"
 #include "support/random.h"
 #include "support/upright_bodies.h"
 

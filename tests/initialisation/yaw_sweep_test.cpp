@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "initialisation/closed_form.h"
+#include "support/box_terms.h"
 #include "support/landmark_terms.h"
 #include "support/level_sequence.h"
 #include "support/shape_exponents.h"

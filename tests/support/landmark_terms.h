@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "initialisation/yaw_sweep.h"
+#include "support/box_terms.h"
 
 namespace soslam {
 
