@@ -130,12 +130,13 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
   std::optional<Eigen::Vector2d> edge_pixel;
   if (descriptor_ == Descriptor::kNearestEdge3d) {
     if (surface_edge_pixels_.empty()) return std::nullopt;
-    const Eigen::Array3d& x = point.in_object.array();
+    const Eigen::Vector3d& x = point.in_object;
     const Eigen::ArrayXd squared_distance = (surface_edges_in_object_.col(0) - x[0]).square() +
                                             (surface_edges_in_object_.col(1) - x[1]).square() +
                                             (surface_edges_in_object_.col(2) - x[2]).square();
     const auto nearest =
         std::find(squared_distance.begin(), squared_distance.end(), squared_distance.minCoeff());
+    if (nearest == squared_distance.end()) return std::nullopt;  // NaN
     edge_pixel = surface_edge_pixels_[static_cast<size_t>(nearest - squared_distance.begin())];
   } else {
     edge_pixel = NearestEdge(image_.maps, pixel);

@@ -72,7 +72,8 @@ class SymmetryDescriptor {
   std::optional<VisibleSurface::Point> VisiblePoint(const Eigen::Vector2d& pixel,
                                                     std::optional<double> min_viewing_cosine,
                                                     bool with_jacobian) const;
-  // The second half.
+  // The second half, at the VisiblePoint of the same pixel on the same landmark, `with_jacobian` as
+  // there.
   std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                  bool with_jacobian, double mirror_plane = 0.0) const;
 

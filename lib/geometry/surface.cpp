@@ -130,7 +130,7 @@ void MeetSuperquadric(const Eigen::Vector3d& origin, const BatchOfVectors& direc
       const double next = rays.depth[i] + by;
       if (is_inside || !(at.slope[i] < 0.0) || !(next < rays.exit[i])) continue;
       const int ray = rays.ray[static_cast<size_t>(i)];
-      if (!(q * by < kBatchNewtonTolerance * next)) {  // powers of q change so much faster
+      if (!(q * by < kBatchNewtonTolerance * next)) {  // F^q changes q times as fast as F
         rays.Add(ray, rays.direction, i, next, rays.exit[i]);
         continue;
       }

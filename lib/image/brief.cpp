@@ -16,6 +16,7 @@ constexpr int kPatchSize = 31;
 constexpr int kPatchRadius = kPatchSize / 2;
 constexpr std::uint32_t kPatternSeed = 2010;
 constexpr size_t kWordSize = 64;
+static_assert(BriefBits().size() % kWordSize == 0);
 
 struct PointPair {
   cv::Point first;  // offsets from the centre of the patch, px

@@ -96,10 +96,10 @@ SOSLAM_WIDE_LOOPS void Differentiate(const Corners& corners, const Cells& cells,
                         dy * (corners[3][i] - corners[2][i]);
     const double by_y = (1.0 - dx) * (corners[2][i] - corners[0][i]) +  //
                         dx * (corners[3][i] - corners[1][i]);
-    // Neither is 0 for what is infinite or NaN.
-    const double is_number = (by_x - by_x) + (by_y - by_y) + cells.nothing_outside[i];
-    (*gradients)[0][i] = is_number == 0.0 ? by_x : 0.0;
-    (*gradients)[1][i] = is_number == 0.0 ? by_y : 0.0;
+    // x - x is NaN for what is infinite or NaN.
+    const double zero_if_finite = (by_x - by_x) + (by_y - by_y) + cells.nothing_outside[i];
+    (*gradients)[0][i] = zero_if_finite == 0.0 ? by_x : 0.0;
+    (*gradients)[1][i] = zero_if_finite == 0.0 ? by_y : 0.0;
   }
 }
 

@@ -19,8 +19,8 @@ struct Sample {
 // and none where one of the four pixels around is not finite.
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
 
-// The values of many pixels: NaN (infinite beside an infinity) where there is none. `gradients` may
-// be null; they are 0 where there is none.
+// The values of many pixels: NaN or infinite where there is none. `gradients` may be null; they are
+// 0 where there is none.
 Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels,
                      BatchOfPixels* gradients = nullptr);
 

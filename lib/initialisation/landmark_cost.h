@@ -20,7 +20,8 @@ class LandmarkCost {
   virtual ~LandmarkCost() = default;
   // Without the constant cost; not finite where it is undefined.
   virtual double Value(const Landmark& landmark) const = 0;
-  // Adds the same to second order; whatever it adds to derivatives where the cost is not finite.
+  // Adds the same to second order. Where the cost is not finite, what it adds to the derivatives is
+  // not specified.
   virtual void AddTo(const Landmark& landmark, LandmarkModel* sum) const = 0;
   // What does not change with the landmark, but may with what the cost was made for.
   virtual double ConstantCost() const { return 0.0; }

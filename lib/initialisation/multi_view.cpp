@@ -18,7 +18,7 @@ constexpr int kMaxRounds = 20;
 constexpr double kSettled = 1e-6;  // relative change of the half axes
 // A direction that is known so much less than the best known one is not known at all.
 constexpr double kMinInformationShare = 1e-9;
-// Beyond this, rounding decides what solves a system.
+// Below this, rounding decides what solves a system.
 constexpr double kMinConditionReciprocal = 1e-13;
 
 // Foot x, foot y, a, b, c and, where it is free, the foot's height over the plane.
@@ -187,7 +187,7 @@ class LinearViews {
     }
     if (HasRatio(observation_)) AddRatio(*body, &system);
     if (HasSize(observation_)) AddSize(*body, &system);
-    // Conditions are much the same in all rounds: eigenvalues are worth their time in one.
+    // Later rounds weigh edges anew, drop and add some: Solve refuses what has become singular.
     if (is_first && !system.KnowsAllDirections()) return false;
     const auto unknowns = system.Solve();
     if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;

@@ -4,34 +4,48 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "mapping/elimination_tree.h"
-
 namespace soslam {
 
 BlockCholesky::BlockCholesky(const SymmetricBlocks& pattern) {
   const std::vector<EliminationGroup> groups = EliminationTree(pattern);
+  const Places places = OrderRows(pattern, groups);
+  MakeFronts(pattern, groups, places);
+  FindRuns();
+  FindEntries(pattern, places);
+}
+
+BlockCholesky::Places BlockCholesky::OrderRows(const SymmetricBlocks& pattern,
+                                               const std::vector<EliminationGroup>& groups) {
   const auto variables = static_cast<size_t>(pattern.NumVariables());
-  std::vector<int> first_row(variables);  // in the order of elimination
-  std::vector<size_t> front_of(variables);
+  Places places{std::vector<int>(variables), std::vector<size_t>(variables)};
   for (size_t g = 0; g < groups.size(); ++g) {
     for (const int variable : groups[g].pivots) {
-      front_of[static_cast<size_t>(variable)] = g;
-      first_row[static_cast<size_t>(variable)] = static_cast<int>(original_rows_.size());
+      places.front[static_cast<size_t>(variable)] = g;
+      places.first_row[static_cast<size_t>(variable)] = static_cast<int>(original_rows_.size());
       for (int i = 0; i < pattern.Size(variable); ++i) {
         original_rows_.push_back(pattern.FirstRow(variable) + i);
       }
     }
   }
-  size_t factor_size = 0, stack_size = 0, stack_limit = 0, largest = 0;
+  return places;
+}
+
+void BlockCholesky::MakeFronts(const SymmetricBlocks& pattern,
+                               const std::vector<EliminationGroup>& groups, const Places& places) {
+  const auto first_row = [&](int variable) {
+    return places.first_row[static_cast<size_t>(variable)];
+  };
+  size_t factor_size = 0, stack_limit = 0, largest = 0;
+  size_t stack_size = 0;
   fronts_.resize(groups.size());
   for (size_t g = 0; g < groups.size(); ++g) {
     Front& front = fronts_[g];
     front.parent = groups[g].parent;
-    front.first = first_row[static_cast<size_t>(groups[g].pivots.front())];
+    front.first = first_row(groups[g].pivots.front());
     for (const int variable : groups[g].pivots) front.pivots += pattern.Size(variable);
     for (const int variable : groups[g].neighbours) {
       for (int i = 0; i < pattern.Size(variable); ++i) {
-        front.rows.push_back(first_row[static_cast<size_t>(variable)] + i);
+        front.rows.push_back(first_row(variable) + i);
       }
     }
     front.size = front.pivots + static_cast<int>(front.rows.size());
@@ -44,19 +58,27 @@ BlockCholesky::BlockCholesky(const SymmetricBlocks& pattern) {
     stack_size = front.update + front.rows.size() * front.rows.size();
     stack_limit = std::max(stack_limit, stack_size);
     largest = std::max(largest, static_cast<size_t>(front.size));
-    if (front.parent >= 0)
+    if (front.parent >= 0) {
       fronts_[static_cast<size_t>(front.parent)].children.push_back(static_cast<int>(g));
+    }
   }
-  const auto row_in_front = [](const Front& front, int row) {
-    if (row < front.first + front.pivots) return row - front.first;
-    const auto found = std::ranges::lower_bound(front.rows, row);
-    return front.pivots + static_cast<int>(found - front.rows.begin());
-  };
+  factor_.resize(factor_size);
+  stack_.resize(stack_limit);
+  front_values_.resize(static_cast<Eigen::Index>(largest * largest));
+}
+
+int BlockCholesky::RowInFront(const Front& front, int row) {
+  if (row < front.first + front.pivots) return row - front.first;
+  const auto found = std::ranges::lower_bound(front.rows, row);
+  return front.pivots + static_cast<int>(found - front.rows.begin());
+}
+
+void BlockCholesky::FindRuns() {
   for (Front& front : fronts_) {
     if (front.parent < 0) continue;
     const Front& parent = fronts_[static_cast<size_t>(front.parent)];
     for (size_t i = 0; i < front.rows.size(); ++i) {
-      const int in_parent = row_in_front(parent, front.rows[i]);
+      const int in_parent = RowInFront(parent, front.rows[i]);
       if (!front.runs.empty() &&
           front.runs.back().parent_begin + front.runs.back().length == in_parent) {
         ++front.runs.back().length;
@@ -65,17 +87,18 @@ BlockCholesky::BlockCholesky(const SymmetricBlocks& pattern) {
       }
     }
   }
+}
+
+void BlockCholesky::FindEntries(const SymmetricBlocks& pattern, const Places& places) {
   for (const auto& block : pattern.blocks()) {
-    const int row = first_row[static_cast<size_t>(block.row)];
-    const int column = first_row[static_cast<size_t>(block.column)];
-    Front& front = fronts_[front_of[static_cast<size_t>(row < column ? block.row : block.column)]];
+    const int row = places.first_row[static_cast<size_t>(block.row)];
+    const int column = places.first_row[static_cast<size_t>(block.column)];
+    const int eliminated_first = row < column ? block.row : block.column;
+    Front& front = fronts_[places.front[static_cast<size_t>(eliminated_first)]];
     front.entries.push_back({block.begin, pattern.Size(block.row), pattern.Size(block.column),
-                             row_in_front(front, std::max(row, column)),
-                             row_in_front(front, std::min(row, column)), row < column});
+                             RowInFront(front, std::max(row, column)),
+                             RowInFront(front, std::min(row, column)), row < column});
   }
-  factor_.resize(factor_size);
-  stack_.resize(stack_limit);
-  front_values_.resize(static_cast<Eigen::Index>(largest * largest));
 }
 
 // Below the diagonal, as everywhere here, and on it.

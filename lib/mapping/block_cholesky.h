@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mapping/elimination_tree.h"
 #include "mapping/symmetric_blocks.h"
 
 namespace soslam {
@@ -57,6 +58,19 @@ class BlockCholesky {
     std::vector<Run> runs;      // of the neighbours, counted from the first of them
     std::vector<Entry> entries;
   };
+
+  // Where variables are in the order of elimination.
+  struct Places {
+    std::vector<int> first_row;  // by variable
+    std::vector<size_t> front;   // that eliminates it, by variable
+  };
+
+  Places OrderRows(const SymmetricBlocks& pattern, const std::vector<EliminationGroup>& groups);
+  void MakeFronts(const SymmetricBlocks& pattern, const std::vector<EliminationGroup>& groups,
+                  const Places& places);
+  void FindRuns();
+  void FindEntries(const SymmetricBlocks& pattern, const Places& places);
+  static int RowInFront(const Front& front, int row);
 
   void Assemble(const SymmetricBlocks& matrix, const Eigen::VectorXd& diagonal, const Front& front,
                 Eigen::Ref<Eigen::MatrixXd> dense) const;

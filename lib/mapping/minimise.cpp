@@ -150,14 +150,14 @@ class Minimiser {
     const std::vector<double> values = Values();
     MoveAll(step);
     cost_ = Cost();
-    const double tolerance =
-        std::min(kLandmarkTolerance * std::min(before, cost_), predicted) / NumLandmarks();
+    const double worth_a_step = std::min(kLandmarkTolerance * std::min(before, cost_), predicted);
+    const double tolerance = std::max(kLeastGain * before, worth_a_step) / NumLandmarks();
     for (LandmarkFit& fit : fits_) {
       for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance); ++i) {
       }
     }
     cost_ = CostOfFits();
-    const double gain = before - cost_;
+    const double gain = before - cost_;  // with what landmarks brought
     hessian_ = gain < kNear * before && gain >= 0.0 ? Hessian::kNear : Hessian::kFar;
     is_linearised_ = false;
     if (gain > 0.0) {

@@ -149,6 +149,7 @@ bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) 
   if (!nearest || is_hidden) return false;
   const cv::Point at(static_cast<int>(nearest->x()), static_cast<int>(nearest->y()));
   const Eigen::Vector2d edge(-frame.slope_y.at<float>(at), frame.slope_x.at<float>(at));
+  if (options_.edge_direction_tolerance_deg >= 90.0) return true;
   const double tolerance = options_.edge_direction_tolerance_deg * std::numbers::pi / 180.0;
   return std::abs(point.along.dot(edge)) >= edge.norm() * std::cos(tolerance);
 }

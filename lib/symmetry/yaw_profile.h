@@ -16,7 +16,7 @@ namespace soslam {
 // the pairs of visible points of the absolute descriptor difference (unit of the descriptor).
 // Absolute, because pairs for which the approximation of eq. (20) fails are few and far off; a
 // mean, because how many pairs are visible depends on the yaw. None when fewer pairs count than the
-// options ask for. One cost for each descriptor.
+// options ask for. One cost for each descriptor, of which there is at least one.
 std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, const Camera& camera,
                                                  const Landmark& landmark_in_camera,
                                                  const std::vector<Eigen::Vector2d>& samples,

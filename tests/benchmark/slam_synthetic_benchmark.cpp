@@ -17,7 +17,7 @@
 namespace soslam {
 namespace {
 
-// The problem's own noise.
+// With the odometry's noise of the problem; its boxes have 2 px.
 OptimiseOptions OptionsOfProblem() {
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;

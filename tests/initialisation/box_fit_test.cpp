@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "initialisation/closed_form.h"
-#include "initialisation/yaw_sweep.h"
 #include "support/box_terms.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"

@@ -230,6 +230,8 @@ TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
   EXPECT_NEAR(term.Value(landmark), 0.0, 1e-12);
   const double share = 1.0 - static_cast<double>(vertical) / static_cast<double>(points.size());
   EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image->box, EdgeOptions()), 1e-9);
+  const EdgeTerm of_any_direction(image, TestCamera(), landmark, AnyDirection());
+  EXPECT_EQ(of_any_direction.NumPoints(), static_cast<int>(points.size()));
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "support/random.h"
 #include "symmetry/refine.h"
@@ -76,6 +78,54 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
   EXPECT_GE(near_truth, 0.9 * observations) << observations;
   RecordProperty("observations", observations);
   RecordProperty("within_3_degrees", near_truth);
+}
+
+TEST_F(SyntheticTexture, DescriptorsTogetherCostWhatEachCostsAlone) {
+  const Detection& detection = sequence_->detections.front();
+  const SymmetryImage image(maps_->at(0), detection.box);
+  const Landmark landmark = Turned(TrueLandmark(detection), 4.0 * kDegrees);
+  const SymmetryOptions options;
+  const auto samples = SamplePixels(image, sequence_->camera, landmark, options);
+  std::vector<Descriptor> all;
+  for (size_t i = 0; i < kDescriptorNames.size(); ++i) all.push_back(static_cast<Descriptor>(i));
+  const auto together = SymmetryCosts(image, sequence_->camera, landmark, samples, all, options);
+  std::set<double> costs;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const auto alone =
+        SymmetryCosts(image, sequence_->camera, landmark, samples, {all[i]}, options);
+    ASSERT_TRUE(alone.front()) << kDescriptorNames[i];
+    EXPECT_EQ(together[i], alone.front()) << kDescriptorNames[i];
+    costs.insert(*alone.front());
+  }
+  EXPECT_EQ(costs.size(), all.size());  // no two of them are the same
+}
+
+// Nearest edges on the surface by what the definition says, edge by edge.
+TEST_F(SyntheticTexture, NearestEdge3dIsTheNearestOfAll) {
+  const Detection& detection = sequence_->detections.front();
+  const SymmetryImage image(maps_->at(0), detection.box);
+  const Landmark landmark = TrueLandmark(detection);
+  const VisibleSurface surface(sequence_->camera, landmark);
+  const auto distance = [&](const VisibleSurface::Point& point) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& pixel : image.edge_pixels) {
+      const auto edge = surface.FromPixel(pixel);
+      if (edge) nearest = std::min(nearest, (edge->in_object - point.in_object).norm());
+    }
+    return nearest;
+  };
+  const SymmetryDescriptor descriptor(Descriptor::kNearestEdge3d, image, sequence_->camera,
+                                      landmark);
+  int pairs = 0;
+  for (const Eigen::Vector2d& pixel :
+       SamplePixels(image, sequence_->camera, landmark, SymmetryOptions())) {
+    const auto pair = descriptor.Evaluate(pixel, std::nullopt, false);
+    if (!pair) continue;
+    const auto point = surface.FromPixel(pixel);
+    EXPECT_NEAR(pair->residual, distance(*point) - distance(surface.MirrorImage(*point)), 1e-12);
+    ++pairs;
+  }
+  EXPECT_GT(pairs, 20);
 }
 
 TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurves) {
@@ -159,7 +209,9 @@ TEST(YawProfile, IsUndefinedWithoutEdgesAndSaysSo) {
                                                        Eigen::Vector2d(0.8, 0.7), RefineOptions());
   EXPECT_EQ(refined.estimate.failure, "no_edges");
   ASSERT_EQ(refined.estimate.hypotheses.size(), 1u);
-  for (const double cost : refined.record.cost.at("improved_dt")) EXPECT_TRUE(std::isnan(cost));
+  for (const char* descriptor : {"improved_dt", "nearest_edge_3d"}) {
+    for (const double cost : refined.record.cost.at(descriptor)) EXPECT_TRUE(std::isnan(cost));
+  }
 }
 
 }  // namespace
