@@ -21,8 +21,10 @@ MarginalCovariances::MarginalCovariances(const BackEndVariables& variables, cons
     block_of_.push_back(equations.BlockOf(static_cast<int>(i)));
   }
   const SymmetricBlocks& information = equations.hessian();
-  const std::vector<Hessian> kinds(terms.size(), Hessian::kInformation);
-  if (information.NumRows() == 0 || !std::isfinite(equations.Linearise(kinds))) return;
+  if (information.NumRows() == 0 ||
+      !std::isfinite(equations.Linearise(terms, Hessian::kInformation))) {
+    return;
+  }
   BlockCholesky factor(information);
   if (factor.Factor(information, Eigen::VectorXd::Zero(information.NumRows())) &&
       factor.LeastIndependentShare(information) > kLeastIndependentShare) {

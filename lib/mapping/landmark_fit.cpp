@@ -17,25 +17,70 @@ void Damping::StepRefused() {
   growth_ *= 2.0;
 }
 
-LandmarkFit::LandmarkFit(Variable* landmark, int index, std::vector<const Term*> terms)
-    : landmark_(landmark), terms_(std::move(terms)) {
-  for (const Term* term : terms_) {
-    const auto& variables = term->variables();
-    positions_.push_back(
-        static_cast<size_t>(std::ranges::find(variables, index) - variables.begin()));
+LandmarkFit::LandmarkFit(std::vector<Variable>* variables, int index,
+                         const std::vector<PlacedTerm>& terms)
+    : landmark_(&(*variables)[static_cast<size_t>(index)]) {
+  size_t kept = 0;
+  for (const PlacedTerm& placed : terms) {
+    const auto& of_term = placed.term->variables();
+    Part part{placed, 0, {}};
+    for (size_t i = 0; i < of_term.size(); ++i) {
+      if (of_term[i] == index) part.position = i;
+      part.sizes[i] = NumTangents((*variables)[static_cast<size_t>(of_term[i])].kind);
+    }
+    TermPlaces own;
+    ForEachKept(part, &own,
+                [&](double*, double**, int size) { kept += static_cast<size_t>(size); });
+    parts_.push_back(part);
+  }
+  at_.others.resize(kept);
+  candidate_.others.resize(kept);
+}
+
+template <typename Visit>
+void LandmarkFit::ForEachKept(const Part& part, TermPlaces* own, Visit visit) {
+  const TermPlaces& places = part.placed.places;
+  for (size_t i = 0; i < part.sizes.size(); ++i) {
+    if (i != part.position && places.gradient[i] != nullptr) {
+      visit(places.gradient[i], &own->gradient[i], part.sizes[i]);
+    }
+    for (size_t j = 0; j <= i; ++j) {
+      const bool is_landmark = i == part.position && j == part.position;
+      if (is_landmark || places.hessian[i][j] == nullptr) continue;
+      visit(places.hessian[i][j], &own->hessian[i][j], part.sizes[i] * part.sizes[j]);
+    }
   }
 }
 
 void LandmarkFit::Add(Hessian hessian, Equations* equations) const {
-  equations->kind = hessian;
   equations->cost = 0.0;
   equations->gradient.setZero();
   equations->hessian.setZero();
-  for (size_t i = 0; i < terms_.size(); ++i) {
-    TermPlaces places;
-    places.gradient[positions_[i]] = equations->gradient.data();
-    places.hessian[positions_[i]][positions_[i]] = equations->hessian.data();
-    equations->cost += terms_[i]->Linearise(hessian, places);
+  std::ranges::fill(equations->others, 0.0);
+  double* next = equations->others.data();
+  for (const Part& part : parts_) {
+    TermPlaces own;
+    own.gradient[part.position] = equations->gradient.data();
+    own.hessian[part.position][part.position] = equations->hessian.data();
+    ForEachKept(part, &own, [&](double*, double** own_place, int size) {
+      *own_place = next;
+      next += size;
+    });
+    equations->cost += part.placed.term->Linearise(hessian, own);
+  }
+}
+
+void LandmarkFit::AddToPlaces() const {
+  const Part& any = parts_.front();
+  Eigen::Map<Gradient>(any.placed.places.gradient[any.position]) += at_.gradient;
+  Eigen::Map<Square>(any.placed.places.hessian[any.position][any.position]) += at_.hessian;
+  const double* next = at_.others.data();
+  for (const Part& part : parts_) {
+    TermPlaces own;
+    ForEachKept(part, &own, [&](double* place, double**, int size) {
+      Eigen::Map<Eigen::VectorXd>(place, size) += Eigen::Map<const Eigen::VectorXd>(next, size);
+      next += size;
+    });
   }
 }
 
@@ -52,15 +97,15 @@ double LandmarkFit::Linearise(Hessian hessian) {
 }
 
 bool LandmarkFit::Step(Hessian hessian, double tolerance) {
-  const auto diagonal = damping_.Of<Eigen::Matrix<double, kLandmarkDof, 1>>(at_.hessian.diagonal());
-  Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> damped = at_.hessian;
+  const auto diagonal = damping_.Of<Gradient>(at_.hessian.diagonal());
+  Square damped = at_.hessian;
   damped.diagonal() += diagonal;
-  const Eigen::LLT<Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>> factor(damped);
+  const Eigen::LLT<Square> factor(damped);
   if (factor.info() != Eigen::Success) {
     damping_.StepRefused();
     return !damping_.IsExhausted();
   }
-  const Eigen::Matrix<double, kLandmarkDof, 1> step = -factor.solve(at_.gradient);
+  const Gradient step = -factor.solve(at_.gradient);
   const double predicted = 0.5 * step.dot(diagonal.cwiseProduct(step) - at_.gradient);
   if (!(predicted > tolerance)) return false;
   std::array<double, kLandmarkSize> before;

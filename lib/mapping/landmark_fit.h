@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "constraints/tangent_space.h"
@@ -32,35 +33,55 @@ class Damping {
   double growth_ = 2.0;
 };
 
-// One landmark's cost, all other variables as they are, and steps that lower it.
+// A term, and where its derivatives by all variables go: null for what is held.
+struct PlacedTerm {
+  const Term* term;
+  TermPlaces places;
+};
+
+// One landmark's cost, all other variables as they are, and steps that lower it. What its terms say
+// of other variables is kept along, so that no term is looked at twice in the same place.
 class LandmarkFit {
  public:
-  // `terms` are those that depend on the landmark.
-  LandmarkFit(Variable* landmark, int index, std::vector<const Term*> terms);
+  // `terms` are those that depend on the landmark, which `index` is among the variables.
+  LandmarkFit(std::vector<Variable>* variables, int index, const std::vector<PlacedTerm>& terms);
 
   // Anew: other variables have changed.
   double Linearise(Hessian hessian);
   double cost() const { return at_.cost; }
-  // What it was linearised with: kFar instead of kNear where that is not positive definite.
-  Hessian hessian() const { return at_.kind; }
 
   // One step of Levenberg-Marquardt. False when none is expected to lower the cost by more than the
   // tolerance.
   bool Step(Hessian hessian, double tolerance);
 
+  // Adds the derivatives by all variables to where they go.
+  void AddToPlaces() const;
+
  private:
+  using Gradient = Eigen::Matrix<double, kLandmarkDof, 1>;
+  using Square = Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>;
   struct Equations {
-    Hessian kind;
     double cost;
-    Eigen::Matrix<double, kLandmarkDof, 1> gradient;
-    Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> hessian;
+    Gradient gradient;  // by the landmark
+    Square hessian;
+    std::vector<double> others;  // derivatives that are not by the landmark alone, part by part
   };
+  // A term of the landmark.
+  struct Part {
+    PlacedTerm placed;
+    size_t position;                                     // of the landmark among its variables
+    std::array<int, TermPlaces::kMaxVariables> sizes{};  // tangents of its variables
+  };
+  // Calls visit(place, own place, size) for each block of a part's derivatives that is not by the
+  // landmark alone, in the order in which they are kept.
+  template <typename Visit>
+  static void ForEachKept(const Part& part, TermPlaces* own, Visit visit);
+  // kFar instead of kNear where that is not positive definite.
   void Evaluate(Hessian hessian, Equations* equations) const;
   void Add(Hessian hessian, Equations* equations) const;
 
   Variable* landmark_;
-  std::vector<const Term*> terms_;
-  std::vector<size_t> positions_;  // of the landmark among each term's variables
+  std::vector<Part> parts_;
   Equations at_, candidate_;
   Damping damping_;
 };

@@ -29,33 +29,33 @@ constexpr double kNear = 1e-2;
 
 class Minimiser {
  public:
-  Minimiser(const Terms& terms, std::vector<Variable>* variables)
-      : terms_(terms), variables_(variables) {
-    std::vector<Terms> of_landmark(variables->size());
-    std::vector<int> landmarks;  // by term
+  Minimiser(const Terms& terms, std::vector<Variable>* variables) : variables_(variables) {
+    const auto varies = [&](int index, bool is_landmark) {
+      const Variable& variable = (*variables)[static_cast<size_t>(index)];
+      return !variable.is_held && (variable.kind == VariableKind::kLandmark) == is_landmark;
+    };
     for (const Term* term : terms) {
-      const auto landmark = std::ranges::find_if(term->variables(), [&](int index) {
-        const Variable& variable = At(index);
-        return variable.kind == VariableKind::kLandmark && !variable.is_held;
-      });
-      others_vary_ |= std::ranges::any_of(term->variables(), [&](int index) {
-        return !At(index).is_held && At(index).kind != VariableKind::kLandmark;
-      });
-      landmarks.push_back(landmark == term->variables().end() ? -1 : *landmark);
-      if (landmark == term->variables().end()) {
-        terms_without_landmark_.push_back(term);
+      others_vary_ |=
+          std::ranges::any_of(term->variables(), [&](int index) { return varies(index, false); });
+    }
+    if (others_vary_) {
+      equations_.emplace(*variables, terms);
+      factor_.emplace(equations_->hessian());
+    }
+    std::vector<std::vector<PlacedTerm>> of_landmark(variables->size());
+    for (size_t i = 0; i < terms.size(); ++i) {
+      const PlacedTerm placed{terms[i], others_vary_ ? equations_->PlacesOf(i) : TermPlaces()};
+      const auto landmark = std::ranges::find_if(terms[i]->variables(),
+                                                 [&](int index) { return varies(index, true); });
+      if (landmark == terms[i]->variables().end()) {
+        without_landmark_.push_back(placed);
       } else {
-        of_landmark[static_cast<size_t>(*landmark)].push_back(term);
+        of_landmark[static_cast<size_t>(*landmark)].push_back(placed);
       }
     }
-    std::vector<int> fit_of(variables->size(), -1);
     for (size_t i = 0; i < of_landmark.size(); ++i) {
-      if (of_landmark[i].empty()) continue;
-      fit_of[i] = static_cast<int>(fits_.size());
-      fits_.emplace_back(&(*variables)[i], static_cast<int>(i), std::move(of_landmark[i]));
-    }
-    for (const int landmark : landmarks) {
-      fit_of_term_.push_back(landmark < 0 ? -1 : fit_of[static_cast<size_t>(landmark)]);
+      if (!of_landmark[i].empty())
+        fits_.emplace_back(variables, static_cast<int>(i), of_landmark[i]);
     }
   }
 
@@ -66,10 +66,6 @@ class Minimiser {
       throw NumericalError("back end: the cost is not finite at the start");
     }
     result.costs.push_back(cost_);
-    if (others_vary_) {
-      equations_.emplace(*variables_, terms_);
-      factor_.emplace(equations_->hessian());
-    }
     Progress progress("iterations", Progress::kUnknownCount);
     while (!result.converged && static_cast<int>(result.costs.size()) <= max_iterations) {
       result.converged = !(others_vary_ ? StepOfAll() : StepOfEachLandmark());
@@ -80,24 +76,18 @@ class Minimiser {
   }
 
  private:
-  const Variable& At(int index) const { return (*variables_)[static_cast<size_t>(index)]; }
   double Tolerance() const { return kTolerance * cost_ + kNoCost; }
 
   // Linearises the landmarks' costs.
   double Cost() {
-    double cost = 0.0;
-    for (LandmarkFit& fit : fits_) cost += fit.Linearise(hessian_);
-    return cost + CostWithoutLandmarks();
+    for (LandmarkFit& fit : fits_) fit.Linearise(hessian_);
+    return CostOfFits();
   }
-  // Of the landmarks where they are.
+  // Of the landmarks as they were linearised.
   double CostOfFits() const {
-    double cost = CostWithoutLandmarks();
-    for (const LandmarkFit& fit : fits_) cost += fit.cost();
-    return cost;
-  }
-  double CostWithoutLandmarks() const {
     double cost = 0.0;
-    for (const Term* term : terms_without_landmark_) cost += term->Cost();
+    for (const LandmarkFit& fit : fits_) cost += fit.cost();
+    for (const PlacedTerm& placed : without_landmark_) cost += placed.term->Cost();
     return cost;
   }
 
@@ -113,15 +103,17 @@ class Minimiser {
   }
   double NumLandmarks() const { return static_cast<double>(std::max<size_t>(1, fits_.size())); }
 
-  // Each term in the way that its landmark is.
-  void Linearise() {
-    std::vector<Hessian> kinds;
-    for (const int fit : fit_of_term_) {
-      kinds.push_back(fit < 0 || hessian_ == Hessian::kFar
-                          ? hessian_
-                          : fits_[static_cast<size_t>(fit)].hessian());
+  void SetUpEquations() {
+    equations_->SetZero();
+    for (const LandmarkFit& fit : fits_) fit.AddToPlaces();
+    for (const PlacedTerm& placed : without_landmark_) {
+      placed.term->Linearise(hessian_, placed.places);
     }
-    equations_->Linearise(kinds);
+  }
+  void LineariseFar() {
+    hessian_ = Hessian::kFar;
+    Cost();
+    SetUpEquations();
   }
   bool Factor() {
     damping_diagonal_ = damping_.Of(equations_->hessian().Diagonal());
@@ -129,12 +121,11 @@ class Minimiser {
   }
 
   bool StepOfAll() {
-    if (!is_linearised_) Linearise();
-    is_linearised_ = true;
+    if (!are_set_up_) SetUpEquations();
+    are_set_up_ = true;
     bool is_factored = Factor();
     if (!is_factored && hessian_ == Hessian::kNear) {
-      hessian_ = Hessian::kFar;
-      Linearise();
+      LineariseFar();
       is_factored = Factor();
     }
     if (!is_factored) {
@@ -158,14 +149,15 @@ class Minimiser {
     }
     cost_ = CostOfFits();
     const double gain = before - cost_;  // with what landmarks brought
-    hessian_ = gain < kNear * before && gain >= 0.0 ? Hessian::kNear : Hessian::kFar;
-    is_linearised_ = false;
     if (gain > 0.0) {
+      hessian_ = gain < kNear * before ? Hessian::kNear : Hessian::kFar;
+      are_set_up_ = false;
       damping_.StepTaken(gain / predicted);
       return gain > kLeastGain * before;
     }
     Restore(values);
     cost_ = before;
+    if (hessian_ == Hessian::kNear) LineariseFar();
     damping_.StepRefused();
     return !damping_.IsExhausted();
   }
@@ -193,17 +185,15 @@ class Minimiser {
     }
   }
 
-  const Terms& terms_;
   std::vector<Variable>* variables_;
-  Terms terms_without_landmark_;
-  bool others_vary_ = false;
+  bool others_vary_ = false;  // than landmarks
   std::vector<LandmarkFit> fits_;
+  std::vector<PlacedTerm> without_landmark_;
   std::optional<NormalEquations> equations_;
   std::optional<BlockCholesky> factor_;
   Damping damping_;
-  bool is_linearised_ = false;
+  bool are_set_up_ = false;  // the equations, where the variables are
   Hessian hessian_ = Hessian::kFar;
-  std::vector<int> fit_of_term_;  // by term, -1 without a landmark
   Eigen::VectorXd damping_diagonal_;
   double cost_ = 0.0;
 };

@@ -4,12 +4,11 @@
 namespace soslam {
 
 NormalEquations::NormalEquations(const std::vector<Variable>& variables, const Terms& terms)
-    : terms_(terms),
-      block_of_(Blocks(variables, terms)),
+    : block_of_(Blocks(variables, terms)),
       hessian_(Pattern(variables, terms, block_of_)),
       gradient_(hessian_.NumRows()) {
   places_.reserve(terms.size());
-  for (const Term* term : terms) places_.push_back(PlacesOf(*term));
+  for (const Term* term : terms) places_.push_back(MakePlaces(*term));
 }
 
 std::vector<int> NormalEquations::Blocks(const std::vector<Variable>& variables,
@@ -48,7 +47,7 @@ SymmetricBlocks NormalEquations::Pattern(const std::vector<Variable>& variables,
   return SymmetricBlocks(std::move(sizes), std::move(couplings));
 }
 
-TermPlaces NormalEquations::PlacesOf(const Term& term) {
+TermPlaces NormalEquations::MakePlaces(const Term& term) {
   TermPlaces places;
   for (size_t i = 0; i < term.variables().size(); ++i) {
     const int row = BlockOf(term.variables()[i]);
@@ -62,11 +61,15 @@ TermPlaces NormalEquations::PlacesOf(const Term& term) {
   return places;
 }
 
-double NormalEquations::Linearise(const std::vector<Hessian>& kinds) {
+void NormalEquations::SetZero() {
   hessian_.SetZero();
   gradient_.setZero();
+}
+
+double NormalEquations::Linearise(const Terms& terms, Hessian hessian) {
+  SetZero();
   double cost = 0.0;
-  for (size_t i = 0; i < terms_.size(); ++i) cost += terms_[i]->Linearise(kinds[i], places_[i]);
+  for (size_t i = 0; i < terms.size(); ++i) cost += terms[i]->Linearise(hessian, places_[i]);
   return cost;
 }
 

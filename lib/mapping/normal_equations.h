@@ -18,9 +18,11 @@ class NormalEquations {
  public:
   NormalEquations(const std::vector<Variable>& variables, const Terms& terms);
 
-  // At the variables' values, each term's Hessian of its own kind. Returns the cost, infinite where
-  // a term is not defined.
-  double Linearise(const std::vector<Hessian>& kinds);
+  void SetZero();
+  // All terms, at the variables' values. Returns the cost, infinite where a term is not defined.
+  double Linearise(const Terms& terms, Hessian hessian);
+  // Where a term adds its derivatives, by its index among the terms.
+  const TermPlaces& PlacesOf(size_t term) const { return places_[term]; }
 
   const SymmetricBlocks& hessian() const { return hessian_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
@@ -32,9 +34,8 @@ class NormalEquations {
   static std::vector<int> Blocks(const std::vector<Variable>& variables, const Terms& terms);
   static SymmetricBlocks Pattern(const std::vector<Variable>& variables, const Terms& terms,
                                  const std::vector<int>& block_of);
-  TermPlaces PlacesOf(const Term& term);
+  TermPlaces MakePlaces(const Term& term);
 
-  const Terms& terms_;
   std::vector<int> block_of_;  // by variable
   SymmetricBlocks hessian_;
   Eigen::VectorXd gradient_;

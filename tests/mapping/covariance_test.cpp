@@ -52,7 +52,7 @@ TEST_F(MarginalCovariancesTest, AreBlocksOfTheInverseOfTheInformation) {
   const BackEndVariables& variables = problem_.variables();
   const Terms terms = problem_.AllTerms();
   NormalEquations equations(variables.all(), terms);
-  equations.Linearise(std::vector<Hessian>(terms.size(), Hessian::kInformation));
+  equations.Linearise(terms, Hessian::kInformation);
   const SymmetricBlocks& information = equations.hessian();
   const Eigen::MatrixXd expected = DenseCovariance(information);
   const auto row = [&](int variable) { return information.FirstRow(equations.BlockOf(variable)); };
