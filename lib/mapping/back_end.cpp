@@ -6,6 +6,7 @@
 
 #include "mapping/back_end_problem.h"
 #include "mapping/covariance.h"
+#include "mapping/start_in_parts.h"
 
 namespace soslam {
 namespace {
@@ -16,6 +17,9 @@ constexpr int kMaxImageRounds = 25;
 // A round need not end at the minimum of what is renewed in the next one.
 constexpr int kIterationsPerRound = 10;
 constexpr double kSettled = 1e-3;
+
+// Few enough for dead reckoning to keep its attitude.
+constexpr size_t kFramesPerPart = 1000;
 
 double Change(const Landmark& from, const Landmark& to) {
   const double size = std::cbrt(from.half_axes.prod());
@@ -113,6 +117,9 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options) {
   BackEndProblem problem(input, options);
   MapEstimate map;
+  if (!options.hold_poses) {
+    StartInParts(input.sequence, problem.AllTerms(), kFramesPerPart, &problem.variables());
+  }
   problem.Solve();
   bool settled = true;
   if (options.detection_model == DetectionModel::kTangency) {

@@ -49,9 +49,9 @@ struct LandmarkEstimates {
   std::vector<ObjectEstimate> objects;
 };
 
-// Texture and edges join in when the rest has settled: initial_cost is the first solve's, without
-// them; final_cost is the last one's, with them; the iterations are those of all. Converged: so did
-// the last solve, and choosing texture and edges anew changed nothing more.
+// Texture and edges join in when the rest has settled: initial_cost is the first solve's of all
+// frames, without them; final_cost is the last one's, with them; the iterations are those of all.
+// Converged: so did the last solve, and choosing texture and edges anew changed nothing more.
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;

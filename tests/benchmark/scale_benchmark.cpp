@@ -8,7 +8,7 @@
 #include <string>
 
 #include "benchmark/back_end_input.h"
-#include "benchmark/drive.h"
+#include "support/drive.h"
 
 namespace soslam {
 namespace {
@@ -46,8 +46,11 @@ BENCHMARK(World)
     ->Arg(250)
     ->Arg(500)
     ->Arg(1000)
+    ->Arg(2000)
+    ->Arg(4000)
+    ->Arg(8000)
     ->Iterations(1)
-    ->Repetitions(3)
+    ->Repetitions(1)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

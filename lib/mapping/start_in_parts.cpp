@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/start_in_parts.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "mapping/minimise.h"
+
+namespace soslam {
+namespace {
+
+// It is a start, not the result.
+constexpr int kIterationsPerPart = 10;
+
+// Frames begin <= i < end, none of another segment.
+struct Part {
+  size_t begin, end;
+  bool begins_segment;
+  Terms terms = {};
+  std::map<int, int> landmarks = {};  // seen from here, by variable: in how many terms
+};
+
+std::vector<Part> PartsOf(const std::vector<Frame>& frames, size_t max_frames) {
+  std::vector<Part> parts;
+  for (size_t first = 0; first < frames.size();) {
+    size_t last = first;
+    while (last < frames.size() && frames[last].segment == frames[first].segment) ++last;
+    const size_t count = (last - first + max_frames - 1) / max_frames;
+    for (size_t k = 0; count > 1 && k < count; ++k) {
+      parts.push_back(
+          {first + k * (last - first) / count, first + (k + 1) * (last - first) / count, k == 0});
+    }
+    first = last;
+  }
+  return parts;
+}
+
+class PartByPart {
+ public:
+  PartByPart(std::vector<Part> parts, size_t frames, const Terms& terms,
+             BackEndVariables* variables)
+      : variables_(*variables), parts_(std::move(parts)) {
+    for (const Variable& variable : variables_.all()) {
+      starts_.emplace_back(variable.values, variable.values + NumValues(variable.kind));
+    }
+    AddTerms(frames, terms);
+    ChooseHomes();
+  }
+
+  void Run() {
+    std::map<int, std::vector<double>> results;  // of landmarks
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      Solve(parts_[k]);
+      for (const auto& [landmark, count] : parts_[k].landmarks) {
+        if (home_.at(landmark) == k) results[landmark] = ValuesOf(landmark);
+      }
+    }
+    for (const auto& [landmark, values] : results) Set(landmark, values);
+  }
+
+ private:
+  Variable& At(int index) { return variables_.all()[static_cast<size_t>(index)]; }
+  std::vector<double> ValuesOf(int index) {
+    return {At(index).values, At(index).values + NumValues(At(index).kind)};
+  }
+  void Set(int index, const auto& values) { std::ranges::copy(values, At(index).values); }
+  const double* StartOf(int index) const { return starts_[static_cast<size_t>(index)].data(); }
+
+  // To the parts of their last frames, and what concerns a landmark alone to all that see it.
+  void AddTerms(size_t frames, const Terms& terms) {
+    constexpr size_t kNone = std::numeric_limits<size_t>::max();
+    std::vector<size_t> part_of(frames, kNone);
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      std::fill_n(part_of.begin() + static_cast<std::ptrdiff_t>(parts_[k].begin),
+                  parts_[k].end - parts_[k].begin, k);
+    }
+    std::map<int, Terms> of_landmark_alone;
+    for (const Term* term : terms) {
+      int pose = -1, landmark = -1;
+      for (const int index : term->variables()) {
+        if (At(index).kind == VariableKind::kPose) pose = index;
+        if (At(index).kind == VariableKind::kLandmark) landmark = index;
+      }
+      if (pose >= 0) {
+        const size_t k = part_of[static_cast<size_t>(pose)];
+        if (k == kNone) continue;
+        parts_[k].terms.push_back(term);
+        if (landmark >= 0) ++parts_[k].landmarks[landmark];
+      } else if (landmark >= 0) {
+        of_landmark_alone[landmark].push_back(term);
+      }
+    }
+    for (Part& part : parts_) {
+      for (const auto& [landmark, count] : part.landmarks) {
+        const Terms& alone = of_landmark_alone[landmark];
+        part.terms.insert(part.terms.end(), alone.begin(), alone.end());
+      }
+    }
+  }
+
+  void ChooseHomes() {
+    for (size_t k = 0; k < parts_.size(); ++k) {
+      for (const auto& [landmark, count] : parts_[k].landmarks) {
+        const auto [home, is_new] = home_.emplace(landmark, k);
+        if (count > parts_[home->second].landmarks.at(landmark)) home->second = k;
+      }
+    }
+  }
+
+  void Solve(const Part& part) {
+    Rigid3d carried;  // by what the part before corrected at its last frame
+    if (!part.begins_segment) {
+      const int last = variables_.Pose(part.begin - 1);
+      carried = UnpackPose(At(last).values) * UnpackPose(StartOf(last)).Inverse();
+    }
+    std::vector<Variable> some = variables_.all();
+    for (Variable& variable : some) variable.is_held = true;
+    const auto release = [&](int index) {
+      some[static_cast<size_t>(index)].is_held = At(index).is_held;
+    };
+    for (size_t i = part.begin; i < part.end; ++i) {
+      const int pose = variables_.Pose(i);
+      Set(pose, Pack(carried * UnpackPose(StartOf(pose))));
+      release(pose);
+    }
+    for (const auto& [landmark, count] : part.landmarks) {
+      Set(landmark, Pack(Transform(carried, UnpackLandmark(StartOf(landmark)))));
+      release(landmark);
+    }
+    Minimise(part.terms, kIterationsPerPart, &some);
+  }
+
+  BackEndVariables& variables_;
+  std::vector<Part> parts_;
+  std::vector<std::vector<double>> starts_;  // by variable
+  std::map<int, size_t> home_;               // by landmark, the part that it comes from
+};
+
+}  // namespace
+
+void StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frames_per_part,
+                  BackEndVariables* variables) {
+  std::vector<Part> parts = PartsOf(sequence.frames, max_frames_per_part);
+  if (parts.empty()) return;
+  PartByPart(std::move(parts), sequence.frames.size(), terms, variables).Run();
+}
+
+}  // namespace soslam

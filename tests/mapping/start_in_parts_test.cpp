@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/start_in_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "constraints/parameters.h"
+#include "mapping/back_end_problem.h"
+#include "support/cuboid_map.h"
+#include "support/drive.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kFrames = 300;
+constexpr size_t kFramesPerPart = 50;
+constexpr double kTurnSigma = 0.08;  // rad a frame: level is lost at once
+
+class StartInPartsTest : public testing::Test {
+ protected:
+  StartInPartsTest() {
+    options_.odometry_rotation_sigma_deg = kTurnSigma * 180.0 / std::numbers::pi;
+  }
+  void MakeProblem() { problem_.emplace(input_, options_); }
+  BackEndVariables& Variables() { return problem_->variables(); }
+  void Start(size_t max_frames_per_part = kFramesPerPart) {
+    StartInParts(drive_.sequence, problem_->AllTerms(), max_frames_per_part, &Variables());
+  }
+  bool IsMoved(size_t frame) {
+    const Eigen::Matrix4d before = drive_.sequence.frames[frame].world_from_camera.Matrix();
+    return !Variables().PoseValue(frame).Matrix().isApprox(before, 1e-9);
+  }
+  void StartAtTheTruth() {
+    const auto set = [&](int index, const auto& values) {
+      std::ranges::copy(values, Variables().all()[static_cast<size_t>(index)].values);
+    };
+    for (size_t i = 0; i < drive_.sequence.frames.size(); ++i) {
+      set(Variables().Pose(i), Pack(*drive_.sequence.frames[i].true_world_from_camera));
+    }
+    for (size_t i = 0; i < drive_.sequence.objects.size(); ++i) {
+      set(Variables().Landmark(i),
+          Pack(drive_.sequence.objects[i].ground_truth->landmark_in_world));
+    }
+  }
+
+  Drive drive_{kFrames, kFrames / 2, kTurnSigma};
+  BackEndInput input_{drive_.sequence, drive_.starts, drive_.priors, {}, {}};
+  OptimiseOptions options_ = TangencyOptions();
+  std::optional<BackEndProblem> problem_;
+};
+
+// From dead reckoning the minimum is not found.
+TEST_F(StartInPartsTest, LeadsToTheMinimumThatIsFoundFromTheTruth) {
+  MakeProblem();
+  StartAtTheTruth();
+  problem_->Solve();
+  const double lowest = problem_->summary().final_cost;
+
+  MakeProblem();
+  problem_->Solve();
+  EXPECT_GT(problem_->summary().final_cost, 2.0 * lowest);
+
+  MakeProblem();
+  Start();
+  problem_->Solve();
+  EXPECT_TRUE(problem_->summary().converged);
+  EXPECT_LT(problem_->summary().final_cost, 1.05 * lowest);
+}
+
+TEST_F(StartInPartsTest, LeavesSegmentsOfOnePartWhereTheyAre) {
+  MakeProblem();
+  Start(kFrames);
+  for (size_t i = 0; i < kFrames; ++i) EXPECT_FALSE(IsMoved(i)) << i;
+}
+
+// Each segment's first pose defines a world of its own.
+TEST_F(StartInPartsTest, StartsASegmentWhereItStarts) {
+  constexpr size_t kSecond = kFrames / 2;
+  for (size_t i = kSecond; i < kFrames; ++i) drive_.sequence.frames[i].segment = 1;
+  MakeProblem();
+  Start();
+  EXPECT_TRUE(IsMoved(kSecond - 1));
+  EXPECT_FALSE(IsMoved(kSecond));
+  EXPECT_TRUE(IsMoved(kSecond + kFramesPerPart));
+}
+
+// What a part with few views makes of a landmark is not left.
+TEST_F(StartInPartsTest, LandmarksFitThePartThatSeesThemMostOften) {
+  MakeProblem();
+  Start();
+  const auto part_of = [](const Detection& detection) {
+    return static_cast<size_t>(detection.frame_index) / kFramesPerPart;
+  };
+  std::vector<std::map<size_t, int>> views(drive_.sequence.objects.size());
+  for (const Detection& detection : drive_.sequence.detections) {
+    ++views[static_cast<size_t>(detection.object_index)][part_of(detection)];
+  }
+  int in_several = 0;
+  for (const Detection& detection : drive_.sequence.detections) {
+    const auto object = static_cast<size_t>(detection.object_index);
+    const auto& of_object = views[object];
+    if (of_object.size() < 2 || 2 * of_object.at(part_of(detection)) <= kDriveViews) continue;
+    ++in_several;
+    const Rigid3d pose = Variables().PoseValue(static_cast<size_t>(detection.frame_index));
+    const double off_px = OutlineEdgeRms(
+        drive_.sequence.camera, Transform(pose.Inverse(), *Variables().LandmarkValue(object)),
+        detection.box);
+    EXPECT_LT(off_px, 0.2 * (detection.box.Width() + detection.box.Height())) << object;
+  }
+  EXPECT_GT(in_several, 100);
+}
+
+}  // namespace
+}  // namespace soslam
