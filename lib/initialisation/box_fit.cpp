@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "initialisation/tangencies_at_yaw.h"
+
 namespace soslam {
 namespace {
 
@@ -11,11 +13,23 @@ enum { kYaw, kFootX, kFootY, kLogA, kLogB, kLogC };
 
 }  // namespace
 
+// What is left of the second ratio once the first is known: the inverse Cholesky factor of their
+// covariance.
+BoxFit::RatioRows::RatioRows(const ShapePrior& prior) {
+  const double correlation = prior.log_correlation;
+  const double unexplained = std::sqrt(1.0 - correlation * correlation);
+  Eigen::Matrix2d whiten;
+  whiten << 1.0, 0.0, -correlation / unexplained, 1.0 / unexplained;
+  whiten *= prior.log_sigma.cwiseInverse().asDiagonal();
+  by_log_half_axes << whiten, -whiten.rowwise().sum();
+  at_prior = whiten * prior.ratio.array().log().matrix();
+}
+
 BoxFit::BoxFit(const UprightObservation& observation)
     : observation_(observation),
       ground_(observation.plane_in_camera),
       box_(observation.edges, Rigid3d(), ground_),
-      log_ratio_(observation.prior.ratio.array().log()),
+      ratio_(observation.prior),
       axis_yaw_(std::atan2(observation.world_axis_in_camera.dot(ground_.y),
                            observation.world_axis_in_camera.dot(ground_.x))) {}
 
@@ -57,21 +71,13 @@ void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& 
   }
 }
 
-void BoxFit::AddRatio(const UprightVector& at, QuadraticModel<6>* sum) const {
-  const ShapePrior& prior = observation_.prior;
-  const Eigen::Vector2d weight = prior.log_sigma.cwiseInverse();
-  const double a = weight.x() * (at[kLogA] - at[kLogC] - log_ratio_.x());
-  const double b = weight.y() * (at[kLogB] - at[kLogC] - log_ratio_.y());
-  UprightVector by_a = UprightVector::Zero();
-  by_a[kLogA] = weight.x();
-  by_a[kLogC] = -weight.x();
-  UprightVector by_b = UprightVector::Zero();
-  by_b[kLogB] = weight.y();
-  by_b[kLogC] = -weight.y();
-  const double correlation = prior.log_correlation;
-  const double unexplained = std::sqrt(1.0 - correlation * correlation);
-  sum->Add(a, by_a);
-  sum->Add((b - correlation * a) / unexplained, (by_b - correlation * by_a) / unexplained);
+QuadraticModel<3> BoxFit::RatioModel(const Eigen::Vector3d& log_half_axes) const {
+  const Eigen::Vector2d residuals = ratio_.by_log_half_axes * log_half_axes - ratio_.at_prior;
+  QuadraticModel<3> model;
+  model.cost = 0.5 * residuals.squaredNorm();
+  model.gradient = ratio_.by_log_half_axes.transpose().lazyProduct(residuals);
+  model.information = ratio_.by_log_half_axes.transpose().lazyProduct(ratio_.by_log_half_axes);
+  return model;
 }
 
 void BoxFit::AddYaw(double yaw, QuadraticModel<6>* sum) const {
@@ -87,14 +93,41 @@ void BoxFit::AddYaw(double yaw, QuadraticModel<6>* sum) const {
 QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
   QuadraticModel<6> sum;
   AddTangencies(depths_m, at, &sum);
-  AddRatio(at, &sum);
+  const QuadraticModel<3> ratio = RatioModel(at.tail<3>());
+  sum.cost += ratio.cost;
+  sum.gradient.tail<3>() += ratio.gradient;
+  sum.information.bottomRightCorner<3, 3>() += ratio.information;
   AddYaw(at[kYaw], &sum);
   return sum;
+}
+
+// None where edges are bounds, which depend on the foot as to whether they count, or do not tell
+// it.
+std::optional<double> BoxFit::MinimiseAtYaw(const Eigen::Array4d& depths_m,
+                                            UprightVector* start) const {
+  if ((box_.is_bound != 0.0).any()) return std::nullopt;
+  const TangenciesAtYaw tangencies(box_, depths_m, (*start)[kYaw],
+                                   observation_.prior.shape_exponent);
+  if (!tangencies.TellTheFoot()) return std::nullopt;
+  const auto evaluate = [&](const Eigen::Vector3d& log_half_axes) {
+    QuadraticModel<3> sum = tangencies.Evaluate(log_half_axes);
+    sum.Add(RatioModel(log_half_axes));
+    return sum;
+  };
+  Eigen::Vector3d log_half_axes = start->tail<3>();
+  QuadraticModel<6> of_yaw;
+  AddYaw((*start)[kYaw], &of_yaw);
+  const double cost = of_yaw.cost + MinimiseSquares<3>(evaluate, kMaxIterations, &log_half_axes);
+  *start << (*start)[kYaw], tangencies.BestFoot(log_half_axes), log_half_axes;
+  return cost;
 }
 
 double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
                         UprightVector* start) const {
   const Eigen::Array4d depths_m = TangentDepths(*start);
+  if (!yaw_is_free && further.empty()) {
+    if (const auto cost = MinimiseAtYaw(depths_m, start)) return *cost;
+  }
   const double shape_exponent = observation_.prior.shape_exponent;
   const auto evaluate = [&](const UprightVector& at) {
     QuadraticModel<6> sum = Evaluate(depths_m, at);

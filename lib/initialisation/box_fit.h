@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "initialisation/box_on_ground.h"
 #include "initialisation/levenberg_marquardt.h"
@@ -31,15 +32,23 @@ class BoxFit {
   const UprightGround& ground() const { return ground_; }
 
  private:
+  // Of the ratio prior's residuals, linear in the logarithms of the half axes.
+  struct RatioRows {
+    explicit RatioRows(const ShapePrior& prior);
+    Eigen::Matrix<double, 2, 3> by_log_half_axes;
+    Eigen::Vector2d at_prior;
+  };
+
+  std::optional<double> MinimiseAtYaw(const Eigen::Array4d& depths_m, UprightVector* start) const;
   void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
                      QuadraticModel<6>* sum) const;
-  void AddRatio(const UprightVector& at, QuadraticModel<6>* sum) const;
+  QuadraticModel<3> RatioModel(const Eigen::Vector3d& log_half_axes) const;
   void AddYaw(double yaw, QuadraticModel<6>* sum) const;
 
   const UprightObservation& observation_;
   UprightGround ground_;
   BoxOnGround box_;
-  Eigen::Vector2d log_ratio_;
+  RatioRows ratio_;
   double axis_yaw_;
 };
 

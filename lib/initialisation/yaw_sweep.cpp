@@ -25,23 +25,22 @@ constexpr int kLikelihoodSteps = 100;
 class Fitter {
  public:
   Fitter(const UprightObservation& observation, const YawObjective& objective)
-      : objective_(objective), box_fit_(observation) {}
+      : objective_(objective),
+        box_fit_(observation),
+        shape_exponent_(observation.prior.shape_exponent) {}
 
   // Of costs that depend on their start, again to those of the result; the cost is then that of the
   // result's own.
-  std::optional<UprightSolution> Fit(const Landmark& start, bool yaw_is_free) const {
-    const UprightGround& ground = box_fit_.ground();
-    UprightVector parameters = ground.ParametersOf(start);
-    UprightSolution solution{start, 0.0};
+  std::optional<UprightSolution> Fit(UprightVector parameters, bool yaw_is_free) const {
+    UprightSolution solution;
     for (int round = 0; round < objective_.rounds; ++round) {
-      const LandmarkCosts further = FurtherCosts(solution.landmark);
-      solution.cost = box_fit_.Minimise(further, yaw_is_free, &parameters);
-      solution.landmark = ground.LandmarkAt(parameters, start.shape_exponent);
+      solution.cost = box_fit_.Minimise(FurtherCosts(parameters), yaw_is_free, &parameters);
+      solution.landmark = LandmarkAt(parameters);
       if (!std::isfinite(solution.cost) || !IsInFront(solution.landmark)) return std::nullopt;
     }
     if (objective_.rounds > 1) {
       solution.cost = box_fit_.CostAtOwnDepths(parameters) +
-                      TotalCost(FurtherCosts(solution.landmark), solution.landmark);
+                      TotalCost(FurtherCosts(parameters), solution.landmark);
     }
     if (objective_.extra_cost) solution.cost += objective_.extra_cost(solution.landmark);
     return solution;
@@ -50,22 +49,29 @@ class Fitter {
   // The best landmark near a grid point. Without an extra cost the fit finds the yaw; with one a
   // finer grid does.
   std::optional<UprightSolution> RefineYaw(const Landmark& start, double step) const {
-    if (!objective_.extra_cost) return Fit(start, /*yaw_is_free=*/true);
+    const UprightVector parameters = box_fit_.ground().ParametersOf(start);
+    if (!objective_.extra_cost) return Fit(parameters, /*yaw_is_free=*/true);
     std::optional<UprightSolution> best;
     for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
-      const auto solution = Fit(Turned(start, i * step / kRefinementSteps), /*yaw_is_free=*/false);
+      UprightVector turned = parameters;
+      turned[0] += i * step / kRefinementSteps;
+      const auto solution = Fit(turned, /*yaw_is_free=*/false);
       if (solution && (!best || solution->cost < best->cost)) best = solution;
     }
     return best;
   }
 
  private:
-  LandmarkCosts FurtherCosts(const Landmark& start) const {
-    return objective_.further_costs ? objective_.further_costs(start) : LandmarkCosts();
+  Landmark LandmarkAt(const UprightVector& parameters) const {
+    return box_fit_.ground().LandmarkAt(parameters, shape_exponent_);
+  }
+  LandmarkCosts FurtherCosts(const UprightVector& start) const {
+    return objective_.further_costs ? objective_.further_costs(LandmarkAt(start)) : LandmarkCosts();
   }
 
   const YawObjective& objective_;
   BoxFit box_fit_;
+  double shape_exponent_;
 };
 
 }  // namespace
@@ -125,7 +131,6 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
   YawSweep sweep;
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
   const ClosedForm closed_form(observation);
-  const UprightGround ground(observation.plane_in_camera);
   const Fitter fitter(observation, objective);
   for (int i = 0; i < steps; ++i) {
     sweep.yaw.push_back(i * std::numbers::pi / steps);
@@ -134,9 +139,7 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
       sweep.solutions.emplace_back();
       continue;
     }
-    sweep.solutions.push_back(
-        fitter.Fit(ground.LandmarkAt(*start, observation.prior.shape_exponent),
-                   /*yaw_is_free=*/false));
+    sweep.solutions.push_back(fitter.Fit(*start, /*yaw_is_free=*/false));
   }
   return sweep;
 }
