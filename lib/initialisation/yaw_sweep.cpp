@@ -15,7 +15,7 @@ namespace {
 // Two optima closer than this are one.
 constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
 // Of a sweep's minima, those that may be the best ones when refined.
-constexpr size_t kRefinedMinima = 12;
+constexpr size_t kRefinedMinima = 6;
 // Of the finer grid around a grid point, either way.
 constexpr int kRefinementSteps = 10;
 // Of the likelihood between two yaws of the grid.

@@ -14,6 +14,7 @@
 namespace soslam {
 namespace {
 
+constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What the points of a batch are where the landmark is.
@@ -110,7 +111,12 @@ FrameEdges::FrameEdges(EdgeMaps edge_maps) : maps(std::move(edge_maps)) {
 
 EdgeTerm::EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
                    const Landmark& start_in_camera, const EdgeOptions& options)
-    : image_(std::move(image)), camera_(camera), options_(options) {
+    : image_(std::move(image)),
+      camera_(camera),
+      options_(options),
+      least_cosine_(options.edge_direction_tolerance_deg >= 90.0
+                        ? 0.0
+                        : std::cos(options.edge_direction_tolerance_deg * kDegrees)) {
   std::vector<ModelPoint> points =
       VisibleModelPoints(camera, start_in_camera, options.edge_spacing_px);
   // Of a body that is not in front of the camera no point counts.
@@ -149,9 +155,7 @@ bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) 
   if (!nearest || is_hidden) return false;
   const cv::Point at(static_cast<int>(nearest->x()), static_cast<int>(nearest->y()));
   const Eigen::Vector2d edge(-frame.slope_y.at<float>(at), frame.slope_x.at<float>(at));
-  if (options_.edge_direction_tolerance_deg >= 90.0) return true;
-  const double tolerance = options_.edge_direction_tolerance_deg * std::numbers::pi / 180.0;
-  return std::abs(point.along.dot(edge)) >= edge.norm() * std::cos(tolerance);
+  return std::abs(point.along.dot(edge)) >= edge.norm() * least_cosine_;
 }
 
 double EdgeTerm::Support(const Landmark& landmark_in_camera) const {

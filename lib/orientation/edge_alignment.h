@@ -67,6 +67,7 @@ class EdgeTerm final : public LandmarkCost {
   std::shared_ptr<const EdgeImage> image_;
   Camera camera_;
   EdgeOptions options_;
+  double least_cosine_;  // of the angle between a model point's direction and its edge's
   std::vector<BatchOfVectors> in_unit_body_;
   std::vector<Batch> is_point_;  // 1, and 0 behind the last point of the last batch
   int num_points_ = 0;
