@@ -12,6 +12,8 @@ namespace {
 
 // It is a start, not the result.
 constexpr int kIterationsPerPart = 10;
+// So many parts find their minimum together as well.
+constexpr size_t kPartsAtOnce = 2;
 
 // Frames begin <= i < end, none of another segment.
 struct Part {
@@ -27,7 +29,7 @@ std::vector<Part> PartsOf(const std::vector<Frame>& frames, size_t max_frames) {
     size_t last = first;
     while (last < frames.size() && frames[last].segment == frames[first].segment) ++last;
     const size_t count = (last - first + max_frames - 1) / max_frames;
-    for (size_t k = 0; count > 1 && k < count; ++k) {
+    for (size_t k = 0; count > kPartsAtOnce && k < count; ++k) {
       parts.push_back(
           {first + k * (last - first) / count, first + (k + 1) * (last - first) / count, k == 0});
     }
