@@ -38,6 +38,12 @@ std::vector<Part> PartsOf(const std::vector<Frame>& frames, size_t max_frames) {
   return parts;
 }
 
+double TotalCost(const Terms& terms) {
+  double cost = 0.0;
+  for (const Term* term : terms) cost += term->Cost();
+  return cost;
+}
+
 class PartByPart {
  public:
   PartByPart(std::vector<Part> parts, size_t frames, const Terms& terms,
@@ -59,6 +65,9 @@ class PartByPart {
       }
     }
     for (const auto& [landmark, values] : results) Set(landmark, values);
+  }
+  void Undo() {
+    for (size_t i = 0; i < starts_.size(); ++i) Set(static_cast<int>(i), starts_[i]);
   }
 
  private:
@@ -145,7 +154,10 @@ void StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frame
                   BackEndVariables* variables) {
   std::vector<Part> parts = PartsOf(sequence.frames, max_frames_per_part);
   if (parts.empty()) return;
-  PartByPart(std::move(parts), sequence.frames.size(), terms, variables).Run();
+  const double before = TotalCost(terms);
+  PartByPart in_parts(std::move(parts), sequence.frames.size(), terms, variables);
+  in_parts.Run();
+  if (!(TotalCost(terms) < before)) in_parts.Undo();
 }
 
 }  // namespace soslam

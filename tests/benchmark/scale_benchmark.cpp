@@ -46,16 +46,11 @@ BENCHMARK(World)
     ->Arg(250)
     ->Arg(500)
     ->Arg(1000)
-    ->Iterations(1)
-    ->Repetitions(3)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(World)
-    ->Name("scale/long_drive")
-    ->ArgName("frames_and_objects")
     ->Arg(2000)
     ->Arg(4000)
     ->Arg(8000)
     ->Iterations(1)
+    ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
