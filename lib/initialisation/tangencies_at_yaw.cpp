@@ -26,7 +26,9 @@ TangenciesAtYaw::TangenciesAtYaw(const BoxOnGround& box, const Eigen::Array4d& d
 
 bool TangenciesAtYaw::TellTheFoot() const {
   constexpr double kLeastShare = 1e-6;
-  return foot_triangle_(1, 1) > kLeastShare * foot_triangle_(0, 0);
+  const double one = foot_triangle_(0, 0);
+  const double other = foot_triangle_(1, 1);
+  return one > kLeastShare * other && other > kLeastShare * one;
 }
 
 TangenciesAtYaw::Rows TangenciesAtYaw::RowsAtOrigin(const Eigen::Vector3d& log_half_axes) const {

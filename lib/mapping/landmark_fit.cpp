@@ -91,10 +91,7 @@ void LandmarkFit::Evaluate(Hessian hessian, Equations* equations) const {
   }
 }
 
-double LandmarkFit::Linearise(Hessian hessian) {
-  Evaluate(hessian, &at_);
-  return at_.cost;
-}
+void LandmarkFit::Linearise(Hessian hessian) { Evaluate(hessian, &at_); }
 
 bool LandmarkFit::Step(Hessian hessian, double tolerance) {
   const auto diagonal = damping_.Of<Gradient>(at_.hessian.diagonal());

@@ -40,14 +40,14 @@ struct PlacedTerm {
 };
 
 // One landmark's cost, all other variables as they are, and steps that lower it. What its terms say
-// of other variables is kept along, so that no term is looked at twice in the same place.
+// of other variables is kept along, so that the equations of all need not look at them again.
 class LandmarkFit {
  public:
   // `terms` are those that depend on the landmark, which `index` is among the variables.
   LandmarkFit(std::vector<Variable>* variables, int index, const std::vector<PlacedTerm>& terms);
 
   // Anew: other variables have changed.
-  double Linearise(Hessian hessian);
+  void Linearise(Hessian hessian);
   double cost() const { return at_.cost; }
 
   // One step of Levenberg-Marquardt. False when none is expected to lower the cost by more than the

@@ -61,6 +61,7 @@ class Minimiser {
 
   Minimisation Run(int max_iterations) {
     Minimisation result;
+    LineariseFits();
     cost_ = Cost();
     if (!std::isfinite(cost_)) {
       throw NumericalError("back end: the cost is not finite at the start");
@@ -78,13 +79,11 @@ class Minimiser {
  private:
   double Tolerance() const { return kTolerance * cost_ + kNoCost; }
 
-  // Linearises the landmarks' costs.
-  double Cost() {
+  void LineariseFits() {
     for (LandmarkFit& fit : fits_) fit.Linearise(hessian_);
-    return CostOfFits();
   }
-  // Of the landmarks as they were linearised.
-  double CostOfFits() const {
+  // Of all terms; where the fits were linearised.
+  double Cost() const {
     double cost = 0.0;
     for (const LandmarkFit& fit : fits_) cost += fit.cost();
     for (const PlacedTerm& placed : without_landmark_) cost += placed.term->Cost();
@@ -97,7 +96,7 @@ class Minimiser {
     bool moves = false;
     for (LandmarkFit& fit : fits_) moves |= fit.Step(hessian_, tolerance);
     const double before = cost_;
-    cost_ = CostOfFits();
+    cost_ = Cost();
     hessian_ = before - cost_ < kNear * before ? Hessian::kNear : Hessian::kFar;
     return moves;
   }
@@ -112,7 +111,7 @@ class Minimiser {
   }
   void LineariseFar() {
     hessian_ = Hessian::kFar;
-    Cost();
+    LineariseFits();
     SetUpEquations();
   }
   bool Factor() {
@@ -140,6 +139,7 @@ class Minimiser {
     const double before = cost_;
     const std::vector<double> values = Values();
     MoveAll(step);
+    LineariseFits();
     cost_ = Cost();
     const double worth_a_step = std::min(kLandmarkTolerance * std::min(before, cost_), predicted);
     const double tolerance = std::max(kLeastGain * before, worth_a_step) / NumLandmarks();
@@ -147,10 +147,12 @@ class Minimiser {
       for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance); ++i) {
       }
     }
-    cost_ = CostOfFits();
+    cost_ = Cost();
     const double gain = before - cost_;  // with what landmarks brought
     if (gain > 0.0) {
+      const bool was_near = hessian_ == Hessian::kNear;
       hessian_ = gain < kNear * before ? Hessian::kNear : Hessian::kFar;
+      if (was_near && hessian_ == Hessian::kFar) LineariseFits();
       are_set_up_ = false;
       damping_.StepTaken(gain / predicted);
       return gain > kLeastGain * before;

@@ -13,13 +13,14 @@ namespace soslam {
 using Terms = std::vector<const Term*>;
 
 // Gradient and Hessian of the sum of all terms by a step of all variables that are not held and
-// that a term depends on. Keeps references to its arguments.
+// that a term depends on.
 class NormalEquations {
  public:
   NormalEquations(const std::vector<Variable>& variables, const Terms& terms);
 
   void SetZero();
-  // All terms, at the variables' values. Returns the cost, infinite where a term is not defined.
+  // At the variables' values; `terms` are those that it was made for. Returns the cost, infinite
+  // where a term is not defined.
   double Linearise(const Terms& terms, Hessian hessian);
   // Where a term adds its derivatives, by its index among the terms.
   const TermPlaces& PlacesOf(size_t term) const { return places_[term]; }

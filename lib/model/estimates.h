@@ -50,8 +50,9 @@ struct LandmarkEstimates {
 };
 
 // Texture and edges join in when the rest has settled: initial_cost is the first solve's of all
-// frames, without them; final_cost is the last one's, with them; the iterations are those of all.
-// Converged: so did the last solve, and choosing texture and edges anew changed nothing more.
+// frames, without them; final_cost is the last one's, with them; the iterations are those of all
+// solves, but not of a start in parts. Converged: so did the last solve, and choosing texture and
+// edges anew changed nothing more.
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;

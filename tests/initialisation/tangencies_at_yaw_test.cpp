@@ -52,8 +52,16 @@ TEST(TangenciesAtYaw, AreThoseOfTheBestFoot) {
 TEST(TangenciesAtYaw, OfPlanesThatAllRunOneWayDoNotTellTheFoot) {
   const StandingBody body(2.0);
   BoxOnGround box(body.observation.edges, Rigid3d(), UprightGround(body.plane));
+  const auto tell_the_foot = [&] {
+    return TangenciesAtYaw(box, Eigen::Array4d::Ones(), 0.3, 2.0).TellTheFoot();
+  };
+  EXPECT_TRUE(tell_the_foot());
   box.normals.col(1) = 2.0 * box.normals.col(0);
-  EXPECT_FALSE(TangenciesAtYaw(box, Eigen::Array4d::Ones(), 0.3, 2.0).TellTheFoot());
+  EXPECT_FALSE(tell_the_foot());
+  box.normals.col(0) *= 1e-9;
+  EXPECT_FALSE(tell_the_foot());
+  box.normals.col(0).setZero();
+  EXPECT_FALSE(tell_the_foot());
 }
 
 }  // namespace
