@@ -20,7 +20,6 @@ void Damping::StepRefused() {
 LandmarkFit::LandmarkFit(std::vector<Variable>* variables, int index,
                          const std::vector<PlacedTerm>& terms)
     : landmark_(&(*variables)[static_cast<size_t>(index)]) {
-  size_t kept = 0;
   for (const PlacedTerm& placed : terms) {
     const auto& of_term = placed.term->variables();
     Part part{placed, 0, {}};
@@ -30,11 +29,9 @@ LandmarkFit::LandmarkFit(std::vector<Variable>* variables, int index,
     }
     TermPlaces own;
     ForEachKept(part, &own,
-                [&](double*, double**, int size) { kept += static_cast<size_t>(size); });
+                [&](double*, double**, int size) { num_others_ += static_cast<size_t>(size); });
     parts_.push_back(part);
   }
-  at_.others.resize(kept);
-  candidate_.others.resize(kept);
 }
 
 template <typename Visit>
@@ -56,7 +53,7 @@ void LandmarkFit::Add(Hessian hessian, Equations* equations) const {
   equations->cost = 0.0;
   equations->gradient.setZero();
   equations->hessian.setZero();
-  std::ranges::fill(equations->others, 0.0);
+  equations->others.assign(num_others_, 0.0);
   double* next = equations->others.data();
   for (const Part& part : parts_) {
     TermPlaces own;
@@ -93,7 +90,7 @@ void LandmarkFit::Evaluate(Hessian hessian, Equations* equations) const {
 
 void LandmarkFit::Linearise(Hessian hessian) { Evaluate(hessian, &at_); }
 
-bool LandmarkFit::Step(Hessian hessian, double tolerance) {
+bool LandmarkFit::Step(Hessian hessian, double tolerance, Equations* candidate) {
   const auto diagonal = damping_.Of<Gradient>(at_.hessian.diagonal());
   Square damped = at_.hessian;
   damped.diagonal() += diagonal;
@@ -108,10 +105,10 @@ bool LandmarkFit::Step(Hessian hessian, double tolerance) {
   std::array<double, kLandmarkSize> before;
   std::copy_n(landmark_->values, kLandmarkSize, before.begin());
   Move(VariableKind::kLandmark, step.data(), landmark_->values);
-  Evaluate(hessian, &candidate_);
-  if (candidate_.cost < at_.cost) {
-    damping_.StepTaken((at_.cost - candidate_.cost) / predicted);
-    std::swap(at_, candidate_);
+  Evaluate(hessian, candidate);
+  if (candidate->cost < at_.cost) {
+    damping_.StepTaken((at_.cost - candidate->cost) / predicted);
+    std::swap(at_, *candidate);
     return true;
   }
   std::ranges::copy(before, landmark_->values);

@@ -43,21 +43,6 @@ struct PlacedTerm {
 // of other variables is kept along, so that the equations of all need not look at them again.
 class LandmarkFit {
  public:
-  // `terms` are those that depend on the landmark, which `index` is among the variables.
-  LandmarkFit(std::vector<Variable>* variables, int index, const std::vector<PlacedTerm>& terms);
-
-  // Anew: other variables have changed.
-  void Linearise(Hessian hessian);
-  double cost() const { return at_.cost; }
-
-  // One step of Levenberg-Marquardt. False when none is expected to lower the cost by more than the
-  // tolerance.
-  bool Step(Hessian hessian, double tolerance);
-
-  // Adds the derivatives by all variables to where they go.
-  void AddToPlaces() const;
-
- private:
   using Gradient = Eigen::Matrix<double, kLandmarkDof, 1>;
   using Square = Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>;
   struct Equations {
@@ -66,6 +51,22 @@ class LandmarkFit {
     Square hessian;
     std::vector<double> others;  // derivatives that are not by the landmark alone, part by part
   };
+
+  // `terms` are those that depend on the landmark, which `index` is among the variables.
+  LandmarkFit(std::vector<Variable>* variables, int index, const std::vector<PlacedTerm>& terms);
+
+  // Anew: other variables have changed.
+  void Linearise(Hessian hessian);
+  double cost() const { return at_.cost; }
+
+  // One step of Levenberg-Marquardt, tried in memory that fits can share. False when none is
+  // expected to lower the cost by more than the tolerance.
+  bool Step(Hessian hessian, double tolerance, Equations* candidate);
+
+  // Adds the derivatives by all variables to where they go.
+  void AddToPlaces() const;
+
+ private:
   // A term of the landmark.
   struct Part {
     PlacedTerm placed;
@@ -82,7 +83,8 @@ class LandmarkFit {
 
   Variable* landmark_;
   std::vector<Part> parts_;
-  Equations at_, candidate_;
+  size_t num_others_ = 0;
+  Equations at_;
   Damping damping_;
 };
 

@@ -94,7 +94,7 @@ class Minimiser {
   bool StepOfEachLandmark() {
     const double tolerance = Tolerance() / NumLandmarks();
     bool moves = false;
-    for (LandmarkFit& fit : fits_) moves |= fit.Step(hessian_, tolerance);
+    for (LandmarkFit& fit : fits_) moves |= fit.Step(hessian_, tolerance, &candidate_);
     const double before = cost_;
     cost_ = Cost();
     hessian_ = before - cost_ < kNear * before ? Hessian::kNear : Hessian::kFar;
@@ -144,7 +144,7 @@ class Minimiser {
     const double worth_a_step = std::min(kLandmarkTolerance * std::min(before, cost_), predicted);
     const double tolerance = std::max(kLeastGain * before, worth_a_step) / NumLandmarks();
     for (LandmarkFit& fit : fits_) {
-      for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance); ++i) {
+      for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance, &candidate_); ++i) {
       }
     }
     cost_ = Cost();
@@ -190,6 +190,7 @@ class Minimiser {
   std::vector<Variable>* variables_;
   bool others_vary_ = false;  // than landmarks
   std::vector<LandmarkFit> fits_;
+  LandmarkFit::Equations candidate_;
   std::vector<PlacedTerm> without_landmark_;
   std::optional<NormalEquations> equations_;
   std::optional<BlockCholesky> factor_;
