@@ -155,7 +155,8 @@ Eigen::Vector3d At(const BatchOfVectors& vectors, int i) {
 // Rays of all kinds from one origin, also from between the body and the cuboid around it. Newton's
 // last step of a batch leaves its square; where a ray grazes, the surface is met less sharply.
 TEST(BodySurface, ManyRaysMeetItWhereEachDoes) {
-  for (const double p : {kCuboidExponent, 1.0051, 1.02, 1.1, 1.5, 2.0 - 1e-9, kEllipsoidExponent}) {
+  for (const double p :
+       {kCuboidExponent, 1.0051, 1.02, 1.1, 1.3, 1.4, 1.5, 2.0 - 1e-9, kEllipsoidExponent}) {
     int seen = 0;
     for (int repetition = 0; repetition < 50; ++repetition) {
       const Eigen::Vector3d half_axes = RandomVector(0.2, 1.0);
