@@ -2,6 +2,7 @@
 #include "mapping/start_in_parts.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -22,8 +23,8 @@ constexpr double kMuchLess = 0.1;
 struct Part {
   size_t begin, end;
   bool begins_segment;
-  Terms terms = {};
-  std::map<int, int> landmarks = {};  // seen from here, by variable: in how many terms
+  Terms of_poses = {};                  // alone
+  std::map<int, Terms> landmarks = {};  // seen from here, by variable: what concerns them
 };
 
 std::vector<Part> PartsOf(const std::vector<Frame>& frames, size_t max_frames) {
@@ -62,7 +63,7 @@ class PartByPart {
     std::map<int, std::vector<double>> results;  // of landmarks
     for (size_t k = 0; k < parts_.size(); ++k) {
       Solve(parts_[k]);
-      for (const auto& [landmark, count] : parts_[k].landmarks) {
+      for (const auto& [landmark, of_landmark] : parts_[k].landmarks) {
         if (home_.at(landmark) == k) results[landmark] = ValuesOf(landmark);
       }
     }
@@ -99,50 +100,83 @@ class PartByPart {
       if (pose >= 0) {
         const size_t k = part_of[static_cast<size_t>(pose)];
         if (k == kNone) continue;
-        parts_[k].terms.push_back(term);
-        if (landmark >= 0) ++parts_[k].landmarks[landmark];
+        (landmark >= 0 ? parts_[k].landmarks[landmark] : parts_[k].of_poses).push_back(term);
       } else if (landmark >= 0) {
         of_landmark_alone[landmark].push_back(term);
       }
     }
     for (Part& part : parts_) {
-      for (const auto& [landmark, count] : part.landmarks) {
+      for (auto& [landmark, of_landmark] : part.landmarks) {
         const Terms& alone = of_landmark_alone[landmark];
-        part.terms.insert(part.terms.end(), alone.begin(), alone.end());
+        of_landmark.insert(of_landmark.end(), alone.begin(), alone.end());
       }
     }
   }
 
   void ChooseHomes() {
     for (size_t k = 0; k < parts_.size(); ++k) {
-      for (const auto& [landmark, count] : parts_[k].landmarks) {
+      for (const auto& [landmark, of_landmark] : parts_[k].landmarks) {
         const auto [home, is_new] = home_.emplace(landmark, k);
-        if (count > parts_[home->second].landmarks.at(landmark)) home->second = k;
+        const Terms& of_home = parts_[home->second].landmarks.at(landmark);
+        if (of_landmark.size() > of_home.size()) home->second = k;
       }
     }
   }
 
-  void Solve(const Part& part) {
-    Rigid3d carried;  // by what the part before corrected at its last frame
-    if (!part.begins_segment) {
-      const int last = variables_.Pose(part.begin - 1);
-      carried = UnpackPose(At(last).values) * UnpackPose(StartOf(last)).Inverse();
+  // Of a pose, since its start.
+  Rigid3d Correction(int pose) {
+    return UnpackPose(At(pose).values) * UnpackPose(StartOf(pose)).Inverse();
+  }
+  // Of those that see a landmark.
+  int MiddlePose(const Terms& of_landmark) {
+    std::vector<int> poses;
+    for (const Term* term : of_landmark) {
+      std::ranges::copy_if(term->variables(), std::back_inserter(poses),
+                           [&](int index) { return At(index).kind == VariableKind::kPose; });
     }
+    return poses[poses.size() / 2];
+  }
+
+  void Solve(const Part& part) {
+    const Rigid3d carried =
+        part.begins_segment ? Rigid3d() : Correction(variables_.Pose(part.begin - 1));
     std::vector<Variable> some = variables_.all();
     for (Variable& variable : some) variable.is_held = true;
     const auto release = [&](int index) {
       some[static_cast<size_t>(index)].is_held = At(index).is_held;
     };
+    Terms terms = part.of_poses;
     for (size_t i = part.begin; i < part.end; ++i) {
       const int pose = variables_.Pose(i);
       Set(pose, Pack(carried * UnpackPose(StartOf(pose))));
       release(pose);
     }
-    for (const auto& [landmark, count] : part.landmarks) {
+    for (const auto& [landmark, of_landmark] : part.landmarks) {
+      terms.insert(terms.end(), of_landmark.begin(), of_landmark.end());
       Set(landmark, Pack(Transform(carried, UnpackLandmark(StartOf(landmark)))));
       release(landmark);
     }
-    Minimise(part.terms, kIterationsPerPart, &some);
+    Minimise(terms, kIterationsPerPart, &some);
+    for (size_t i = part.begin; i < part.end; ++i) {
+      some[static_cast<size_t>(variables_.Pose(i))].is_held = true;
+    }
+    FitLandmarksAnew(part, terms, &some);
+  }
+
+  // While the poses were not right yet, a landmark may have been lost: where it costs less when it
+  // starts again from where its frames are now, it does.
+  void FitLandmarksAnew(const Part& part, const Terms& terms, std::vector<Variable>* landmarks) {
+    std::map<int, std::pair<double, std::vector<double>>> before;
+    for (const auto& [landmark, of_landmark] : part.landmarks) {
+      before[landmark] = {TotalCost(of_landmark), ValuesOf(landmark)};
+      const Rigid3d corrected = Correction(MiddlePose(of_landmark));
+      Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
+    }
+    Minimise(terms, kIterationsPerPart, landmarks);
+    for (const auto& [landmark, of_landmark] : part.landmarks) {
+      const auto& [cost, values] = before.at(landmark);
+      if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);
+    }
   }
 
   BackEndVariables& variables_;
