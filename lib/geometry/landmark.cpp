@@ -88,13 +88,14 @@ bool IsInFront(const Landmark& landmark_in_camera) {
 }
 
 std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
-                                       const Eigen::Vector2d& direction) {
+                                       const Eigen::Vector2d& direction,
+                                       const Eigen::Vector3d& start) {
   // Points of the body project inside its outline. The one that reaches farthest beyond the plane
   // through the camera centre and the image line direction . u = t projects beyond that line, until
   // the plane is tangent: Newton's method for a convex function of t.
   const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
   Eigen::Vector3d line(direction.x(), direction.y(), 0.0);
-  OutlinePoint outline{landmark_in_camera.Centre(), -std::numeric_limits<double>::infinity()};
+  OutlinePoint outline{start, -std::numeric_limits<double>::infinity()};
   for (int i = 0; i < kMaxOutlineSteps; ++i) {
     const auto pixel = camera.Project(outline.point);
     if (!pixel) return std::nullopt;
@@ -115,7 +116,7 @@ std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_
     const double sign = i < 2 ? -1.0 : 1.0;
     const Eigen::Vector2d direction =
         i % 2 == 0 ? Eigen::Vector2d(sign, 0.0) : Eigen::Vector2d(0.0, sign);
-    const auto end = OutlineEnd(camera, landmark_in_camera, direction);
+    const auto end = OutlineEnd(camera, landmark_in_camera, direction, landmark_in_camera.Centre());
     if (!end) return std::nullopt;
     ends[i] = sign * end->end_px;
   }

@@ -63,14 +63,16 @@ bool HasExtent(const Landmark& landmark);
 bool IsInFront(const Landmark& landmark_in_camera);
 
 // The farthest that the landmark's outline reaches in the image: the largest direction . pixel (px;
-// unit direction), and the point of the landmark (camera frame) that does. None when the way there
-// leads behind the camera.
+// unit direction), and the point of the landmark (camera frame) that does. Looked for from any
+// point of the landmark, found the sooner the nearer that is. None when the way there leads behind
+// the camera.
 struct OutlinePoint {
   Eigen::Vector3d point;
   double end_px;
 };
 std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
-                                       const Eigen::Vector2d& direction);
+                                       const Eigen::Vector2d& direction,
+                                       const Eigen::Vector3d& start);
 
 // The tight box around the outline of the landmark; not cut at the image border. None unless the
 // whole landmark is in front of the camera.

@@ -32,7 +32,8 @@ Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera)
   } else {
     for (int i = 0; i < kOutlineDirections; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-      const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)});
+      const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)},
+                                  landmark_in_camera.Centre());
       if (end) touch(end->point);
     }
   }

@@ -70,11 +70,13 @@ void AddCuboidEdges(const Eigen::Vector3d& camera_in_unit_body, PointSampler* sa
 void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sampler) {
   const Rigid3d object_from_camera = landmark.frame_from_object.Inverse();
   std::vector<Eigen::Vector3d> contacts;
+  Eigen::Vector3d last = landmark.Centre();
   for (int i = 0; i < kOutlineDirections; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-    const auto end = OutlineEnd(camera, landmark, {std::cos(angle), std::sin(angle)});
+    const auto end = OutlineEnd(camera, landmark, {std::cos(angle), std::sin(angle)}, last);
     if (!end) return;
-    contacts.push_back((object_from_camera * end->point).cwiseQuotient(landmark.half_axes));
+    last = end->point;
+    contacts.push_back((object_from_camera * last).cwiseQuotient(landmark.half_axes));
   }
   for (size_t i = 0; i < contacts.size(); ++i) {
     sampler->AddSegment(contacts[i], contacts[(i + 1) % contacts.size()]);

@@ -141,7 +141,7 @@ TEST(OutlineEnd, ReachesFarthestInItsDirection) {
     for (int i = 0; i < 20; ++i) {
       const double angle = RandomUniform(-3, 3);
       const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-      const auto end = OutlineEnd(camera, landmark, direction);
+      const auto end = OutlineEnd(camera, landmark, direction, landmark.Centre());
       ASSERT_TRUE(end);
       EXPECT_NEAR(direction.dot(*camera.Project(end->point)), end->end_px, 1e-6);
       for (int k = 0; k < 100; ++k) {
@@ -150,7 +150,7 @@ TEST(OutlineEnd, ReachesFarthestInItsDirection) {
     }
   }
   const Landmark behind{{Eigen::Quaterniond::Identity(), {0, 0, -3}}, {1, 1, 1}};
-  EXPECT_FALSE(OutlineEnd(camera, behind, {1, 0}));
+  EXPECT_FALSE(OutlineEnd(camera, behind, {1, 0}, behind.Centre()));
 }
 
 TEST(OutlineBox, NeedsTheWholeLandmarkInFront) {
