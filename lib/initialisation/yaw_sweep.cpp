@@ -39,8 +39,8 @@ class Fitter {
       if (!std::isfinite(solution.cost) || !IsInFront(solution.landmark)) return std::nullopt;
     }
     if (objective_.rounds > 1) {
-      solution.cost = box_fit_.CostAtOwnDepths(parameters) +
-                      TotalCost(FurtherCosts(parameters), solution.landmark);
+      solution.further_cost = TotalCost(FurtherCosts(parameters), solution.landmark);
+      solution.cost = box_fit_.CostAtOwnDepths(parameters) + solution.further_cost;
     }
     if (objective_.extra_cost) solution.cost += objective_.extra_cost(solution.landmark);
     return solution;

@@ -25,6 +25,7 @@ std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
 // texture of these views says. `input.starts` is not used.
 std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& input,
                                                          const LandmarkEstimates& estimates,
-                                                         const OptimiseOptions& options);
+                                                         const OptimiseOptions& options,
+                                                         int threads);
 
 }  // namespace soslam

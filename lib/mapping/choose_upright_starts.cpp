@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
+#include "base/parallel.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
 #include "mapping/choose_starts.h"
@@ -39,7 +41,11 @@ struct Candidate {
   FitCost cost;
 };
 
-// The cost of one object's landmark in the world over views of it, camera poses held.
+constexpr FitCost kAnyCost = {std::numeric_limits<size_t>::max(),
+                              std::numeric_limits<double>::infinity()};
+
+// The cost of one object's landmark in the world over views of it, camera poses held. Not for
+// several threads at once.
 class ObjectFit {
  public:
   // `views` index Sequence::detections.
@@ -54,20 +60,35 @@ class ObjectFit {
     boxes_.ratio_is_free = !options.ratio;
     boxes_.axes_weight = options.axes_weight;
     boxes_.huber_delta = options.huber_delta;
+    for (size_t i = 0; i < detections_.size(); ++i) {
+      const auto image = input.symmetry_images.find(detections_[i]);
+      if (image == input.symmetry_images.end()) continue;
+      textures_.push_back({i,
+                           {*image->second, input.sequence.CameraOf(Of(i)), options.texture,
+                            options.symmetry_options}});
+    }
   }
 
   const MultiViewObservation& boxes() const { return boxes_; }
 
-  FitCost Cost(const Landmark& landmark_in_world) const {
+  // The candidate, where it costs less than another.
+  std::optional<Candidate> Below(const FitCost& other, const Landmark& landmark_in_world) {
     const auto behind =
         std::count_if(boxes_.views.begin(), boxes_.views.end(), [&](const BoxView& view) {
           return !IsInFront(Transform(view.camera_from_world, landmark_in_world));
         });
-    return {static_cast<size_t>(behind), TotalCost(Terms(landmark_in_world), landmark_in_world) +
-                                             TextureCost(landmark_in_world)};
+    FitCost cost{static_cast<size_t>(behind),
+                 TotalCost(Terms(landmark_in_world), landmark_in_world)};
+    for (Texture& texture : textures_) {
+      if (!(cost < other)) return std::nullopt;
+      const BoxView& view = boxes_.views[texture.view];
+      cost.cost += view.weight *
+                   texture.asymmetry.Cost(Transform(view.camera_from_world, landmark_in_world));
+    }
+    return cost < other ? std::optional(Candidate{landmark_in_world, cost}) : std::nullopt;
   }
 
-  std::optional<Candidate> Fit(const Landmark& start_in_world) const {
+  std::optional<Landmark> Fit(const Landmark& start_in_world) const {
     Landmark landmark = start_in_world;
     for (int round = 0; round < kRounds; ++round) {
       const auto solution =
@@ -75,10 +96,15 @@ class ObjectFit {
       if (!solution) return std::nullopt;
       landmark = solution->landmark;
     }
-    return Candidate{landmark, Cost(landmark)};
+    return landmark;
   }
 
  private:
+  struct Texture {
+    size_t view;
+    TextureAsymmetry asymmetry;
+  };
+
   const Detection& Of(size_t view) const {
     return input_.sequence.detections[static_cast<size_t>(detections_[view])];
   }
@@ -98,35 +124,24 @@ class ObjectFit {
     return terms;
   }
 
-  double TextureCost(const Landmark& landmark_in_world) const {
-    double cost = 0.0;
-    for (size_t i = 0; i < detections_.size(); ++i) {
-      const auto image = input_.symmetry_images.find(detections_[i]);
-      if (image == input_.symmetry_images.end()) continue;
-      const BoxView& view = boxes_.views[i];
-      cost += view.weight * AsymmetryCost(*image->second, input_.sequence.CameraOf(Of(i)),
-                                          Transform(view.camera_from_world, landmark_in_world),
-                                          options_.texture, options_.symmetry_options);
-    }
-    return cost;
-  }
-
   const BackEndInput& input_;
   const OptimiseOptions& options_;
   std::vector<int> detections_;
   MultiViewObservation boxes_;
+  std::vector<Texture> textures_;
 };
 
 // The cheapest of each bin of yaw, cheapest first.
-std::vector<Candidate> BestOfEachYaw(const ObjectFit& fit, const std::vector<Landmark>& landmarks) {
+std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, ObjectFit* fit) {
   std::map<long, Candidate> best;
   for (Landmark landmark : landmarks) {
-    landmark.shape_exponent = fit.boxes().ShapeExponent();  // whatever it was found with
-    const double yaw = Yaw(fit.boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
+    landmark.shape_exponent = fit->boxes().ShapeExponent();  // whatever it was found with
+    const double yaw = Yaw(fit->boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
     const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
-    const Candidate candidate{landmark, fit.Cost(landmark)};
-    const auto [found, is_new] = best.emplace(bin, candidate);
-    if (!is_new && candidate.cost < found->second.cost) found->second = candidate;
+    const auto known = best.find(bin);
+    const auto candidate =
+        fit->Below(known == best.end() ? kAnyCost : known->second.cost, landmark);
+    if (candidate) best.insert_or_assign(bin, *candidate);
   }
   std::vector<Candidate> candidates;
   for (const auto& [bin, candidate] : best) candidates.push_back(candidate);
@@ -136,12 +151,9 @@ std::vector<Candidate> BestOfEachYaw(const ObjectFit& fit, const std::vector<Lan
   return candidates;
 }
 
-}  // namespace
-
-std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& input,
-                                                         const LandmarkEstimates& estimates,
-                                                         const OptimiseOptions& options) {
-  const Sequence& sequence = input.sequence;
+// In the world, by object: those of its observations, and from several views.
+std::vector<std::vector<Landmark>> HypothesesOf(const Sequence& sequence,
+                                                const LandmarkEstimates& estimates) {
   std::vector<std::vector<Landmark>> hypotheses(sequence.objects.size());
   for (const ObservationEstimate& observation : estimates.observations) {
     const Detection& detection =
@@ -156,23 +168,41 @@ std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& inp
     if (!object.landmark_in_world) continue;
     hypotheses[static_cast<size_t>(object.object_index)].push_back(*object.landmark_in_world);
   }
+  return hypotheses;
+}
+
+std::optional<Landmark> ChooseStart(std::vector<Landmark> hypotheses, ObjectFit* fit) {
+  if (fit->boxes().views.size() >= kMinViews) {
+    for (const UprightSolution& solution : SweepViews(fit->boxes(), kYawStep)) {
+      hypotheses.push_back(solution.landmark);
+    }
+  }
+  std::optional<Candidate> best;
+  for (const Candidate& start : BestOfEachYaw(hypotheses, fit)) {
+    const auto landmark = fit->Fit(start.landmark_in_world);
+    if (!landmark) continue;
+    const auto candidate = fit->Below(best ? best->cost : kAnyCost, *landmark);
+    if (candidate) best = candidate;
+  }
+  return best ? std::optional(best->landmark_in_world) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& input,
+                                                         const LandmarkEstimates& estimates,
+                                                         const OptimiseOptions& options,
+                                                         int threads) {
+  const Sequence& sequence = input.sequence;
+  const std::vector<std::vector<Landmark>> hypotheses = HypothesesOf(sequence, estimates);
   const auto detections = DetectionsByObject(sequence);
   std::vector<std::optional<Landmark>> starts(sequence.objects.size());
-  for (size_t i = 0; i < starts.size(); ++i) {
-    if (detections[i].empty() || !sequence.objects[i].is_static) continue;
-    const ObjectFit fit(input, i, SpreadOver(detections[i], kMaxViews), options);
-    if (detections[i].size() >= kMinViews) {
-      for (const UprightSolution& solution : SweepViews(fit.boxes(), kYawStep)) {
-        hypotheses[i].push_back(solution.landmark);
-      }
-    }
-    std::optional<Candidate> best;
-    for (const Candidate& candidate : BestOfEachYaw(fit, hypotheses[i])) {
-      const auto solution = fit.Fit(candidate.landmark_in_world);
-      if (solution && (!best || solution->cost < best->cost)) best = solution;
-    }
-    if (best) starts[i] = best->landmark_in_world;
-  }
+  ParallelFor("objects", static_cast<int>(starts.size()), threads, [&](int index) {
+    const auto i = static_cast<size_t>(index);
+    if (detections[i].empty() || !sequence.objects[i].is_static) return;
+    ObjectFit fit(input, i, SpreadOver(detections[i], kMaxViews), options);
+    starts[i] = ChooseStart(hypotheses[i], &fit);
+  });
   return starts;
 }
 

@@ -49,10 +49,6 @@ class OrientationProfile {
 
   double TextureCost(const Landmark& landmark) { return asymmetry_.Cost(landmark); }
 
-  double EdgeCost(const Landmark& landmark) const {
-    return TotalCost(EdgeCosts(landmark), landmark);
-  }
-
   void RecordPairs(const Landmark& landmark, SymmetryRecord* record) {
     const auto texture = asymmetry_.Find(landmark);
     if (!texture) return;
@@ -82,17 +78,15 @@ class OrientationProfile {
 };
 
 // `texture_costs` are those of the sweep's landmarks.
-void RecordCurves(const OrientationProfile& profile, const YawSweep& sweep,
-                  const std::vector<double>& texture_costs, const ProfileOptions& options,
-                  SymmetryRecord* record) {
+void RecordCurves(const YawSweep& sweep, const std::vector<double>& texture_costs,
+                  const ProfileOptions& options, SymmetryRecord* record) {
   record->yaw = sweep.yaw;
   record->cost["total"] = sweep.Costs();
   auto texture_cost = texture_costs.begin();
+  const double none = std::numeric_limits<double>::quiet_NaN();
   for (const auto& solution : sweep.solutions) {
-    const double none = std::numeric_limits<double>::quiet_NaN();
     if (options.edge_alignment) {
-      record->cost["edge_alignment"].push_back(solution ? profile.EdgeCost(solution->landmark)
-                                                        : none);
+      record->cost["edge_alignment"].push_back(solution ? solution->further_cost : none);
     }
     if (options.texture_symmetry) {
       record->cost["texture_symmetry"].push_back(solution ? *texture_cost++ : none);
@@ -147,7 +141,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     return result;
   }
   const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-  RecordCurves(profile, sweep, texture_costs, options, &result.record);
+  RecordCurves(sweep, texture_costs, options, &result.record);
   profile.RecordPairs(best, &result.record);
   result.record.refined_yaw =
       Yaw(detection.plane_in_camera.normal, best.frame_from_object.rotation);

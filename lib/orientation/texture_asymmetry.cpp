@@ -141,26 +141,14 @@ std::optional<MirroredTexture> TextureAsymmetry::FindPairByPair(
   return best;
 }
 
-std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
-                                                   const Landmark& landmark_in_camera,
-                                                   const TextureOptions& options,
-                                                   const SymmetryOptions& symmetry_options) {
-  return TextureAsymmetry(image, camera, options, symmetry_options).Find(landmark_in_camera);
-}
-
-double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
-                     const Landmark& landmark_in_camera, const TextureOptions& options,
-                     const SymmetryOptions& symmetry_options) {
-  return TextureAsymmetry(image, camera, options, symmetry_options).Cost(landmark_in_camera);
-}
-
 AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
                              const Landmark& start_in_camera, const TextureOptions& options,
                              const SymmetryOptions& symmetry_options, double weight)
     : image_(std::move(image)),
       camera_(camera),
       descriptor_(symmetry_options.descriptor),
-      texture_(FindMirroredTexture(*image_, camera, start_in_camera, options, symmetry_options)
+      texture_(TextureAsymmetry(*image_, camera, options, symmetry_options)
+                   .Find(start_in_camera)
                    .value_or(MirroredTexture())),
       scale_(Scale(start_in_camera, descriptor_, options)),
       weight_(2.0 * weight * options.asymmetry_cost /

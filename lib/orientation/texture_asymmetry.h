@@ -59,15 +59,6 @@ class TextureAsymmetry {
   std::optional<MirrorSearch> search_;  // where the descriptor and the samples allow it
 };
 
-// Of one landmark.
-std::optional<MirroredTexture> FindMirroredTexture(const SymmetryImage& image, const Camera& camera,
-                                                   const Landmark& landmark_in_camera,
-                                                   const TextureOptions& options,
-                                                   const SymmetryOptions& symmetry_options);
-double AsymmetryCost(const SymmetryImage& image, const Camera& camera,
-                     const Landmark& landmark_in_camera, const TextureOptions& options,
-                     const SymmetryOptions& symmetry_options);
-
 // The same for the back end, of the pairs and the mirror plane that are the start's, multiplied by
 // `weight`. A pair whose pixel leaves the surface counts as asymmetric, the limit of one that
 // differs more and more. Not for kBrief, which has no derivative.

@@ -67,7 +67,7 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
 
 }  // namespace
 
-void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int /*threads*/) {
+void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
   CheckImageOptions(options, files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
@@ -76,7 +76,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int /*
   BackEndInput input{sequence, {}, priors, {}, {}};
   if (options.symmetry || options.edge_alignment) ReadImages(options, files.at("edges"), &input);
   input.starts = options.detection_model == DetectionModel::kTangency
-                     ? ChooseUprightStarts(input, estimates, options)
+                     ? ChooseUprightStarts(input, estimates, options, threads)
                      : ChooseStarts(sequence, estimates);
   if (std::none_of(input.starts.begin(), input.starts.end(),
                    [](const auto& start) { return start.has_value(); })) {

@@ -87,7 +87,7 @@ struct Result {
 
 // Odometry drifts also along the plane's normal: poses, bodies and planes settle together.
 MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-                     const PlanesOptions& options) {
+                     const PlanesOptions& options, int threads) {
   OptimiseOptions optimise;
   optimise.detection_model = DetectionModel::kTangency;
   optimise.detection_sigma_fraction = options.detection_sigma_fraction;
@@ -99,7 +99,7 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   }
   optimise.axes_weight = 0.0;  // the world's axes mean nothing
   BackEndInput input{sequence, {}, priors, {}, {}};
-  input.starts = ChooseUprightStarts(input, {}, optimise);
+  input.starts = ChooseUprightStarts(input, {}, optimise, threads);
   return OptimiseMap(input, optimise);
 }
 
@@ -123,8 +123,9 @@ void Replace(const Plane& plane_in_world, const std::optional<Eigen::Matrix4d>& 
 
 // Poses, planes and bodies where they settle together; the sequence's own poses change with them.
 void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
-                     const PlanesOptions& options, PlanesEstimate* estimate, Sequence* level) {
-  const MapEstimate map = Adjusted(WithPlanes(*level, *estimate), priors, options);
+                     const PlanesOptions& options, int threads, PlanesEstimate* estimate,
+                     Sequence* level) {
+  const MapEstimate map = Adjusted(WithPlanes(*level, *estimate), priors, options, threads);
   for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
     const auto covariance = map.plane_covariances.find(static_cast<int>(i));
     Replace(map.planes_in_world[i],
@@ -155,7 +156,7 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   }
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
   result.estimate = EstimatePlanes(level, priors, trajectory.attitude, options, threads);
-  if (options.refine_poses) RefineWithPoses(priors, options, &result.estimate, &level);
+  if (options.refine_poses) RefineWithPoses(priors, options, threads, &result.estimate, &level);
   result.sequence = WithPlanes(std::move(level), result.estimate);
   result.sequence.frames = sequence.frames;  // odometry stays what was measured
   return result;

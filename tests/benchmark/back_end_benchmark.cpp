@@ -57,7 +57,7 @@ void ChooseStart(benchmark::State& state) {
   const auto estimates = InitialiseUpright(object.sequence, object.input.priors, UprightOptions(),
                                            /*threads=*/1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(ChooseUprightStarts(object.input, estimates, OptionsOfOursST()));
+    benchmark::DoNotOptimize(ChooseUprightStarts(object.input, estimates, OptionsOfOursST(), 1));
   }
 }
 BENCHMARK(ChooseStart)->Name("back_end/choose_start")->Unit(benchmark::kMillisecond);

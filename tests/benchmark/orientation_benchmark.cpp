@@ -38,8 +38,9 @@ BENCHMARK(MakeSymmetryImage)->Name("texture/symmetry_image");
 void FindMirror(benchmark::State& state) {
   const TexturedView view;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(FindMirroredTexture(
-        view.image, view.sequence.camera, view.landmark_in_camera, TextureOfST(), SymmetryOfST()));
+    benchmark::DoNotOptimize(
+        TextureAsymmetry(view.image, view.sequence.camera, TextureOfST(), SymmetryOfST())
+            .Find(view.landmark_in_camera));
   }
   state.counters["samples"] = static_cast<double>(
       SamplePixels(view.image, view.sequence.camera, view.landmark_in_camera, SymmetryOfST())

@@ -22,15 +22,17 @@ class UprightStarts : public testing::Test {
           {static_cast<int>(i), {{Turned(truth, turn), 0.0}, {truth, 1.0}}, ""});
     }
   }
-  std::vector<std::optional<Landmark>> Choose() const {
+  std::vector<std::optional<Landmark>> Choose(int threads = 1) const {
     BackEndInput input = TruthInput(sequence_);
     input.edge_images = edge_images_;
-    return ChooseUprightStarts(input, estimates_, TangencyOptions());
+    input.symmetry_images = symmetry_images_;
+    return ChooseUprightStarts(input, estimates_, TangencyOptions(), threads);
   }
 
   Sequence sequence_ = CuboidSequence(4, 12);
   LandmarkEstimates estimates_;
   std::map<int, std::shared_ptr<const EdgeImage>> edge_images_;
+  std::map<int, std::shared_ptr<const SymmetryImage>> symmetry_images_;
 };
 
 TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
@@ -43,6 +45,20 @@ TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
       EXPECT_GT(BoxIou(*starts[i], sequence_.objects[i].ground_truth->landmark_in_world), 0.98)
           << "object " << i << ", edges " << edges;
     }
+  }
+}
+
+// Edges and texture take part.
+TEST_F(UprightStarts, AreTheSameWhateverTheThreads) {
+  edge_images_ = DrawnEdges(sequence_);
+  for (const auto& [index, image] : edge_images_) {
+    symmetry_images_[index] = std::make_shared<const SymmetryImage>(image->frame->maps, image->box);
+  }
+  const auto one = Choose(1), three = Choose(3);
+  for (size_t i = 0; i < one.size(); ++i) {
+    ASSERT_TRUE(one[i] && three[i]);
+    EXPECT_EQ(one[i]->frame_from_object.Matrix(), three[i]->frame_from_object.Matrix());
+    EXPECT_EQ(one[i]->half_axes, three[i]->half_axes);
   }
 }
 

@@ -35,7 +35,7 @@ TEST(TangencyBackEnd, EstimatedPlanesSettleUnderTheirObjects) {
   const Sequence given = SyntheticSequence(scene, /*noise=*/false);
   const Sequence sequence = OnPlanesToEstimate(given);
   BackEndInput input = TruthInput(sequence);
-  input.starts = ChooseUprightStarts(input, {}, TangencyOptions());
+  input.starts = ChooseUprightStarts(input, {}, TangencyOptions(), 1);
   const MapEstimate map = OptimiseMap(input, TangencyOptions());
   ASSERT_EQ(map.planes_in_world.size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
@@ -146,7 +146,7 @@ TEST(TangencyBackEnd, WhatMovesIsNoLandmark) {
   sequence.objects[1].is_static = false;
   BackEndInput input = TruthInput(sequence);
   LandmarkEstimates estimates;
-  input.starts = ChooseUprightStarts(input, estimates, TangencyOptions());
+  input.starts = ChooseUprightStarts(input, estimates, TangencyOptions(), 1);
   EXPECT_TRUE(input.starts[0]);
   EXPECT_FALSE(input.starts[1]);
   const MapEstimate map = OptimiseMap(input, TangencyOptions());

@@ -26,7 +26,7 @@ TextureOptions Texture(double cost, double scale) {
 }
 
 // All pixels the same: whatever is mirrored, nothing differs.
-TEST(AsymmetryCost, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
+TEST(TextureAsymmetry, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   SymmetryImage image = SparseImage();
   image.maps.grey = cv::Scalar(128);
   SymmetryOptions options = EverywhereInTheImage();
@@ -35,7 +35,7 @@ TEST(AsymmetryCost, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   texture.asymmetry_cost = 4.0;
   const Landmark landmark = FacingView().LandmarkInCamera();
   const auto cost = [&](const Landmark& of) {
-    return AsymmetryCost(image, TestCamera(), of, texture, options);
+    return TextureAsymmetry(image, TestCamera(), texture, options).Cost(of);
   };
   EXPECT_NEAR(cost(landmark), 0.0, 1e-12);
   // Seen from its side, every mirror point is hidden.
@@ -52,7 +52,7 @@ Landmark FacingCube(double shape_exponent) {
 }
 
 // Two grey halves that meet in the middle of the image: every pair differs by all of the range.
-TEST(AsymmetryCost, GrowsToAllOfItWithTheDifference) {
+TEST(TextureAsymmetry, GrowsToAllOfItWithTheDifference) {
   SymmetryImage image = SparseImage();
   image.maps.grey = cv::Scalar(0);
   image.maps.grey.colRange(0, 320) = cv::Scalar(255);
@@ -62,13 +62,13 @@ TEST(AsymmetryCost, GrowsToAllOfItWithTheDifference) {
   camera.cx = 319.5;
   const Landmark landmark = FacingCube(kEllipsoidExponent);
   for (const double scale : {0.1, 1.0, 2.0, 100.0}) {
-    EXPECT_NEAR(AsymmetryCost(image, camera, landmark, Texture(3.0, scale), options),
+    EXPECT_NEAR(TextureAsymmetry(image, camera, Texture(3.0, scale), options).Cost(landmark),
                 3.0 / (1.0 + scale * scale), 1e-9);
   }
 }
 
 // Grey values that are symmetric about a column beside the body's centre.
-TEST(AsymmetryCost, FindsTheMirrorPlaneBesideTheCentre) {
+TEST(TextureAsymmetry, FindsTheMirrorPlaneBesideTheCentre) {
   SymmetryImage image = SparseImage();
   Camera camera = TestCamera();
   camera.cx = 319.5;
@@ -81,16 +81,17 @@ TEST(AsymmetryCost, FindsTheMirrorPlaneBesideTheCentre) {
   options.descriptor = Descriptor::kGrey;
   const Landmark landmark = FacingCube(kCuboidExponent);
   TextureOptions texture = Texture(1.0, 0.1);
-  const auto centred = FindMirroredTexture(image, camera, landmark, texture, options);
+  const auto centred = TextureAsymmetry(image, camera, texture, options).Find(landmark);
   texture.mirror_plane_range = 0.2;  // of its size, either way: up to 0.1 m in steps of 0.0125 m
-  const auto beside = FindMirroredTexture(image, camera, landmark, texture, options);
+  const auto beside = TextureAsymmetry(image, camera, texture, options).Find(landmark);
   ASSERT_TRUE(centred && beside);
   EXPECT_GT(centred->asymmetry, 0.3);
   EXPECT_EQ(centred->mirror_plane, 0.0);
   EXPECT_LT(beside->asymmetry, 0.01);
   const double size_m = 0.5;
   EXPECT_NEAR(std::abs(beside->mirror_plane) * size_m, 0.05, 1e-12);
-  EXPECT_NEAR(AsymmetryCost(image, camera, landmark, texture, options), beside->asymmetry, 1e-12);
+  EXPECT_NEAR(TextureAsymmetry(image, camera, texture, options).Cost(landmark), beside->asymmetry,
+              1e-12);
 }
 
 TEST(MirrorPlane, MayNotLieBesideTheCentreOfWhatIsMeasuredOnTheSurface) {
@@ -118,7 +119,8 @@ TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
       const Landmark start = FacingView().LandmarkInCamera();
       const AsymmetryTerm term(image, TestCamera(), start, texture, options, 0.25);
       ASSERT_GT(term.NumPairs(), 50);
-      const double expected = 0.25 * AsymmetryCost(*image, TestCamera(), start, texture, options);
+      const double expected =
+          0.25 * TextureAsymmetry(*image, TestCamera(), texture, options).Cost(start);
       EXPECT_GT(expected, 1e-3);
       EXPECT_NEAR(term.Value(start), expected, 1e-9);
     }

@@ -128,7 +128,7 @@ TEST_P(DegenerateTest, BackEndWithBodiesOfAnyShape) {
     options.detection_model = DetectionModel::kTangency;
     BackEndInput input{sequence, {}, priors, {}, {}};
     input.starts = ChooseUprightStarts(
-        input, InitialiseUpright(sequence, priors, UprightOptions(), 1), options);
+        input, InitialiseUpright(sequence, priors, UprightOptions(), 1), options, 1);
     ExpectDefined(OptimiseMap(input, options), options.max_iterations);
   });
 }
