@@ -49,6 +49,7 @@ BENCHMARK(World)
     ->Arg(2000)
     ->Arg(4000)
     ->Arg(8000)
+    ->Arg(16000)
     ->Iterations(1)
     ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
