@@ -76,22 +76,22 @@ struct OpenRays {
   Batch exit = Batch::Zero();
 };
 
-using Some = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBatchSize, 1>;
+using NumbersOfRays = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBatchSize, 1>;
 
 // |x|^exponent, exponent >= 0. Most shape exponents (1.1, 1.2, 1.4, 1.5) have a q of whole halves:
 // products and a root then take a fraction of the time of logarithms.
-Some AbsolutePower(const Some& x, double exponent) {
+NumbersOfRays AbsolutePower(const NumbersOfRays& x, double exponent) {
   constexpr double kRounding = 1e-12;  // of q = p / (p - 1)
   const double halves = std::round(2.0 * exponent);
   if (std::abs(2.0 * exponent - halves) > kRounding) {
     return (exponent * (x.abs() + std::numeric_limits<double>::min()).log()).exp();
   }
   auto whole = static_cast<int>(halves) / 2;
-  Some power = Some::Ones(x.size());
+  NumbersOfRays power = NumbersOfRays::Ones(x.size());
   if (static_cast<int>(halves) % 2 == 1) power = x.abs().sqrt();
-  for (Some doubled = x.abs(); whole > 0; whole /= 2) {
-    if (whole % 2 == 1) power *= doubled;
-    doubled *= doubled;
+  for (NumbersOfRays squared = x.abs(); whole > 0; whole /= 2) {
+    if (whole % 2 == 1) power *= squared;
+    squared *= squared;
   }
   return power;
 }
@@ -111,10 +111,10 @@ struct PowersAlongRays {
     }
   }
 
-  std::array<Some, 3> x;
-  std::array<Some, 3> power;  // |x_k|^(q - 2): serves the sum, its slope and the gradient
-  Some excess;                // F^q - 1, at most 2
-  Some slope;                 // of F^q
+  std::array<NumbersOfRays, 3> x;
+  std::array<NumbersOfRays, 3> power;  // |x_k|^(q - 2): serves the sum, its slope and the gradient
+  NumbersOfRays excess;                // F^q - 1, at most 2
+  NumbersOfRays slope;                 // of F^q
 };
 
 // Newton's step to F = 1, F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q; its

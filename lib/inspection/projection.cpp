@@ -30,11 +30,14 @@ Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera)
             Eigen::Vector3d(signs.cwiseProduct(landmark_in_camera.half_axes)));
     }
   } else {
+    Eigen::Vector3d last = landmark_in_camera.Centre();
     for (int i = 0; i < kOutlineDirections; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-      const auto end = OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)},
-                                  landmark_in_camera.Centre());
-      if (end) touch(end->point);
+      const auto end =
+          OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)}, last);
+      if (!end) continue;
+      last = end->point;
+      touch(last);
     }
   }
   std::vector<cv::Point2f> hull, simple;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <tuple>
 
@@ -71,8 +72,7 @@ class ObjectFit {
 
   const MultiViewObservation& boxes() const { return boxes_; }
 
-  // The candidate, where it costs less than another.
-  std::optional<Candidate> Below(const FitCost& other, const Landmark& landmark_in_world) {
+  std::optional<Candidate> IfCheaperThan(const FitCost& other, const Landmark& landmark_in_world) {
     const auto behind =
         std::count_if(boxes_.views.begin(), boxes_.views.end(), [&](const BoxView& view) {
           return !IsInFront(Transform(view.camera_from_world, landmark_in_world));
@@ -140,7 +140,7 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, Obj
     const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
     const auto known = best.find(bin);
     const auto candidate =
-        fit->Below(known == best.end() ? kAnyCost : known->second.cost, landmark);
+        fit->IfCheaperThan(known == best.end() ? kAnyCost : known->second.cost, landmark);
     if (candidate) best.insert_or_assign(bin, *candidate);
   }
   std::vector<Candidate> candidates;
@@ -181,7 +181,7 @@ std::optional<Landmark> ChooseStart(std::vector<Landmark> hypotheses, ObjectFit*
   for (const Candidate& start : BestOfEachYaw(hypotheses, fit)) {
     const auto landmark = fit->Fit(start.landmark_in_world);
     if (!landmark) continue;
-    const auto candidate = fit->Below(best ? best->cost : kAnyCost, *landmark);
+    const auto candidate = fit->IfCheaperThan(best ? best->cost : kAnyCost, *landmark);
     if (candidate) best = candidate;
   }
   return best ? std::optional(best->landmark_in_world) : std::nullopt;

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "mapping/minimise.h"
 
@@ -23,7 +25,7 @@ constexpr double kMuchLess = 0.1;
 struct Part {
   size_t begin, end;
   bool begins_segment;
-  Terms of_poses = {};                  // alone
+  Terms without_landmark = {};
   std::map<int, Terms> landmarks = {};  // seen from here, by variable: what concerns them
 };
 
@@ -100,7 +102,8 @@ class PartByPart {
       if (pose >= 0) {
         const size_t k = part_of[static_cast<size_t>(pose)];
         if (k == kNone) continue;
-        (landmark >= 0 ? parts_[k].landmarks[landmark] : parts_[k].of_poses).push_back(term);
+        (landmark >= 0 ? parts_[k].landmarks[landmark] : parts_[k].without_landmark)
+            .push_back(term);
       } else if (landmark >= 0) {
         of_landmark_alone[landmark].push_back(term);
       }
@@ -123,11 +126,16 @@ class PartByPart {
     }
   }
 
+  std::vector<Variable> AllHeld() const {
+    std::vector<Variable> all = variables_.all();
+    for (Variable& variable : all) variable.is_held = true;
+    return all;
+  }
   // Of a pose, since its start.
   Rigid3d Correction(int pose) {
     return UnpackPose(At(pose).values) * UnpackPose(StartOf(pose)).Inverse();
   }
-  // Of those that see a landmark.
+  // Of those that see a landmark, in the order of their terms, which is that of frames.
   int MiddlePose(const Terms& of_landmark) {
     std::vector<int> poses;
     for (const Term* term : of_landmark) {
@@ -140,12 +148,11 @@ class PartByPart {
   void Solve(const Part& part) {
     const Rigid3d carried =
         part.begins_segment ? Rigid3d() : Correction(variables_.Pose(part.begin - 1));
-    std::vector<Variable> some = variables_.all();
-    for (Variable& variable : some) variable.is_held = true;
+    std::vector<Variable> some = AllHeld();
     const auto release = [&](int index) {
       some[static_cast<size_t>(index)].is_held = At(index).is_held;
     };
-    Terms terms = part.of_poses;
+    Terms terms = part.without_landmark;
     for (size_t i = part.begin; i < part.end; ++i) {
       const int pose = variables_.Pose(i);
       Set(pose, Pack(carried * UnpackPose(StartOf(pose))));
@@ -157,23 +164,24 @@ class PartByPart {
       release(landmark);
     }
     Minimise(terms, kIterationsPerPart, &some);
-    for (size_t i = part.begin; i < part.end; ++i) {
-      some[static_cast<size_t>(variables_.Pose(i))].is_held = true;
-    }
-    FitLandmarksAnew(part, terms, &some);
+    FitLandmarksAnew(part.landmarks);
   }
 
   // While the poses were not right yet, a landmark may have been lost: where it costs less when it
   // starts again from where its frames are now, it does.
-  void FitLandmarksAnew(const Part& part, const Terms& terms, std::vector<Variable>* landmarks) {
+  void FitLandmarksAnew(const std::map<int, Terms>& landmarks) {
     std::map<int, std::pair<double, std::vector<double>>> before;
-    for (const auto& [landmark, of_landmark] : part.landmarks) {
+    Terms terms;
+    std::vector<Variable> some = AllHeld();
+    for (const auto& [landmark, of_landmark] : landmarks) {
+      terms.insert(terms.end(), of_landmark.begin(), of_landmark.end());
+      some[static_cast<size_t>(landmark)].is_held = false;
       before[landmark] = {TotalCost(of_landmark), ValuesOf(landmark)};
       const Rigid3d corrected = Correction(MiddlePose(of_landmark));
       Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
     }
-    Minimise(terms, kIterationsPerPart, landmarks);
-    for (const auto& [landmark, of_landmark] : part.landmarks) {
+    Minimise(terms, kIterationsPerPart, &some);
+    for (const auto& [landmark, of_landmark] : landmarks) {
       const auto& [cost, values] = before.at(landmark);
       if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);
     }

@@ -61,7 +61,7 @@ SOSLAM_WIDE_LOOPS void Project(const Camera& camera, const Landmark& landmark,
 // and its derivative. Both 0 for what is not a point.
 void Truncate(const Batch& distance, const Batch& is_point, double tau, Batch* residual,
               Batch* slope) {
-  const Batch inverse_root = (1.0 + (distance * (1.0 / tau)).square()).sqrt().inverse();
+  const Batch inverse_root = (1.0 + (distance / tau).square()).sqrt().inverse();
   const auto is_seen = inverse_root > 0.0;  // not so of NaN
   *residual = is_point * is_seen.select(distance * inverse_root, tau);
   *slope = is_point * is_seen.select(inverse_root.cube(), 0.0);

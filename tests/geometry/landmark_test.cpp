@@ -142,7 +142,9 @@ TEST(OutlineEnd, ReachesFarthestInItsDirection) {
       const double angle = RandomUniform(-3, 3);
       const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
       const auto end = OutlineEnd(camera, landmark, direction, landmark.Centre());
-      ASSERT_TRUE(end);
+      const auto same = OutlineEnd(camera, landmark, direction, RandomSurfacePoint(landmark));
+      ASSERT_TRUE(end && same);
+      EXPECT_NEAR(same->end_px, end->end_px, 1e-8);
       EXPECT_NEAR(direction.dot(*camera.Project(end->point)), end->end_px, 1e-6);
       for (int k = 0; k < 100; ++k) {
         EXPECT_LT(direction.dot(*camera.Project(RandomSurfacePoint(landmark))), end->end_px + 1e-9);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "evaluation/iou.h"
 #include "mapping/choose_starts.h"
 #include "support/cuboid_map.h"
@@ -26,9 +28,10 @@ class UprightStarts : public testing::Test {
     BackEndInput input = TruthInput(sequence_);
     input.edge_images = edge_images_;
     input.symmetry_images = symmetry_images_;
-    return ChooseUprightStarts(input, estimates_, TangencyOptions(), threads);
+    return ChooseUprightStarts(input, estimates_, options_, threads);
   }
 
+  OptimiseOptions options_ = TangencyOptions();
   Sequence sequence_ = CuboidSequence(4, 12);
   LandmarkEstimates estimates_;
   std::map<int, std::shared_ptr<const EdgeImage>> edge_images_;
@@ -48,17 +51,27 @@ TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
   }
 }
 
-// Edges and texture take part.
-TEST_F(UprightStarts, AreTheSameWhateverTheThreads) {
-  edge_images_ = DrawnEdges(sequence_);
-  for (const auto& [index, image] : edge_images_) {
+// Neither on what was looked at before, nor on what was given up as more expensive.
+TEST_F(UprightStarts, DoNotDependOnThreadsOrTheOrderOfHypotheses) {
+  options_.texture.asymmetry_cost = 100.0;  // decides
+  for (const auto& [index, image] : DrawnEdges(sequence_)) {
     symmetry_images_[index] = std::make_shared<const SymmetryImage>(image->frame->maps, image->box);
   }
-  const auto one = Choose(1), three = Choose(3);
-  for (size_t i = 0; i < one.size(); ++i) {
-    ASSERT_TRUE(one[i] && three[i]);
-    EXPECT_EQ(one[i]->frame_from_object.Matrix(), three[i]->frame_from_object.Matrix());
-    EXPECT_EQ(one[i]->half_axes, three[i]->half_axes);
+  for (const Descriptor descriptor : {Descriptor::kDistanceTransform, Descriptor::kImprovedDt}) {
+    options_.symmetry_options.descriptor = descriptor;
+    const auto starts = Choose(1), on_three_threads = Choose(3);
+    for (auto& observation : estimates_.observations) std::ranges::reverse(observation.hypotheses);
+    std::ranges::reverse(estimates_.observations);
+    const auto in_reverse = Choose(1);
+    for (size_t i = 0; i < starts.size(); ++i) {
+      ASSERT_TRUE(starts[i] && on_three_threads[i] && in_reverse[i]);
+      EXPECT_EQ(starts[i]->frame_from_object.Matrix(),
+                on_three_threads[i]->frame_from_object.Matrix());
+      EXPECT_EQ(starts[i]->half_axes, on_three_threads[i]->half_axes);
+      EXPECT_TRUE(in_reverse[i]->frame_from_object.Matrix().isApprox(
+          starts[i]->frame_from_object.Matrix(), 1e-6));
+      EXPECT_TRUE(in_reverse[i]->half_axes.isApprox(starts[i]->half_axes, 1e-6));
+    }
   }
 }
 

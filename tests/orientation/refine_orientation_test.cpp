@@ -176,7 +176,9 @@ TEST_F(RefineBoxes, RecordsTheCurvesOfAllParts) {
     if (std::isnan(total)) continue;
     EXPECT_LE(record.cost.at("texture_symmetry")[i], options.texture.asymmetry_cost);
     EXPECT_GE(record.cost.at("texture_symmetry")[i], 0.0);
-    EXPECT_GE(record.cost.at("edge_alignment")[i], 0.0);
+    EXPECT_GT(record.cost.at("edge_alignment")[i], 0.0);
+    EXPECT_GE(total,
+              record.cost.at("texture_symmetry")[i] + record.cost.at("edge_alignment")[i] - 1e-9);
   }
   ASSERT_TRUE(record.yaw_sigma);
   EXPECT_TRUE(std::isfinite(*record.yaw_sigma));
