@@ -104,7 +104,8 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
     }
     EXPECT_TRUE(IsSameBody(starts[4 * i + 3], landmark, kFitted));
     EXPECT_TRUE(IsSameBody(sweep.solutions[i]->landmark, landmark, kFitted));
-    EXPECT_NEAR(sweep.solutions[i]->cost, CostAtOwnDepths(body.observation, landmark) + 7.0, 1e-9);
+    EXPECT_NEAR(sweep.solutions[i]->cost,
+                CostAtOwnDepths(body.observation, sweep.solutions[i]->landmark) + 7.0, 1e-9);
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <opencv2/core/utility.hpp>
+
 #include "support/random.h"
 
 namespace {
@@ -14,6 +16,7 @@ class Reseed : public testing::EmptyTestEventListener {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
+  cv::setNumThreads(1);  // as in stages
   testing::UnitTest::GetInstance()->listeners().Append(new Reseed);
   return RUN_ALL_TESTS();
 }
