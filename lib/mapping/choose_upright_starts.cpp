@@ -42,8 +42,9 @@ struct Candidate {
   FitCost cost;
 };
 
-constexpr FitCost kAnyCost = {std::numeric_limits<size_t>::max(),
-                              std::numeric_limits<double>::infinity()};
+// More than of any landmark.
+constexpr FitCost kCostOfNone = {std::numeric_limits<size_t>::max(),
+                                 std::numeric_limits<double>::infinity()};
 
 // The cost of one object's landmark in the world over views of it, camera poses held. Not for
 // several threads at once.
@@ -140,7 +141,7 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, Obj
     const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
     const auto known = best.find(bin);
     const auto candidate =
-        fit->IfCheaperThan(known == best.end() ? kAnyCost : known->second.cost, landmark);
+        fit->IfCheaperThan(known == best.end() ? kCostOfNone : known->second.cost, landmark);
     if (candidate) best.insert_or_assign(bin, *candidate);
   }
   std::vector<Candidate> candidates;
@@ -181,7 +182,7 @@ std::optional<Landmark> ChooseStart(std::vector<Landmark> hypotheses, ObjectFit*
   for (const Candidate& start : BestOfEachYaw(hypotheses, fit)) {
     const auto landmark = fit->Fit(start.landmark_in_world);
     if (!landmark) continue;
-    const auto candidate = fit->IfCheaperThan(best ? best->cost : kAnyCost, *landmark);
+    const auto candidate = fit->IfCheaperThan(best ? best->cost : kCostOfNone, *landmark);
     if (candidate) best = candidate;
   }
   return best ? std::optional(best->landmark_in_world) : std::nullopt;
