@@ -7,9 +7,17 @@
 #include "artefact/atomic_file.h"
 #include "artefact/hdf5_file.h"
 #include "artefact/json_file.h"
+#include "artefact/packed_array.h"
 #include "image/edge_maps.h"
 
 namespace soslam {
+
+// The maps of a frame as edges.h5 holds them.
+struct PackedEdgeMaps {
+  explicit PackedEdgeMaps(const EdgeMaps& maps);
+
+  PackedArray grey, edges, distance, nearest_edge, corners;
+};
 
 // Writes edges.h5 (layout: schemas/hdf5-layout.md) frame by frame; it appears with Commit(). Throws
 // SettingsError when it cannot be written.
@@ -17,7 +25,7 @@ class EdgesWriter {
  public:
   EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info);
   // Each frame once; the bytes of the file depend on the order.
-  void Write(int frame_id, const EdgeMaps& maps);
+  void Write(int frame_id, const PackedEdgeMaps& maps);
   void Commit();
 
  private:
@@ -32,7 +40,7 @@ class EdgesReader {
   bool Has(int frame_id) const;
   // Ascending. Throws InputError for a group that is not named as a frame is.
   std::vector<int> FrameIds() const;
-  // Throws InputError when the frame is missing, or its maps differ in size.
+  // For any thread. Throws InputError when the frame is missing, or its maps differ in size.
   EdgeMaps Read(int frame_id) const;
 
  private:

@@ -10,7 +10,7 @@ namespace {
 // What deflate makes of zeros.
 constexpr std::uint64_t kMaxPacking = 1032;
 
-std::uint64_t BytesOf(const Hdf5Handle& data_set, const Hdf5Shape& shape) {
+std::uint64_t BytesOf(const Hdf5Handle& data_set, const ArrayShape& shape) {
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
   std::uint64_t bytes = H5Tget_size(type.id());
   for (const std::uint64_t size : shape) bytes *= size;
@@ -39,7 +39,7 @@ std::uint64_t MostStored(std::uint64_t bytes) {
 }
 
 // The library reads whole chunks into memory.
-bool HasChunksWithin(const Hdf5Handle& creation, const Hdf5Shape& shape) {
+bool HasChunksWithin(const Hdf5Handle& creation, const ArrayShape& shape) {
   std::vector<hsize_t> chunk(shape.size());
   const auto rank = static_cast<int>(shape.size());
   return H5Pget_chunk(creation.id(), rank, chunk.data()) == rank &&
@@ -48,7 +48,7 @@ bool HasChunksWithin(const Hdf5Handle& creation, const Hdf5Shape& shape) {
 
 }  // namespace
 
-std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const Hdf5Shape& shape,
+std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const ArrayShape& shape,
                                           std::uint64_t file_bytes) {
   const Hdf5Handle creation{H5Dget_create_plist(data_set.id()), &H5Pclose};
   const H5D_layout_t layout = H5Pget_layout(creation.id());

@@ -12,7 +12,7 @@ namespace soslam {
 
 // Why a data set of this shape must not be read, and what was expected; none when it may be. Its
 // values have to be in the file itself, and not more than a file of `file_bytes` can hold.
-std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const Hdf5Shape& shape,
+std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const ArrayShape& shape,
                                           std::uint64_t file_bytes);
 
 }  // namespace soslam

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <functional>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <type_traits>
@@ -23,8 +24,6 @@ namespace soslam {
 namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
-
-using Shape = Hdf5Shape;
 
 // Beyond any image that can be processed; a damaged size must not exhaust the memory.
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 28;
@@ -49,7 +48,7 @@ std::string Describe(const std::vector<int>& expected, const char* element) {
   return fmt::format("{} of {}", fmt::join(sizes, " x "), element);
 }
 
-bool Matches(const Shape& shape, const std::vector<int>& expected) {
+bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
   return std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
                     [](std::uint64_t size, int wanted) {
                       return wanted == Hdf5File::kAny || size == static_cast<std::uint64_t>(wanted);
@@ -113,26 +112,21 @@ void Hdf5File::WriteGroup(const std::string& name) {
   }
 }
 
-void Hdf5File::WriteMatrix(const std::string& name, const cv::Mat& matrix) {
-  Shape shape = {static_cast<std::uint64_t>(matrix.rows), static_cast<std::uint64_t>(matrix.cols)};
-  if (matrix.channels() > 1) shape.push_back(static_cast<std::uint64_t>(matrix.channels()));
-  const cv::Mat contiguous = matrix.isContinuous() ? matrix : matrix.clone();
-  WriteArray(name, matrix.depth(), shape, contiguous.data);
-}
-
-void Hdf5File::WriteArray(const std::string& name, int depth, const Shape& shape,
-                          const void* values) {
+void Hdf5File::WriteArray(const std::string& name, const PackedArray& array) {
   WriteGroup(name.substr(0, name.rfind('/')));
-  const Hdf5Element element = Hdf5ElementOf(depth);
-  const std::vector<hsize_t> sizes(shape.begin(), shape.end());
+  const std::vector<hsize_t> sizes(array.shape.begin(), array.shape.end());
   const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                          &H5Sclose};
-  const Hdf5Handle creation = Hdf5DataSetCreation(shape);
-  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), element.file_type, space.id(),
-                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+  const Hdf5Handle creation = Hdf5DataSetCreation(array.shape);
+  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), Hdf5ElementOf(array.depth).file_type,
+                                 space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                       &H5Dclose};
-  const bool written = data_set.valid() && H5Dwrite(data_set.id(), element.memory_type, H5S_ALL,
-                                                    H5S_ALL, H5P_DEFAULT, values) >= 0;
+  bool written = data_set.valid();
+  if (written && !array.bytes.empty()) {
+    const std::vector<hsize_t> begin(sizes.size());
+    written = H5Dwrite_chunk(data_set.id(), H5P_DEFAULT, kAllFilters, begin.data(),
+                             array.bytes.size(), array.bytes.data()) >= 0;
+  }
   if (!data_set.Close() || !written) FailWriting(name);
 }
 
@@ -214,13 +208,13 @@ void Hdf5File::RequireWalkable() const {
   }
 }
 
-Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) const {
+ArrayShape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) const {
   const Hdf5Handle space{H5Dget_space(data_set.id()), &H5Sclose};
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 0) FailReading(name, kDamaged);
   std::vector<hsize_t> sizes(static_cast<size_t>(rank));
   H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr);
-  Shape shape(sizes.begin(), sizes.end());
+  ArrayShape shape(sizes.begin(), sizes.end());
   std::uint64_t values = 1;
   for (const std::uint64_t size : shape) {
     if (size > kMaxValues || (values *= size) > kMaxValues) {
@@ -232,26 +226,50 @@ Shape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) con
   return shape;
 }
 
-Shape Hdf5File::CheckedShape(const std::string& name, int depth,
-                             const std::vector<int>& expected) const {
+ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
+                                  const std::vector<int>& expected) const {
   const Hdf5Element element = Hdf5ElementOf(depth);
-  const std::string wanted = Describe(expected, element.name);
-  if (!Has(name)) FailReading(name, "missing; expected " + wanted);
-  const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
-  Shape shape = ShapeOf(name, data_set);
+  ArrayShape shape = ShapeOf(name, data_set);
   const bool same_type = H5Tequal(type.id(), element.file_type) > 0;
   if (!same_type || !Matches(shape, expected)) {
     FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
-                                  same_type ? element.name : "another type", wanted));
+                                  same_type ? element.name : "another type",
+                                  Describe(expected, element.name)));
   }
   return shape;
 }
 
-void Hdf5File::ReadArray(const std::string& name, int depth, void* values) const {
+Hdf5File::StoredArray Hdf5File::ReadStored(const std::string& name, int depth,
+                                           const std::vector<int>& expected) const {
+  static std::mutex turn;
+  const std::lock_guard lock(turn);
+  const Hdf5Element element = Hdf5ElementOf(depth);
+  if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
-  if (H5Dread(data_set.id(), Hdf5ElementOf(depth).memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-              values) < 0) {
+  StoredArray stored{CheckedShape(name, data_set, depth, expected),
+                     static_cast<size_t>(CV_ELEM_SIZE1(depth)),
+                     {},
+                     false};
+  if (auto packed = Hdf5PackedBytes(data_set, stored.shape)) {
+    stored.bytes = std::move(*packed);
+    stored.is_packed = true;
+    return stored;
+  }
+  stored.bytes.resize(std::accumulate(stored.shape.begin(), stored.shape.end(), stored.element_size,
+                                      std::multiplies<size_t>()));
+  if (H5Dread(data_set.id(), element.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+              stored.bytes.data()) < 0) {
+    FailReading(name, kDamaged);
+  }
+  return stored;
+}
+
+void Hdf5File::Restore(const std::string& name, const StoredArray& stored,
+                       std::span<std::byte> values) const {
+  if (!stored.is_packed) {
+    std::memcpy(values.data(), stored.bytes.data(), values.size());
+  } else if (!Unpack(stored.bytes, stored.element_size, values)) {
     FailReading(name, kDamaged);
   }
 }
@@ -267,16 +285,20 @@ Hdf5File::Numbers Hdf5File::ReadNumbers(const std::string& name) const {
   Numbers numbers{ShapeOf(name, data_set), {}};
   numbers.values.resize(std::accumulate(numbers.shape.begin(), numbers.shape.end(), size_t{1},
                                         std::multiplies<size_t>()));
-  ReadArray(name, CV_64F, numbers.values.data());
+  if (H5Dread(data_set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+              numbers.values.data()) < 0) {
+    FailReading(name, kDamaged);
+  }
   return numbers;
 }
 
 cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int columns) const {
   std::vector<int> expected = {rows, columns};
   if (CV_MAT_CN(type) > 1) expected.push_back(CV_MAT_CN(type));
-  const Shape shape = CheckedShape(name, CV_MAT_DEPTH(type), expected);
-  cv::Mat matrix(static_cast<int>(shape[0]), static_cast<int>(shape[1]), type);
-  ReadArray(name, matrix.depth(), matrix.data);
+  const StoredArray stored = ReadStored(name, CV_MAT_DEPTH(type), expected);
+  cv::Mat matrix(static_cast<int>(stored.shape[0]), static_cast<int>(stored.shape[1]), type);
+  Restore(name, stored,
+          std::as_writable_bytes(std::span(matrix.data, matrix.total() * matrix.elemSize())));
   return matrix;
 }
 

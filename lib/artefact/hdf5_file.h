@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/traits.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "artefact/packed_array.h"
 
 namespace soslam {
 
@@ -39,7 +42,8 @@ class Hdf5Handle {
 // the same calls give the same bytes. Throws SettingsError when writing fails; InputError, naming
 // the file, the name in it, what was found and what was expected, when reading does.
 //
-// The HDF5 library is not thread-safe: use it from one thread at a time, all files together.
+// The HDF5 library is not thread-safe: use it from one thread at a time, all files together. But
+// reading matrices and vectors is for any thread: they take turns, and unpack side by side.
 class Hdf5File {
  public:
   // A new, empty file; replaces an existing one. Messages name `final_path`, where it is to go,
@@ -52,12 +56,15 @@ class Hdf5File {
   void WriteGroup(const std::string& name);
   // Rows x columns, or rows x columns x 2 when the matrix has two channels. Depth 8U, 16S, 32S,
   // 32F, 64F.
-  void WriteMatrix(const std::string& name, const cv::Mat& matrix);
+  void WriteMatrix(const std::string& name, const cv::Mat& matrix) {
+    WriteArray(name, Pack(matrix));
+  }
   // One dimension; T is double, float or int.
   template <typename T>
   void WriteVector(const std::string& name, const std::vector<T>& values) {
-    WriteArray(name, cv::DataType<T>::depth, {values.size()}, values.data());
+    WriteArray(name, Pack(values));
   }
+  void WriteArray(const std::string& name, const PackedArray& array);
   // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
   void WriteText(const std::string& owner, const std::string& name, const std::string& text);
   void WriteNumber(const std::string& owner, const std::string& name, double number);
@@ -72,8 +79,9 @@ class Hdf5File {
   cv::Mat ReadMatrix(const std::string& name, int type, int rows = kAny, int columns = kAny) const;
   template <typename T>
   std::vector<T> ReadVector(const std::string& name, int size = kAny) const {
-    std::vector<T> values(CheckedShape(name, cv::DataType<T>::depth, {size})[0]);
-    ReadArray(name, cv::DataType<T>::depth, values.data());
+    const StoredArray stored = ReadStored(name, cv::DataType<T>::depth, {size});
+    std::vector<T> values(stored.shape[0]);
+    Restore(name, stored, std::as_writable_bytes(std::span(values)));
     return values;
   }
   std::string ReadText(const std::string& owner, const std::string& name) const;
@@ -88,7 +96,7 @@ class Hdf5File {
   bool IsText(const std::string& owner, const std::string& attribute) const;
   // A data set of any of the types above, row by row. Every value of theirs is a double.
   struct Numbers {
-    std::vector<std::uint64_t> shape;
+    ArrayShape shape;
     std::vector<double> values;
   };
   Numbers ReadNumbers(const std::string& name) const;
@@ -100,17 +108,26 @@ class Hdf5File {
  private:
   Hdf5File(std::filesystem::path path, std::int64_t id);
 
-  void WriteArray(const std::string& name, int depth, const std::vector<std::uint64_t>& shape,
-                  const void* values);
   void WriteAttribute(const std::string& owner, const std::string& name, std::int64_t file_type,
                       std::int64_t memory_type, const void* value);
-  // The shape of a data set, once it and the element type are what is expected.
-  std::vector<std::uint64_t> CheckedShape(const std::string& name, int depth,
-                                          const std::vector<int>& expected) const;
   std::uint64_t Size() const;  // of the file, bytes
   // Throws where there are too many values to read, or more than the file can hold.
-  std::vector<std::uint64_t> ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
-  void ReadArray(const std::string& name, int depth, void* values) const;
+  ArrayShape ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
+  // The same, and where the shape or the element type are not what is expected.
+  ArrayShape CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
+                          const std::vector<int>& expected) const;
+
+  // What a data set holds, and Restore() makes numbers of.
+  struct StoredArray {
+    ArrayShape shape;
+    size_t element_size;
+    std::string bytes;
+    bool is_packed;  // else they are the numbers
+  };
+  StoredArray ReadStored(const std::string& name, int depth,
+                         const std::vector<int>& expected) const;
+  void Restore(const std::string& name, const StoredArray& stored,
+               std::span<std::byte> values) const;
 
   [[noreturn]] void FailWriting(const std::string& name) const;
   [[noreturn]] void FailReading(const std::string& name, const std::string& problem) const;

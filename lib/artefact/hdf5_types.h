@@ -4,13 +4,12 @@
 #include <hdf5.h>
 
 #include <cstdint>
-#include <vector>
+#include <optional>
+#include <string>
 
 #include "artefact/hdf5_file.h"
 
 namespace soslam {
-
-using Hdf5Shape = std::vector<std::uint64_t>;
 
 // The type of numbers in files and in memory. For an OpenCV depth; throws std::logic_error for
 // those that our files do not have.
@@ -28,8 +27,14 @@ Hdf5Handle Hdf5FileAccess();
 // A list for creating files, groups or data sets that stores no times.
 Hdf5Handle Hdf5Timeless(hid_t list_class);
 
-// For a data set of this shape: one chunk, shuffled and deflated.
-Hdf5Handle Hdf5DataSetCreation(const Hdf5Shape& shape);
+// A chunk's mask of filters that it was not sent through.
+inline constexpr std::uint32_t kAllFilters = 0;
+
+// For a data set of this shape: one chunk, shuffled and deflated (PackedArray).
+Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape);
+
+// What a data set of this shape that was created like that holds; none for any other.
+std::optional<std::string> Hdf5PackedBytes(const Hdf5Handle& data_set, const ArrayShape& shape);
 
 // Texts are of fixed length and UTF-8; HDF5 has no length 0.
 Hdf5Handle Hdf5TextType(size_t length);

@@ -5,6 +5,7 @@
 #include <ceres/version.h>
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <libdeflate.h>
 #include <openssl/crypto.h>
 
 #include <CLI/Version.hpp>
@@ -52,6 +53,7 @@ Software ThisSoftware() {
            {"fmt", FmtVersion()},
            {"hdf5", Hdf5Version()},
            {"libarchive", LibArchiveVersion()},
+           {"libdeflate", LIBDEFLATE_VERSION_STRING},
            {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                          NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
            {"opencv", cv::getVersionString()},

@@ -15,12 +15,14 @@ namespace soslam {
 void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   std::vector<std::exception_ptr> errors(static_cast<size_t>(std::max(0, count)));
   std::atomic<int> next = 0;
+  std::atomic<int> end = count;  // what comes after an error is not begun
   const auto work_until_done = [&] {
-    for (int i = next++; i < count; i = next++) {
+    for (int i = next++; i < end; i = next++) {
       try {
         work(i);
       } catch (...) {
         errors[static_cast<size_t>(i)] = std::current_exception();
+        end = i;
       }
     }
   };

@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <memory>
+#include <set>
+#include <vector>
 
 #include "artefact/edges_file.h"
 #include "artefact/landmarks_file.h"
@@ -11,6 +15,7 @@
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
 #include "orientation/texture_asymmetry.h"
@@ -31,37 +36,58 @@ void CheckImageOptions(const OptimiseOptions& options, const StageFiles& files) 
   }
 }
 
-// Reads the edge maps that symmetry and edge alignment look at.
-void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
-                BackEndInput* input) {
-  EdgesReader edges(edges_file);
-  const Sequence& sequence = input->sequence;
-  std::map<int, std::shared_ptr<const FrameEdges>> frames;
-  const auto frame_of = [&](const Detection& detection) {
-    const int frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
-    std::shared_ptr<const FrameEdges>& frame = frames[frame_id];
-    if (!frame) frame = std::make_shared<const FrameEdges>(edges.Read(frame_id));
-    return frame;
-  };
+// The observations of static objects in frames that have an image: those whose texture and those
+// whose edges are looked at.
+struct ImageUse {
+  std::vector<int> symmetry, edges;  // by index into Sequence::detections
+};
+ImageUse ChooseImageUse(const Sequence& sequence, const OptimiseOptions& options) {
+  ImageUse use;
   for (std::vector<int> detections : DetectionsByObject(sequence)) {
     std::erase_if(detections, [&](int index) {
       const Detection& detection = sequence.detections[static_cast<size_t>(index)];
       return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
     });
     if (options.symmetry) {
-      for (const int index : SpreadOver(detections, static_cast<size_t>(options.symmetry_views))) {
-        const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-        input->symmetry_images[index] =
-            std::make_shared<const SymmetryImage>(frame_of(detection)->maps, detection.box);
-      }
+      const auto views = static_cast<size_t>(options.symmetry_views);
+      std::ranges::copy(SpreadOver(detections, views), std::back_inserter(use.symmetry));
     }
-    if (options.edge_alignment) {
-      for (const int index : detections) {
-        const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-        input->edge_images[index] = std::make_shared<const EdgeImage>(
-            EdgeImage{frame_of(detection), detection.box, detection.nearer_boxes});
-      }
-    }
+    if (options.edge_alignment) std::ranges::copy(detections, std::back_inserter(use.edges));
+  }
+  return use;
+}
+
+// Reads the edge maps that symmetry and edge alignment look at.
+void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
+                int threads, BackEndInput* input) {
+  const Sequence& sequence = input->sequence;
+  const ImageUse use = ChooseImageUse(sequence, options);
+  const auto detection_at = [&](int index) -> const Detection& {
+    return sequence.detections[static_cast<size_t>(index)];
+  };
+  std::set<int> frame_indices;
+  for (const auto& indices : {use.symmetry, use.edges}) {
+    for (const int index : indices) frame_indices.insert(detection_at(index).frame_index);
+  }
+  const EdgesReader reader(edges_file);
+  const std::vector<int> to_read(frame_indices.begin(), frame_indices.end());
+  std::vector<std::shared_ptr<const FrameEdges>> frames(sequence.frames.size());
+  ParallelFor("edge maps", static_cast<int>(to_read.size()), threads, [&](int i) {
+    const auto frame = static_cast<size_t>(to_read[static_cast<size_t>(i)]);
+    frames[frame] = std::make_shared<const FrameEdges>(reader.Read(sequence.frames[frame].id));
+  });
+  const auto frame_of = [&](const Detection& detection) {
+    return frames[static_cast<size_t>(detection.frame_index)];
+  };
+  for (const int index : use.symmetry) {
+    const Detection& detection = detection_at(index);
+    input->symmetry_images[index] =
+        std::make_shared<const SymmetryImage>(frame_of(detection)->maps, detection.box);
+  }
+  for (const int index : use.edges) {
+    const Detection& detection = detection_at(index);
+    input->edge_images[index] = std::make_shared<const EdgeImage>(
+        EdgeImage{frame_of(detection), detection.box, detection.nearer_boxes});
   }
 }
 
@@ -74,7 +100,9 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
                                    options.ratio_prior, options.shape);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input{sequence, {}, priors, {}, {}};
-  if (options.symmetry || options.edge_alignment) ReadImages(options, files.at("edges"), &input);
+  if (options.symmetry || options.edge_alignment) {
+    ReadImages(options, files.at("edges"), threads, &input);
+  }
   input.starts = options.detection_model == DetectionModel::kTangency
                      ? ChooseUprightStarts(input, estimates, options, threads)
                      : ChooseStarts(sequence, estimates);

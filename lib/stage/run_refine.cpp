@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "artefact/edges_file.h"
@@ -14,68 +18,69 @@
 #include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
 
 namespace soslam {
 namespace {
 
-constexpr size_t kFramesAtOnce = 8;  // bounds the edge maps held in memory
+using ObservationsOfFrame = std::vector<const ObservationEstimate*>;
 
-// Observations by frame: all of one frame share its edge maps. Those of frames without an image are
-// left out.
-std::vector<std::vector<const ObservationEstimate*>> GroupByFrame(
-    const Sequence& sequence, const LandmarkEstimates& initial) {
-  std::vector<std::vector<const ObservationEstimate*>> groups(sequence.frames.size());
+// Observations by frame. Those of frames without an image are left out.
+std::vector<ObservationsOfFrame> GroupByFrame(const Sequence& sequence,
+                                              const LandmarkEstimates& initial) {
+  std::vector<ObservationsOfFrame> groups(sequence.frames.size());
   for (const ObservationEstimate& observation : initial.observations) {
     if (observation.hypotheses.empty()) continue;
     const auto& detection = sequence.detections[static_cast<size_t>(observation.detection_index)];
     if (sequence.FrameOf(detection).image.empty()) continue;
     groups[static_cast<size_t>(detection.frame_index)].push_back(&observation);
   }
-  std::erase_if(groups, [](const auto& group) { return group.empty(); });
   return groups;
 }
 
-int CountOf(const std::vector<std::vector<const ObservationEstimate*>>& groups) {
-  size_t count = 0;
-  for (const auto& group : groups) count += group.size();
-  return static_cast<int>(count);
-}
+// The edge maps of a frame, from when the first of its observations takes them until the last one
+// has.
+class FrameInUse {
+ public:
+  explicit FrameInUse(size_t observations) : to_come_(observations) {}
+  std::shared_ptr<const FrameEdges> Take(const EdgesReader& reader, int frame_id) {
+    const std::lock_guard lock(mutex_);
+    if (!edges_) edges_ = std::make_shared<const FrameEdges>(reader.Read(frame_id));
+    return --to_come_ > 0 ? edges_ : std::move(edges_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const FrameEdges> edges_;
+  size_t to_come_;
+};
 
 class Refiner {
  public:
   Refiner(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-          const OrientationOptions& options, int threads, Progress* progress)
-      : sequence_(sequence),
-        priors_(priors),
-        options_(options),
-        threads_(threads),
-        progress_(progress) {}
+          const OrientationOptions& options)
+      : sequence_(sequence), priors_(priors), options_(options) {}
 
-  // Refines the observations of some frames in parallel; reading stays on this thread.
-  std::vector<RefinedObservation> Refine(
-      const std::vector<std::vector<const ObservationEstimate*>>& groups, size_t first, size_t last,
-      EdgesReader* edges) const {
-    std::vector<std::pair<const ObservationEstimate*, std::shared_ptr<const FrameEdges>>> tasks;
-    for (size_t i = first; i < last; ++i) {
-      const auto& detection =
-          sequence_.detections[static_cast<size_t>(groups[i].front()->detection_index)];
-      const int frame_id = sequence_.frames[static_cast<size_t>(detection.frame_index)].id;
-      const auto frame = std::make_shared<const FrameEdges>(edges->Read(frame_id));
-      for (const ObservationEstimate* observation : groups[i]) {
-        tasks.emplace_back(observation, frame);
+  // Frame by frame, so that few edge maps are in memory at a time.
+  std::vector<RefinedObservation> Refine(const std::vector<ObservationsOfFrame>& groups,
+                                         const EdgesReader& reader, int threads) const {
+    std::deque<FrameInUse> frames;
+    std::vector<std::pair<const ObservationEstimate*, FrameInUse*>> tasks;
+    for (const ObservationsOfFrame& observations : groups) {
+      FrameInUse& frame = frames.emplace_back(observations.size());
+      for (const ObservationEstimate* observation : observations) {
+        tasks.emplace_back(observation, &frame);
       }
     }
     std::vector<RefinedObservation> refined(tasks.size());
-    ParallelFor(static_cast<int>(tasks.size()), threads_, [&](int i) {
+    ParallelFor("landmarks", static_cast<int>(tasks.size()), threads, [&](int i) {
       const auto& [observation, frame] = tasks[static_cast<size_t>(i)];
       const auto& detection =
           sequence_.detections[static_cast<size_t>(observation->detection_index)];
+      const auto edges = frame->Take(reader, sequence_.FrameOf(detection).id);
       const auto& prior = priors_[static_cast<size_t>(detection.object_index)];
-      refined[static_cast<size_t>(i)] = Refine(*observation, frame, prior);
-      progress_->Step();
+      refined[static_cast<size_t>(i)] = Refine(*observation, edges, prior);
     });
     return refined;
   }
@@ -95,8 +100,6 @@ class Refiner {
   const Sequence& sequence_;
   const std::vector<std::optional<ShapePrior>>& priors_;
   const OrientationOptions& options_;
-  int threads_;
-  Progress* progress_;
 };
 
 }  // namespace
@@ -113,7 +116,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
                                    options.turn.ratio_prior, options.profile.shape);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
   const auto groups = GroupByFrame(sequence, estimates);
-  if (groups.empty()) {
+  if (std::ranges::all_of(groups, &ObservationsOfFrame::empty)) {
     throw NothingUsableError(files.at("initial").string() +
                              ": no single-frame landmark to refine in a frame that has an image");
   }
@@ -121,19 +124,15 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
       OptionsToJson(options),
       {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
 
-  EdgesReader edges(files.at("edges"));
-  Progress progress("landmarks", CountOf(groups));
-  const Refiner refiner(sequence, priors, options, threads, &progress);
+  const EdgesReader reader(files.at("edges"));
+  const Refiner refiner(sequence, priors, options);
   std::vector<SymmetryRecord> curves;
   int refined_count = 0;
   std::map<int, ObservationEstimate> refined_by_detection;
-  for (size_t first = 0; first < groups.size(); first += kFramesAtOnce) {
-    const size_t last = std::min(groups.size(), first + kFramesAtOnce);
-    for (RefinedObservation& refined : refiner.Refine(groups, first, last, &edges)) {
-      if (refined.estimate.failure.empty()) ++refined_count;
-      curves.push_back(std::move(refined.record));
-      refined_by_detection[refined.estimate.detection_index] = std::move(refined.estimate);
-    }
+  for (RefinedObservation& refined : refiner.Refine(groups, reader, threads)) {
+    if (refined.estimate.failure.empty()) ++refined_count;
+    curves.push_back(std::move(refined.record));
+    refined_by_detection[refined.estimate.detection_index] = std::move(refined.estimate);
   }
   size_t without_image = 0;
   for (ObservationEstimate& observation : estimates.observations) {

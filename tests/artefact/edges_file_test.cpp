@@ -7,6 +7,7 @@
 
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"
@@ -40,7 +41,7 @@ class EdgesFileTest : public testing::Test {
  protected:
   std::filesystem::path Write(const std::string& name, const EdgeMaps& maps) {
     EdgesWriter writer(folder_ / name, {});
-    writer.Write(12, maps);
+    writer.Write(12, PackedEdgeMaps(maps));
     writer.Commit();
     return folder_ / name;
   }
@@ -58,8 +59,8 @@ TEST_F(EdgesFileTest, FramesComeBackExactly) {
   const EdgeMaps first = MapsOfRandomRectangles();
   const EdgeMaps second = MapsOfRandomRectangles();
   EdgesWriter writer(folder_ / "edges.h5", {});
-  writer.Write(7, first);
-  writer.Write(1234567, second);
+  writer.Write(7, PackedEdgeMaps(first));
+  writer.Write(1234567, PackedEdgeMaps(second));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "edges.h5")) << "before it is complete";
   writer.Commit();
 
@@ -70,6 +71,21 @@ TEST_F(EdgesFileTest, FramesComeBackExactly) {
   ExpectSame(reader.Read(7), first);
   ExpectSame(reader.Read(1234567), second);
   ExpectError<InputError>([&] { reader.Read(8); }, {"edges.h5", "/frames/000008", "missing"});
+}
+
+TEST_F(EdgesFileTest, ThreadsReadSideBySide) {
+  std::vector<EdgeMaps> maps;
+  EdgesWriter writer(folder_ / "edges.h5", {});
+  for (int i = 0; i < 8; ++i) {
+    maps.push_back(MapsOfRandomRectangles());
+    writer.Write(i, PackedEdgeMaps(maps.back()));
+  }
+  writer.Commit();
+  const EdgesReader reader(folder_ / "edges.h5");
+  std::vector<EdgeMaps> read(maps.size());
+  ParallelFor(static_cast<int>(read.size()), 4,
+              [&](int i) { read[static_cast<size_t>(i)] = reader.Read(i); });
+  for (size_t i = 0; i < maps.size(); ++i) ExpectSame(read[i], maps[i]);
 }
 
 TEST_F(EdgesFileTest, ImageWithoutEdgesComesBack) {
@@ -93,7 +109,7 @@ TEST_F(EdgesFileTest, WrittenTwiceGivesTheSameBytes) {
 }
 
 TEST_F(EdgesFileTest, NothingStaysBehindWithoutCommit) {
-  { EdgesWriter(folder_ / "edges.h5", {}).Write(0, MapsOfRandomRectangles()); }
+  { EdgesWriter(folder_ / "edges.h5", {}).Write(0, PackedEdgeMaps(MapsOfRandomRectangles())); }
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 

@@ -16,7 +16,7 @@ class Hdf5ChecksTest : public testing::Test {
  protected:
   Hdf5ChecksTest() { file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT); }
   // A data set of float64 in which nothing is written.
-  void CreateDataSet(const Hdf5Shape& shape, hid_t creation, const char* name = "/values") const {
+  void CreateDataSet(const ArrayShape& shape, hid_t creation, const char* name = "/values") const {
     const std::vector<hsize_t> sizes(shape.begin(), shape.end());
     const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                            &H5Sclose};
@@ -112,6 +112,36 @@ TEST_F(Hdf5ChecksTest, PackedTwice) {
   H5Pset_deflate(creation.id(), 9);
   CreateDataSet({2}, creation.id());
   ExpectRefused({"bad.h5", "/values", "packed"});
+}
+
+// As other programs store numbers, and as this one does.
+TEST_F(Hdf5ChecksTest, AnyPackingOfTheLibraryIsRead) {
+  const std::vector<double> values = {1.0 / 3.0, -2.0, 5e-324, 4.0};
+  const auto expect_read = [&](const char* name, hid_t creation) {
+    CreateDataSet({values.size()}, creation, name);
+    const Hdf5Handle data_set{H5Dopen2(file_, name, H5P_DEFAULT), &H5Dclose};
+    ASSERT_GE(
+        H5Dwrite(data_set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        0);
+    H5Fflush(file_, H5F_SCOPE_LOCAL);
+    EXPECT_EQ(Hdf5File::Open(path_).ReadVector<double>(name), values) << name;
+  };
+  expect_read("/in_one_piece", H5P_DEFAULT);
+  expect_read("/as_here", Hdf5DataSetCreation({values.size()}).id());
+  const hsize_t half = values.size() / 2;
+  const Hdf5Handle halves{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+  H5Pset_chunk(halves.id(), 1, &half);
+  expect_read("/in_chunks", halves.id());
+  H5Pset_shuffle(halves.id());
+  H5Pset_deflate(halves.id(), 9);
+  expect_read("/in_packed_chunks", halves.id());
+  const hsize_t whole = values.size();
+  const Hdf5Handle deflated{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+  H5Pset_chunk(deflated.id(), 1, &whole);
+  H5Pset_deflate(deflated.id(), 9);
+  H5Pset_shuffle(deflated.id());
+  expect_read("/in_another_order", deflated.id());
+  H5Fclose(file_);
 }
 
 TEST_F(Hdf5ChecksTest, WhatIsWrittenIsWalkable) {

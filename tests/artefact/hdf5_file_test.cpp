@@ -52,6 +52,19 @@ TEST_F(Hdf5FileTest, MatricesComeBackExactly) {
   }
 }
 
+// Packed here, unpacked by the HDF5 library.
+TEST_F(Hdf5FileTest, AnyReaderOfHdf5ReadsTheNumbers) {
+  for (const int type : {CV_8UC1, CV_16SC2, CV_32FC1, CV_64FC1}) {
+    const cv::Mat matrix = RandomMatrix(7, 5, type);
+    const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/values", matrix); });
+    const Hdf5File::Numbers numbers = Hdf5File::Open(path).ReadNumbers("/values");
+    cv::Mat expected;
+    matrix.reshape(1, 1).convertTo(expected, CV_64F);
+    EXPECT_EQ(numbers.values,
+              std::vector<double>(expected.begin<double>(), expected.end<double>()));
+  }
+}
+
 TEST_F(Hdf5FileTest, PartOfAMatrixIsWrittenAsIfItWereAWhole) {
   const cv::Mat part = RandomMatrix(9, 9, CV_32FC1)(cv::Rect(2, 3, 4, 5));
   const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/part", part); });

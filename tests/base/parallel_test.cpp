@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace soslam {
@@ -21,15 +23,25 @@ TEST_P(ParallelForTest, DoesEachOnce) {
   }
 }
 
-TEST_P(ParallelForTest, TriesAllAndThrowsTheFirstOfTheErrors) {
-  std::atomic<int> tried = 0;
+TEST_P(ParallelForTest, ThrowsTheFirstOfTheErrors) {
   const auto work = [&](int i) {
-    ++tried;
-    if (i % 10 == 7) throw std::runtime_error(std::to_string(i));
+    if (i == 7) std::this_thread::sleep_for(std::chrono::milliseconds(2));  // not the first in time
+    if (i % 10 >= 7) throw std::runtime_error(std::to_string(i));
   };
   EXPECT_THAT([&] { ParallelFor(100, GetParam(), work); },
               testing::ThrowsMessage<std::runtime_error>("7"));
-  EXPECT_EQ(tried, 100);
+}
+
+TEST_P(ParallelForTest, BeginsNothingMoreAfterAnError) {
+  std::atomic<int> tried = 0;
+  const auto work = [&](int i) {
+    ++tried;
+    if (i == 7) throw std::runtime_error("7");
+    if (i > 7) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  EXPECT_THROW(ParallelFor(10'000, GetParam(), work), std::runtime_error);
+  EXPECT_GE(tried, 8);
+  EXPECT_LT(tried, 10'000);
 }
 
 TEST_P(ParallelForTest, MayBeNested) {

@@ -68,7 +68,8 @@ void ImageToArtefact(benchmark::State& state) {
       std::filesystem::temp_directory_path() / fmt::format("soslam-bench-edges-{}.h5", getpid());
   EdgesWriter writer(path, {});
   int frame_id = 0;
-  for (auto _ : state) writer.Write(frame_id++, ComputeEdgeMaps(RoomAImage(), EdgesOptions()));
+  for (auto _ : state)
+    writer.Write(frame_id++, PackedEdgeMaps(ComputeEdgeMaps(RoomAImage(), EdgesOptions())));
 }
 BENCHMARK(ImageToArtefact)->Name("edges/image_to_artefact");
 

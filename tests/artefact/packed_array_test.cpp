@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/packed_array.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace soslam {
+namespace {
+
+std::vector<float> Unpacked(const std::string& packed, size_t count) {
+  std::vector<float> values(count);
+  const bool is_whole = Unpack(packed, sizeof(float), std::as_writable_bytes(std::span(values)));
+  return is_whole ? values : std::vector<float>();
+}
+
+TEST(PackedArrayTest, UnpacksToTheSame) {
+  const std::vector<float> values = {1.0F, -2.5F, 3e38F, 0.0F, 1e-40F};
+  const PackedArray packed = Pack(values);
+  EXPECT_EQ(packed.shape, ArrayShape{5});
+  EXPECT_EQ(packed.depth, CV_32F);
+  EXPECT_EQ(Unpacked(packed.bytes, 5), values);
+}
+
+TEST(PackedArrayTest, NothingPacksToNothing) {
+  EXPECT_TRUE(Pack(cv::Mat(0, 2, CV_32FC1)).bytes.empty());
+}
+
+TEST(PackedArrayTest, WhatRepeatsIsPackedSmall) {
+  EXPECT_LT(Pack(std::vector<double>(10'000, 1.0 / 3.0)).bytes.size(), 1000U);
+}
+
+TEST(PackedArrayTest, AnotherSizeIsRefused) {
+  const std::string packed = Pack(std::vector<float>{1.0F, 2.0F}).bytes;
+  EXPECT_TRUE(Unpacked(packed, 1).empty());
+  EXPECT_TRUE(Unpacked(packed, 3).empty());
+}
+
+TEST(PackedArrayTest, DamageIsRefusedUnlessItChangesNothing) {
+  const std::vector<float> values = {1.0F, 2.0F, 3.0F};
+  const std::string packed = Pack(values).bytes;
+  EXPECT_TRUE(Unpacked(packed.substr(0, packed.size() - 1), 3).empty());
+  int refused = 0;
+  for (size_t i = 0; i < 8 * packed.size(); ++i) {  // some bits only fill up bytes
+    std::string damaged = packed;
+    damaged[i / 8] = static_cast<char>(damaged[i / 8] ^ (1 << i % 8));
+    const std::vector<float> unpacked = Unpacked(damaged, 3);
+    EXPECT_TRUE(unpacked.empty() || unpacked == values) << "bit " << i;
+    if (unpacked.empty()) ++refused;
+  }
+  EXPECT_GT(refused, 7 * static_cast<int>(packed.size()));
+}
+
+}  // namespace
+}  // namespace soslam
