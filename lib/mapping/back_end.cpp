@@ -114,11 +114,11 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 
 }  // namespace
 
-MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options) {
-  BackEndProblem problem(input, options);
+MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
+  BackEndProblem problem(input, options, threads);
   MapEstimate map;
   if (!options.hold_poses) {
-    StartInParts(input.sequence, problem.AllTerms(), kFramesPerPart, &problem.variables());
+    StartInParts(input.sequence, problem.AllTerms(), kFramesPerPart, &problem.variables(), threads);
   }
   problem.Solve();
   bool settled = true;

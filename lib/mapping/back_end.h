@@ -36,8 +36,8 @@ struct BackEndInput {
 // edges are bounded by themselves and the rest is no outlier. The first pose of each segment is
 // fixed: it defines the segment's world; with hold_poses all are, and odometry has no cost. Objects
 // without a start come back with the failure no_start, moving ones with moving, and those without
-// HasExtent in the end with collapsed. Throws NumericalError when the solver has no usable
-// solution.
-MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options);
+// HasExtent in the end with collapsed. The result does not depend on the number of threads. Throws
+// NumericalError when the solver has no usable solution.
+MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
 
 }  // namespace soslam

@@ -2,9 +2,12 @@
 #include "mapping/back_end_problem.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "constraints/attitude.h"
 #include "constraints/bias.h"
 #include "constraints/detection.h"
@@ -25,7 +28,9 @@
 namespace soslam {
 namespace {
 
-// Reasons for leaving something out.
+// Kinds of residuals, and reasons for leaving something out.
+constexpr const char* kSymmetry = "symmetry";
+constexpr const char* kEdges = "edges";
 constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
 constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 
@@ -33,8 +38,9 @@ constexpr double kNoLoss = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions& options)
-    : input_(input), options_(options), variables_(input) {
+BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions& options,
+                               int threads)
+    : input_(input), options_(options), threads_(threads), variables_(input) {
   HoldPoses();
   WeighViews();
   if (!options.hold_poses) AddOdometry();
@@ -225,93 +231,105 @@ void BackEndProblem::AddBias() {
 
 void BackEndProblem::RenewImageTerms() {
   image_terms_.clear();
-  for (const char* kind : {"symmetry", "edges"}) summary_.residuals.erase(kind);
+  for (const char* kind : {kSymmetry, kEdges}) summary_.residuals.erase(kind);
   for (const char* reason : {kTooFewPairs, kNoEdgeCounts}) summary_.gated.erase(reason);
   const auto has_start = [&](int detection_index) {
     const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
     return input_.starts[static_cast<size_t>(detection.object_index)].has_value();
   };
+  std::vector<std::function<ImageTerms()>> makers;
   for (const auto& [index, image] : input_.symmetry_images) {
-    if (has_start(index)) AddSymmetry(static_cast<size_t>(index), image);
+    if (!has_start(index)) continue;
+    makers.push_back([this, index = static_cast<size_t>(index), &image = image] {
+      return options_.detection_model == DetectionModel::kTangency ? AsymmetryOf(index, image)
+                                                                   : PairsOf(index, image);
+    });
   }
   for (const auto& [index, image] : input_.edge_images) {
-    if (has_start(index)) AddEdges(static_cast<size_t>(index), image);
+    if (!has_start(index)) continue;
+    makers.push_back([this, index = static_cast<size_t>(index), &image = image] {
+      return EdgesOf(index, image);
+    });
   }
+  std::vector<ImageTerms> made(makers.size());
+  ParallelFor(static_cast<int>(makers.size()), threads_,
+              [&](int i) { made[static_cast<size_t>(i)] = makers[static_cast<size_t>(i)](); });
+  for (ImageTerms& of_image : made) AddImageTerms(std::move(of_image));
 }
 
-void BackEndProblem::AddSymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image) {
-  const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[index]);
-  if (options_.detection_model == DetectionModel::kTangency) {
-    AddAsymmetry(index, image, in_camera);
-  } else {
-    AddPairs(index, image, in_camera);
-  }
-}
-
-void BackEndProblem::AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
-                                  const Landmark& landmark_in_camera) {
-  const Detection& detection = input_.sequence.detections[index];
-  auto texture = std::make_unique<AsymmetryTerm>(image, input_.sequence.CameraOf(detection),
-                                                 landmark_in_camera, options_.texture,
-                                                 options_.symmetry_options, view_weights_[index]);
-  if (texture->NumPairs() == 0) {
-    ++summary_.gated[kTooFewPairs];
+void BackEndProblem::AddImageTerms(ImageTerms of_image) {
+  if (of_image.terms.empty()) {
+    ++summary_.gated[of_image.reason_for_none];
     return;
   }
-  summary_.residuals["symmetry"] += texture->NumPairs();
-  AddViewTerm(detection, landmark_in_camera, std::move(texture));
+  summary_.residuals[of_image.kind] += of_image.residuals;
+  std::ranges::move(of_image.terms, std::back_inserter(image_terms_));
 }
 
-void BackEndProblem::AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
-                              const Landmark& landmark_in_camera) {
+BackEndProblem::ImageTerms BackEndProblem::AsymmetryOf(
+    size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
+  const Landmark in_camera = LandmarkInCamera(detection);
+  auto texture = std::make_unique<AsymmetryTerm>(image, input_.sequence.CameraOf(detection),
+                                                 in_camera, options_.texture,
+                                                 options_.symmetry_options, view_weights_[index]);
+  ImageTerms made{kSymmetry, kTooFewPairs, texture->NumPairs(), {}};
+  if (made.residuals > 0) {
+    made.terms.push_back(ViewTermOf(detection, in_camera, std::move(texture)));
+  }
+  return made;
+}
+
+BackEndProblem::ImageTerms BackEndProblem::PairsOf(
+    size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
+  const Detection& detection = input_.sequence.detections[index];
+  const Landmark in_camera = LandmarkInCamera(detection);
   const Camera& camera = input_.sequence.CameraOf(detection);
   const SymmetryOptions& symmetry = options_.symmetry_options;
-  const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, landmark_in_camera);
+  const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
   std::vector<Eigen::Vector2d> visible;
-  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, landmark_in_camera, symmetry)) {
+  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, in_camera, symmetry)) {
     if (at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
   }
-  if (visible.size() < static_cast<size_t>(symmetry.min_pairs)) {
-    ++summary_.gated[kTooFewPairs];
-    return;
-  }
+  ImageTerms made{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}};
+  if (made.residuals < symmetry.min_pairs) return made;
   for (const Eigen::Vector2d& pixel : visible) {
-    image_terms_.push_back(TermOf(std::make_unique<SymmetryResidual>(
-                                      symmetry.descriptor, image, camera, pixel,
-                                      landmark_in_camera.shape_exponent, options_.symmetry_sigma),
-                                  {Pose(detection), LandmarkOf(detection)}, options_.huber_delta));
+    made.terms.push_back(TermOf(
+        std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
+                                           in_camera.shape_exponent, options_.symmetry_sigma),
+        {Pose(detection), LandmarkOf(detection)}, options_.huber_delta));
   }
-  summary_.residuals["symmetry"] += static_cast<int>(visible.size());
+  return made;
 }
 
-void BackEndProblem::AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image) {
+BackEndProblem::ImageTerms BackEndProblem::EdgesOf(
+    size_t index, const std::shared_ptr<const EdgeImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto edges = std::make_unique<EdgeTerm>(SupportedEdgeTerm(
       image, input_.sequence.CameraOf(detection), in_camera, options_.edges, view_weights_[index]));
-  if (edges->NumPoints() == 0) {
-    ++summary_.gated[kNoEdgeCounts];
-    return;
+  ImageTerms made{kEdges, kNoEdgeCounts, 1, {}};
+  if (edges->NumPoints() > 0) {
+    made.terms.push_back(ViewTermOf(detection, in_camera, std::move(edges)));
   }
-  ++summary_.residuals["edges"];
-  AddViewTerm(detection, in_camera, std::move(edges));
+  return made;
 }
 
 // No loss: what a pair or a point costs is bounded.
-void BackEndProblem::AddViewTerm(const Detection& detection, const Landmark& landmark_in_camera,
-                                 std::unique_ptr<const LandmarkCost> cost) {
+std::unique_ptr<const Term> BackEndProblem::ViewTermOf(
+    const Detection& detection, const Landmark& landmark_in_camera,
+    std::unique_ptr<const LandmarkCost> cost) const {
   const int pose = Pose(detection);
   const int landmark = LandmarkOf(detection);
-  image_terms_.push_back(std::make_unique<ViewTerm>(
+  return std::make_unique<ViewTerm>(
       std::array{pose, landmark},
       ViewTerm::Blocks{variables_.Values(pose), variables_.Values(landmark)},
-      landmark_in_camera.shape_exponent, std::move(cost)));
+      landmark_in_camera.shape_exponent, std::move(cost));
 }
 
 void BackEndProblem::Solve(int max_iterations) {
-  const Minimisation minimisation =
-      Minimise(AllTerms(), std::min(max_iterations, options_.max_iterations), &variables_.all());
+  const Minimisation minimisation = Minimise(
+      AllTerms(), std::min(max_iterations, options_.max_iterations), &variables_.all(), threads_);
   const std::vector<double>& costs = minimisation.costs;
   if (summary_.cost_per_iteration.empty()) summary_.initial_cost = costs.front();
   summary_.final_cost = costs.back();

@@ -22,7 +22,7 @@ namespace soslam {
 class BackEndProblem {
  public:
   // With odometry, detections, support and ratio constraints.
-  BackEndProblem(const BackEndInput& input, const OptimiseOptions& options);
+  BackEndProblem(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
 
   // Which surface points see each other in the mirror, and which edges of a body are visible,
   // depends on the landmarks: texture and edges join in when boxes and planes have settled. Those
@@ -48,15 +48,23 @@ class BackEndProblem {
   void AddRatio(size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& landmark_in_camera);
-  void AddSymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image);
-  void AddPairs(size_t index, const std::shared_ptr<const SymmetryImage>& image,
-                const Landmark& landmark_in_camera);
-  void AddAsymmetry(size_t index, const std::shared_ptr<const SymmetryImage>& image,
-                    const Landmark& landmark_in_camera);
-  void AddEdges(size_t index, const std::shared_ptr<const EdgeImage>& image);
-  void AddViewTerm(const Detection& detection, const Landmark& landmark_in_camera,
-                   std::unique_ptr<const LandmarkCost> cost);
   void AddBias();
+
+  // What one image says of one landmark, where the variables are; or why nothing.
+  struct ImageTerms {
+    const char* kind;
+    const char* reason_for_none;
+    int residuals;
+    std::vector<std::unique_ptr<const Term>> terms;
+  };
+  ImageTerms AsymmetryOf(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
+  ImageTerms PairsOf(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
+  ImageTerms EdgesOf(size_t index, const std::shared_ptr<const EdgeImage>& image) const;
+  std::unique_ptr<const Term> ViewTermOf(const Detection& detection,
+                                         const Landmark& landmark_in_camera,
+                                         std::unique_ptr<const LandmarkCost> cost) const;
+  void AddImageTerms(ImageTerms of_image);
+
   // A detection's landmark as its camera sees it, where the variables are.
   Landmark LandmarkInCamera(const Detection& detection) const;
   int Pose(const Detection& detection) const {
@@ -71,6 +79,7 @@ class BackEndProblem {
 
   const BackEndInput& input_;
   const OptimiseOptions& options_;
+  int threads_;
   std::vector<double> view_weights_;  // one per detection
   BackEndVariables variables_;
   std::set<int> normals_under_objects_;

@@ -2,10 +2,13 @@
 #include "mapping/minimise.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "mapping/block_cholesky.h"
 #include "mapping/landmark_fit.h"
@@ -29,7 +32,8 @@ constexpr double kNear = 1e-2;
 
 class Minimiser {
  public:
-  Minimiser(const Terms& terms, std::vector<Variable>* variables) : variables_(variables) {
+  Minimiser(const Terms& terms, int threads, std::vector<Variable>* variables)
+      : variables_(variables), threads_(threads) {
     const auto varies = [&](int index, bool is_landmark) {
       const Variable& variable = (*variables)[static_cast<size_t>(index)];
       return !variable.is_held && (variable.kind == VariableKind::kLandmark) == is_landmark;
@@ -79,8 +83,19 @@ class Minimiser {
  private:
   double Tolerance() const { return kTolerance * cost_ + kNoCost; }
 
+  // Fits change nothing that others read. The equations are for steps to be tried in.
+  using WorkOnFit = std::function<void(LandmarkFit&, LandmarkFit::Equations*)>;
+  void ForEachFit(const WorkOnFit& work) {
+    constexpr int kShares = 16;  // per thread, as some landmarks take longer than others
+    const auto fits = static_cast<int>(fits_.size());
+    const int shares = threads_ > 1 ? std::min(fits, kShares * threads_) : 1;
+    ParallelFor(shares, threads_, [&](int share) {
+      LandmarkFit::Equations candidate;
+      for (int i = share; i < fits; i += shares) work(fits_[static_cast<size_t>(i)], &candidate);
+    });
+  }
   void LineariseFits() {
-    for (LandmarkFit& fit : fits_) fit.Linearise(hessian_);
+    ForEachFit([&](LandmarkFit& fit, auto*) { fit.Linearise(hessian_); });
   }
   // Of all terms; where the fits were linearised.
   double Cost() const {
@@ -93,8 +108,10 @@ class Minimiser {
   // Whether any of them moves or may do so.
   bool StepOfEachLandmark() {
     const double tolerance = Tolerance() / NumLandmarks();
-    bool moves = false;
-    for (LandmarkFit& fit : fits_) moves |= fit.Step(hessian_, tolerance, &candidate_);
+    std::atomic<bool> moves = false;
+    ForEachFit([&](LandmarkFit& fit, auto* candidate) {
+      if (fit.Step(hessian_, tolerance, candidate)) moves = true;
+    });
     const double before = cost_;
     cost_ = Cost();
     hessian_ = before - cost_ < kNear * before ? Hessian::kNear : Hessian::kFar;
@@ -143,10 +160,10 @@ class Minimiser {
     cost_ = Cost();
     const double worth_a_step = std::min(kLandmarkTolerance * std::min(before, cost_), predicted);
     const double tolerance = std::max(kLeastGain * before, worth_a_step) / NumLandmarks();
-    for (LandmarkFit& fit : fits_) {
-      for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance, &candidate_); ++i) {
+    ForEachFit([&](LandmarkFit& fit, auto* candidate) {
+      for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance, candidate); ++i) {
       }
-    }
+    });
     cost_ = Cost();
     const double gain = before - cost_;  // with what landmarks brought
     if (gain > 0.0) {
@@ -188,9 +205,9 @@ class Minimiser {
   }
 
   std::vector<Variable>* variables_;
+  int threads_;
   bool others_vary_ = false;  // than landmarks
   std::vector<LandmarkFit> fits_;
-  LandmarkFit::Equations candidate_;
   std::vector<PlacedTerm> without_landmark_;
   std::optional<NormalEquations> equations_;
   std::optional<BlockCholesky> factor_;
@@ -203,8 +220,9 @@ class Minimiser {
 
 }  // namespace
 
-Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables) {
-  return Minimiser(terms, variables).Run(max_iterations);
+Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables,
+                      int threads) {
+  return Minimiser(terms, threads, variables).Run(max_iterations);
 }
 
 }  // namespace soslam

@@ -19,7 +19,9 @@ struct Minimisation {
 // Minimises the sum of all terms over all variables that are not held, from where they are, by
 // Levenberg-Marquardt. In each iteration one step of all variables together is followed by steps of
 // each landmark for itself: a landmark that its boxes hardly determine so does not shorten the step
-// of all others. Throws NumericalError where the cost is not defined at the start.
-Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables);
+// of all others. The result does not depend on the number of threads. Throws NumericalError where
+// the cost is not defined at the start.
+Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables,
+                      int threads = 1);
 
 }  // namespace soslam

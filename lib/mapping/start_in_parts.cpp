@@ -52,8 +52,8 @@ double TotalCost(const Terms& terms) {
 
 class PartByPart {
  public:
-  PartByPart(std::vector<Part> parts, const Terms& terms, BackEndVariables* variables)
-      : variables_(*variables), parts_(std::move(parts)) {
+  PartByPart(std::vector<Part> parts, const Terms& terms, int threads, BackEndVariables* variables)
+      : variables_(*variables), threads_(threads), parts_(std::move(parts)) {
     for (const Variable& variable : variables_.all()) {
       starts_.emplace_back(variable.values, variable.values + NumValues(variable.kind));
     }
@@ -163,7 +163,7 @@ class PartByPart {
       Set(landmark, Pack(Transform(carried, UnpackLandmark(StartOf(landmark)))));
       release(landmark);
     }
-    Minimise(terms, kIterationsPerPart, &some);
+    Minimise(terms, kIterationsPerPart, &some, threads_);
     FitLandmarksAnew(part.landmarks);
   }
 
@@ -180,7 +180,7 @@ class PartByPart {
       const Rigid3d corrected = Correction(MiddlePose(of_landmark));
       Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
     }
-    Minimise(terms, kIterationsPerPart, &some);
+    Minimise(terms, kIterationsPerPart, &some, threads_);
     for (const auto& [landmark, of_landmark] : landmarks) {
       const auto& [cost, values] = before.at(landmark);
       if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);
@@ -188,6 +188,7 @@ class PartByPart {
   }
 
   BackEndVariables& variables_;
+  int threads_;
   std::vector<Part> parts_;
   std::vector<std::vector<double>> starts_;  // by variable
   std::map<int, size_t> home_;               // by landmark, the part that it comes from
@@ -196,11 +197,11 @@ class PartByPart {
 }  // namespace
 
 void StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frames_per_part,
-                  BackEndVariables* variables) {
+                  BackEndVariables* variables, int threads) {
   std::vector<Part> parts = PartsOf(sequence.frames, max_frames_per_part);
   if (parts.empty()) return;
   const double before = TotalCost(terms);
-  PartByPart in_parts(std::move(parts), terms, variables);
+  PartByPart in_parts(std::move(parts), terms, threads, variables);
   in_parts.Run();
   if (!(TotalCost(terms) < kMuchLess * before)) in_parts.Undo();
 }

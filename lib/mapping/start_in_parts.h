@@ -17,6 +17,6 @@ namespace soslam {
 // not cost much less then, as in a room that parts see each in its own way, nothing is moved.
 // Throws NumericalError where a part's cost is not defined.
 void StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frames_per_part,
-                  BackEndVariables* variables);
+                  BackEndVariables* variables, int threads = 1);
 
 }  // namespace soslam

@@ -115,7 +115,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.symmetry || options.edge_alignment) {
     info.inputs.push_back(files.at("edges"));
   }
-  const MapEstimate map = OptimiseMap(input, options);
+  const MapEstimate map = OptimiseMap(input, options, threads);
   WriteMap(files.at("output"), map, sequence, info);
   fmt::print("{} iterations, cost {:.6g} -> {:.6g}{}\n", map.solver.iterations,
              map.solver.initial_cost, map.solver.final_cost,

@@ -100,7 +100,7 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   optimise.axes_weight = 0.0;  // the world's axes mean nothing
   BackEndInput input{sequence, {}, priors, {}, {}};
   input.starts = ChooseUprightStarts(input, {}, optimise, threads);
-  return OptimiseMap(input, optimise);
+  return OptimiseMap(input, optimise, threads);
 }
 
 // `covariance`: over (normal, offset).

@@ -248,6 +248,23 @@ TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
   EXPECT_GT(with, 0.9);
 }
 
+TEST(TangencyBackEnd, DoesNotDependOnThreads) {
+  const Sequence sequence = CuboidSequence(5, 8);
+  BackEndInput input = TruthInput(sequence);
+  input.edge_images = DrawnEdges(sequence);
+  Disturb(&input);
+  const MapEstimate one = OptimiseMap(input, TangencyOptions(), 1);
+  const MapEstimate three = OptimiseMap(input, TangencyOptions(), 3);
+  EXPECT_GT(one.solver.cost_per_iteration.size(), 5u);
+  EXPECT_EQ(one.solver.cost_per_iteration, three.solver.cost_per_iteration);
+  for (size_t i = 0; i < input.starts.size(); ++i) {
+    const Landmark& of_one = *one.objects[i].landmark_in_world;
+    const Landmark& of_three = *three.objects[i].landmark_in_world;
+    EXPECT_EQ(of_one.frame_from_object.Matrix(), of_three.frame_from_object.Matrix());
+    EXPECT_EQ(of_one.half_axes, of_three.half_axes);
+  }
+}
+
 // Which edge points count is decided anew until nothing moves: from there, nothing does.
 TEST(TangencyBackEnd, SettlesWithEdges) {
   const Sequence sequence = CuboidSequence(4, 10);
