@@ -29,16 +29,9 @@ SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
 SymmetryDescriptor::SymmetryDescriptor(Descriptor descriptor, const SymmetryImage& image,
                                        const Camera& camera, const Landmark& landmark_in_camera)
     : descriptor_(descriptor), image_(image), surface_(camera, landmark_in_camera) {
-  if (descriptor != Descriptor::kNearestEdge3d) return;
-  surface_edges_in_object_.resize(static_cast<Eigen::Index>(image.edge_pixels.size()), 3);
-  Eigen::Index count = 0;
-  for (const Eigen::Vector2d& pixel : image.edge_pixels) {
-    if (const auto point = surface_.FromPixel(pixel)) {
-      surface_edge_pixels_.push_back(pixel);
-      surface_edges_in_object_.row(count++) = point->in_object.transpose();
-    }
+  if (descriptor == Descriptor::kNearestEdge3d) {
+    edges_on_surface_.emplace(camera, landmark_in_camera, image.edge_pixels);
   }
-  surface_edges_in_object_.conservativeResize(count, 3);
 }
 
 std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Evaluate(
@@ -127,20 +120,8 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
 
 std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
-  std::optional<Eigen::Vector2d> edge_pixel;
-  if (descriptor_ == Descriptor::kNearestEdge3d) {
-    if (surface_edge_pixels_.empty()) return std::nullopt;
-    const Eigen::Vector3d& x = point.in_object;
-    const Eigen::ArrayXd squared_distance = (surface_edges_in_object_.col(0) - x[0]).square() +
-                                            (surface_edges_in_object_.col(1) - x[1]).square() +
-                                            (surface_edges_in_object_.col(2) - x[2]).square();
-    const auto nearest =
-        std::find(squared_distance.begin(), squared_distance.end(), squared_distance.minCoeff());
-    if (nearest == squared_distance.end()) return std::nullopt;  // NaN
-    edge_pixel = surface_edge_pixels_[static_cast<size_t>(nearest - squared_distance.begin())];
-  } else {
-    edge_pixel = NearestEdge(image_.maps, pixel);
-  }
+  const auto edge_pixel = edges_on_surface_ ? edges_on_surface_->Nearest(point.in_object)
+                                            : NearestEdge(image_.maps, pixel);
   if (!edge_pixel) return std::nullopt;
   const auto edge = descriptor_ == Descriptor::kLinearisedDt
                         ? surface_.FromPixelOnTangentPlane(*edge_pixel, point, with_jacobian)

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "constraints/edges_on_surface.h"
 #include "constraints/parameters.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
@@ -109,8 +110,7 @@ class SymmetryDescriptor {
   Descriptor descriptor_;
   const SymmetryImage& image_;
   VisibleSurface surface_;
-  std::vector<Eigen::Vector2d> surface_edge_pixels_;  // for kNearestEdge3d: edge pixels whose
-  Eigen::ArrayX3d surface_edges_in_object_;           // rays meet the surface, and where
+  std::optional<EdgesOnSurface> edges_on_surface_;  // for kNearestEdge3d
 };
 
 // Symmetry constraint, eq. (16): the descriptor of a pixel equals that of its mirror pixel, divided

@@ -105,12 +105,15 @@ SOSLAM_WIDE_LOOPS void Differentiate(const Corners& corners, const Cells& cells,
 
 }  // namespace
 
+bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel) {  // not so of NaN
+  return map.cols >= 2 && map.rows >= 2 &&                                      //
+         pixel.x() >= 0.0 && pixel.x() <= map.cols - 1.0 &&                     //
+         pixel.y() >= 0.0 && pixel.y() <= map.rows - 1.0;
+}
+
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel) {
   CV_Assert(map.type() == CV_8UC1 || map.type() == CV_32FC1);
-  const bool inside = map.cols >= 2 && map.rows >= 2 &&                   //
-                      pixel.x() >= 0.0 && pixel.x() <= map.cols - 1.0 &&  //
-                      pixel.y() >= 0.0 && pixel.y() <= map.rows - 1.0;
-  if (!inside) return std::nullopt;  // also for NaN
+  if (!IsBetweenPixelCentres(map, pixel)) return std::nullopt;
   return map.type() == CV_8UC1 ? SampleTyped<std::uint8_t>(map, pixel)
                                : SampleTyped<float>(map, pixel);
 }

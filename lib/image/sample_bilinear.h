@@ -18,6 +18,8 @@ struct Sample {
 // maps of at least 2 x 2 pixels; none outside it (no clamping, which would have zero gradients),
 // and none where one of the four pixels around is not finite.
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
+// Whether a pixel is in that domain.
+bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel);
 
 // The values of many pixels: NaN or infinite where there is none. `gradients` may be null; they are
 // 0 where there is none.

@@ -137,7 +137,8 @@ double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
     if (!yaw_is_free) sum.Hold(kYaw);
     return sum;
   };
-  return MinimiseSquares<6>(evaluate, kMaxIterations, start) + ConstantCost(further);
+  return MinimiseSquares<6>(evaluate, kMaxIterations, start, NegligibleDecrease(further)) +
+         ConstantCost(further);
 }
 
 }  // namespace soslam

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/landmark_cost.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
 
@@ -15,6 +18,12 @@ double TotalCost(const LandmarkCosts& costs, const Landmark& landmark) {
   double sum = ConstantCost(costs);
   for (const auto& cost : costs) sum += cost->Value(landmark);
   return sum;
+}
+
+double NegligibleDecrease(const LandmarkCosts& costs) {
+  const bool has_kinks =
+      std::ranges::any_of(costs, [](const auto& cost) { return cost->HasKinks(); });
+  return has_kinks ? kNegligibleDecreaseAtKinks : kNegligibleDecrease;
 }
 
 ViewCost::ViewCost(std::unique_ptr<const LandmarkCost> in_camera,

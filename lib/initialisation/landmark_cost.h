@@ -25,12 +25,16 @@ class LandmarkCost {
   virtual void AddTo(const Landmark& landmark, LandmarkModel* sum) const = 0;
   // What does not change with the landmark, but may with what the cost was made for.
   virtual double ConstantCost() const { return 0.0; }
+  // Whether its derivatives jump.
+  virtual bool HasKinks() const { return false; }
 };
 
 using LandmarkCosts = std::vector<std::unique_ptr<const LandmarkCost>>;
 double ConstantCost(const LandmarkCosts& costs);
 // Of all values, and the constant costs.
 double TotalCost(const LandmarkCosts& costs, const Landmark& landmark);
+// For MinimiseSquares.
+double NegligibleDecrease(const LandmarkCosts& costs);
 
 // What one camera says, for a landmark in another frame, multiplied by a weight.
 class ViewCost final : public LandmarkCost {
@@ -40,6 +44,7 @@ class ViewCost final : public LandmarkCost {
   double Value(const Landmark& landmark_in_reference) const override;
   void AddTo(const Landmark& landmark_in_reference, LandmarkModel* sum) const override;
   double ConstantCost() const override { return weight_ * in_camera_->ConstantCost(); }
+  bool HasKinks() const override { return in_camera_->HasKinks(); }
 
  private:
   std::unique_ptr<const LandmarkCost> in_camera_;

@@ -9,15 +9,21 @@
 
 namespace soslam {
 
+// Of 1 + cost: steps that lower it by less are not worth taking.
+inline constexpr double kNegligibleDecrease = 1e-11;
+// Where derivatives jump, as those of an image do from pixel to pixel, steps go to and fro at the
+// end, each shorter than the one before, and take most of the time.
+inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
+
 // Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
 // least squares problems, 2004, section 3.2). `evaluate` makes the model at parameters.
-// Ends where the next step would hardly lower the cost any more, after `max_iterations`,
-// or where no step lowers it. Parameters that nothing depends on stay as they
+// Ends where the next step is expected to lower the cost by a negligible share of it, after
+// `max_iterations`, or where no step lowers it. Parameters that nothing depends on stay as they
 // are. Returns the cost at the parameters that it leaves: not finite when it was not at the start.
 template <int kSize, typename Evaluate>
 double MinimiseSquares(Evaluate evaluate, int max_iterations,
-                       Eigen::Matrix<double, kSize, 1>* parameters) {
-  constexpr double kNegligibleDecrease = 1e-11;
+                       Eigen::Matrix<double, kSize, 1>* parameters,
+                       double negligible_decrease = kNegligibleDecrease) {
   constexpr double kMinDiagonal = 1e-6;
   constexpr double kMaxDamping = 1e16;
   QuadraticModel<kSize> at = evaluate(*parameters);
@@ -37,7 +43,7 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
     const Eigen::Matrix<double, kSize, 1> step = factor.solve(-at.gradient);
     // Of the undamped cost to second order.
     const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
-    if (!(decrease > kNegligibleDecrease * (1.0 + at.cost))) break;
+    if (!(decrease > negligible_decrease * (1.0 + at.cost))) break;
     const Eigen::Matrix<double, kSize, 1> moved = *parameters + step;
     const QuadraticModel<kSize> there = evaluate(moved);
     const double gain = (at.cost - there.cost) / decrease;

@@ -184,7 +184,8 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
     return sum;
   };
   UprightVector parameters = ground.ParametersOf(start);
-  const double cost = MinimiseSquares<6>(evaluate, kMaxIterations, &parameters);
+  const double cost =
+      MinimiseSquares<6>(evaluate, kMaxIterations, &parameters, NegligibleDecrease(costs));
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
   return UprightSolution{ground.LandmarkAt(parameters, shape_exponent), cost + ConstantCost(costs)};
 }

@@ -59,12 +59,15 @@ SOSLAM_WIDE_LOOPS void Project(const Camera& camera, const Landmark& landmark,
 
 // D / sqrt(1 + D^2 / tau^2) of a distance, tau where there is none: the limit of ever larger ones;
 // and its derivative. Both 0 for what is not a point.
-void Truncate(const Batch& distance, const Batch& is_point, double tau, Batch* residual,
-              Batch* slope) {
-  const Batch inverse_root = (1.0 + (distance / tau).square()).sqrt().inverse();
-  const auto is_seen = inverse_root > 0.0;  // not so of NaN
-  *residual = is_point * is_seen.select(distance * inverse_root, tau);
-  *slope = is_point * is_seen.select(inverse_root.cube(), 0.0);
+SOSLAM_WIDE_LOOPS void Truncate(const Batch& __restrict distance, const Batch& __restrict is_point,
+                                double tau, Batch* __restrict residual, Batch* __restrict slope) {
+  for (int i = 0; i < kBatchSize; ++i) {
+    const double share = distance[i] / tau;
+    const double inverse_root = 1.0 / std::sqrt(1.0 + share * share);
+    const bool is_seen = inverse_root > 0.0;  // not so of NaN
+    (*residual)[i] = is_point[i] * (is_seen ? distance[i] * inverse_root : tau);
+    (*slope)[i] = is_point[i] * (is_seen ? inverse_root * inverse_root * inverse_root : 0.0);
+  }
 }
 
 // Derivatives of the residuals by the landmark.
@@ -148,7 +151,7 @@ bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) 
   const auto pixel = camera_.Project(start_in_camera.frame_from_object *
                                      start_in_camera.half_axes.cwiseProduct(point.in_unit_body));
   const FrameEdges& frame = *image_->frame;
-  if (!pixel || !SampleBilinear(frame.maps.distance, *pixel)) return false;
+  if (!pixel || !IsBetweenPixelCentres(frame.maps.distance, *pixel)) return false;
   const auto nearest = NearestEdge(frame.maps, *pixel);
   const bool is_hidden = std::any_of(image_->nearer_boxes.begin(), image_->nearer_boxes.end(),
                                      [&](const Box& box) { return box.Contains(*pixel); });

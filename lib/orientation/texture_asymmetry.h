@@ -73,6 +73,7 @@ class AsymmetryTerm final : public LandmarkCost {
 
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
+  bool HasKinks() const override { return true; }
 
  private:
   std::shared_ptr<const SymmetryImage> image_;
