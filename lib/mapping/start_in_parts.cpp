@@ -15,6 +15,10 @@ namespace {
 
 // It is a start, not the result.
 constexpr int kIterationsPerPart = 10;
+// A part is solved again where its last iteration, and landmarks that were fitted anew, have
+// lowered its cost by more than this share: every later part starts from where it ends.
+constexpr double kUnsettled = 0.05;
+constexpr int kMaxRounds = 5;
 // So many parts find their minimum together as well.
 constexpr size_t kPartsAtOnce = 2;
 // Where dead reckoning is lost, a start in parts costs less by orders of magnitude; where it costs
@@ -163,8 +167,11 @@ class PartByPart {
       Set(landmark, Pack(Transform(carried, UnpackLandmark(StartOf(landmark)))));
       release(landmark);
     }
-    Minimise(terms, kIterationsPerPart, &some, threads_);
-    FitLandmarksAnew(part.landmarks);
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const std::vector<double> costs = Minimise(terms, kIterationsPerPart, &some, threads_).costs;
+      FitLandmarksAnew(part.landmarks);
+      if (TotalCost(terms) > (1.0 - kUnsettled) * costs[costs.size() - 2]) break;
+    }
   }
 
   // While the poses were not right yet, a landmark may have been lost: where it costs less when it
