@@ -11,11 +11,13 @@
 
 namespace soslam {
 
-// Levenberg-Marquardt's damping (after Nielsen, 1999, but falling faster): a multiple of the
+// Levenberg-Marquardt's damping (after Nielsen, 1999): a multiple of the
 // Hessian's diagonal, of which no element counts as less than a tenth per unit (rad, m, logarithm):
 // where next to nothing is known, steps stay within the size of things.
 class Damping {
  public:
+  Damping() = default;
+  explicit Damping(double value) : value_(value) {}
   // What is added to the Hessian's diagonal.
   template <typename Vector>
   Vector Of(const Vector& diagonal) const {

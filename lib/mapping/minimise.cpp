@@ -29,11 +29,15 @@ constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkTolerance = 1e-3;
 // Where an iteration lowers the cost by less than this share, the minimum is near.
 constexpr double kNear = 1e-2;
+// Of a start that is near.
+constexpr double kDampingNear = 1e-10;
 
 class Minimiser {
  public:
-  Minimiser(const Terms& terms, int threads, std::vector<Variable>* variables)
-      : variables_(variables), threads_(threads) {
+  Minimiser(const Terms& terms, const MinimiseOptions& options, std::vector<Variable>* variables)
+      : variables_(variables),
+        options_(options),
+        damping_(options.starts_near ? Damping(kDampingNear) : Damping()) {
     const auto varies = [&](int index, bool is_landmark) {
       const Variable& variable = (*variables)[static_cast<size_t>(index)];
       return !variable.is_held && (variable.kind == VariableKind::kLandmark) == is_landmark;
@@ -63,7 +67,7 @@ class Minimiser {
     }
   }
 
-  Minimisation Run(int max_iterations) {
+  Minimisation Run() {
     Minimisation result;
     LineariseFits();
     cost_ = Cost();
@@ -72,7 +76,7 @@ class Minimiser {
     }
     result.costs.push_back(cost_);
     Progress progress("iterations", Progress::kUnknownCount);
-    while (!result.converged && static_cast<int>(result.costs.size()) <= max_iterations) {
+    while (!result.converged && static_cast<int>(result.costs.size()) <= options_.max_iterations) {
       result.converged = !(others_vary_ ? StepOfAll() : StepOfEachLandmark());
       result.costs.push_back(cost_);
       progress.Step();
@@ -88,8 +92,8 @@ class Minimiser {
   void ForEachFit(const WorkOnFit& work) {
     constexpr int kShares = 16;  // per thread, as some landmarks take longer than others
     const auto fits = static_cast<int>(fits_.size());
-    const int shares = threads_ > 1 ? std::min(fits, kShares * threads_) : 1;
-    ParallelFor(shares, threads_, [&](int share) {
+    const int shares = options_.threads > 1 ? std::min(fits, kShares * options_.threads) : 1;
+    ParallelFor(shares, options_.threads, [&](int share) {
       LandmarkFit::Equations candidate;
       for (int i = share; i < fits; i += shares) work(fits_[static_cast<size_t>(i)], &candidate);
     });
@@ -205,7 +209,7 @@ class Minimiser {
   }
 
   std::vector<Variable>* variables_;
-  int threads_;
+  MinimiseOptions options_;
   bool others_vary_ = false;  // than landmarks
   std::vector<LandmarkFit> fits_;
   std::vector<PlacedTerm> without_landmark_;
@@ -220,9 +224,9 @@ class Minimiser {
 
 }  // namespace
 
-Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables,
-                      int threads) {
-  return Minimiser(terms, threads, variables).Run(max_iterations);
+Minimisation Minimise(const Terms& terms, const MinimiseOptions& options,
+                      std::vector<Variable>* variables) {
+  return Minimiser(terms, options, variables).Run();
 }
 
 }  // namespace soslam

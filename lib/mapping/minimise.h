@@ -16,12 +16,20 @@ struct Minimisation {
   bool converged = false;
 };
 
+struct MinimiseOptions {
+  int max_iterations;
+  int threads = 1;
+  // The minimum is near already: the first step of all variables is hardly damped, so that what
+  // the terms say little about, as the bend of a long drive, comes to rest in it.
+  bool starts_near = false;
+};
+
 // Minimises the sum of all terms over all variables that are not held, from where they are, by
 // Levenberg-Marquardt. In each iteration one step of all variables together is followed by steps of
 // each landmark for itself: a landmark that its boxes hardly determine so does not shorten the step
 // of all others. The result does not depend on the number of threads. Throws NumericalError where
 // the cost is not defined at the start.
-Minimisation Minimise(const Terms& terms, int max_iterations, std::vector<Variable>* variables,
-                      int threads = 1);
+Minimisation Minimise(const Terms& terms, const MinimiseOptions& options,
+                      std::vector<Variable>* variables);
 
 }  // namespace soslam

@@ -17,7 +17,7 @@ namespace {
 constexpr int kIterationsPerPart = 10;
 // A part is solved again where its last iteration, and landmarks that were fitted anew, have
 // lowered its cost by more than this share: every later part starts from where it ends.
-constexpr double kUnsettled = 0.05;
+constexpr double kUnsettled = 0.02;
 constexpr int kMaxRounds = 5;
 // So many parts find their minimum together as well.
 constexpr size_t kPartsAtOnce = 2;
@@ -168,7 +168,8 @@ class PartByPart {
       release(landmark);
     }
     for (int round = 0; round < kMaxRounds; ++round) {
-      const std::vector<double> costs = Minimise(terms, kIterationsPerPart, &some, threads_).costs;
+      const std::vector<double> costs =
+          Minimise(terms, {kIterationsPerPart, threads_}, &some).costs;
       FitLandmarksAnew(part.landmarks);
       if (TotalCost(terms) > (1.0 - kUnsettled) * costs[costs.size() - 2]) break;
     }
@@ -187,7 +188,7 @@ class PartByPart {
       const Rigid3d corrected = Correction(MiddlePose(of_landmark));
       Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
     }
-    Minimise(terms, kIterationsPerPart, &some, threads_);
+    Minimise(terms, {kIterationsPerPart, threads_}, &some);
     for (const auto& [landmark, of_landmark] : landmarks) {
       const auto& [cost, values] = before.at(landmark);
       if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);
@@ -203,14 +204,16 @@ class PartByPart {
 
 }  // namespace
 
-void StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frames_per_part,
+bool StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frames_per_part,
                   BackEndVariables* variables, int threads) {
   std::vector<Part> parts = PartsOf(sequence.frames, max_frames_per_part);
-  if (parts.empty()) return;
+  if (parts.empty()) return false;
   const double before = TotalCost(terms);
   PartByPart in_parts(std::move(parts), terms, threads, variables);
   in_parts.Run();
-  if (!(TotalCost(terms) < kMuchLess * before)) in_parts.Undo();
+  if (TotalCost(terms) < kMuchLess * before) return true;
+  in_parts.Undo();
+  return false;
 }
 
 }  // namespace soslam

@@ -170,8 +170,8 @@ TEST_F(OffsetTest, OutliersPullNoHarderThanTheLossSays) {
   for (const double place : {0.0, 1.0, 9.0}) {
     terms.push_back(TermOf(std::make_unique<Distance>(place), 0.5));
   }
-  const Minimisation result =
-      Minimise({terms[0].get(), terms[1].get(), terms[2].get()}, 50, &variables_->all());
+  const Minimisation result = Minimise({terms[0].get(), terms[1].get(), terms[2].get()},
+                                       {.max_iterations = 50}, &variables_->all());
   EXPECT_TRUE(result.converged);
   EXPECT_NEAR(Offset(), 1.0, 1e-5);
   EXPECT_NEAR(result.costs.back(), 0.5 * (1.0 - 0.25) + 0.5 * (8.0 - 0.25), 1e-9);
@@ -181,7 +181,8 @@ TEST_F(OffsetTest, OutliersPullNoHarderThanTheLossSays) {
 TEST_F(OffsetTest, StepsIntoWhereACostIsNotDefinedAreShortened) {
   const auto term = TermOf(std::make_unique<Distance>(9.999), 1e9);
   const auto pull = TermOf(std::make_unique<Distance>(10.5), 1e9);
-  const Minimisation result = Minimise({term.get(), pull.get()}, 100, &variables_->all());
+  const Minimisation result =
+      Minimise({term.get(), pull.get()}, {.max_iterations = 100}, &variables_->all());
   EXPECT_LT(Offset(), 10.0);
   EXPECT_GT(Offset(), 9.0);
   EXPECT_LT(result.costs.back(), result.costs.front());
@@ -190,14 +191,14 @@ TEST_F(OffsetTest, StepsIntoWhereACostIsNotDefinedAreShortened) {
 TEST_F(OffsetTest, AStartWhereACostIsNotDefinedIsRefused) {
   Offset() = 11.0;
   const auto term = TermOf(std::make_unique<Distance>(0.0), 1e9);
-  EXPECT_THROW(Minimise({term.get()}, 10, &variables_->all()), NumericalError);
+  EXPECT_THROW(Minimise({term.get()}, {.max_iterations = 10}, &variables_->all()), NumericalError);
 }
 
 TEST_F(OffsetTest, WhatIsHeldStays) {
   Offset() = 3.0;
   variables_->Hold(variables_->Offset(0));
   const auto term = TermOf(std::make_unique<Distance>(0.0), 1e9);
-  const Minimisation result = Minimise({term.get()}, 10, &variables_->all());
+  const Minimisation result = Minimise({term.get()}, {.max_iterations = 10}, &variables_->all());
   EXPECT_EQ(Offset(), 3.0);
   EXPECT_EQ(result.costs.back(), 4.5);
 }
