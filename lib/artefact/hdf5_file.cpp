@@ -244,6 +244,7 @@ Hdf5File::StoredArray Hdf5File::ReadStored(const std::string& name, int depth,
                                            const std::vector<int>& expected) const {
   static std::mutex turn;
   const std::lock_guard lock(turn);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // by thread, where the library knows threads
   const Hdf5Element element = Hdf5ElementOf(depth);
   if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
@@ -268,7 +269,7 @@ Hdf5File::StoredArray Hdf5File::ReadStored(const std::string& name, int depth,
 void Hdf5File::Restore(const std::string& name, const StoredArray& stored,
                        std::span<std::byte> values) const {
   if (!stored.is_packed) {
-    std::memcpy(values.data(), stored.bytes.data(), values.size());
+    std::ranges::copy(std::as_bytes(std::span(stored.bytes)), values.begin());
   } else if (!Unpack(stored.bytes, stored.element_size, values)) {
     FailReading(name, kDamaged);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
@@ -64,6 +65,7 @@ class Hdf5File {
   void WriteVector(const std::string& name, const std::vector<T>& values) {
     WriteArray(name, Pack(values));
   }
+  // Either of them, packed before.
   void WriteArray(const std::string& name, const PackedArray& array);
   // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
   void WriteText(const std::string& owner, const std::string& name, const std::string& text);

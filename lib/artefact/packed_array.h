@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/traits.hpp>
@@ -17,8 +18,8 @@ using ArrayShape = std::vector<std::uint64_t>;
 // and unpack.
 struct PackedArray {
   ArrayShape shape;
-  int depth;  // CV_8U, CV_16S, CV_32S, CV_32F or CV_64F
-  std::string bytes;
+  int depth;          // CV_8U, CV_16S, CV_32S, CV_32F or CV_64F
+  std::string bytes;  // none of no elements
 };
 
 // `values` fill the shape.

@@ -18,7 +18,7 @@ struct Sample {
 // maps of at least 2 x 2 pixels; none outside it (no clamping, which would have zero gradients),
 // and none where one of the four pixels around is not finite.
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
-// Whether a pixel is in that domain.
+// Whether a pixel is in that domain, but for values that are not finite.
 bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel);
 
 // The values of many pixels: NaN or infinite where there is none. `gradients` may be null; they are

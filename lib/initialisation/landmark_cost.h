@@ -25,7 +25,7 @@ class LandmarkCost {
   virtual void AddTo(const Landmark& landmark, LandmarkModel* sum) const = 0;
   // What does not change with the landmark, but may with what the cost was made for.
   virtual double ConstantCost() const { return 0.0; }
-  // Whether its derivatives jump.
+  // Whether its derivatives jump from pixel to pixel of an image.
   virtual bool HasKinks() const { return false; }
 };
 
@@ -33,7 +33,8 @@ using LandmarkCosts = std::vector<std::unique_ptr<const LandmarkCost>>;
 double ConstantCost(const LandmarkCosts& costs);
 // Of all values, and the constant costs.
 double TotalCost(const LandmarkCosts& costs, const Landmark& landmark);
-// For MinimiseSquares.
+// Where fits to them end: the least decrease of the cost, as a share of 1 + cost, that is worth a
+// step of MinimiseSquares.
 double NegligibleDecrease(const LandmarkCosts& costs);
 
 // What one camera says, for a landmark in another frame, multiplied by a weight.

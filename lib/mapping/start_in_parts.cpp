@@ -171,7 +171,7 @@ class PartByPart {
       const std::vector<double> costs =
           Minimise(terms, {kIterationsPerPart, threads_}, &some).costs;
       FitLandmarksAnew(part.landmarks);
-      if (TotalCost(terms) > (1.0 - kUnsettled) * costs[costs.size() - 2]) break;
+      if (TotalCost(terms) >= (1.0 - kUnsettled) * costs[costs.size() - 2]) break;
     }
   }
 
@@ -208,10 +208,12 @@ bool StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frame
                   BackEndVariables* variables, int threads) {
   std::vector<Part> parts = PartsOf(sequence.frames, max_frames_per_part);
   if (parts.empty()) return false;
+  size_t frames_in_parts = 0;
+  for (const Part& part : parts) frames_in_parts += part.end - part.begin;
   const double before = TotalCost(terms);
   PartByPart in_parts(std::move(parts), terms, threads, variables);
   in_parts.Run();
-  if (TotalCost(terms) < kMuchLess * before) return true;
+  if (TotalCost(terms) < kMuchLess * before) return frames_in_parts == sequence.frames.size();
   in_parts.Undo();
   return false;
 }

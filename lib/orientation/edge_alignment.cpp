@@ -59,15 +59,12 @@ SOSLAM_WIDE_LOOPS void Project(const Camera& camera, const Landmark& landmark,
 
 // D / sqrt(1 + D^2 / tau^2) of a distance, tau where there is none: the limit of ever larger ones;
 // and its derivative. Both 0 for what is not a point.
-SOSLAM_WIDE_LOOPS void Truncate(const Batch& __restrict distance, const Batch& __restrict is_point,
-                                double tau, Batch* __restrict residual, Batch* __restrict slope) {
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double share = distance[i] / tau;
-    const double inverse_root = 1.0 / std::sqrt(1.0 + share * share);
-    const bool is_seen = inverse_root > 0.0;  // not so of NaN
-    (*residual)[i] = is_point[i] * (is_seen ? distance[i] * inverse_root : tau);
-    (*slope)[i] = is_point[i] * (is_seen ? inverse_root * inverse_root * inverse_root : 0.0);
-  }
+void Truncate(const Batch& distance, const Batch& is_point, double tau, Batch* residual,
+              Batch* slope) {
+  const Batch inverse_root = (1.0 + (distance / tau).square()).sqrt().inverse();
+  const auto is_seen = inverse_root > 0.0;  // not so of NaN
+  *residual = is_point * is_seen.select(distance * inverse_root, tau);
+  *slope = is_point * is_seen.select(inverse_root.cube(), 0.0);
 }
 
 // Derivatives of the residuals by the landmark.

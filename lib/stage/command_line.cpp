@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <thread>
 
@@ -267,6 +268,7 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
   // Ceres warns through glog of what its results say as well, and what the stages report in their
   // words.
   FLAGS_minloglevel = google::GLOG_FATAL;
+  cv::setNumThreads(1);  // stages have threads of their own, on top of which OpenCV's would come
   CLI::App app(info.purpose, info.name);
   return ExitCodeOf(&app, [&] { return ParseAndRun(argc, argv, info, &app, options, body); });
 }

@@ -28,7 +28,6 @@ std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& 
 }
 
 FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequence) {
-  cv::setNumThreads(1);  // frames run in parallel; OpenCV's own threads would come on top
   if (sequence.image_distortion) undistorter_.emplace(sequence.camera, *sequence.image_distortion);
 }
 

@@ -40,7 +40,6 @@ std::vector<fs::path> ImagePaths(const fs::path& dataset) {
 std::vector<std::vector<YoloDetection>> DetectAll(const std::vector<fs::path>& images,
                                                   const fs::path& network, int classes,
                                                   const DetectorOptions& options, int threads) {
-  cv::setNumThreads(1);
   const int count = static_cast<int>(images.size());
   const int workers = std::min(threads, count);
   std::vector<std::vector<YoloDetection>> detections(images.size());

@@ -66,8 +66,8 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
     return sequence.detections[static_cast<size_t>(index)];
   };
   std::set<int> frame_indices;
-  for (const auto& indices : {use.symmetry, use.edges}) {
-    for (const int index : indices) frame_indices.insert(detection_at(index).frame_index);
+  for (const auto* indices : {&use.symmetry, &use.edges}) {
+    for (const int index : *indices) frame_indices.insert(detection_at(index).frame_index);
   }
   const EdgesReader reader(edges_file);
   const std::vector<int> to_read(frame_indices.begin(), frame_indices.end());

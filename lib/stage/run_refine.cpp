@@ -68,6 +68,7 @@ class Refiner {
     std::deque<FrameInUse> frames;
     std::vector<std::pair<const ObservationEstimate*, FrameInUse*>> tasks;
     for (const ObservationsOfFrame& observations : groups) {
+      if (observations.empty()) continue;
       FrameInUse& frame = frames.emplace_back(observations.size());
       for (const ObservationEstimate* observation : observations) {
         tasks.emplace_back(observation, &frame);

@@ -73,6 +73,7 @@ TEST_F(EdgesFileTest, FramesComeBackExactly) {
   ExpectError<InputError>([&] { reader.Read(8); }, {"edges.h5", "/frames/000008", "missing"});
 }
 
+// (Where the HDF5 library knows threads, it would take turns by itself.)
 TEST_F(EdgesFileTest, ThreadsReadSideBySide) {
   std::vector<EdgeMaps> maps;
   EdgesWriter writer(folder_ / "edges.h5", {});

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <thread>
+
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
 #include "support/expect_error.h"
@@ -142,6 +145,41 @@ TEST_F(Hdf5ChecksTest, AnyPackingOfTheLibraryIsRead) {
   H5Pset_shuffle(deflated.id());
   expect_read("/in_another_order", deflated.id());
   H5Fclose(file_);
+}
+
+TEST_F(Hdf5ChecksTest, DamagedPackingIsRefused) {
+  const std::vector<double> values(100, 1.0 / 3.0);
+  const std::string whole = Pack(values).bytes;
+  const std::string of_fewer = Pack(std::vector<double>(99, 1.0 / 3.0)).bytes;
+  const std::string of_more = Pack(std::vector<double>(101, 1.0 / 3.0)).bytes;
+  const hid_t creation = H5Pcopy(Hdf5DataSetCreation({values.size()}).id());
+  const std::map<std::string, std::string> chunks = {{"/cut", whole.substr(0, whole.size() - 3)},
+                                                     {"/of_fewer", of_fewer},
+                                                     {"/of_more", of_more},
+                                                     {"/of_nothing_known", std::string(20, 'x')}};
+  for (const auto& [name, chunk] : chunks) {
+    CreateDataSet({values.size()}, creation, name.c_str());
+    const Hdf5Handle data_set{H5Dopen2(file_, name.c_str(), H5P_DEFAULT), &H5Dclose};
+    const hsize_t begin = 0;
+    H5Dwrite_chunk(data_set.id(), H5P_DEFAULT, kAllFilters, &begin, chunk.size(), chunk.data());
+  }
+  H5Pclose(creation);
+  H5Fclose(file_);
+  for (const auto& chunk : chunks) {
+    ExpectError<InputError>([&] { Hdf5File::Open(path_).ReadVector<double>(chunk.first); },
+                            {"bad.h5", chunk.first, "damaged"});
+  }
+}
+
+// The library tells its errors to each thread for itself.
+TEST_F(Hdf5ChecksTest, AnyThreadFailsWithoutTextOfTheLibrary) {
+  const Hdf5Handle group{H5Gcreate2(file_, "/values", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                         &H5Gclose};
+  H5Fclose(file_);
+  const Hdf5File file = Hdf5File::Open(path_);
+  testing::internal::CaptureStderr();
+  std::thread([&] { EXPECT_THROW(file.ReadVector<double>("/values"), InputError); }).join();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(Hdf5ChecksTest, WhatIsWrittenIsWalkable) {

@@ -28,8 +28,8 @@ class StartInPartsTest : public testing::Test {
   }
   void MakeProblem() { problem_.emplace(input_, options_); }
   BackEndVariables& Variables() { return problem_->variables(); }
-  void Start(size_t max_frames_per_part = kFramesPerPart) {
-    StartInParts(drive_.sequence, problem_->AllTerms(), max_frames_per_part, &Variables());
+  bool Start(size_t max_frames_per_part = kFramesPerPart) {
+    return StartInParts(drive_.sequence, problem_->AllTerms(), max_frames_per_part, &Variables());
   }
   double Cost() const {
     double cost = 0.0;
@@ -67,9 +67,10 @@ TEST_F(StartInPartsTest, LeadsToTheMinimumThatIsFoundFromTheTruth) {
 
   MakeProblem();
   const double before = Cost();
-  Start();
+  const bool starts_near = Start();
+  EXPECT_TRUE(starts_near);
   EXPECT_LT(Cost(), 1e-3 * before);
-  problem_->Solve();
+  problem_->Solve(500, starts_near);
   EXPECT_TRUE(problem_->summary().converged);
   EXPECT_LT(problem_->summary().final_cost, 1.005 * lowest);  // no landmark is lost on the way
 }
@@ -126,7 +127,7 @@ TEST(StartInPartsOfARoom, MovesNothingWhereThatCostsMore) {
     return problem.variables().PoseValue(frame).Matrix().isApprox(
         sequence.frames[frame].world_from_camera.Matrix(), 1e-9);
   };
-  StartInParts(sequence, problem.AllTerms(), 10, &problem.variables());
+  EXPECT_FALSE(StartInParts(sequence, problem.AllTerms(), 10, &problem.variables()));
   for (size_t i = 0; i < sequence.frames.size(); ++i) EXPECT_TRUE(is_where_it_was(i)) << i;
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     EXPECT_TRUE(
@@ -143,6 +144,15 @@ TEST_F(StartInPartsTest, StartsASegmentWhereItStarts) {
   EXPECT_TRUE(IsMoved(kSecond - 1));
   EXPECT_FALSE(IsMoved(kSecond));
   EXPECT_TRUE(IsMoved(kSecond + kFramesPerPart));
+}
+
+TEST_F(StartInPartsTest, IsNotNearWhereASegmentWasLeftAsItWas) {
+  for (size_t i = kFrames - 2 * kFramesPerPart; i < kFrames; ++i) {
+    drive_.sequence.frames[i].segment = 1;
+  }
+  MakeProblem();
+  EXPECT_FALSE(Start());
+  EXPECT_TRUE(IsMoved(kFramesPerPart));
 }
 
 // What a part with few views makes of a landmark is not left.
