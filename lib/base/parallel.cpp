@@ -27,7 +27,8 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
     }
   };
   {
-    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    // Asked once: the system reads it from a file.
+    static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     std::vector<std::jthread> others;  // joined at the end of this block
     for (int i = 1; i < std::min({count, threads, cores}); ++i) {
       try {

@@ -117,10 +117,10 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
   BackEndProblem problem(input, options, threads);
   MapEstimate map;
-  const bool starts_near =
+  const bool is_long_drive =
       !options.hold_poses && StartInParts(input.sequence, problem.AllTerms(), kFramesPerPart,
                                           &problem.variables(), threads);
-  problem.Solve(options.max_iterations, starts_near);
+  problem.Solve(options.max_iterations, is_long_drive);
   bool settled = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {

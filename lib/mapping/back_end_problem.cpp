@@ -327,10 +327,10 @@ std::unique_ptr<const Term> BackEndProblem::ViewTermOf(
       landmark_in_camera.shape_exponent, std::move(cost));
 }
 
-void BackEndProblem::Solve(int max_iterations, bool starts_near) {
+void BackEndProblem::Solve(int max_iterations, bool hardly_damped_near) {
   const int iterations = std::min(max_iterations, options_.max_iterations);
   const Minimisation minimisation =
-      Minimise(AllTerms(), {iterations, threads_, starts_near}, &variables_.all());
+      Minimise(AllTerms(), {iterations, threads_, hardly_damped_near}, &variables_.all());
   const std::vector<double>& costs = minimisation.costs;
   if (summary_.cost_per_iteration.empty()) summary_.initial_cost = costs.front();
   summary_.final_cost = costs.back();

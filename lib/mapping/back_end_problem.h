@@ -30,9 +30,9 @@ class BackEndProblem {
   void RenewImageTerms();
 
   // Minimises from where the variables are, with so many iterations at most and no more than the
-  // options say. `starts_near`: see MinimiseOptions. Throws NumericalError where the cost is not
-  // defined there.
-  void Solve(int max_iterations = std::numeric_limits<int>::max(), bool starts_near = false);
+  // options say. `hardly_damped_near`: see MinimiseOptions. Throws NumericalError where the cost is
+  // not defined there.
+  void Solve(int max_iterations = std::numeric_limits<int>::max(), bool hardly_damped_near = false);
 
   const SolverSummary& summary() const { return summary_; }
   // Where Solve has left them.

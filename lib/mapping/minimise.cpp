@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -29,15 +30,12 @@ constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkTolerance = 1e-3;
 // Where an iteration lowers the cost by less than this share, the minimum is near.
 constexpr double kNear = 1e-2;
-// Of a start that is near.
-constexpr double kDampingNear = 1e-10;
+constexpr double kHardlyDamped = 1e-10;
 
 class Minimiser {
  public:
   Minimiser(const Terms& terms, const MinimiseOptions& options, std::vector<Variable>* variables)
-      : variables_(variables),
-        options_(options),
-        damping_(options.starts_near ? Damping(kDampingNear) : Damping()) {
+      : variables_(variables), options_(options) {
     const auto varies = [&](int index, bool is_landmark) {
       const Variable& variable = (*variables)[static_cast<size_t>(index)];
       return !variable.is_held && (variable.kind == VariableKind::kLandmark) == is_landmark;
@@ -176,6 +174,9 @@ class Minimiser {
       if (was_near && hessian_ == Hessian::kFar) LineariseFits();
       are_set_up_ = false;
       damping_.StepTaken(gain / predicted);
+      if (hessian_ == Hessian::kNear && std::exchange(options_.hardly_damped_near, false)) {
+        damping_ = Damping(kHardlyDamped);
+      }
       return gain > kLeastGain * before;
     }
     Restore(values);

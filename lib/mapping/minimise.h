@@ -19,9 +19,9 @@ struct Minimisation {
 struct MinimiseOptions {
   int max_iterations;
   int threads = 1;
-  // The minimum is near already: the first step of all variables is hardly damped, so that what
-  // the terms say little about, as the bend of a long drive, comes to rest in it.
-  bool starts_near = false;
+  // Once the minimum is near, the next step of all variables is hardly damped: what the terms say
+  // little about, as the bend of a long drive, comes to rest in it instead of in twenty.
+  bool hardly_damped_near = false;
 };
 
 // Minimises the sum of all terms over all variables that are not held, from where they are, by
