@@ -55,6 +55,24 @@ bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
                     });
 }
 
+// A thread's turn with the library. Where that knows threads, it has errors for each of them: they
+// are not printed, and are gone with the turn, since it leaks them when the thread ends.
+class LibraryTurn {
+ public:
+  LibraryTurn() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+  ~LibraryTurn() { H5Eclear2(H5E_DEFAULT); }
+  LibraryTurn(const LibraryTurn&) = delete;
+  LibraryTurn& operator=(const LibraryTurn&) = delete;
+
+ private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+};
+
 }  // namespace
 
 bool Hdf5Handle::Close() {
@@ -242,9 +260,7 @@ ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& dat
 
 Hdf5File::StoredArray Hdf5File::ReadStored(const std::string& name, int depth,
                                            const std::vector<int>& expected) const {
-  static std::mutex turn;
-  const std::lock_guard lock(turn);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // by thread, where the library knows threads
+  const LibraryTurn turn;
   const Hdf5Element element = Hdf5ElementOf(depth);
   if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
