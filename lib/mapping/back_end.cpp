@@ -19,7 +19,7 @@ constexpr int kIterationsPerRound = 10;
 constexpr double kSettled = 1e-3;
 
 // Few enough for dead reckoning to keep its attitude.
-constexpr size_t kFramesPerPart = 500;
+constexpr size_t kFramesPerPart = 250;
 
 double Change(const Landmark& from, const Landmark& to) {
   const double size = std::cbrt(from.half_axes.prod());

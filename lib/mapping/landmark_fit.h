@@ -17,7 +17,8 @@ namespace soslam {
 class Damping {
  public:
   Damping() = default;
-  explicit Damping(double value) : value_(value) {}
+  // From `value` on; never less than `least`.
+  Damping(double value, double least) : value_(value), least_(least) {}
   // What is added to the Hessian's diagonal.
   template <typename Vector>
   Vector Of(const Vector& diagonal) const {
@@ -32,6 +33,7 @@ class Damping {
 
  private:
   double value_ = 1e-4;
+  double least_ = 1e-12;
   double growth_ = 2.0;
 };
 

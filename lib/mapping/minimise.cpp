@@ -30,7 +30,9 @@ constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkTolerance = 1e-3;
 // Where an iteration lowers the cost by less than this share, the minimum is near.
 constexpr double kNear = 1e-2;
-constexpr double kHardlyDamped = 1e-10;
+// Next to nothing else holds the bend of 100000 frames.
+constexpr double kHardlyDamped = 1e-12;
+constexpr double kLeastDamping = 1e-16;
 
 class Minimiser {
  public:
@@ -175,7 +177,7 @@ class Minimiser {
       are_set_up_ = false;
       damping_.StepTaken(gain / predicted);
       if (hessian_ == Hessian::kNear && std::exchange(options_.hardly_damped_near, false)) {
-        damping_ = Damping(kHardlyDamped);
+        damping_ = Damping(kHardlyDamped, kLeastDamping);
       }
       return gain > kLeastGain * before;
     }

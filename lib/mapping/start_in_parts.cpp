@@ -20,7 +20,7 @@ constexpr int kIterationsPerPart = 10;
 constexpr double kUnsettled = 0.02;
 constexpr int kMaxRounds = 5;
 // So many parts find their minimum together as well.
-constexpr size_t kPartsAtOnce = 2;
+constexpr size_t kPartsAtOnce = 4;
 // Where dead reckoning is lost, a start in parts costs less by orders of magnitude; where it costs
 // a little less, parts may only have taken their own views of the same things for different things.
 constexpr double kMuchLess = 0.1;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "base/machine.h"
 #include "benchmark/back_end_input.h"
 #include "support/drive.h"
 
@@ -27,19 +28,19 @@ double PeakMemoryMb() {
   return 0.0;
 }
 
-void World(benchmark::State& state) {
+void World(benchmark::State& state, int threads) {
   const auto size = static_cast<int>(state.range(0));
   const Drive drive(size, size);
   const BackEndInput input{drive.sequence, drive.starts, drive.priors, {}, {}};
   ForgetPeakMemory();
   MapEstimate map;
-  for (auto _ : state) map = OptimiseMap(input, OptionsOfOursST());
+  for (auto _ : state) map = OptimiseMap(input, OptionsOfOursST(), threads);
   state.counters["peak_mb"] = PeakMemoryMb();
   state.counters["observations"] = static_cast<double>(drive.sequence.detections.size());
   state.counters["solver_iterations"] = map.solver.iterations;
   state.counters["converged"] = map.solver.converged;
 }
-BENCHMARK(World)
+BENCHMARK_CAPTURE(World, one_thread, 1)
     ->Name("scale/back_end")
     ->ArgName("frames_and_objects")
     ->Arg(125)
@@ -53,6 +54,17 @@ BENCHMARK(World)
     ->Iterations(1)
     ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
+
+// Minutes, and gigabytes of memory.
+BENCHMARK_CAPTURE(World, all_threads, ThisMachine().cores)
+    ->Name("large/back_end")
+    ->ArgName("frames_and_objects")
+    ->Arg(32000)
+    ->Arg(100000)
+    ->Iterations(1)
+    ->Repetitions(1)
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace soslam
