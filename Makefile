@@ -204,7 +204,8 @@ test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of 
 	@flock $(BUILD) cmake --build $(BUILD) --target slurm_test
 	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm\.'
 
-# Five repetitions, each of a tenth of a second or more: the table has their medians. The largest worlds take minutes.
+# Five repetitions, each of a tenth of a second or more: the table has their medians. The largest worlds take minutes
+# and are left out.
 .PHONY: bench
 bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's method: RESULTS/bench.md, bench.json
 	@pipelines/install-packages.sh pipelines/bench-packages.txt

@@ -55,8 +55,8 @@ bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
                     });
 }
 
-// A thread's turn with the library. Where that knows threads, it has errors for each of them: they
-// are not printed, and are gone with the turn, since it leaks them when the thread ends.
+// A thread's turn with the library. A library that knows threads keeps the errors of each: they are
+// not printed, and are cleared at the end of the turn, as it leaks them when the thread ends.
 class LibraryTurn {
  public:
   LibraryTurn() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }

@@ -13,7 +13,7 @@ namespace soslam {
 
 // Levenberg-Marquardt's damping (after Nielsen, 1999): a multiple of the Hessian's diagonal, of
 // which no element counts as less than a tenth per unit (rad, m, logarithm): where next to nothing
-// is known, steps stay within the size of things.
+// is known, steps stay within the size of things, as long as damping is more than next to none.
 class Damping {
  public:
   Damping() = default;

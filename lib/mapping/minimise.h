@@ -19,8 +19,8 @@ struct Minimisation {
 struct MinimiseOptions {
   int max_iterations;
   int threads = 1;
-  // Once the minimum is near, the next step of all variables is hardly damped: what the terms say
-  // little about, as the bend of a long drive, comes to rest in it instead of in twenty.
+  // Once the minimum is near, steps of all variables are hardly damped from then on: what the terms
+  // say little about, as the bend of a long drive, would take many more of them to come to rest.
   bool hardly_damped_near = false;
 };
 

@@ -14,7 +14,7 @@ namespace soslam {
 // landmark that was lost while the poses of its part were not right yet is fitted to them anew, and
 // the part is solved again if that tells its poses more. One in several parts comes from the one
 // that sees it most often. Planes and the detector's bias stay as they are, as do segments that are
-// no longer than two parts. Where all terms of all segments do not cost much less then, as in a
+// no longer than four parts. Where all terms of all segments do not cost much less then, as in a
 // room that parts see each in its own way, nothing is moved. Returns whether all frames were in
 // parts, and moved. Throws NumericalError where a part's cost is not defined.
 bool StartInParts(const Sequence& sequence, const Terms& terms, size_t max_frames_per_part,

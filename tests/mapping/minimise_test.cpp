@@ -14,6 +14,7 @@
 #include "initialisation/landmark_term_residual.h"
 #include "mapping/back_end_problem.h"
 #include "mapping/cost_function_term.h"
+#include "mapping/landmark_fit.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
@@ -201,6 +202,18 @@ TEST_F(OffsetTest, WhatIsHeldStays) {
   const Minimisation result = Minimise({term.get()}, {.max_iterations = 10}, &variables_->all());
   EXPECT_EQ(Offset(), 3.0);
   EXPECT_EQ(result.costs.back(), 4.5);
+}
+
+TEST(DampingTest, FallsToItsLeastAndNoFurther) {
+  Damping usual;
+  Damping hardly(1e-12, 1e-15);
+  const Eigen::Vector2d diagonal(2.0, 3.0);
+  for (int i = 0; i < 30; ++i) {
+    usual.StepTaken(1.0);
+    hardly.StepTaken(1.0);
+  }
+  EXPECT_TRUE(usual.Of(diagonal).isApprox(1e-12 * diagonal));
+  EXPECT_TRUE(hardly.Of(diagonal).isApprox(1e-15 * diagonal));
 }
 
 }  // namespace
