@@ -19,7 +19,8 @@ SupportCurvature OfEllipsoid(const Eigen::Vector3d& half_axes, const SupportValu
 
 }  // namespace
 
-// With r_i = sqrt(m_i^2 + e^2 |m|^2), its gradient g_i, l_i = dh / ds_i and c = dh / dm:
+// With r_i = sqrt(m_i^2 + e^2 |m|^2), its gradient g_i = (m_i e_i + e^2 m) / r_i, l_i = dh / ds_i
+// and c = dh / dm:
 //   by m:      sum_i l_i / r_i^2 (e_i e_i^T + e^2 I - (2 - p) g_i g_i^T) - (p - 1) / h c c^T
 //   by s, m:   p l_i / r_i g_i^T - (p - 1) / h l_i c^T
 //   by s:      p diag(l) - (p - 1) / h l l^T
@@ -40,21 +41,20 @@ SupportCurvature CurvatureOfSupport(const Eigen::Vector3d& half_axes, double sha
   }
   if (p == kEllipsoidExponent) return OfEllipsoid(half_axes, value);
   const double less = (p - 1.0) / value.extent;
-  curvature.by_direction = -less * value.contact * value.contact.transpose();
-  curvature.mixed = -less * by_log * value.contact.transpose();
+  const Eigen::Vector3d inverse_squares =
+      (m.array().square() + e2 * m.squaredNorm()).inverse();  // 1 / r^2
+  const Eigen::Vector3d shares = by_log.cwiseProduct(inverse_squares);
+  const Eigen::Vector3d weights = (2.0 - p) * shares.cwiseProduct(inverse_squares);
+  const Eigen::Vector3d weighted = weights.cwiseProduct(m);
+  const Eigen::Matrix3d rounded = e2 * m * (weighted + 0.5 * e2 * weights.sum() * m).transpose();
+  curvature.by_direction =
+      -less * value.contact * value.contact.transpose() - rounded - rounded.transpose();
+  curvature.by_direction.diagonal() += shares - weighted.cwiseProduct(m);
+  curvature.by_direction.diagonal().array() += e2 * shares.sum();
+  curvature.mixed = (p * e2 * shares) * m.transpose() - less * by_log * value.contact.transpose();
+  curvature.mixed.diagonal() += p * shares.cwiseProduct(m);
   curvature.by_log_half_axes = -less * by_log * by_log.transpose();
   curvature.by_log_half_axes.diagonal() += p * by_log;
-  for (int i = 0; i < 3; ++i) {
-    const double inverse_square = 1.0 / (m[i] * m[i] + e2 * m.squaredNorm());
-    Eigen::Vector3d by_direction = e2 * m;  // r_i g_i
-    by_direction[i] += m[i];
-    const double k = by_log[i] * inverse_square;
-    curvature.by_direction(i, i) += k;
-    curvature.by_direction.diagonal().array() += k * e2;
-    curvature.by_direction -=
-        (2.0 - p) * k * inverse_square * by_direction * by_direction.transpose();
-    curvature.mixed.row(i) += p * k * by_direction.transpose();
-  }
   return curvature;
 }
 

@@ -111,63 +111,58 @@ class TangencyTerm::SecondDerivatives {
     const Eigen::Vector3d n = factor * excess.normal;
     const Eigen::Vector3d n_less_depth = n - factor * excess.without_bias * view.depth_by_offset();
     const Eigen::Vector3d& q = excess.support.contact;
-    const Eigen::Matrix3d of_contact = OfTurnedNormal(n, q);
     AddTurn(excess, factor * curvature.by_direction);
-    turn_turn_ += of_contact;
-    camera_camera_ += of_contact + OfTurnedNormal(n_less_depth, view.offset());
-    turn_camera_ -= n * q.transpose();
-    turn_camera_.diagonal().array() += q.dot(n);
-    axes_turn_ += curvature.mixed * Skew(n);
+    normal_contact_ += n * q.transpose();
+    axes_turn_ += curvature.mixed.rowwise().cross(n);
     axes_axes_ += factor * curvature.by_log_half_axes;
     normal_ += n_less_depth;
   }
 
-  void TurnToWorld(const Eigen::Matrix3d& world_from_object) {
-    for (Eigen::Matrix3d* both : {&turn_turn_, &camera_camera_, &turn_camera_}) {
+  void TurnToWorld(const View& view) {
+    const Eigen::Matrix3d& world_from_object = view.world_from_object();
+    for (Eigen::Matrix3d* both : {&turn_, &normal_contact_}) {
       *both = (world_from_object * *both * world_from_object.transpose()).eval();
     }
     axes_turn_ = (axes_turn_ * world_from_object.transpose()).eval();
     normal_ = (world_from_object * normal_).eval();
+    offset_ = world_from_object * view.offset();
   }
 
   void AddTo(LandmarkLandmark* square) const {
-    square->topLeftCorner<3, 3>() += turn_turn_;
+    square->topLeftCorner<3, 3>() += turn_ + OfTurned(normal_contact_);
     square->bottomLeftCorner<3, 3>() += axes_turn_;
     square->bottomRightCorner<3, 3>() += axes_axes_;
   }
   void AddTo(PosePose* square) const {
-    square->topLeftCorner<3, 3>() += camera_camera_;
+    square->topLeftCorner<3, 3>() +=
+        turn_ + OfTurned(normal_contact_ + normal_ * offset_.transpose());
     square->bottomLeftCorner<3, 3>() += Skew(normal_);
   }
   void AddTo(LandmarkPose* mixed) const {
-    mixed->topLeftCorner<3, 3>() += turn_camera_;
+    mixed->topLeftCorner<3, 3>() -= turn_ + normal_contact_;
+    mixed->topLeftCorner<3, 3>().diagonal().array() += normal_contact_.trace();
     mixed->block<3, 3>(3, 0) -= Skew(normal_);
     mixed->bottomLeftCorner<3, 3>() -= axes_turn_;
   }
 
  private:
-  // Of x . exp(w) n by w at zero.
-  static Eigen::Matrix3d OfTurnedNormal(const Eigen::Vector3d& n, const Eigen::Vector3d& x) {
-    const Eigen::Matrix3d half = 0.5 * x * n.transpose();
-    Eigen::Matrix3d second = half + half.transpose();
-    second.diagonal().array() -= x.dot(n);
+  // Of x . exp(w) n by w at zero, from the sum of n x^T.
+  static Eigen::Matrix3d OfTurned(const Eigen::Matrix3d& product) {
+    Eigen::Matrix3d second = 0.5 * (product + product.transpose());
+    second.diagonal().array() -= product.trace();
     return second;
   }
 
   void AddTurn(const View::Excess& excess, const Eigen::Matrix3d& by_direction) {
-    const Eigen::Matrix3d by_turn = Skew(excess.normal);
-    const Eigen::Matrix3d turn = by_turn.transpose() * by_direction * by_turn;
-    turn_turn_ += turn;
-    camera_camera_ += turn;
-    turn_camera_ -= turn;
+    turn_ += by_direction.rowwise().cross(excess.normal).colwise().cross(excess.normal);
   }
 
-  Eigen::Matrix3d turn_turn_ = Eigen::Matrix3d::Zero();      // w w
-  Eigen::Matrix3d camera_camera_ = Eigen::Matrix3d::Zero();  // v v
-  Eigen::Matrix3d turn_camera_ = Eigen::Matrix3d::Zero();    // w v
-  Eigen::Matrix3d axes_turn_ = Eigen::Matrix3d::Zero();      // log half axes, w; the opposite by v
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Zero();  // w w and v v, the opposite of w v: of h alone
+  Eigen::Matrix3d normal_contact_ = Eigen::Matrix3d::Zero();  // n q^T
+  Eigen::Matrix3d axes_turn_ = Eigen::Matrix3d::Zero();       // log half axes, w; the opposite by v
   Eigen::Matrix3d axes_axes_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // v and d: v . ((n - r a) x d)
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
 };
 
 TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks,
@@ -229,7 +224,7 @@ double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
     }
   }
   if (!std::isfinite(rows.cost)) return std::numeric_limits<double>::infinity();
-  second.TurnToWorld(view.world_from_object());
+  second.TurnToWorld(view);
   Add(rows, view.world_from_object(), second, places);
   if (hessian == Hessian::kNear) AddDepthProducts(rows, view.world_from_object(), places);
   return rows.cost;
