@@ -2,6 +2,7 @@
 #include "geometry/support_function.h"
 
 #include <cmath>
+#include <limits>
 
 namespace soslam {
 namespace {
@@ -16,6 +17,10 @@ SupportValue OfEllipsoid(const Eigen::Vector3d& half_axes, const Eigen::Vector3d
   if (!(extent > 0.0)) return NoExtent();
   const double inverse = 1.0 / extent;
   return {extent, inverse * half_axes.cwiseProduct(scaled), inverse * scaled.cwiseAbs2()};
+}
+
+double RoundingOf(double shape_exponent) {
+  return kEdgeRounding * (kEllipsoidExponent - shape_exponent);
 }
 
 // d h / d u_i of h = || u ||_p, u >= 0: (u_i / h)^(p - 1).
@@ -41,8 +46,7 @@ SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_expo
                              const Eigen::Vector3d& direction_in_object) {
   const double p = shape_exponent;
   if (p == kEllipsoidExponent) return OfEllipsoid(half_axes, direction_in_object);
-  const double rounding = kEdgeRounding * (kEllipsoidExponent - p);
-  const double squared_rounding = rounding * rounding;
+  const double squared_rounding = RoundingOf(p) * RoundingOf(p);
   // u_i = s_i sqrt(m_i^2 + e^2 |m|^2)
   const Eigen::Array3d rounded =
       (direction_in_object.array().square() + squared_rounding * direction_in_object.squaredNorm())
@@ -57,6 +61,35 @@ SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_expo
   const Eigen::Array3d by_squares = by_u * half_axes.array() / rounded;
   value.contact = (by_squares + by_squares.sum() * squared_rounding) * direction_in_object.array();
   return value;
+}
+
+SupportInDirections::SupportInDirections(double shape_exponent, const Rows& directions_in_object)
+    : shape_exponent_(shape_exponent) {
+  const Eigen::Array4d least_squares = RoundingOf(shape_exponent) * RoundingOf(shape_exponent) *
+                                       directions_in_object.square().rowwise().sum();
+  rounded_ = (directions_in_object.square().colwise() + least_squares).sqrt();
+}
+
+SupportInDirections::Values SupportInDirections::Of(const Eigen::Vector3d& half_axes) const {
+  const Rows u = rounded_.rowwise() * half_axes.transpose().array();
+  if (shape_exponent_ == kCuboidExponent) return {u.rowwise().sum(), u};
+  Values values;
+  if (shape_exponent_ == kEllipsoidExponent) {
+    const Rows squares = u.square();
+    values.extents = squares.rowwise().sum().sqrt();
+    values.by_log_half_axes =
+        squares.colwise() / values.extents.max(std::numeric_limits<double>::min());
+    return values;
+  }
+  for (int i = 0; i < u.rows(); ++i) {
+    const Eigen::Array3d of_row = u.row(i);
+    values.extents[i] = 0.0;
+    values.by_log_half_axes.row(i).setZero();
+    if (!(of_row.maxCoeff() > 0.0)) continue;
+    values.by_log_half_axes.row(i) =
+        of_row * NormByComponents(of_row, shape_exponent_, &values.extents[i]);
+  }
+  return values;
 }
 
 }  // namespace soslam

@@ -28,4 +28,24 @@ inline constexpr double kEdgeRounding = 1e-3;
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object);
 
+// The support function in four directions, for bodies of one shape and many sizes.
+class SupportInDirections {
+ public:
+  using Rows = Eigen::Array<double, 4, 3>;
+
+  // 1 <= shape_exponent <= 2; directions by row, in the object frame, of any length.
+  SupportInDirections(double shape_exponent, const Rows& directions_in_object);
+
+  struct Values {
+    Eigen::Array4d extents;
+    Rows by_log_half_axes;
+  };
+  // half_axes >= 0.
+  Values Of(const Eigen::Vector3d& half_axes) const;
+
+ private:
+  double shape_exponent_;
+  Rows rounded_;  // sqrt(m_i^2 + e^2 |m|^2)
+};
+
 }  // namespace soslam

@@ -3,7 +3,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
+#include <optional>
 
 #include "initialisation/quadratic_model.h"
 
@@ -14,6 +16,20 @@ inline constexpr double kNegligibleDecrease = 1e-11;
 // Where derivatives jump, as those of an image do from pixel to pixel, steps go to and fro at the
 // end, each shorter than the one before, and take most of the time.
 inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
+
+// The x of A x = b, A positive definite; none where it is seen not to be. Of three unknowns by
+// cofactors, which need not wait for each other's square roots and quotients.
+template <int kSize>
+std::optional<Eigen::Matrix<double, kSize, 1>> SolvePositiveDefinite(
+    const Eigen::Matrix<double, kSize, kSize>& a, const Eigen::Matrix<double, kSize, 1>& b) {
+  if constexpr (kSize == 3) {
+    return a.inverse() * b;
+  } else {
+    const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> factor(a);
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    return factor.solve(b);
+  }
+}
 
 // Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
 // least squares problems, 2004, section 3.2). `evaluate` makes the model at parameters.
@@ -34,13 +50,13 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
         damping * at.information.diagonal().cwiseMax(kMinDiagonal);
     typename QuadraticModel<kSize>::Matrix damped = at.information;
     damped.diagonal() += weights;
-    const Eigen::LLT<typename QuadraticModel<kSize>::Matrix> factor(damped);
-    if (factor.info() != Eigen::Success) {
+    const auto to_minimum = SolvePositiveDefinite<kSize>(damped, at.gradient);
+    if (!to_minimum) {
       damping *= growth;
       growth *= 2.0;
       continue;
     }
-    const Eigen::Matrix<double, kSize, 1> step = factor.solve(-at.gradient);
+    const Eigen::Matrix<double, kSize, 1> step = -*to_minimum;
     // Of the undamped cost to second order.
     const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
     if (!(decrease > negligible_decrease * (1.0 + at.cost))) break;

@@ -5,14 +5,24 @@
 
 namespace soslam {
 
-TangenciesAtYaw::TangenciesAtYaw(const BoxOnGround& box, const Eigen::Array4d& depths_m, double yaw,
-                                 double shape_exponent)
-    : box_(box), shape_exponent_(shape_exponent), weights_((depths_m * box.sigma_px).inverse()) {
+namespace {
+
+SupportInDirections::Rows NormalsInObject(const BoxOnGround& box, double yaw) {
   const double cosine = std::cos(yaw);
   const double sine = std::sin(yaw);
-  for (size_t i = 0; i < in_object_.size(); ++i) {
-    in_object_[i] = TurnedBack(box.normals.row(static_cast<Eigen::Index>(i)), cosine, sine);
-  }
+  SupportInDirections::Rows rows;
+  rows << cosine * box.normals.col(0) + sine * box.normals.col(1),
+      cosine * box.normals.col(1) - sine * box.normals.col(0), box.normals.col(2);
+  return rows;
+}
+
+}  // namespace
+
+TangenciesAtYaw::TangenciesAtYaw(const BoxOnGround& box, const Eigen::Array4d& depths_m, double yaw,
+                                 double shape_exponent)
+    : box_(box),
+      weights_((depths_m * box.sigma_px).inverse()),
+      support_(shape_exponent, NormalsInObject(box, yaw)) {
   // Gram and Schmidt's orthonormal basis of two columns.
   const Eigen::Vector4d by_x = weights_ * box.normals.col(0).array();
   const Eigen::Vector4d by_y = weights_ * box.normals.col(1).array();
@@ -33,16 +43,11 @@ bool TangenciesAtYaw::TellTheFoot() const {
 
 TangenciesAtYaw::Rows TangenciesAtYaw::RowsAtOrigin(const Eigen::Vector3d& log_half_axes) const {
   const Eigen::Vector3d half_axes = log_half_axes.array().exp();
-  Rows rows;
-  for (int i = 0; i < 4; ++i) {
-    const SupportValue support =
-        SupportFunction(half_axes, shape_exponent_, in_object_[static_cast<size_t>(i)]);
-    const double by_height = box_.normals(i, 2) * half_axes.z();
-    rows.residuals[i] = weights_[i] * (box_.at_origin[i] + by_height + support.extent);
-    rows.by_log_half_axes.row(i) = weights_[i] * support.by_log_half_axes;
-    rows.by_log_half_axes(i, 2) += weights_[i] * by_height;
-  }
-  return rows;
+  SupportInDirections::Values support = support_.Of(half_axes);
+  const Eigen::Array4d by_height = box_.normals.col(2).array() * half_axes.z();
+  support.by_log_half_axes.col(2) += by_height;
+  return {weights_ * (box_.at_origin + by_height + support.extents),
+          support.by_log_half_axes.colwise() * weights_};
 }
 
 QuadraticModel<3> TangenciesAtYaw::Evaluate(const Eigen::Vector3d& log_half_axes) const {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
+#include "geometry/support_function.h"
 #include "initialisation/box_on_ground.h"
 #include "initialisation/quadratic_model.h"
 
@@ -35,9 +35,8 @@ class TangenciesAtYaw {
   Rows RowsAtOrigin(const Eigen::Vector3d& log_half_axes) const;
 
   const BoxOnGround& box_;
-  double shape_exponent_;
   Eigen::Array4d weights_;
-  std::array<Eigen::Vector3d, 4> in_object_;  // the edges' normals
+  SupportInDirections support_;  // along the edges' normals
   // Their product is the derivative of the residuals by the foot: orthonormal columns, upper
   // triangle.
   Eigen::Matrix<double, 4, 2> foot_basis_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
@@ -184,8 +185,13 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
     });
     if (!known) optima.push_back(*solution);
   }
-  std::stable_sort(optima.begin(), optima.end(),
-                   [](const auto& one, const auto& other) { return one.cost < other.cost; });
+  // Of a body as deep as wide, two yaws cost the same: they are in order of the yaw, not of what
+  // rounding leaves of the costs.
+  const auto rank = [&](const UprightSolution& solution) {
+    return std::pair(static_cast<float>(solution.cost), yaw_of(solution));
+  };
+  std::sort(optima.begin(), optima.end(),
+            [&](const auto& one, const auto& other) { return rank(one) < rank(other); });
   optima.resize(std::min(optima.size(), max_count));
   return optima;
 }
