@@ -23,6 +23,7 @@ BoxFit::RatioRows::RatioRows(const ShapePrior& prior) {
   whiten *= prior.log_sigma.cwiseInverse().asDiagonal();
   by_log_half_axes << whiten, -whiten.rowwise().sum();
   at_prior = whiten * prior.ratio.array().log().matrix();
+  information = by_log_half_axes.transpose() * by_log_half_axes;
 }
 
 BoxFit::BoxFit(const UprightObservation& observation)
@@ -76,7 +77,7 @@ QuadraticModel<3> BoxFit::RatioModel(const Eigen::Vector3d& log_half_axes) const
   QuadraticModel<3> model;
   model.cost = 0.5 * residuals.squaredNorm();
   model.gradient = ratio_.by_log_half_axes.transpose().lazyProduct(residuals);
-  model.information = ratio_.by_log_half_axes.transpose().lazyProduct(ratio_.by_log_half_axes);
+  model.information = ratio_.information;
   return model;
 }
 

@@ -37,6 +37,7 @@ class BoxFit {
     explicit RatioRows(const ShapePrior& prior);
     Eigen::Matrix<double, 2, 3> by_log_half_axes;
     Eigen::Vector2d at_prior;
+    Eigen::Matrix3d information;
   };
 
   std::optional<double> MinimiseAtYaw(const Eigen::Array4d& depths_m, UprightVector* start) const;
