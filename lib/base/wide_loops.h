@@ -20,3 +20,10 @@
 #elif !defined(SOSLAM_WIDE_LOOPS)
 #define SOSLAM_WIDE_LOOPS
 #endif
+
+namespace soslam {
+
+// Four numbers side by side.
+using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+}  // namespace soslam

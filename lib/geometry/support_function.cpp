@@ -2,7 +2,6 @@
 #include "geometry/support_function.h"
 
 #include <cmath>
-#include <limits>
 
 namespace soslam {
 namespace {
@@ -19,11 +18,19 @@ SupportValue OfEllipsoid(const Eigen::Vector3d& half_axes, const Eigen::Vector3d
   return {extent, inverse * half_axes.cwiseProduct(scaled), inverse * scaled.cwiseAbs2()};
 }
 
-double RoundingOf(double shape_exponent) {
-  return kEdgeRounding * (kEllipsoidExponent - shape_exponent);
+// e^2
+double SquaredRounding(double shape_exponent) {
+  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
+  return rounding * rounding;
 }
 
-// d h / d u_i of h = || u ||_p, u >= 0: (u_i / h)^(p - 1).
+}  // namespace
+
+Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_exponent) {
+  return (direction.array().square() + SquaredRounding(shape_exponent) * direction.squaredNorm())
+      .sqrt();
+}
+
 Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm) {
   if (p == kCuboidExponent) {
     *norm = u.sum();
@@ -40,17 +47,11 @@ Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm)
   return power * (root / sum);
 }
 
-}  // namespace
-
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object) {
   const double p = shape_exponent;
   if (p == kEllipsoidExponent) return OfEllipsoid(half_axes, direction_in_object);
-  const double squared_rounding = RoundingOf(p) * RoundingOf(p);
-  // u_i = s_i sqrt(m_i^2 + e^2 |m|^2)
-  const Eigen::Array3d rounded =
-      (direction_in_object.array().square() + squared_rounding * direction_in_object.squaredNorm())
-          .sqrt();
+  const Eigen::Array3d rounded = RoundedDirection(direction_in_object, p);
   const Eigen::Array3d u = half_axes.array() * rounded;
   if (!(u.maxCoeff() > 0.0)) return NoExtent();
 
@@ -59,37 +60,9 @@ SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_expo
   value.by_log_half_axes = by_u * u;
   // d u_i / d m_j = s_i (m_i [i = j] + e^2 m_j) / rounded_i; rounded is nowhere zero for p < 2
   const Eigen::Array3d by_squares = by_u * half_axes.array() / rounded;
-  value.contact = (by_squares + by_squares.sum() * squared_rounding) * direction_in_object.array();
+  value.contact =
+      (by_squares + by_squares.sum() * SquaredRounding(p)) * direction_in_object.array();
   return value;
-}
-
-SupportInDirections::SupportInDirections(double shape_exponent, const Rows& directions_in_object)
-    : shape_exponent_(shape_exponent) {
-  const Eigen::Array4d least_squares = RoundingOf(shape_exponent) * RoundingOf(shape_exponent) *
-                                       directions_in_object.square().rowwise().sum();
-  rounded_ = (directions_in_object.square().colwise() + least_squares).sqrt();
-}
-
-SupportInDirections::Values SupportInDirections::Of(const Eigen::Vector3d& half_axes) const {
-  const Rows u = rounded_.rowwise() * half_axes.transpose().array();
-  if (shape_exponent_ == kCuboidExponent) return {u.rowwise().sum(), u};
-  Values values;
-  if (shape_exponent_ == kEllipsoidExponent) {
-    const Rows squares = u.square();
-    values.extents = squares.rowwise().sum().sqrt();
-    values.by_log_half_axes =
-        squares.colwise() / values.extents.max(std::numeric_limits<double>::min());
-    return values;
-  }
-  for (int i = 0; i < u.rows(); ++i) {
-    const Eigen::Array3d of_row = u.row(i);
-    values.extents[i] = 0.0;
-    values.by_log_half_axes.row(i).setZero();
-    if (!(of_row.maxCoeff() > 0.0)) continue;
-    values.by_log_half_axes.row(i) =
-        of_row * NormByComponents(of_row, shape_exponent_, &values.extents[i]);
-  }
-  return values;
 }
 
 }  // namespace soslam

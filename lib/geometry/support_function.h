@@ -28,24 +28,9 @@ inline constexpr double kEdgeRounding = 1e-3;
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object);
 
-// The support function in four directions, for bodies of one shape and many sizes.
-class SupportInDirections {
- public:
-  using Rows = Eigen::Array<double, 4, 3>;
-
-  // 1 <= shape_exponent <= 2; directions by row, in the object frame, of any length.
-  SupportInDirections(double shape_exponent, const Rows& directions_in_object);
-
-  struct Values {
-    Eigen::Array4d extents;
-    Rows by_log_half_axes;
-  };
-  // half_axes >= 0.
-  Values Of(const Eigen::Vector3d& half_axes) const;
-
- private:
-  double shape_exponent_;
-  Rows rounded_;  // sqrt(m_i^2 + e^2 |m|^2)
-};
+// Its parts: |m_i|, rounded as said above, and d h / d u_i = (u_i / h)^(p - 1) of h = || u ||_p,
+// u >= 0 and not zero.
+Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_exponent);
+Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm);
 
 }  // namespace soslam

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/box_fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "initialisation/tangencies_at_yaw.h"
+#include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
 namespace {
@@ -12,19 +14,6 @@ constexpr int kMaxIterations = 50;
 enum { kYaw, kFootX, kFootY, kLogA, kLogB, kLogC };
 
 }  // namespace
-
-// What is left of the second ratio once the first is known: the inverse Cholesky factor of their
-// covariance.
-BoxFit::RatioRows::RatioRows(const ShapePrior& prior) {
-  const double correlation = prior.log_correlation;
-  const double unexplained = std::sqrt(1.0 - correlation * correlation);
-  Eigen::Matrix2d whiten;
-  whiten << 1.0, 0.0, -correlation / unexplained, 1.0 / unexplained;
-  whiten *= prior.log_sigma.cwiseInverse().asDiagonal();
-  by_log_half_axes << whiten, -whiten.rowwise().sum();
-  at_prior = whiten * prior.ratio.array().log().matrix();
-  information = by_log_half_axes.transpose() * by_log_half_axes;
-}
 
 BoxFit::BoxFit(const UprightObservation& observation)
     : observation_(observation),
@@ -102,33 +91,9 @@ QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const Upright
   return sum;
 }
 
-// None where edges are bounds, which depend on the foot as to whether they count, or do not tell
-// it.
-std::optional<double> BoxFit::MinimiseAtYaw(const Eigen::Array4d& depths_m,
-                                            UprightVector* start) const {
-  if ((box_.is_bound != 0.0).any()) return std::nullopt;
-  const TangenciesAtYaw tangencies(box_, depths_m, (*start)[kYaw],
-                                   observation_.prior.shape_exponent);
-  if (!tangencies.TellTheFoot()) return std::nullopt;
-  const auto evaluate = [&](const Eigen::Vector3d& log_half_axes) {
-    QuadraticModel<3> sum = tangencies.Evaluate(log_half_axes);
-    sum.Add(RatioModel(log_half_axes));
-    return sum;
-  };
-  Eigen::Vector3d log_half_axes = start->tail<3>();
-  QuadraticModel<6> of_yaw;
-  AddYaw((*start)[kYaw], &of_yaw);
-  const double cost = of_yaw.cost + MinimiseSquares<3>(evaluate, kMaxIterations, &log_half_axes);
-  *start << (*start)[kYaw], tangencies.BestFoot(log_half_axes), log_half_axes;
-  return cost;
-}
-
 double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
                         UprightVector* start) const {
   const Eigen::Array4d depths_m = TangentDepths(*start);
-  if (!yaw_is_free && further.empty()) {
-    if (const auto cost = MinimiseAtYaw(depths_m, start)) return *cost;
-  }
   const double shape_exponent = observation_.prior.shape_exponent;
   const auto evaluate = [&](const UprightVector& at) {
     QuadraticModel<6> sum = Evaluate(depths_m, at);
@@ -140,6 +105,33 @@ double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
   };
   return MinimiseSquares<6>(evaluate, kMaxIterations, start, NegligibleDecrease(further)) +
          ConstantCost(further);
+}
+
+std::vector<double> BoxFit::MinimiseAtYaws(std::span<UprightVector> starts) const {
+  std::vector<double> costs(starts.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!(box_.is_bound != 0.0).any()) {
+    FitsAtYaws fits(box_, ratio_, observation_.prior.shape_exponent);
+    for (size_t first = 0; first < starts.size(); first += FitsAtYaws::kYaws) {
+      const auto some = starts.subspan(first, std::min(FitsAtYaws::kYaws, starts.size() - first));
+      for (size_t place = 0; place < FitsAtYaws::kYaws; ++place) {
+        const UprightVector& start = some[std::min(place, some.size() - 1)];
+        fits.Start(place, TangentDepths(start), start);
+      }
+      fits.Minimise(kMaxIterations);
+      for (size_t place = 0; place < some.size(); ++place) {
+        if (!std::isfinite(fits.Cost(place))) continue;
+        QuadraticModel<6> of_yaw;
+        AddYaw(some[place][kYaw], &of_yaw);
+        costs[first + place] = of_yaw.cost + fits.Cost(place);
+        some[place] = fits.Parameters(place);
+      }
+    }
+  }
+  // Edges that are bounds may count or not, as the foot is; or the edges do not tell it.
+  for (size_t i = 0; i < starts.size(); ++i) {
+    if (std::isnan(costs[i])) costs[i] = Minimise({}, /*yaw_is_free=*/false, &starts[i]);
+  }
+  return costs;
 }
 
 }  // namespace soslam

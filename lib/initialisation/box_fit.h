@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
+#include <span>
+#include <vector>
 
 #include "initialisation/box_on_ground.h"
-#include "initialisation/levenberg_marquardt.h"
+#include "initialisation/fits_at_yaws.h"
+#include "initialisation/quadratic_model.h"
 #include "initialisation/upright_observation.h"
 
 namespace soslam {
@@ -26,21 +28,16 @@ class BoxFit {
   // fixed or free. Returns the total cost, which is not finite when it is not at the start.
   double Minimise(const LandmarkCosts& further, bool yaw_is_free, UprightVector* start) const;
 
+  // Without further costs and with the yaws of all starts held, several of which are fitted at
+  // once.
+  std::vector<double> MinimiseAtYaws(std::span<UprightVector> starts) const;
+
   double CostAtOwnDepths(const UprightVector& at) const {
     return Evaluate(TangentDepths(at), at).cost;
   }
   const UprightGround& ground() const { return ground_; }
 
  private:
-  // Of the ratio prior's residuals, linear in the logarithms of the half axes.
-  struct RatioRows {
-    explicit RatioRows(const ShapePrior& prior);
-    Eigen::Matrix<double, 2, 3> by_log_half_axes;
-    Eigen::Vector2d at_prior;
-    Eigen::Matrix3d information;
-  };
-
-  std::optional<double> MinimiseAtYaw(const Eigen::Array4d& depths_m, UprightVector* start) const;
   void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
                      QuadraticModel<6>* sum) const;
   QuadraticModel<3> RatioModel(const Eigen::Vector3d& log_half_axes) const;

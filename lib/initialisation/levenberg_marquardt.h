@@ -3,9 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
-#include <optional>
 
 #include "initialisation/quadratic_model.h"
 
@@ -17,19 +15,13 @@ inline constexpr double kNegligibleDecrease = 1e-11;
 // end, each shorter than the one before, and take most of the time.
 inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
 
-// The x of A x = b, A positive definite; none where it is seen not to be. Of three unknowns by
-// cofactors, which need not wait for each other's square roots and quotients.
-template <int kSize>
-std::optional<Eigen::Matrix<double, kSize, 1>> SolvePositiveDefinite(
-    const Eigen::Matrix<double, kSize, kSize>& a, const Eigen::Matrix<double, kSize, 1>& b) {
-  if constexpr (kSize == 3) {
-    return a.inverse() * b;
-  } else {
-    const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> factor(a);
-    if (factor.info() != Eigen::Success) return std::nullopt;
-    return factor.solve(b);
-  }
-}
+// Damping, as a share of the information's diagonal, and how it grows and falls.
+inline constexpr double kFirstDamping = 1e-4;
+inline constexpr double kMaxDamping = 1e16;
+inline constexpr double kFirstGrowth = 2.0;
+inline constexpr double kLeastFall = 1.0 / 3.0;
+// Of the diagonal.
+inline constexpr double kMinDiagonal = 1e-6;
 
 // Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
 // least squares problems, 2004, section 3.2). `evaluate` makes the model at parameters.
@@ -40,23 +32,21 @@ template <int kSize, typename Evaluate>
 double MinimiseSquares(Evaluate evaluate, int max_iterations,
                        Eigen::Matrix<double, kSize, 1>* parameters,
                        double negligible_decrease = kNegligibleDecrease) {
-  constexpr double kMinDiagonal = 1e-6;
-  constexpr double kMaxDamping = 1e16;
   QuadraticModel<kSize> at = evaluate(*parameters);
-  double damping = 1e-4;
-  double growth = 2.0;
+  double damping = kFirstDamping;
+  double growth = kFirstGrowth;
   for (int i = 0; i < max_iterations && damping < kMaxDamping; ++i) {
     const Eigen::Matrix<double, kSize, 1> weights =
         damping * at.information.diagonal().cwiseMax(kMinDiagonal);
     typename QuadraticModel<kSize>::Matrix damped = at.information;
     damped.diagonal() += weights;
-    const auto to_minimum = SolvePositiveDefinite<kSize>(damped, at.gradient);
-    if (!to_minimum) {
+    const Eigen::LLT<typename QuadraticModel<kSize>::Matrix> factor(damped);
+    if (factor.info() != Eigen::Success) {
       damping *= growth;
       growth *= 2.0;
       continue;
     }
-    const Eigen::Matrix<double, kSize, 1> step = -*to_minimum;
+    const Eigen::Matrix<double, kSize, 1> step = factor.solve(-at.gradient);
     // Of the undamped cost to second order.
     const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
     if (!(decrease > negligible_decrease * (1.0 + at.cost))) break;
@@ -67,8 +57,8 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
       *parameters = moved;
       at = there;
       const double surprise = 2.0 * gain - 1.0;
-      damping *= std::max(1.0 / 3.0, 1.0 - surprise * surprise * surprise);
-      growth = 2.0;
+      damping *= std::max(kLeastFall, 1.0 - surprise * surprise * surprise);
+      growth = kFirstGrowth;
     } else {
       damping *= growth;
       growth *= 2.0;

@@ -33,18 +33,42 @@ class Fitter {
   // Of costs that depend on their start, again to those of the result; the cost is then that of the
   // result's own.
   std::optional<UprightSolution> Fit(UprightVector parameters, bool yaw_is_free) const {
-    UprightSolution solution;
+    UprightSolution solution{};
     for (int round = 0; round < objective_.rounds; ++round) {
       solution.cost = box_fit_.Minimise(FurtherCosts(parameters), yaw_is_free, &parameters);
       solution.landmark = LandmarkAt(parameters);
-      if (!std::isfinite(solution.cost) || !IsInFront(solution.landmark)) return std::nullopt;
+      if (!IsPossible(solution)) return std::nullopt;
     }
     if (objective_.rounds > 1) {
       solution.further_cost = TotalCost(FurtherCosts(parameters), solution.landmark);
       solution.cost = box_fit_.CostAtOwnDepths(parameters) + solution.further_cost;
     }
-    if (objective_.extra_cost) solution.cost += objective_.extra_cost(solution.landmark);
-    return solution;
+    return WithExtraCost(solution);
+  }
+
+  // At the yaws of all starts; none where there is no start, or no landmark.
+  using Starts = std::vector<std::optional<UprightVector>>;
+  std::vector<std::optional<UprightSolution>> FitAtYaws(const Starts& starts) const {
+    std::vector<std::optional<UprightSolution>> solutions(starts.size());
+    if (objective_.further_costs) {
+      for (size_t i = 0; i < starts.size(); ++i) {
+        if (starts[i]) solutions[i] = Fit(*starts[i], /*yaw_is_free=*/false);
+      }
+      return solutions;
+    }
+    std::vector<UprightVector> parameters;
+    for (const auto& start : starts) {
+      if (start) parameters.push_back(*start);
+    }
+    const std::vector<double> costs = box_fit_.MinimiseAtYaws(parameters);
+    size_t next = 0;
+    for (size_t i = 0; i < starts.size(); ++i) {
+      if (!starts[i]) continue;
+      const UprightSolution solution{LandmarkAt(parameters[next]), costs[next]};
+      if (IsPossible(solution)) solutions[i] = WithExtraCost(solution);
+      ++next;
+    }
+    return solutions;
   }
 
   // The best landmark near a grid point. Without an extra cost the fit finds the yaw; with one a
@@ -52,17 +76,25 @@ class Fitter {
   std::optional<UprightSolution> RefineYaw(const Landmark& start, double step) const {
     const UprightVector parameters = box_fit_.ground().ParametersOf(start);
     if (!objective_.extra_cost) return Fit(parameters, /*yaw_is_free=*/true);
-    std::optional<UprightSolution> best;
+    Starts turned;
     for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
-      UprightVector turned = parameters;
-      turned[0] += i * step / kRefinementSteps;
-      const auto solution = Fit(turned, /*yaw_is_free=*/false);
+      turned.emplace_back(parameters)->x() += i * step / kRefinementSteps;
+    }
+    std::optional<UprightSolution> best;
+    for (const auto& solution : FitAtYaws(turned)) {
       if (solution && (!best || solution->cost < best->cost)) best = solution;
     }
     return best;
   }
 
  private:
+  static bool IsPossible(const UprightSolution& solution) {
+    return std::isfinite(solution.cost) && IsInFront(solution.landmark);
+  }
+  UprightSolution WithExtraCost(UprightSolution solution) const {
+    if (objective_.extra_cost) solution.cost += objective_.extra_cost(solution.landmark);
+    return solution;
+  }
   Landmark LandmarkAt(const UprightVector& parameters) const {
     return box_fit_.ground().LandmarkAt(parameters, shape_exponent_);
   }
@@ -133,15 +165,12 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
   const ClosedForm closed_form(observation);
   const Fitter fitter(observation, objective);
+  std::vector<std::optional<UprightVector>> starts;
   for (int i = 0; i < steps; ++i) {
     sweep.yaw.push_back(i * std::numbers::pi / steps);
-    const auto start = closed_form.At(sweep.yaw.back());
-    if (!start) {
-      sweep.solutions.emplace_back();
-      continue;
-    }
-    sweep.solutions.push_back(fitter.Fit(*start, /*yaw_is_free=*/false));
+    starts.push_back(closed_form.At(sweep.yaw.back()));
   }
+  sweep.solutions = fitter.FitAtYaws(starts);
   return sweep;
 }
 

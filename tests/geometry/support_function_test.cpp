@@ -123,35 +123,5 @@ TEST(SupportFunction, IsZeroForAFlatBodySeenFromItsSide) {
   EXPECT_TRUE(value.contact.isZero());
 }
 
-TEST(SupportInDirections, SaysWhatTheSupportFunctionSaysInEach) {
-  for (size_t i = 0; i < kCases; ++i) {
-    const auto [p, half_axes, first] = RandomCase(i);
-    SupportInDirections::Rows directions;
-    directions << first.transpose().array(), 2.0 * RandomDirection().transpose().array(),
-        RandomDirection().transpose().array(), Eigen::RowVector3d::UnitY().array();
-    const SupportInDirections support(p, directions);
-    for (const Eigen::Vector3d& size : {half_axes, Eigen::Vector3d(0.3 * half_axes)}) {
-      const auto values = support.Of(size);
-      for (int k = 0; k < 4; ++k) {
-        const SupportValue value = SupportFunction(size, p, directions.row(k).transpose());
-        EXPECT_NEAR(values.extents[k], value.extent, 1e-14);
-        EXPECT_TRUE(values.by_log_half_axes.row(k).transpose().matrix().isApprox(
-            value.by_log_half_axes, 1e-13));
-      }
-    }
-  }
-}
-
-TEST(SupportInDirections, AFlatBodyHasNoExtentFromItsSide) {
-  SupportInDirections::Rows directions;
-  directions.setZero();
-  directions.col(2).setOnes();
-  for (const double p : kShapeExponents) {
-    const auto values = SupportInDirections(p, directions).Of({0.0, 0.0, 0.0});
-    EXPECT_TRUE((values.extents == 0.0).all()) << p;
-    EXPECT_TRUE((values.by_log_half_axes == 0.0).all()) << p;
-  }
-}
-
 }  // namespace
 }  // namespace soslam

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "initialisation/closed_form.h"
 #include "support/box_terms.h"
 #include "support/landmark_terms.h"
@@ -79,6 +81,32 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
     }
   }
   EXPECT_GT(checked, 50);
+}
+
+TEST(BoxFit, OfSeveralYawsIsThatOfEachOfThem) {
+  int checked = 0;
+  for (const double p : kShapeExponents) {
+    const double tolerance = p == kEllipsoidExponent ? 1e-9 : 1e-6;  // as above
+    for (int i = 0; i < 10; ++i) {
+      const UprightObservation observation = RandomObservation(p, i);
+      std::vector<UprightVector> starts;
+      for (int k = 0; k <= i; ++k) {
+        if (const auto start = ClosedForm(observation).At(RandomYaw())) starts.push_back(*start);
+      }
+      const BoxFit fit(observation);
+      std::vector<UprightVector> together = starts;
+      const std::vector<double> costs = fit.MinimiseAtYaws(together);
+      ASSERT_EQ(costs.size(), starts.size());
+      for (size_t k = 0; k < starts.size(); ++k) {
+        ++checked;
+        const Eigen::Array4d depths_m = fit.TangentDepths(starts[k]);
+        const double alone = fit.Minimise({}, /*yaw_is_free=*/false, &starts[k]);
+        EXPECT_NEAR(costs[k], alone, tolerance * (1.0 + alone));
+        EXPECT_NEAR(costs[k], fit.Evaluate(depths_m, together[k]).cost, 1e-9 * (1.0 + alone));
+      }
+    }
+  }
+  EXPECT_GT(checked, 100);
 }
 
 }  // namespace
