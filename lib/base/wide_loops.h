@@ -21,6 +21,9 @@
 #define SOSLAM_WIDE_LOOPS
 #endif
 
+// Before what such a function calls: it is compiled for wide registers only as a part of it.
+#define SOSLAM_IN_WIDE_LOOPS [[gnu::always_inline]] inline
+
 namespace soslam {
 
 // Four numbers side by side.

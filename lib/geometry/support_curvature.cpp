@@ -43,12 +43,14 @@ SupportCurvature CurvatureOfSupport(const Eigen::Vector3d& half_axes, double sha
   const double less = (p - 1.0) / value.extent;
   const Eigen::Vector3d inverse_squares =
       (m.array().square() + e2 * m.squaredNorm()).inverse();  // 1 / r^2
+  // l / r^2, (2 - p) l / r^4, that times m, and half of what e^2 leaves of g g^T
   const Eigen::Vector3d shares = by_log.cwiseProduct(inverse_squares);
   const Eigen::Vector3d weights = (2.0 - p) * shares.cwiseProduct(inverse_squares);
   const Eigen::Vector3d weighted = weights.cwiseProduct(m);
-  const Eigen::Matrix3d rounded = e2 * m * (weighted + 0.5 * e2 * weights.sum() * m).transpose();
-  curvature.by_direction =
-      -less * value.contact * value.contact.transpose() - rounded - rounded.transpose();
+  const Eigen::Matrix3d half_of_rounding =
+      e2 * m * (weighted + 0.5 * e2 * weights.sum() * m).transpose();
+  curvature.by_direction = -less * value.contact * value.contact.transpose() - half_of_rounding -
+                           half_of_rounding.transpose();
   curvature.by_direction.diagonal() += shares - weighted.cwiseProduct(m);
   curvature.by_direction.diagonal().array() += e2 * shares.sum();
   curvature.mixed = (p * e2 * shares) * m.transpose() - less * by_log * value.contact.transpose();

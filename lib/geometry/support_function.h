@@ -28,9 +28,9 @@ inline constexpr double kEdgeRounding = 1e-3;
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object);
 
-// Its parts: |m_i|, rounded as said above, and d h / d u_i = (u_i / h)^(p - 1) of h = || u ||_p,
-// u >= 0 and not zero.
+// |m_i|, rounded as said above.
 Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_exponent);
+// The derivatives d h / d u_i = (u_i / h)^(p - 1) of the norm h = || u ||_p; u >= 0, not zero.
 Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm);
 
 }  // namespace soslam

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/support_function.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
@@ -61,13 +62,11 @@ void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& 
   }
 }
 
-QuadraticModel<3> BoxFit::RatioModel(const Eigen::Vector3d& log_half_axes) const {
+void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const {
   const Eigen::Vector2d residuals = ratio_.by_log_half_axes * log_half_axes - ratio_.at_prior;
-  QuadraticModel<3> model;
-  model.cost = 0.5 * residuals.squaredNorm();
-  model.gradient = ratio_.by_log_half_axes.transpose().lazyProduct(residuals);
-  model.information = ratio_.information;
-  return model;
+  sum->cost += 0.5 * residuals.squaredNorm();
+  sum->gradient.tail<3>() += ratio_.by_log_half_axes.transpose().lazyProduct(residuals);
+  sum->information.bottomRightCorner<3, 3>() += ratio_.information;
 }
 
 void BoxFit::AddYaw(double yaw, QuadraticModel<6>* sum) const {
@@ -83,10 +82,7 @@ void BoxFit::AddYaw(double yaw, QuadraticModel<6>* sum) const {
 QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
   QuadraticModel<6> sum;
   AddTangencies(depths_m, at, &sum);
-  const QuadraticModel<3> ratio = RatioModel(at.tail<3>());
-  sum.cost += ratio.cost;
-  sum.gradient.tail<3>() += ratio.gradient;
-  sum.information.bottomRightCorner<3, 3>() += ratio.information;
+  AddRatio(at.tail<3>(), &sum);
   AddYaw(at[kYaw], &sum);
   return sum;
 }
@@ -110,24 +106,23 @@ double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
 std::vector<double> BoxFit::MinimiseAtYaws(std::span<UprightVector> starts) const {
   std::vector<double> costs(starts.size(), std::numeric_limits<double>::quiet_NaN());
   if (!(box_.is_bound != 0.0).any()) {
-    FitsAtYaws fits(box_, ratio_, observation_.prior.shape_exponent);
-    for (size_t first = 0; first < starts.size(); first += FitsAtYaws::kYaws) {
-      const auto some = starts.subspan(first, std::min(FitsAtYaws::kYaws, starts.size() - first));
-      for (size_t place = 0; place < FitsAtYaws::kYaws; ++place) {
-        const UprightVector& start = some[std::min(place, some.size() - 1)];
-        fits.Start(place, TangentDepths(start), start);
+    for (size_t first = 0; first < starts.size(); first += 4) {
+      std::array<StartAtYaw, 4> four;
+      for (size_t k = 0; k < four.size(); ++k) {
+        const UprightVector& start = starts[std::min(first + k, starts.size() - 1)];
+        four[k] = {TangentDepths(start), start};
       }
-      fits.Minimise(kMaxIterations);
-      for (size_t place = 0; place < some.size(); ++place) {
-        if (!std::isfinite(fits.Cost(place))) continue;
+      const auto fits =
+          FitFourYaws(box_, ratio_, observation_.prior.shape_exponent, kMaxIterations, four);
+      for (size_t k = 0; k < four.size() && first + k < starts.size(); ++k) {
         QuadraticModel<6> of_yaw;
-        AddYaw(some[place][kYaw], &of_yaw);
-        costs[first + place] = of_yaw.cost + fits.Cost(place);
-        some[place] = fits.Parameters(place);
+        AddYaw(fits[k].parameters[kYaw], &of_yaw);
+        costs[first + k] = fits[k].cost + of_yaw.cost;
+        starts[first + k] = fits[k].parameters;
       }
     }
   }
-  // Edges that are bounds may count or not, as the foot is; or the edges do not tell it.
+  // Whether edges that are bounds count depends on the foot; and others may not tell it.
   for (size_t i = 0; i < starts.size(); ++i) {
     if (std::isnan(costs[i])) costs[i] = Minimise({}, /*yaw_is_free=*/false, &starts[i]);
   }

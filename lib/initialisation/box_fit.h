@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "initialisation/box_on_ground.h"
-#include "initialisation/fits_at_yaws.h"
+#include "initialisation/fit_four_yaws.h"
 #include "initialisation/quadratic_model.h"
 #include "initialisation/upright_observation.h"
 
@@ -14,7 +14,7 @@ namespace soslam {
 
 // What BoxTerm, RatioTerm, AxisTerm and the yaw prior say together of an upright body, by its
 // parameters on the ground of the observation's plane. A sweep over yaw spends its time here:
-// nothing is allocated, and nothing but the sines of the yaw turned.
+// nothing is allocated for a fit, and nothing but the sines of the yaw turned.
 class BoxFit {
  public:
   // Keeps a reference to the observation.
@@ -28,8 +28,8 @@ class BoxFit {
   // fixed or free. Returns the total cost, which is not finite when it is not at the start.
   double Minimise(const LandmarkCosts& further, bool yaw_is_free, UprightVector* start) const;
 
-  // Without further costs and with the yaws of all starts held, several of which are fitted at
-  // once.
+  // The same without further costs and with yaws fixed, of all starts, which become the minima;
+  // four side by side.
   std::vector<double> MinimiseAtYaws(std::span<UprightVector> starts) const;
 
   double CostAtOwnDepths(const UprightVector& at) const {
@@ -40,7 +40,7 @@ class BoxFit {
  private:
   void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
                      QuadraticModel<6>* sum) const;
-  QuadraticModel<3> RatioModel(const Eigen::Vector3d& log_half_axes) const;
+  void AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const;
   void AddYaw(double yaw, QuadraticModel<6>* sum) const;
 
   const UprightObservation& observation_;

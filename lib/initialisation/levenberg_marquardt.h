@@ -15,13 +15,17 @@ inline constexpr double kNegligibleDecrease = 1e-11;
 // end, each shorter than the one before, and take most of the time.
 inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
 
-// Damping, as a share of the information's diagonal, and how it grows and falls.
+namespace levenberg_marquardt {
+
+// Damping is a share of the information's diagonal, or of kMinDiagonal, for what hardly anything
+// depends on. It grows, each time more, with steps that are in vain, and falls with the others.
 inline constexpr double kFirstDamping = 1e-4;
 inline constexpr double kMaxDamping = 1e16;
-inline constexpr double kFirstGrowth = 2.0;
-inline constexpr double kLeastFall = 1.0 / 3.0;
-// Of the diagonal.
 inline constexpr double kMinDiagonal = 1e-6;
+inline constexpr double kGrowth = 2.0;
+inline constexpr double kLeastFall = 1.0 / 3.0;
+
+}  // namespace levenberg_marquardt
 
 // Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
 // least squares problems, 2004, section 3.2). `evaluate` makes the model at parameters.
@@ -32,9 +36,10 @@ template <int kSize, typename Evaluate>
 double MinimiseSquares(Evaluate evaluate, int max_iterations,
                        Eigen::Matrix<double, kSize, 1>* parameters,
                        double negligible_decrease = kNegligibleDecrease) {
+  using namespace levenberg_marquardt;
   QuadraticModel<kSize> at = evaluate(*parameters);
   double damping = kFirstDamping;
-  double growth = kFirstGrowth;
+  double growth = kGrowth;
   for (int i = 0; i < max_iterations && damping < kMaxDamping; ++i) {
     const Eigen::Matrix<double, kSize, 1> weights =
         damping * at.information.diagonal().cwiseMax(kMinDiagonal);
@@ -58,7 +63,7 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
       at = there;
       const double surprise = 2.0 * gain - 1.0;
       damping *= std::max(kLeastFall, 1.0 - surprise * surprise * surprise);
-      growth = kFirstGrowth;
+      growth = kGrowth;
     } else {
       damping *= growth;
       growth *= 2.0;

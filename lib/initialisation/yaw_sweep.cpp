@@ -46,11 +46,11 @@ class Fitter {
     return WithExtraCost(solution);
   }
 
-  // At the yaws of all starts; none where there is no start, or no landmark.
   using Starts = std::vector<std::optional<UprightVector>>;
+  // At the yaws of all starts; none where there is no start, or no landmark.
   std::vector<std::optional<UprightSolution>> FitAtYaws(const Starts& starts) const {
     std::vector<std::optional<UprightSolution>> solutions(starts.size());
-    if (objective_.further_costs) {
+    if (objective_.further_costs || objective_.rounds > 1) {
       for (size_t i = 0; i < starts.size(); ++i) {
         if (starts[i]) solutions[i] = Fit(*starts[i], /*yaw_is_free=*/false);
       }
@@ -78,7 +78,8 @@ class Fitter {
     if (!objective_.extra_cost) return Fit(parameters, /*yaw_is_free=*/true);
     Starts turned;
     for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
-      turned.emplace_back(parameters)->x() += i * step / kRefinementSteps;
+      UprightVector& start = turned.emplace_back(parameters).value();
+      start[0] += i * step / kRefinementSteps;
     }
     std::optional<UprightSolution> best;
     for (const auto& solution : FitAtYaws(turned)) {
@@ -217,7 +218,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   // Of a body as deep as wide, two yaws cost the same: they are in order of the yaw, not of what
   // rounding leaves of the costs.
   const auto rank = [&](const UprightSolution& solution) {
-    return std::pair(static_cast<float>(solution.cost), yaw_of(solution));
+    return std::pair(static_cast<float>(1.0 + solution.cost), yaw_of(solution));
   };
   std::sort(optima.begin(), optima.end(),
             [&](const auto& one, const auto& other) { return rank(one) < rank(other); });

@@ -47,8 +47,8 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
 // counts as high.
 std::vector<size_t> CircularMinima(const std::vector<double>& values);
 
-// The best local optima of the sweep, yaw refined, lowest cost first (of costs that are equal in
-// single precision, the lower yaw), at most `max_count`: of so many minima of the grid, and at
+// The best local optima of the sweep, yaw refined, lowest cost first (where 1 + cost is equal
+// in single precision, the lower yaw), at most `max_count`: of so many minima of the grid, and at
 // least of six, the lowest ones are refined. Two of them may be one then.
 std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
                                          const YawObjective& objective, const YawSweep& sweep,

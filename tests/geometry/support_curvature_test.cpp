@@ -52,13 +52,15 @@ TEST(SupportCurvature, IsPositiveSemidefiniteAndVanishesAlongTheDirection) {
     for (const double across : {0.0, 1e-4, 0.3}) {
       const Eigen::Vector3d half_axes = RandomVector(0.1, 1.0);
       const Eigen::Vector3d direction(1.0, -0.4, across);
-      const Eigen::Matrix3d curvature =
-          CurvatureOfSupport(half_axes, p, direction, SupportFunction(half_axes, p, direction))
-              .by_direction;
+      const SupportValue value = SupportFunction(half_axes, p, direction);
+      const SupportCurvature both = CurvatureOfSupport(half_axes, p, direction, value);
+      const Eigen::Matrix3d& curvature = both.by_direction;
       EXPECT_TRUE(curvature.isApprox(curvature.transpose(), 1e-12));
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(curvature);
       EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-10 * curvature.norm());
       EXPECT_LT((curvature * direction).norm(), 1e-9 * curvature.norm());
+      // d h / d s is homogeneous, too.
+      EXPECT_LT((both.mixed * direction - value.by_log_half_axes).norm(), 1e-12);
     }
   }
 }

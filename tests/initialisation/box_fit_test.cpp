@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "initialisation/closed_form.h"
@@ -107,6 +108,24 @@ TEST(BoxFit, OfSeveralYawsIsThatOfEachOfThem) {
     }
   }
   EXPECT_GT(checked, 100);
+}
+
+// Four planes in one: the foot may be anywhere on it.
+TEST(BoxFit, OfSeveralYawsIsThatOfEachWhereTheEdgesDoNotTellTheFoot) {
+  const StandingBody body(2.0);
+  UprightObservation observation = body.Observe(body.box);
+  for (BoxEdge& edge : observation.edges) edge.plane = observation.edges.front().plane;
+  const BoxFit fit(observation);
+  std::vector<UprightVector> starts = {fit.ground().ParametersOf(body.truth)};
+  starts.push_back(starts.front());
+  starts.back()[0] += 0.5;
+  std::vector<UprightVector> together = starts;
+  const std::vector<double> costs = fit.MinimiseAtYaws(together);
+  for (size_t k = 0; k < starts.size(); ++k) {
+    EXPECT_EQ(costs[k], fit.Minimise({}, /*yaw_is_free=*/false, &starts[k]));
+    EXPECT_EQ(together[k], starts[k]);
+    EXPECT_TRUE(std::isfinite(costs[k]));
+  }
 }
 
 }  // namespace

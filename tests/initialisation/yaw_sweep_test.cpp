@@ -80,6 +80,18 @@ TEST(SweepYaw, IsEmptyWhereThePlaneIsNotInView) {
   EXPECT_THAT(LocalOptima(body.observation, {}, sweep, /*max_count=*/1000), IsEmpty());
 }
 
+TEST(SweepYaw, RepeatsItsFitsWithNoFurtherCostsAsWell) {
+  const StandingBody body(1.5);
+  const UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
+  YawObjective several;
+  several.rounds = 3;
+  YawObjective several_of_none = several;
+  several_of_none.further_costs = [](const Landmark&) { return LandmarkCosts(); };
+  const auto costs = SweepYaw(observation, several, kStep).Costs();
+  EXPECT_EQ(costs, SweepYaw(observation, several_of_none, kStep).Costs());
+  EXPECT_NE(costs, SweepYaw(observation, {}, kStep).Costs());
+}
+
 // Terms of the start, and again those of the result.
 TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
   constexpr double kFitted = 1e-6;  // fits end where a step lowers the cost by less than 1e-11

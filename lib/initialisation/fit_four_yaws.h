@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "initialisation/box_on_ground.h"
+#include "initialisation/semantic_table.h"
+#include "initialisation/upright.h"
+
+namespace soslam {
+
+// The ratio prior's residuals, linear in the logarithms of the half axes:
+// by_log_half_axes * log_half_axes - at_prior.
+struct RatioRows {
+  explicit RatioRows(const ShapePrior& prior);
+
+  Eigen::Matrix<double, 2, 3> by_log_half_axes;
+  Eigen::Vector2d at_prior;
+  Eigen::Matrix3d information;
+};
+
+// A body and, as the start of a fit, the depths of its tangent points (m).
+struct StartAtYaw {
+  Eigen::Array4d depths_m;
+  UprightVector parameters;
+};
+struct FitAtYaw {
+  double cost;  // not finite where the edges do not tell the foot, or the fit does not get anywhere
+  UprightVector parameters;
+};
+
+// MinimiseSquares of what a box, none of whose edges is a bound, and its prior's ratios say, with
+// the yaws of the starts and their tangent depths held. The four are fitted side by side, in wide
+// registers; neither place nor neighbours change a fit by a bit.
+//
+// The tangencies of a box's edges are linear in the body's foot, which is eliminated (variable
+// projection; Golub and Pereyra, 1973): of the four residuals only that part counts which no foot
+// explains, and the unknowns are the logarithms of the half axes.
+std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& ratio,
+                                    double shape_exponent, int max_iterations,
+                                    const std::array<StartAtYaw, 4>& starts);
+
+}  // namespace soslam
