@@ -59,45 +59,55 @@ SOSLAM_IN_WIDE_LOOPS void Support(double p, const ThreeFours& u, Four* h,
   }
 }
 
-SOSLAM_IN_WIDE_LOOPS void AddTangencies(const Tangencies& tangencies,
-                                        const ThreeFours& log_half_axes, Model* sum) {
+// By edge.
+struct Rows {
+  std::array<Four, 4> residuals;
+  std::array<ThreeFours, 4> by_log_half_axes;
+};
+
+// Of bodies whose foot is the ground's origin.
+SOSLAM_IN_WIDE_LOOPS void RowsAtOrigin(const Tangencies& tangencies,
+                                       const ThreeFours& log_half_axes, Rows* rows) {
   ThreeFours half_axes;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t k = 0; k < 4; ++k) half_axes[i][k] = std::exp(log_half_axes[i][k]);
   }
-  // Of a body whose foot is the ground's origin.
-  std::array<Four, 4> residuals;
-  std::array<ThreeFours, 4> by_log_half_axes;
   for (size_t edge = 0; edge < 4; ++edge) {
     const Four weight = tangencies.weight[edge];
     ThreeFours u;
     for (size_t i = 0; i < 3; ++i) u[i] = tangencies.rounded[edge][i] * half_axes[i];
     Four extent;
-    Support(tangencies.shape_exponent, u, &extent, &by_log_half_axes[edge]);
+    ThreeFours& by_log_half_axes = rows->by_log_half_axes[edge];
+    Support(tangencies.shape_exponent, u, &extent, &by_log_half_axes);
     const Four by_height = tangencies.by_height[edge] * half_axes[2];
-    by_log_half_axes[edge][2] += by_height;
-    residuals[edge] = weight * (tangencies.at_origin[edge] + by_height + extent);
-    for (size_t i = 0; i < 3; ++i) by_log_half_axes[edge][i] *= weight;
+    by_log_half_axes[2] += by_height;
+    for (Four& derivative : by_log_half_axes) derivative *= weight;
+    rows->residuals[edge] = weight * (tangencies.at_origin[edge] + by_height + extent);
   }
-  // What a foot explains of them.
+}
+
+// Of bodies on their best foot: less what a foot explains of the rows.
+SOSLAM_IN_WIDE_LOOPS void AddTangencies(const Tangencies& tangencies, const Rows& rows,
+                                        Model* sum) {
   std::array<ThreeFours, 2> foot_by_log_half_axes{};
   for (size_t edge = 0; edge < 4; ++edge) {
     for (size_t k = 0; k < 2; ++k) {
-      sum->foot[k] += tangencies.foot_basis[edge][k] * residuals[edge];
+      sum->foot[k] += tangencies.foot_basis[edge][k] * rows.residuals[edge];
       for (size_t i = 0; i < 3; ++i) {
-        foot_by_log_half_axes[k][i] += tangencies.foot_basis[edge][k] * by_log_half_axes[edge][i];
+        foot_by_log_half_axes[k][i] +=
+            tangencies.foot_basis[edge][k] * rows.by_log_half_axes[edge][i];
       }
     }
   }
   for (size_t edge = 0; edge < 4; ++edge) {
     const auto& basis = tangencies.foot_basis[edge];
-    const Four left = residuals[edge] - (basis[0] * sum->foot[0] + basis[1] * sum->foot[1]);
+    const Four left = rows.residuals[edge] - (basis[0] * sum->foot[0] + basis[1] * sum->foot[1]);
     sum->cost += 0.5 * left * left;
     for (size_t i = 0; i < 3; ++i) {
-      const Four by_i = by_log_half_axes[edge][i];
-      sum->gradient[i] += by_i * left;
+      const ThreeFours& by_log_half_axes = rows.by_log_half_axes[edge];
+      sum->gradient[i] += by_log_half_axes[i] * left;
       for (size_t j = 0; j <= i; ++j) {
-        sum->information[i][j] += by_i * by_log_half_axes[edge][j];
+        sum->information[i][j] += by_log_half_axes[i] * by_log_half_axes[j];
       }
     }
   }
@@ -124,7 +134,9 @@ SOSLAM_IN_WIDE_LOOPS void AddRatio(const RatioRows& ratio, const ThreeFours& log
 SOSLAM_IN_WIDE_LOOPS void Evaluate(const Tangencies& tangencies, const RatioRows& ratio,
                                    const ThreeFours& log_half_axes, Model* model) {
   *model = Model();
-  AddTangencies(tangencies, log_half_axes, model);
+  Rows rows;
+  RowsAtOrigin(tangencies, log_half_axes, &rows);
+  AddTangencies(tangencies, rows, model);
   AddRatio(ratio, log_half_axes, model);
 }
 
