@@ -103,14 +103,13 @@ double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
          ConstantCost(further);
 }
 
-std::vector<double> BoxFit::MinimiseAtYaws(std::span<UprightVector> starts) const {
+std::vector<double> BoxFit::MinimiseAtYaws(std::span<StartAtYaw> starts) const {
   std::vector<double> costs(starts.size(), std::numeric_limits<double>::quiet_NaN());
   if (!(box_.is_bound != 0.0).any()) {
     for (size_t first = 0; first < starts.size(); first += 4) {
       std::array<StartAtYaw, 4> four;
       for (size_t k = 0; k < four.size(); ++k) {
-        const UprightVector& start = starts[std::min(first + k, starts.size() - 1)];
-        four[k] = {TangentDepths(start), start};
+        four[k] = starts[std::min(first + k, starts.size() - 1)];
       }
       const auto fits =
           FitFourYaws(box_, ratio_, observation_.prior.shape_exponent, kMaxIterations, four);
@@ -118,13 +117,14 @@ std::vector<double> BoxFit::MinimiseAtYaws(std::span<UprightVector> starts) cons
         QuadraticModel<6> of_yaw;
         AddYaw(fits[k].parameters[kYaw], &of_yaw);
         costs[first + k] = fits[k].cost + of_yaw.cost;
-        starts[first + k] = fits[k].parameters;
+        starts[first + k].parameters = fits[k].parameters;
       }
     }
   }
   // Whether edges that are bounds count depends on the foot; and others may not tell it.
   for (size_t i = 0; i < starts.size(); ++i) {
-    if (std::isnan(costs[i])) costs[i] = Minimise({}, /*yaw_is_free=*/false, &starts[i]);
+    if (!std::isnan(costs[i])) continue;
+    costs[i] = Minimise({}, /*yaw_is_free=*/false, &starts[i].parameters);
   }
   return costs;
 }

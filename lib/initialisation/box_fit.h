@@ -28,9 +28,12 @@ class BoxFit {
   // fixed or free. Returns the total cost, which is not finite when it is not at the start.
   double Minimise(const LandmarkCosts& further, bool yaw_is_free, UprightVector* start) const;
 
-  // The same without further costs and with yaws fixed, of all starts, which become the minima;
-  // four side by side.
-  std::vector<double> MinimiseAtYaws(std::span<UprightVector> starts) const;
+  StartAtYaw StartAt(const UprightVector& parameters) const {
+    return {parameters, TangentDepths(parameters)};
+  }
+  // The same without further costs and with yaws fixed, of all starts, whose parameters become
+  // those of the minima; four side by side.
+  std::vector<double> MinimiseAtYaws(std::span<StartAtYaw> starts) const;
 
   double CostAtOwnDepths(const UprightVector& at) const {
     return Evaluate(TangentDepths(at), at).cost;

@@ -29,6 +29,12 @@ struct BoxOnGround {
   double origin_depth;           // of the ground's origin, m
 };
 
+// A body, and how deep the points are where it touches the planes: where fits to a box start.
+struct StartAtYaw {
+  UprightVector parameters;
+  Eigen::Array4d depths_m;
+};
+
 // A direction of the ground's frame as seen from a body at a yaw with this cosine and sine.
 inline Eigen::Vector3d TurnedBack(const Eigen::Vector3d& direction, double cosine, double sine) {
   return {cosine * direction.x() + sine * direction.y(),

@@ -83,7 +83,7 @@ Eigen::Array4d ClosedForm::Residuals(const System& system, const Eigen::Array4d&
   return direction * (missing / (system.null * direction).sum());
 }
 
-std::optional<UprightVector> ClosedForm::At(double yaw) const {
+std::optional<StartAtYaw> ClosedForm::At(double yaw) const {
   if (!HasEnoughEdges()) return std::nullopt;
   const System system = SystemAt(yaw);
   Eigen::Array4d depths_m = Eigen::Array4d::Ones();  // while they are equal, of any size
@@ -96,16 +96,16 @@ std::optional<UprightVector> ClosedForm::At(double yaw) const {
     depths_m = box_.origin_depth + (system.depths * solution).array();
     if (((depths_m - before).abs() < kDepthTolerance * depths_m).all()) break;
   }
-  UprightVector parameters;
-  parameters << yaw, solution.head<2>(), (solution.z() * proportions_).array().log().matrix();
-  return parameters;
+  StartAtYaw start{UprightVector(), depths_m};
+  start.parameters << yaw, solution.head<2>(), (solution.z() * proportions_).array().log().matrix();
+  return start;
 }
 
 std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {
-  const auto parameters = ClosedForm(observation).At(yaw);
-  if (!parameters) return std::nullopt;
+  const auto solution = ClosedForm(observation).At(yaw);
+  if (!solution) return std::nullopt;
   return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(*parameters, observation.prior.shape_exponent);
+      .LandmarkAt(solution->parameters, observation.prior.shape_exponent);
 }
 
 }  // namespace soslam

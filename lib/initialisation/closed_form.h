@@ -22,10 +22,10 @@ class ClosedForm {
  public:
   explicit ClosedForm(const UprightObservation& observation);
 
-  // The parameters of the body on the ground of the observation's plane. None when fewer than three
-  // edges are measured, which leaves the size open, or when the body would not be in front of the
-  // camera.
-  std::optional<UprightVector> At(double yaw) const;
+  // The body on the ground of the observation's plane, and its tangent depths. None when fewer than
+  // three edges are measured, which leaves the size open, or when the body would not be in front of
+  // the camera.
+  std::optional<StartAtYaw> At(double yaw) const;
 
   // Whether at least three edges are measured.
   bool HasEnoughEdges() const { return (box_.is_bound == 0.0).count() >= 3; }

@@ -20,11 +20,6 @@ struct RatioRows {
   Eigen::Matrix3d information;
 };
 
-// A body and, as the start of a fit, the depths of its tangent points (m).
-struct StartAtYaw {
-  Eigen::Array4d depths_m;
-  UprightVector parameters;
-};
 struct FitAtYaw {
   double cost;  // not finite where the edges do not tell the foot, or the fit does not get anywhere
   UprightVector parameters;

@@ -46,25 +46,25 @@ class Fitter {
     return WithExtraCost(solution);
   }
 
-  using Starts = std::vector<std::optional<UprightVector>>;
+  using Starts = std::vector<std::optional<StartAtYaw>>;
   // At the yaws of all starts; none where there is no start, or no landmark.
   std::vector<std::optional<UprightSolution>> FitAtYaws(const Starts& starts) const {
     std::vector<std::optional<UprightSolution>> solutions(starts.size());
     if (objective_.further_costs || objective_.rounds > 1) {
       for (size_t i = 0; i < starts.size(); ++i) {
-        if (starts[i]) solutions[i] = Fit(*starts[i], /*yaw_is_free=*/false);
+        if (starts[i]) solutions[i] = Fit(starts[i]->parameters, /*yaw_is_free=*/false);
       }
       return solutions;
     }
-    std::vector<UprightVector> parameters;
+    std::vector<StartAtYaw> fits;
     for (const auto& start : starts) {
-      if (start) parameters.push_back(*start);
+      if (start) fits.push_back(*start);
     }
-    const std::vector<double> costs = box_fit_.MinimiseAtYaws(parameters);
+    const std::vector<double> costs = box_fit_.MinimiseAtYaws(fits);
     size_t next = 0;
     for (size_t i = 0; i < starts.size(); ++i) {
       if (!starts[i]) continue;
-      const UprightSolution solution{LandmarkAt(parameters[next]), costs[next]};
+      const UprightSolution solution{LandmarkAt(fits[next].parameters), costs[next]};
       if (IsPossible(solution)) solutions[i] = WithExtraCost(solution);
       ++next;
     }
@@ -78,8 +78,9 @@ class Fitter {
     if (!objective_.extra_cost) return Fit(parameters, /*yaw_is_free=*/true);
     Starts turned;
     for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
-      UprightVector& start = turned.emplace_back(parameters).value();
-      start[0] += i * step / kRefinementSteps;
+      UprightVector at = parameters;
+      at[0] += i * step / kRefinementSteps;
+      turned.push_back(box_fit_.StartAt(at));
     }
     std::optional<UprightSolution> best;
     for (const auto& solution : FitAtYaws(turned)) {
@@ -166,7 +167,7 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
   const ClosedForm closed_form(observation);
   const Fitter fitter(observation, objective);
-  std::vector<std::optional<UprightVector>> starts;
+  std::vector<std::optional<StartAtYaw>> starts;
   for (int i = 0; i < steps; ++i) {
     sweep.yaw.push_back(i * std::numbers::pi / steps);
     starts.push_back(closed_form.At(sweep.yaw.back()));

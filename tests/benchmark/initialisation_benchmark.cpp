@@ -39,10 +39,10 @@ BENCHMARK(SolveOneYaw)->Name("single_frame/closed_form_at_yaw");
 void FitFour(benchmark::State& state) {
   const OneBox box;
   const BoxFit fit(box.observation);
-  std::array<UprightVector, 4> starts;
+  std::array<StartAtYaw, 4> starts;
   for (size_t i = 0; i < starts.size(); ++i) {
     const double yaw = 0.3 + kYawStep * static_cast<double>(i);
-    starts[i] = fit.ground().ParametersOf(*SolveAtYaw(box.observation, yaw));
+    starts[i] = *ClosedForm(box.observation).At(yaw);
   }
   for (auto _ : state) {
     auto parameters = starts;

@@ -35,14 +35,15 @@ TEST(BoxFit, SaysWhatTheTermsSay) {
       if (!start) continue;
       ++checked;
       const BoxFit fit(observation);
-      UprightVector at = *start;
+      EXPECT_TRUE(start->depths_m.isApprox(fit.TangentDepths(start->parameters), 1e-12));
+      UprightVector at = start->parameters;
       at.tail<3>() += RandomVector(-0.1, 0.1);
       const auto landmark = [&](const UprightVector& parameters) {
         return fit.ground().LandmarkAt(parameters, p);
       };
-      const QuadraticModel<6> expected =
-          UprightModel(BoxTerms(observation, landmark(*start)), fit.ground(), landmark(at));
-      const QuadraticModel<6> sum = fit.Evaluate(fit.TangentDepths(*start), at);
+      const QuadraticModel<6> expected = UprightModel(
+          BoxTerms(observation, landmark(start->parameters)), fit.ground(), landmark(at));
+      const QuadraticModel<6> sum = fit.Evaluate(start->depths_m, at);
       EXPECT_NEAR(sum.cost, expected.cost, 1e-9 * (1.0 + expected.cost));
       EXPECT_LT((sum.gradient - expected.gradient).norm(), 1e-9 * (1.0 + expected.gradient.norm()));
       EXPECT_LT((sum.information - expected.information).norm(),
@@ -63,7 +64,7 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
       if (!start) continue;
       ++checked;
       const BoxFit fit(observation);
-      const Landmark landmark = fit.ground().LandmarkAt(*start, p);
+      const Landmark landmark = fit.ground().LandmarkAt(start->parameters, p);
       for (const bool yaw_is_free : {false, true}) {
         for (const bool with_height : {false, true}) {
           const LogNormal height_m{2.2 * landmark.half_axes.z(), 0.3};
@@ -73,7 +74,7 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
             if (with_height) costs->push_back(std::make_unique<HeightTerm>(height_m));
           }
           const auto of_terms = FitUpright(observation.plane_in_camera, landmark, all, yaw_is_free);
-          UprightVector parameters = *start;
+          UprightVector parameters = start->parameters;
           const double cost = fit.Minimise(further, yaw_is_free, &parameters);
           ASSERT_TRUE(of_terms);
           EXPECT_NEAR(cost, of_terms->cost, tolerance * (1.0 + cost));
@@ -90,20 +91,20 @@ TEST(BoxFit, OfSeveralYawsIsThatOfEachOfThem) {
     const double tolerance = p == kEllipsoidExponent ? 1e-9 : 1e-6;  // as above
     for (int i = 0; i < 10; ++i) {
       const UprightObservation observation = RandomObservation(p, i);
-      std::vector<UprightVector> starts;
+      std::vector<StartAtYaw> starts;
       for (int k = 0; k <= i; ++k) {
         if (const auto start = ClosedForm(observation).At(RandomYaw())) starts.push_back(*start);
       }
       const BoxFit fit(observation);
-      std::vector<UprightVector> together = starts;
+      std::vector<StartAtYaw> together = starts;
       const std::vector<double> costs = fit.MinimiseAtYaws(together);
       ASSERT_EQ(costs.size(), starts.size());
       for (size_t k = 0; k < starts.size(); ++k) {
         ++checked;
-        const Eigen::Array4d depths_m = fit.TangentDepths(starts[k]);
-        const double alone = fit.Minimise({}, /*yaw_is_free=*/false, &starts[k]);
+        const double alone = fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters);
         EXPECT_NEAR(costs[k], alone, tolerance * (1.0 + alone));
-        EXPECT_NEAR(costs[k], fit.Evaluate(depths_m, together[k]).cost, 1e-9 * (1.0 + alone));
+        EXPECT_NEAR(costs[k], fit.Evaluate(starts[k].depths_m, together[k].parameters).cost,
+                    1e-9 * (1.0 + alone));
       }
     }
   }
@@ -116,14 +117,15 @@ TEST(BoxFit, OfSeveralYawsIsThatOfEachWhereTheEdgesDoNotTellTheFoot) {
   UprightObservation observation = body.Observe(body.box);
   for (BoxEdge& edge : observation.edges) edge.plane = observation.edges.front().plane;
   const BoxFit fit(observation);
-  std::vector<UprightVector> starts = {fit.ground().ParametersOf(body.truth)};
-  starts.push_back(starts.front());
-  starts.back()[0] += 0.5;
-  std::vector<UprightVector> together = starts;
+  UprightVector at = fit.ground().ParametersOf(body.truth);
+  std::vector<StartAtYaw> starts = {fit.StartAt(at)};
+  at[0] += 0.5;
+  starts.push_back(fit.StartAt(at));
+  std::vector<StartAtYaw> together = starts;
   const std::vector<double> costs = fit.MinimiseAtYaws(together);
   for (size_t k = 0; k < starts.size(); ++k) {
-    EXPECT_EQ(costs[k], fit.Minimise({}, /*yaw_is_free=*/false, &starts[k]));
-    EXPECT_EQ(together[k], starts[k]);
+    EXPECT_EQ(costs[k], fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters));
+    EXPECT_EQ(together[k].parameters, starts[k].parameters);
     EXPECT_TRUE(std::isfinite(costs[k]));
   }
 }

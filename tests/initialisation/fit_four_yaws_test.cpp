@@ -21,13 +21,12 @@ using Starts = std::array<StartAtYaw, 4>;
 
 // From the closed form at random yaws.
 std::optional<Starts> RandomStarts(const UprightObservation& observation) {
-  const BoxFit fit(observation);
   const ClosedForm closed_form(observation);
   Starts starts;
   size_t next = 0;
   for (int i = 0; i < 20 && next < starts.size(); ++i) {
     const auto start = closed_form.At(RandomYaw());
-    if (start) starts[next++] = {fit.TangentDepths(*start), *start};
+    if (start) starts[next++] = *start;
   }
   return next == starts.size() ? std::optional(starts) : std::nullopt;
 }
