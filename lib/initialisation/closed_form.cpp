@@ -76,7 +76,7 @@ Eigen::Array4d ClosedForm::Residuals(const System& system, const Eigen::Array4d&
   const double missing = -(system.null * system.b).sum();  // n^T (A x - b), for any x
   if (box_.is_bound.sum() > 0.0) {
     // Three equations have a solution, and the bound is met as it happens.
-    const Eigen::Array4d at_bound = box_.is_bound * missing / (box_.is_bound * system.null).sum();
+    Eigen::Array4d at_bound = box_.is_bound * missing / (box_.is_bound * system.null).sum();
     if (!(at_bound.sum() < 0.0)) return at_bound;
   }
   const Eigen::Array4d direction = (depths_m * box_.sigma_px).square() * system.null;
