@@ -285,7 +285,7 @@ std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& rat
   std::array<FitAtYaw, 4> fits;
   for (size_t k = 0; k < 4; ++k) {
     fits[k] = {std::numeric_limits<double>::quiet_NaN(), starts[k].parameters};
-    if (!foot_from_basis[k]) continue;
+    if (!foot_from_basis[k] || !std::isfinite(at.cost[k])) continue;
     fits[k].cost = at.cost[k];
     fits[k].parameters << starts[k].parameters[0],
         *foot_from_basis[k] * Eigen::Vector2d(at.foot[0][k], at.foot[1][k]), log_half_axes[0][k],

@@ -21,8 +21,8 @@ struct RatioRows {
 };
 
 struct FitAtYaw {
-  double cost;  // not finite where the edges do not tell the foot, or the fit does not get anywhere
-  UprightVector parameters;
+  double cost;               // NaN where the edges do not tell the foot, or the start has no cost
+  UprightVector parameters;  // those of the start then
 };
 
 // MinimiseSquares of what a box, none of whose edges is a bound, and its prior's ratios say, with

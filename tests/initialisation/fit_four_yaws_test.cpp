@@ -124,6 +124,19 @@ TEST(FitFourYaws, DoNotDependOnTheirPlaceNorOnTheOthers) {
   }
 }
 
+TEST(FitFourYaws, LeaveAStartWithoutACostAsItIs) {
+  for (const double p : kShapeExponents) {
+    const RandomBox box(p);
+    auto starts = RandomStarts(box.observation);
+    if (!starts) continue;
+    starts->front().parameters[3] = 1e3;  // of a half axis beyond numbers
+    const auto fits = box.Fit(*starts);
+    EXPECT_TRUE(std::isnan(fits[0].cost));
+    EXPECT_EQ(fits[0].parameters, starts->front().parameters);
+    EXPECT_TRUE(std::isfinite(fits[1].cost));
+  }
+}
+
 TEST(FitFourYaws, OfEdgesThatDoNotTellTheFootHaveNoCost) {
   const StandingBody body(2.0);
   const UprightObservation observation = body.Observe(body.box);
