@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 // Before a function whose loops the compiler turns into vector code: compiles it twice, for any
 // processor and for those with AVX2, which take twice as many numbers at once; the program chooses
 // when it starts. Both do the same operations in the same order (AVX2 alone has no fused multiply
@@ -28,5 +31,21 @@ namespace soslam {
 
 // Four numbers side by side.
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+// What comparing them gives: all bits of a number's place, or none.
+using FourMask = decltype(Four{} < Four{});
+
+SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+SOSLAM_IN_WIDE_LOOPS void Replace(const FourMask& where, const Four& from, Four* to) {
+  *to = where ? from : *to;
+}
+
+template <size_t kCount>
+SOSLAM_IN_WIDE_LOOPS void Replace(const FourMask& where, const std::array<Four, kCount>& from,
+                                  std::array<Four, kCount>* to) {
+  for (size_t i = 0; i < kCount; ++i) Replace(where, from[i], &(*to)[i]);
+}
 
 }  // namespace soslam

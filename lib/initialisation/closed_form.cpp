@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/closed_form.h"
 
-#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+
+#include "base/wide_loops.h"
+#include "geometry/support_function.h"
 
 namespace soslam {
 namespace {
@@ -11,94 +17,182 @@ namespace {
 constexpr int kMaxDepthRounds = 20;
 constexpr double kDepthTolerance = 1e-10;
 
-// n with n^T A = 0: the determinants of A without each of its rows, signs alternating.
-Eigen::Array4d LeftNullVector(const Eigen::Matrix<double, 4, 3>& a) {
-  const Eigen::Vector3d one = a.row(0), two = a.row(1), three = a.row(2), four = a.row(3);
-  const Eigen::Vector3d first = one.cross(two);
-  const Eigen::Vector3d last = three.cross(four);
-  return {two.dot(last), -one.dot(last), first.dot(four), -first.dot(three)};
+using FourEdges = std::array<Four, 4>;
+
+// At four yaws.
+struct FourBodies {
+  FourEdges by_half_height{};        // a
+  FourEdges depth_by_half_height{};  // of the tangent points, from that of the foot
+  Four nearest_by_half_height{};     // of the body's point nearest to the camera's plane
+};
+
+// What is left of their equations without the foot.
+struct FourSystems {
+  FourEdges half_height_by_b;
+  FourEdges null;  // n
+  Four missing;    // n^T r of residuals r with which there is a solution
+};
+
+struct FourSolutions {
+  std::array<Four, 2> foot{};
+  Four half_height{};
+  FourEdges depths_m{};  // of the tangent points
+};
+
+// One of the four.
+void Place(const BoxEquations& equations, double yaw, size_t place, FourBodies* bodies) {
+  const BoxOnGround& box = equations.box;
+  const double cosine = std::cos(yaw);
+  const double sine = std::sin(yaw);
+  const auto support_towards = [&](const Eigen::Vector3d& direction) {
+    return SupportFunction(equations.proportions, equations.shape_exponent,
+                           TurnedBack(direction, cosine, sine));
+  };
+  const Eigen::Vector3d axis_in_object = TurnedBack(box.optical_axis, cosine, sine);
+  for (size_t edge = 0; edge < 4; ++edge) {
+    const Eigen::Vector3d normal = box.normals.row(edge);
+    const SupportValue support = support_towards(normal);
+    bodies->by_half_height[edge][place] = normal.z() + support.extent;
+    bodies->depth_by_half_height[edge][place] =
+        box.optical_axis.z() + axis_in_object.dot(support.contact);
+  }
+  bodies->nearest_by_half_height[place] =
+      box.optical_axis.z() - support_towards(box.optical_axis).extent;
+}
+
+SOSLAM_IN_WIDE_LOOPS void EliminateFoot(const BoxEquations& equations, const FourBodies& bodies,
+                                        FourSystems* systems) {
+  Four first{}, second{};  // N^T a
+  for (size_t edge = 0; edge < 4; ++edge) {
+    first += equations.without_foot(edge, 0) * bodies.by_half_height[edge];
+    second += equations.without_foot(edge, 1) * bodies.by_half_height[edge];
+  }
+  const Four scale = 1.0 / (first * first + second * second);
+  systems->missing = Four{};
+  for (size_t edge = 0; edge < 4; ++edge) {
+    const double one = equations.without_foot(edge, 0), other = equations.without_foot(edge, 1);
+    systems->half_height_by_b[edge] = scale * (one * first + other * second);
+    systems->null[edge] = other * first - one * second;
+    systems->missing += systems->null[edge] * equations.box.at_origin[edge];
+  }
+}
+
+// F foot + a c - b of the least squares solutions, tangent points at these depths.
+SOSLAM_IN_WIDE_LOOPS void FindResiduals(const BoxOnGround& box, const FourSystems& systems,
+                                        const FourEdges& depths_m, FourEdges* residuals) {
+  Four along_null{};
+  for (size_t edge = 0; edge < 4; ++edge) {
+    const Four sigma = depths_m[edge] * box.sigma_px[edge];
+    (*residuals)[edge] = sigma * sigma * systems.null[edge];
+    along_null += (*residuals)[edge] * systems.null[edge];
+  }
+  const Four scale = systems.missing / along_null;
+  for (Four& residual : *residuals) residual *= scale;
+}
+
+// Three equations have a solution, and the bound is met as it happens: where it is reached.
+SOSLAM_IN_WIDE_LOOPS void ReplaceWhereBoundIsReached(const Eigen::Array4d& is_bound,
+                                                     const FourSystems& systems,
+                                                     FourEdges* residuals) {
+  Four null{};
+  for (size_t edge = 0; edge < 4; ++edge) {
+    null += is_bound[edge] * systems.null[edge];
+  }
+  const Four at_bound = systems.missing / null;
+  const FourMask is_reached = ~(at_bound < 0.0);
+  for (size_t edge = 0; edge < 4; ++edge) {
+    Replace(is_reached, is_bound[edge] * at_bound, &(*residuals)[edge]);
+  }
+}
+
+SOSLAM_IN_WIDE_LOOPS FourSolutions SolveFor(const BoxEquations& equations, const FourBodies& bodies,
+                                            const FourSystems& systems,
+                                            const FourEdges& residuals) {
+  const BoxOnGround& box = equations.box;
+  FourSolutions solutions;
+  FourEdges b;
+  for (size_t edge = 0; edge < 4; ++edge) {
+    b[edge] = residuals[edge] - box.at_origin[edge];
+    solutions.half_height += systems.half_height_by_b[edge] * b[edge];
+  }
+  for (size_t edge = 0; edge < 4; ++edge) {
+    const Four left = b[edge] - solutions.half_height * bodies.by_half_height[edge];
+    for (size_t k = 0; k < 2; ++k) {
+      solutions.foot[k] += equations.foot_by_b(k, edge) * left;
+    }
+  }
+  return solutions;
+}
+
+// Leaves half heights at 0 where there is no body in front of the camera.
+SOSLAM_WIDE_LOOPS void Solve(const BoxEquations& equations, const FourBodies& bodies,
+                             FourSolutions* solutions) {
+  const BoxOnGround& box = equations.box;
+  FourSystems systems;
+  EliminateFoot(equations, bodies, &systems);
+  const bool has_bound = (box.is_bound != 0.0).any();
+  solutions->depths_m.fill(Four{} + 1.0);  // while they are equal, of any size
+  FourMask is_under_way = ~FourMask{};
+  for (int round = 0; round < kMaxDepthRounds; ++round) {
+    FourEdges residuals;
+    FindResiduals(box, systems, solutions->depths_m, &residuals);
+    if (has_bound) ReplaceWhereBoundIsReached(box.is_bound, systems, &residuals);
+    FourSolutions next = SolveFor(equations, bodies, systems, residuals);
+    const Four foot_depth_m =
+        box.origin_depth + box.optical_axis[0] * next.foot[0] + box.optical_axis[1] * next.foot[1];
+    const Four nearest_m = foot_depth_m + next.half_height * bodies.nearest_by_half_height;
+    const FourMask is_possible = (next.half_height > 0.0) & (nearest_m > 0.0) &
+                                 (nearest_m < std::numeric_limits<double>::infinity());
+    Replace(~is_possible, Four{}, &next.half_height);
+    FourMask is_settled = is_possible;
+    for (size_t edge = 0; edge < 4; ++edge) {
+      Four& depth_m = next.depths_m[edge];
+      depth_m = foot_depth_m + next.half_height * bodies.depth_by_half_height[edge];
+      const Four change = depth_m - solutions->depths_m[edge];
+      is_settled &= ((change > 0.0 ? change : -change) < kDepthTolerance * depth_m);
+    }
+    Replace(is_under_way, next.foot, &solutions->foot);
+    Replace(is_under_way, next.half_height, &solutions->half_height);
+    Replace(is_under_way, next.depths_m, &solutions->depths_m);
+    is_under_way &= is_possible & ~is_settled;
+    if (!Any(is_under_way)) break;
+  }
 }
 
 }  // namespace
 
-// Of one yaw, in foot x, foot y and c.
-struct ClosedForm::System {
-  Eigen::Vector3d Solve(const Eigen::Array4d& residuals) const {
-    Eigen::Vector3d right_side;
-    for (int i = 0; i < 3; ++i) {
-      const int row = i < left_out ? i : i + 1;
-      right_side[i] = b[row] + residuals[row];
+BoxEquations::BoxEquations(const UprightObservation& observation)
+    : box(observation.edges, Rigid3d(), UprightGround(observation.plane_in_camera)),
+      proportions(observation.prior.ratio.x(), observation.prior.ratio.y(), 1.0),
+      shape_exponent(observation.prior.shape_exponent) {
+  const Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>> of_foot(box.normals.leftCols<2>());
+  const Eigen::Matrix4d orthonormal = of_foot.householderQ();
+  without_foot = orthonormal.rightCols<2>();
+  foot_by_b = of_foot.matrixQR().topRows<2>().triangularView<Eigen::Upper>().solve(
+      orthonormal.leftCols<2>().transpose());
+}
+
+std::vector<std::optional<StartAtYaw>> ClosedForm::At(const std::vector<double>& yaws) const {
+  std::vector<std::optional<StartAtYaw>> starts(yaws.size());
+  if (!HasEnoughEdges()) return starts;
+  for (size_t first = 0; first < yaws.size(); first += 4) {
+    const size_t count = std::min<size_t>(4, yaws.size() - first);
+    FourBodies bodies;
+    for (size_t k = 0; k < count; ++k) Place(equations_, yaws[first + k], k, &bodies);
+    FourSolutions solutions;
+    Solve(equations_, bodies, &solutions);
+    for (size_t k = 0; k < count; ++k) {
+      const double half_height = solutions.half_height[k];
+      if (!(half_height > 0.0)) continue;
+      StartAtYaw& start = starts[first + k].emplace();
+      start.parameters << yaws[first + k], solutions.foot[0][k], solutions.foot[1][k],
+          (half_height * equations_.proportions).array().log().matrix();
+      for (size_t edge = 0; edge < 4; ++edge) {
+        start.depths_m[edge] = solutions.depths_m[edge][k];
+      }
     }
-    return inverse * right_side;
   }
-
-  Eigen::Array4d b;
-  Eigen::Array4d null;                 // n
-  int left_out;                        // of the equations, that which the others determine best
-  Eigen::Matrix3d inverse;             // of the others' rows of A
-  Eigen::Matrix<double, 4, 3> depths;  // of the tangent points, over that of the ground's origin
-  Eigen::RowVector3d nearest;          // of the body's point nearest to the camera's plane
-};
-
-ClosedForm::ClosedForm(const UprightObservation& observation)
-    : box_(observation.edges, Rigid3d(), UprightGround(observation.plane_in_camera)),
-      proportions_(observation.prior.ratio.x(), observation.prior.ratio.y(), 1.0),
-      shape_exponent_(observation.prior.shape_exponent) {}
-
-ClosedForm::System ClosedForm::SystemAt(double yaw) const {
-  const double cosine = std::cos(yaw);
-  const double sine = std::sin(yaw);
-  const auto support_towards = [&](const Eigen::Vector3d& direction) {
-    return SupportFunction(proportions_, shape_exponent_, TurnedBack(direction, cosine, sine));
-  };
-  const Eigen::Vector3d axis_in_object = TurnedBack(box_.optical_axis, cosine, sine);
-  System system;
-  system.b = -box_.at_origin;
-  Eigen::Matrix<double, 4, 3> a = box_.normals;
-  system.depths.rowwise() = box_.optical_axis.transpose();
-  for (int i = 0; i < 4; ++i) {
-    const SupportValue support = support_towards(box_.normals.row(i));
-    a(i, 2) += support.extent;
-    system.depths(i, 2) += axis_in_object.dot(support.contact);
-  }
-  system.nearest = box_.optical_axis;
-  system.nearest[2] -= support_towards(box_.optical_axis).extent;
-  system.null = LeftNullVector(a);
-  system.null.abs().maxCoeff(&system.left_out);
-  Eigen::Matrix3d others;
-  for (int i = 0; i < 3; ++i) others.row(i) = a.row(i < system.left_out ? i : i + 1);
-  system.inverse = others.inverse();
-  return system;
-}
-
-// A x - b of the least squares solution x, tangent points at these depths.
-Eigen::Array4d ClosedForm::Residuals(const System& system, const Eigen::Array4d& depths_m) const {
-  const double missing = -(system.null * system.b).sum();  // n^T (A x - b), for any x
-  if (box_.is_bound.sum() > 0.0) {
-    // Three equations have a solution, and the bound is met as it happens.
-    Eigen::Array4d at_bound = box_.is_bound * missing / (box_.is_bound * system.null).sum();
-    if (!(at_bound.sum() < 0.0)) return at_bound;
-  }
-  const Eigen::Array4d direction = (depths_m * box_.sigma_px).square() * system.null;
-  return direction * (missing / (system.null * direction).sum());
-}
-
-std::optional<StartAtYaw> ClosedForm::At(double yaw) const {
-  if (!HasEnoughEdges()) return std::nullopt;
-  const System system = SystemAt(yaw);
-  Eigen::Array4d depths_m = Eigen::Array4d::Ones();  // while they are equal, of any size
-  Eigen::Vector3d solution;
-  for (int round = 0; round < kMaxDepthRounds; ++round) {
-    solution = system.Solve(Residuals(system, depths_m));
-    if (!solution.allFinite() || !(solution.z() > 0.0)) return std::nullopt;
-    if (!(box_.origin_depth + system.nearest * solution > 0.0)) return std::nullopt;
-    const Eigen::Array4d before = depths_m;
-    depths_m = box_.origin_depth + (system.depths * solution).array();
-    if (((depths_m - before).abs() < kDepthTolerance * depths_m).all()) break;
-  }
-  StartAtYaw start{UprightVector(), depths_m};
-  start.parameters << yaw, solution.head<2>(), (solution.z() * proportions_).array().log().matrix();
-  return start;
+  return starts;
 }
 
 std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "geometry/landmark.h"
 #include "initialisation/box_on_ground.h"
@@ -11,33 +12,41 @@
 
 namespace soslam {
 
-// At a given yaw and with the prior's ratio, the tangencies are linear in the foot and the half
-// height c: the least squares solution over the measured edges, and over a bound that it would not
-// reach. Tangent points are at their depths on the solution itself, found by repetition.
+// The tangencies of a body of known proportions to a box's edges: linear in foot and half height c
+// at a given yaw, F foot + a c = b. Only a depends on the yaw.
+struct BoxEquations {
+  explicit BoxEquations(const UprightObservation& observation);
+
+  BoxOnGround box;
+  Eigen::Vector3d proportions;  // (a, b, c) / c
+  double shape_exponent;
+  Eigen::Matrix<double, 4, 2> without_foot;  // N with N^T F = 0, orthonormal
+  Eigen::Matrix<double, 2, 4> foot_by_b;     // where F foot = b has a solution
+};
+
+// Bodies with the prior's ratio at given yaws: the least squares solution over the measured edges,
+// and over a bound that it would not reach. Tangent points are at their depths on the solution
+// itself, found by repetition. Four yaws are solved side by side, in wide registers.
 //
-// Four equations A x = b for three unknowns leave one direction n with n^T A = 0. Whatever the
-// weights W, the residuals of the least squares solution are the multiple of W^-2 n that makes A x
-// = b + r solvable. Repetition changes weights only, so that A is inverted once for a yaw.
+// N^T a c = N^T b is what the equations say of c. In n = N t, t orthogonal to N^T a, no body
+// changes the residuals. Whatever the weights W, those of the least squares solution are the
+// multiple of W^-2 n by which b has to change for there to be a solution. Repetition changes
+// weights only.
 class ClosedForm {
  public:
-  explicit ClosedForm(const UprightObservation& observation);
+  explicit ClosedForm(const UprightObservation& observation) : equations_(observation) {}
 
-  // The body on the ground of the observation's plane, and its tangent depths. None when fewer than
-  // three edges are measured, which leaves the size open, or when the body would not be in front of
-  // the camera.
-  std::optional<StartAtYaw> At(double yaw) const;
+  // The bodies at these yaws on the ground of the observation's plane, and their tangent depths.
+  // None when fewer than three edges are measured, which leaves the size open, or when the body
+  // would not be in front of the camera. Other yaws do not change a body by a bit.
+  std::vector<std::optional<StartAtYaw>> At(const std::vector<double>& yaws) const;
+  std::optional<StartAtYaw> At(double yaw) const { return At(std::vector{yaw}).front(); }
 
   // Whether at least three edges are measured.
-  bool HasEnoughEdges() const { return (box_.is_bound == 0.0).count() >= 3; }
+  bool HasEnoughEdges() const { return (equations_.box.is_bound == 0.0).count() >= 3; }
 
  private:
-  struct System;
-  System SystemAt(double yaw) const;
-  Eigen::Array4d Residuals(const System& system, const Eigen::Array4d& depths_m) const;
-
-  BoxOnGround box_;
-  Eigen::Vector3d proportions_;  // (a, b, c) / c
-  double shape_exponent_;
+  BoxEquations equations_;
 };
 
 // The same for one yaw only, as a landmark in the camera frame.

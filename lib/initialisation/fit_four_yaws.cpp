@@ -12,7 +12,6 @@
 namespace soslam {
 namespace {
 
-using Mask = decltype(Four{} < Four{});
 using ThreeFours = std::array<Four, 3>;
 
 // The edges of the box as the four bodies see them.
@@ -140,24 +139,16 @@ SOSLAM_IN_WIDE_LOOPS void Evaluate(const Tangencies& tangencies, const RatioRows
   AddRatio(ratio, log_half_axes, model);
 }
 
-SOSLAM_IN_WIDE_LOOPS void Replace(const Mask& where, const Four& from, Four* to) {
-  *to = where ? from : *to;
-}
-
-SOSLAM_IN_WIDE_LOOPS void Replace(const Mask& where, const ThreeFours& from, ThreeFours* to) {
-  for (size_t i = 0; i < 3; ++i) Replace(where, from[i], &(*to)[i]);
-}
-
-SOSLAM_IN_WIDE_LOOPS void Replace(const Mask& where, const Model& from, Model* to) {
+SOSLAM_IN_WIDE_LOOPS void ReplaceModel(const FourMask& where, const Model& from, Model* to) {
   Replace(where, from.cost, &to->cost);
-  for (size_t k = 0; k < 2; ++k) Replace(where, from.foot[k], &to->foot[k]);
+  Replace(where, from.foot, &to->foot);
   Replace(where, from.gradient, &to->gradient);
   for (size_t i = 0; i < 3; ++i) Replace(where, from.information[i], &to->information[i]);
 }
 
 // The x of A x = -b, by cofactors, and where A, which is symmetric, is positive definite.
 SOSLAM_IN_WIDE_LOOPS void SolveForNegative(const std::array<ThreeFours, 3>& a, const ThreeFours& b,
-                                           ThreeFours* x, Mask* is_definite) {
+                                           ThreeFours* x, FourMask* is_definite) {
   const Four c00 = a[1][1] * a[2][2] - a[2][1] * a[2][1];
   const Four c10 = a[2][1] * a[2][0] - a[1][0] * a[2][2];
   const Four c20 = a[1][0] * a[2][1] - a[1][1] * a[2][0];
@@ -172,10 +163,6 @@ SOSLAM_IN_WIDE_LOOPS void SolveForNegative(const std::array<ThreeFours, 3>& a, c
   (*x)[2] = scale * (c20 * b[0] + c21 * b[1] + c22 * b[2]);
 }
 
-SOSLAM_IN_WIDE_LOOPS bool Any(const Mask& mask) {
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
-}
-
 // MinimiseSquares, line by line. Leaves the model at the minimum.
 SOSLAM_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& ratio,
                                 int max_iterations, ThreeFours* log_half_axes, Model* at) {
@@ -183,7 +170,7 @@ SOSLAM_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& r
   Evaluate(tangencies, ratio, *log_half_axes, at);
   Four damping = Four{} + kFirstDamping;
   Four growth = Four{} + kGrowth;
-  Mask is_under_way = at->cost < std::numeric_limits<double>::infinity();
+  FourMask is_under_way = at->cost < std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     std::array<ThreeFours, 3> damped = at->information;
     ThreeFours weights;
@@ -193,7 +180,7 @@ SOSLAM_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& r
       damped[i][i] += weights[i];
     }
     ThreeFours step;
-    Mask is_definite;
+    FourMask is_definite;
     SolveForNegative(damped, at->gradient, &step, &is_definite);
     Four decrease{};
     ThreeFours moved;
@@ -201,16 +188,16 @@ SOSLAM_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& r
       decrease += 0.5 * step[i] * (weights[i] * step[i] - at->gradient[i]);
       moved[i] = (*log_half_axes)[i] + step[i];
     }
-    const Mask is_worth_it = decrease > kNegligibleDecrease * (1.0 + at->cost);
+    const FourMask is_worth_it = decrease > kNegligibleDecrease * (1.0 + at->cost);
     is_under_way &= (damping < kMaxDamping) & (~is_definite | is_worth_it);
     if (!Any(is_under_way)) break;
 
     Model there;
     Evaluate(tangencies, ratio, moved, &there);
     const Four gain = (at->cost - there.cost) / decrease;
-    const Mask is_better = is_under_way & is_definite & (gain > 0.0);
+    const FourMask is_better = is_under_way & is_definite & (gain > 0.0);
     Replace(is_better, moved, log_half_axes);
-    Replace(is_better, there, at);
+    ReplaceModel(is_better, there, at);
     const Four surprise = 2.0 * gain - 1.0;
     const Four fall = 1.0 - surprise * surprise * surprise;
     damping *= is_better ? (fall > kLeastFall ? fall : Four{} + kLeastFall) : growth;
