@@ -63,7 +63,7 @@ void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& 
 }
 
 void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const {
-  const Eigen::Vector2d residuals = ratio_.by_log_half_axes * log_half_axes - ratio_.at_prior;
+  const Eigen::Vector2d residuals = ratio_.Residuals(log_half_axes);
   sum->cost += 0.5 * residuals.squaredNorm();
   sum->gradient.tail<3>() += ratio_.by_log_half_axes.transpose().lazyProduct(residuals);
   sum->information.bottomRightCorner<3, 3>() += ratio_.information;

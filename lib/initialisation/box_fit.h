@@ -8,6 +8,7 @@
 #include "initialisation/box_on_ground.h"
 #include "initialisation/fit_four_yaws.h"
 #include "initialisation/quadratic_model.h"
+#include "initialisation/ratio_rows.h"
 #include "initialisation/upright_observation.h"
 
 namespace soslam {

@@ -238,19 +238,6 @@ std::optional<Eigen::Matrix2d> Place(const BoxOnGround& box, const StartAtYaw& s
 
 }  // namespace
 
-// What is left of the second ratio once the first is known: the inverse Cholesky factor of their
-// covariance.
-RatioRows::RatioRows(const ShapePrior& prior) {
-  const double correlation = prior.log_correlation;
-  const double unexplained = std::sqrt(1.0 - correlation * correlation);
-  Eigen::Matrix2d whiten;
-  whiten << 1.0, 0.0, -correlation / unexplained, 1.0 / unexplained;
-  whiten *= prior.log_sigma.cwiseInverse().asDiagonal();
-  by_log_half_axes << whiten, -whiten.rowwise().sum();
-  at_prior = whiten * prior.ratio.array().log().matrix();
-  information = by_log_half_axes.transpose() * by_log_half_axes;
-}
-
 std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& ratio,
                                     double shape_exponent, int max_iterations,
                                     const std::array<StartAtYaw, 4>& starts) {

@@ -5,20 +5,10 @@
 #include <array>
 
 #include "initialisation/box_on_ground.h"
-#include "initialisation/semantic_table.h"
+#include "initialisation/ratio_rows.h"
 #include "initialisation/upright.h"
 
 namespace soslam {
-
-// The ratio prior's residuals, linear in the logarithms of the half axes:
-// by_log_half_axes * log_half_axes - at_prior.
-struct RatioRows {
-  explicit RatioRows(const ShapePrior& prior);
-
-  Eigen::Matrix<double, 2, 3> by_log_half_axes;
-  Eigen::Vector2d at_prior;
-  Eigen::Matrix3d information;
-};
 
 struct FitAtYaw {
   double cost;               // NaN where the edges do not tell the foot, or the start has no cost

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "initialisation/box_on_ground.h"
+#include "initialisation/ratio_rows.h"
 #include "initialisation/view_weights.h"
 #include "initialisation/yaw_sweep.h"
 
@@ -112,6 +113,7 @@ class LinearViews {
     for (const BoxView& view : observation.views) {
       boxes_.emplace_back(view.edges, view.camera_from_world, ground_);
     }
+    if (HasRatio(observation)) ratio_.emplace(*observation.prior);
     Start();
   }
 
@@ -185,7 +187,7 @@ class LinearViews {
         AddEdge(boxes_[i], edge, weight, *body, is_first, &system);
       }
     }
-    if (HasRatio(observation_)) AddRatio(*body, &system);
+    if (ratio_) AddRatio(*body, &system);
     if (HasSize(observation_)) AddSize(*body, &system);
     // Later rounds weigh edges anew, drop and add some: Solve refuses what has become singular.
     if (is_first && !system.KnowsAllDirections()) return false;
@@ -236,22 +238,17 @@ class LinearViews {
     system->Add(scale * row, scale * box.at_origin[edge], weight * robust);
   }
 
-  // As RatioTerm: log(s / (r c)) is (s - r c) / (r c) to first order, the second one given the
-  // first.
+  // As RatioTerm, to first order about the body of this height that has the prior's ratios, where
+  // the residuals are zero and linear in the half axes.
   template <int kUnknowns>
   void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
-    const ShapePrior& prior = *observation_.prior;
-    using Row = typename LinearSystem<kUnknowns>::Row;
-    std::array<Row, 2> rows;
+    const Eigen::Vector3d half_axes = body.half_axes.z() * observation_.prior->ratio.homogeneous();
     for (int i = 0; i < 2; ++i) {
-      const double scale = 1.0 / (prior.log_sigma[i] * prior.ratio[i] * body.half_axes.z());
-      rows[static_cast<size_t>(i)] = Row::Zero();
-      rows[static_cast<size_t>(i)](2 + i) = scale;
-      rows[static_cast<size_t>(i)](4) = -scale * prior.ratio[i];
+      typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
+      row.template segment<3>(2) =
+          ratio_->by_log_half_axes.row(i).cwiseQuotient(half_axes.transpose());
+      system->Add(row, 0.0, 1.0);
     }
-    const double unexplained = std::sqrt(1.0 - prior.log_correlation * prior.log_correlation);
-    system->Add(rows[0], 0.0, 1.0);
-    system->Add((rows[1] - prior.log_correlation * rows[0]) / unexplained, 0.0, 1.0);
   }
 
   // As HeightTerm: to first order about the height before.
@@ -276,7 +273,9 @@ class LinearViews {
                 (size <= delta ? 0.5 * size * size : delta * (size - 0.5 * delta));
       }
     }
-    if (HasRatio(observation_)) cost += RatioTerm(*observation_.prior).Value(landmark);
+    if (ratio_) {
+      cost += 0.5 * ratio_->Residuals(body.half_axes.array().log()).squaredNorm();
+    }
     if (HasSize(observation_)) cost += HeightTerm(*observation_.prior->height_m).Value(landmark);
     return cost;
   }
@@ -284,6 +283,7 @@ class LinearViews {
   const MultiViewObservation& observation_;
   UprightGround ground_;
   std::vector<BoxOnGround> boxes_;  // of each view
+  std::optional<RatioRows> ratio_;
   Body start_;
 };
 

@@ -99,20 +99,10 @@ void OutlineTerm::Evaluate(const Landmark& landmark_in_camera,
 
 void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                          Jacobian* jacobian) const {
-  if (jacobian != nullptr) jacobian->setZero();
-  for (int i = 0; i < 2; ++i) {
-    const double weight = 1.0 / prior_.log_sigma[i];
-    residuals[i] = weight * std::log(landmark_in_camera.half_axes[i] /
-                                     (prior_.ratio[i] * landmark_in_camera.half_axes.z()));
-    if (jacobian == nullptr) continue;
-    (*jacobian)(i, 6 + i) = weight;
-    (*jacobian)(i, 8) = -weight;
-  }
-  const double correlation = prior_.log_correlation;
-  const double unexplained = std::sqrt(1.0 - correlation * correlation);
-  residuals[1] = (residuals[1] - correlation * residuals[0]) / unexplained;
+  residuals = rows_.Residuals(landmark_in_camera.half_axes.array().log());
   if (jacobian == nullptr) return;
-  jacobian->row(1) = (jacobian->row(1) - correlation * jacobian->row(0)) / unexplained;
+  jacobian->setZero();
+  jacobian->rightCols<3>() = rows_.by_log_half_axes;
 }
 
 void HeightTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,

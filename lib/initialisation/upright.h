@@ -11,6 +11,7 @@
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "initialisation/landmark_cost.h"
+#include "initialisation/ratio_rows.h"
 #include "initialisation/semantic_table.h"
 
 namespace soslam {
@@ -76,17 +77,16 @@ class OutlineTerm final : public LandmarkTerm {
   std::array<BoxEdge, 4> edges_;
 };
 
-// The logarithms of a / c and b / c against the prior's: what is left of the second once the first
-// is known (the inverse Cholesky factor of their covariance).
+// The prior's RatioRows.
 class RatioTerm final : public LandmarkTerm {
  public:
-  explicit RatioTerm(const ShapePrior& prior) : prior_(prior) {}
+  explicit RatioTerm(const ShapePrior& prior) : rows_(prior) {}
   int NumResiduals() const override { return 2; }
   void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
-  ShapePrior prior_;
+  RatioRows rows_;
 };
 
 // The logarithm of the height, 2 c, against the prior's.
