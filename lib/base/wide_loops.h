@@ -27,7 +27,22 @@
 // Before what such a function calls: it is compiled for wide registers only as a part of it.
 #define SOSLAM_IN_WIDE_LOOPS [[gnu::always_inline]] inline
 
+// Before a function that is for processors with AVX2 only, where HasWideRegisters().
+#if defined(__x86_64__)
+#define SOSLAM_WIDE [[gnu::target("avx2")]]
+#else
+#define SOSLAM_WIDE
+#endif
+
 namespace soslam {
+
+inline bool HasWideRegisters() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
 
 // Four numbers side by side.
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "mapping/schur_complement.h"
+
 namespace soslam {
 
 BlockCholesky::BlockCholesky(const SymmetricBlocks& pattern) {
@@ -153,8 +155,7 @@ bool BlockCholesky::Factor(const SymmetricBlocks& matrix, const Eigen::VectorXd&
     below = dense.bottomLeftCorner(neighbours, front.pivots);
     corner.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
     Eigen::Map<Eigen::MatrixXd> update(&stack_[front.update], neighbours, neighbours);
-    update.triangularView<Eigen::Lower>() = dense.bottomRightCorner(neighbours, neighbours);
-    update.selfadjointView<Eigen::Lower>().rankUpdate(below, -1.0);
+    SchurComplement(dense.bottomRightCorner(neighbours, neighbours), below, &panels_, update);
   }
   return true;
 }
