@@ -29,9 +29,9 @@
 
 // Before a function that is for processors with AVX2 only, where HasWideRegisters().
 #if defined(__x86_64__)
-#define SOSLAM_WIDE [[gnu::target("avx2")]]
+#define SOSLAM_FOR_AVX2 [[gnu::target("avx2")]]
 #else
-#define SOSLAM_WIDE
+#define SOSLAM_FOR_AVX2
 #endif
 
 namespace soslam {
@@ -49,10 +49,12 @@ using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 // What comparing them gives: all bits of a number's place, or none.
 using FourMask = decltype(Four{} < Four{});
 
+// Whether it holds for any of the four.
 SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
+// Takes the numbers of `from` where the mask holds.
 SOSLAM_IN_WIDE_LOOPS void Replace(const FourMask& where, const Four& from, Four* to) {
   *to = where ? from : *to;
 }

@@ -21,7 +21,7 @@ struct BoxEquations {
   Eigen::Vector3d proportions;  // (a, b, c) / c
   double shape_exponent;
   Eigen::Matrix<double, 4, 2> without_foot;  // N with N^T F = 0, orthonormal
-  Eigen::Matrix<double, 2, 4> foot_by_b;     // where F foot = b has a solution
+  Eigen::Matrix<double, 2, 4> foot_by_b;     // pseudo-inverse of F
 };
 
 // Bodies with the prior's ratio at given yaws: the least squares solution over the measured edges,
@@ -29,16 +29,17 @@ struct BoxEquations {
 // itself, found by repetition. Four yaws are solved side by side, in wide registers.
 //
 // N^T a c = N^T b is what the equations say of c. In n = N t, t orthogonal to N^T a, no body
-// changes the residuals. Whatever the weights W, those of the least squares solution are the
-// multiple of W^-2 n by which b has to change for there to be a solution. Repetition changes
-// weights only.
+// changes the residuals. Whatever their weights W = diag(1 / (depth sigma_px)), those of the least
+// squares solution are the multiple of W^-2 n by which b has to change for there to be a solution.
+// Repetition changes weights only.
 class ClosedForm {
  public:
   explicit ClosedForm(const UprightObservation& observation) : equations_(observation) {}
 
-  // The bodies at these yaws on the ground of the observation's plane, and their tangent depths.
-  // None when fewer than three edges are measured, which leaves the size open, or when the body
-  // would not be in front of the camera. Other yaws do not change a body by a bit.
+  // The body at each of these yaws (rad) on the ground of the observation's plane, and its tangent
+  // depths. None when fewer than three edges are measured, which leaves the size open, or when the
+  // body would not be in front of the camera, in any repetition. Other yaws do not change a body by
+  // a bit.
   std::vector<std::optional<StartAtYaw>> At(const std::vector<double>& yaws) const;
   std::optional<StartAtYaw> At(double yaw) const { return At(std::vector{yaw}).front(); }
 

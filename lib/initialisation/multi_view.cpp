@@ -238,15 +238,15 @@ class LinearViews {
     system->Add(scale * row, scale * box.at_origin[edge], weight * robust);
   }
 
-  // As RatioTerm, to first order about the body of this height that has the prior's ratios, where
-  // the residuals are zero and linear in the half axes.
+  // As RatioTerm, to first order about the body of this height that has the prior's ratios: there
+  // both residuals are zero, and what they say of logarithms goes by the half axes themselves.
   template <int kUnknowns>
   void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
-    const Eigen::Vector3d half_axes = body.half_axes.z() * observation_.prior->ratio.homogeneous();
+    const Eigen::Vector3d of_prior = body.half_axes.z() * observation_.prior->ratio.homogeneous();
     for (int i = 0; i < 2; ++i) {
       typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
       row.template segment<3>(2) =
-          ratio_->by_log_half_axes.row(i).cwiseQuotient(half_axes.transpose());
+          ratio_->by_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
       system->Add(row, 0.0, 1.0);
     }
   }

@@ -172,20 +172,17 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
 
 std::vector<size_t> CircularMinima(const std::vector<double>& values) {
   const size_t n = values.size();
-  std::vector<double> heights;  // twice around
-  for (size_t i = 0; i < 2 * n; ++i) {
-    const double value = values[i < n ? i : i - n];
-    heights.push_back(std::isnan(value) ? std::numeric_limits<double>::infinity() : value);
-  }
+  const auto height = [&](size_t i) {
+    return std::isnan(values[i % n]) ? std::numeric_limits<double>::infinity() : values[i % n];
+  };
   std::vector<size_t> minima;
   for (size_t i = 0; i < n; ++i) {
-    const double height = heights[i];
     // Of a plateau, its first index; of a constant curve, index 0.
-    if (!std::isfinite(height) || (i > 0 && height == heights[i - 1])) continue;
+    if (!std::isfinite(height(i)) || (i > 0 && height(i) == height(i - 1))) continue;
     size_t end = i + 1;
-    while (end < i + n && heights[end] == height) ++end;
+    while (end < i + n && height(end) == height(i)) ++end;
     const bool is_constant = end == i + n;
-    if (is_constant || (heights[end] > height && height < heights[i + n - 1])) {
+    if (is_constant || (height(end) > height(i) && height(i) < height(i + n - 1))) {
       minima.push_back(i);
     }
   }

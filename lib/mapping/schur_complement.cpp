@@ -15,7 +15,8 @@ namespace {
 constexpr int kColumns = 4;
 template <typename Register>
 constexpr int kRows = 2 * sizeof(Register) / sizeof(double);
-// Two numbers side by side, as any x86-64 processor has them.
+// Two numbers side by side, as registers of processors without AVX2 have them: of Fours, compilers
+// would keep the sums in memory there, and take ten times as long.
 using Two [[gnu::vector_size(2 * sizeof(double))]] = double;
 
 // Panels of so many rows one after the other, each by column; zeros make up the last one.
@@ -79,7 +80,8 @@ SOSLAM_IN_WIDE_LOOPS void Subtract(const double* panels, Eigen::Index depth,
   }
 }
 
-SOSLAM_WIDE void SubtractWide(const double* panels, Eigen::Index depth, const Matrices& matrices) {
+SOSLAM_FOR_AVX2 void SubtractWide(const double* panels, Eigen::Index depth,
+                                  const Matrices& matrices) {
   Subtract<Four>(panels, depth, matrices);
 }
 
@@ -92,6 +94,9 @@ void SubtractNarrow(const double* panels, Eigen::Index depth, const Matrices& ma
 void SchurComplement(const Eigen::Ref<const Eigen::MatrixXd>& corner,
                      const Eigen::Ref<const Eigen::MatrixXd>& below, std::vector<double>* panels,
                      Eigen::Ref<Eigen::MatrixXd> complement, bool in_wide_registers) {
+  eigen_assert(corner.rows() == corner.cols() && below.rows() == corner.rows());
+  eigen_assert(complement.rows() == corner.rows() && complement.cols() == corner.cols());
+  eigen_assert(below.cols() > 0);
   Pack(below, in_wide_registers ? kRows<Four> : kRows<Two>, panels);
   (in_wide_registers ? SubtractWide : SubtractNarrow)(
       panels->data(), below.cols(),

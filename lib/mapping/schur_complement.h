@@ -8,11 +8,12 @@
 
 namespace soslam {
 
-// The lower triangle of corner - below below^T, which may be in place of the corner; above it
-// nothing is read or written. `below` has as many rows as the corner: it is what is left of a
-// symmetric matrix when variables are eliminated, `below` their columns of its Cholesky factor.
+// What is left of a symmetric matrix when variables are eliminated: the lower triangle of corner -
+// below below^T, n x n, and `below` n x k, the eliminated variables' columns of the Cholesky
+// factor, k > 0. May be in place of the corner; above the diagonal nothing is read or written.
 // `panels` is memory for a copy of `below`, to be used again by the next call. Sums are in the same
-// order in wide registers and others, the results the same to the last bit.
+// order in wide registers, which only processors with AVX2 have, and others: the results are the
+// same to the last bit.
 void SchurComplement(const Eigen::Ref<const Eigen::MatrixXd>& corner,
                      const Eigen::Ref<const Eigen::MatrixXd>& below, std::vector<double>* panels,
                      Eigen::Ref<Eigen::MatrixXd> complement,

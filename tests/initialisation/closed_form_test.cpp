@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "support/shape_exponents.h"
@@ -46,7 +47,7 @@ TEST(ClosedForm, HasTheDepthsOfItsOwnTangentPoints) {
       const StandingBody body(p);
       const UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
       const auto start = ClosedForm(observation).At(RandomYaw());
-      if (!start) continue;
+      ASSERT_TRUE(start);
       const Landmark landmark = UprightGround(body.plane).LandmarkAt(start->parameters, p);
       for (size_t edge = 0; edge < 4; ++edge) {
         const double depth_m = start->depths_m[static_cast<Eigen::Index>(edge)];
@@ -54,6 +55,15 @@ TEST(ClosedForm, HasTheDepthsOfItsOwnTangentPoints) {
       }
     }
   }
+}
+
+// A wide box close to the camera. With all tangent points equally deep, the body would reach behind
+// the camera; repetition from there would lead to one in front.
+TEST(ClosedForm, HasNoneWhereARepetitionIsNotInFront) {
+  const Plane floor{Eigen::Vector3d(0.0, -1.0, -0.15).normalized(), 1.2};
+  const ShapePrior prior{{5.2, 2.58}, {1.0, 1.0}, kEllipsoidExponent};
+  const ClosedForm closed_form(ObservationOf({170, -161, 705, 387}, {}, floor, prior));
+  EXPECT_FALSE(closed_form.At(0.2));
 }
 
 TEST(ClosedForm, HasNoneOfTwoMeasuredEdges) {
