@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/view_weights.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace soslam {
@@ -18,8 +19,8 @@ std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>
   std::vector<double> similar_views(detections.size(), 1.0);
   for (size_t i = 0; i < directions.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
-      const double angle =
-          std::atan2(directions[i].cross(directions[k]).norm(), directions[i].dot(directions[k]));
+      const double chord = (directions[i] - directions[k]).norm();
+      const double angle = 2.0 * std::asin(std::min(1.0, 0.5 * chord));
       const double similarity = std::exp(-0.5 * std::pow(angle / correlation_rad, 2));
       similar_views[i] += similarity;
       similar_views[k] += similarity;

@@ -201,6 +201,8 @@ double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
   Rows rows;
   rows.depth_by_centre = inverse_depth * view.depth_by_offset();
   rows.depth_by_camera_turn = inverse_depth * view.depth_by_offset().cross(view.offset());
+  const bool has_kinks = hessian == Hessian::kFar && shape_exponent_ < kEllipsoidExponent;
+  const bool has_second = hessian == Hessian::kNear || has_kinks;
   SecondDerivatives second;
   for (int i = 0; i < num_edges_; ++i) {
     const Edge& edge = edges_[static_cast<size_t>(i)];
@@ -219,19 +221,19 @@ double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
         normal.cross(view.offset() + contact) - excess.without_bias * rows.depth_by_camera_turn;
     if (hessian == Hessian::kNear) {
       second.AddAll(view, excess, rows.slopes[i]);
-    } else if (hessian == Hessian::kFar && shape_exponent_ < kEllipsoidExponent) {
+    } else if (has_kinks) {
       second.AddKink(view, excess, rows.slopes[i]);
     }
   }
   if (!std::isfinite(rows.cost)) return std::numeric_limits<double>::infinity();
-  second.TurnToWorld(view);
-  Add(rows, view.world_from_object(), second, places);
+  if (has_second) second.TurnToWorld(view);
+  Add(rows, view.world_from_object(), has_second ? &second : nullptr, places);
   if (hessian == Hessian::kNear) AddDepthProducts(rows, view.world_from_object(), places);
   return rows.cost;
 }
 
 void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,
-                       const SecondDerivatives& second, const TermPlaces& places) const {
+                       const SecondDerivatives* second, const TermPlaces& places) const {
   const auto [of_pose, of_landmark, of_bias] = places.gradient;
   const Eigen::Matrix3d to_world = world_from_object.transpose();
   ByLandmark by_landmark;
@@ -244,7 +246,7 @@ void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_objec
         by_landmark.transpose().lazyProduct(rows.slopes);
     LandmarkLandmark square(places.hessian[1][1]);
     square.noalias() += by_landmark.transpose().lazyProduct(weighted);
-    second.AddTo(&square);
+    if (second != nullptr) second->AddTo(&square);
   }
   ByPose by_pose;
   if (of_pose != nullptr) {
@@ -254,11 +256,11 @@ void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_objec
     const ByPose weighted_pose = rows.curvatures.asDiagonal() * by_pose;
     PosePose square(places.hessian[0][0]);
     square.noalias() += by_pose.transpose().lazyProduct(weighted_pose);
-    second.AddTo(&square);
+    if (second != nullptr) second->AddTo(&square);
     if (of_landmark != nullptr) {
       LandmarkPose mixed(places.hessian[1][0]);
       mixed.noalias() += weighted.transpose().lazyProduct(by_pose);
-      second.AddTo(&mixed);
+      if (second != nullptr) second->AddTo(&mixed);
     }
   }
   if (of_bias == nullptr) return;

@@ -46,9 +46,10 @@ class TangencyTerm final : public Term {
   struct Rows;
   class SecondDerivatives;
 
-  // Adds derivatives in the object frame (second ones in the world) to where they go.
+  // Adds derivatives in the object frame (second ones in the world; null for none) to where they
+  // go.
   void Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,
-           const SecondDerivatives& second, const TermPlaces& places) const;
+           const SecondDerivatives* second, const TermPlaces& places) const;
 
   void AddDepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object,
                         const TermPlaces& places) const;
