@@ -36,6 +36,7 @@
 
 namespace soslam {
 
+// Whether this processor has AVX2.
 inline bool HasWideRegisters() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx2") != 0;

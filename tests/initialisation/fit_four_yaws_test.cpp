@@ -111,7 +111,7 @@ TEST(FitFourYaws, DoNotDependOnTheirPlaceNorOnTheOthers) {
   for (const double p : kShapeExponents) {
     const RandomBox box(p);
     const auto starts = RandomStarts(box.observation);
-    if (!starts) continue;
+    ASSERT_TRUE(starts);
     const auto fits = box.Fit(*starts);
     Starts others = {(*starts)[3], (*starts)[0], (*starts)[0], (*starts)[1]};
     others[1].depths_m.setConstant(std::nan(""));
@@ -128,7 +128,7 @@ TEST(FitFourYaws, LeaveAStartWithoutACostAsItIs) {
   for (const double p : kShapeExponents) {
     const RandomBox box(p);
     auto starts = RandomStarts(box.observation);
-    if (!starts) continue;
+    ASSERT_TRUE(starts);
     starts->front().parameters[3] = 1e3;  // of a half axis beyond numbers
     const auto fits = box.Fit(*starts);
     EXPECT_TRUE(std::isnan(fits[0].cost));
