@@ -47,12 +47,21 @@ inline bool HasWideRegisters() {
 
 // Four numbers side by side.
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+using ThreeFours = std::array<Four, 3>;
+// What wide registers load at once. A compiler that is not told may align a Four, and whatever has
+// some as its members, by half of it: what a function of SOSLAM_WIDE_LOOPS gets is aligned by this.
+inline constexpr size_t kFourAlignment = sizeof(Four);
 // What comparing them gives: all bits of a number's place, or none.
 using FourMask = decltype(Four{} < Four{});
 
 // Whether it holds for any of the four.
 SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+// All four together.
+SOSLAM_IN_WIDE_LOOPS double Sum(const Four& four) {
+  return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
 // Takes the numbers of `from` where the mask holds.

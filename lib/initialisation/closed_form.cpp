@@ -21,7 +21,7 @@ constexpr double kDepthTolerance = 1e-10;
 using FourEdges = std::array<Four, 4>;
 
 // At four yaws.
-struct FourBodies {
+struct alignas(kFourAlignment) FourBodies {
   FourEdges by_half_height{};        // a
   FourEdges depth_by_half_height{};  // of the tangent points, from that of the foot
   Four nearest_by_half_height{};     // of the body's point nearest to the camera's plane
@@ -34,7 +34,7 @@ struct FourSystems {
   Four missing;    // n^T r of residuals r with which there is a solution
 };
 
-struct FourSolutions {
+struct alignas(kFourAlignment) FourSolutions {
   std::array<Four, 2> foot{};
   Four half_height{};
   FourEdges depths_m{};  // of the tangent points

@@ -6,16 +6,15 @@
 #include <optional>
 
 #include "base/wide_loops.h"
+#include "geometry/norm_of_four.h"
 #include "geometry/support_function.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
 namespace {
 
-using ThreeFours = std::array<Four, 3>;
-
 // The edges of the box as the four bodies see them.
-struct Tangencies {
+struct alignas(kFourAlignment) Tangencies {
   double shape_exponent;
   // By edge. Of a residual at the ground's origin, over the weight: its value and its derivative by
   // the body's height.
@@ -27,36 +26,12 @@ struct Tangencies {
 };
 
 // The fits to second order, as QuadraticModel has it; of the information, the lower triangle.
-struct Model {
+struct alignas(kFourAlignment) Model {
   Four cost{};
   std::array<Four, 2> foot{};  // the best one's negative, in its basis
   ThreeFours gradient{};
   std::array<ThreeFours, 3> information{};
 };
-
-// h = || u ||_p and dh / d log (a, b, c), u proportional to the half axes.
-SOSLAM_IN_WIDE_LOOPS void Support(double p, const ThreeFours& u, Four* h,
-                                  ThreeFours* by_log_half_axes) {
-  if (p == kCuboidExponent) {
-    *h = u[0] + u[1] + u[2];
-    *by_log_half_axes = u;
-    return;
-  }
-  if (p == kEllipsoidExponent) {
-    const Four squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-    for (size_t k = 0; k < 4; ++k) (*h)[k] = std::sqrt(squares[k]);
-    const Four divisor = *h > 0.0 ? *h : Four{} + 1.0;
-    for (size_t i = 0; i < 3; ++i) (*by_log_half_axes)[i] = u[i] * u[i] / divisor;
-    return;
-  }
-  for (size_t k = 0; k < 4; ++k) {
-    const Eigen::Array3d u_of_one(u[0][k], u[1][k], u[2][k]);
-    double norm = 0.0;
-    const Eigen::Array3d by_u = NormByComponents(u_of_one, p, &norm);
-    (*h)[k] = norm;
-    for (size_t i = 0; i < 3; ++i) (*by_log_half_axes)[i][k] = by_u[i] * u_of_one[i];
-  }
-}
 
 // By edge.
 struct Rows {
@@ -77,7 +52,7 @@ SOSLAM_IN_WIDE_LOOPS void RowsAtOrigin(const Tangencies& tangencies,
     for (size_t i = 0; i < 3; ++i) u[i] = tangencies.rounded[edge][i] * half_axes[i];
     Four extent;
     ThreeFours& by_log_half_axes = rows->by_log_half_axes[edge];
-    Support(tangencies.shape_exponent, u, &extent, &by_log_half_axes);
+    NormByLogarithms(tangencies.shape_exponent, u, &extent, &by_log_half_axes);
     const Four by_height = tangencies.by_height[edge] * half_axes[2];
     by_log_half_axes[2] += by_height;
     for (Four& derivative : by_log_half_axes) derivative *= weight;
@@ -248,7 +223,7 @@ std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& rat
     tangencies.by_height[edge] = box.normals(edge, 2);
   }
   std::array<std::optional<Eigen::Matrix2d>, 4> foot_from_basis;
-  ThreeFours log_half_axes;
+  alignas(kFourAlignment) ThreeFours log_half_axes;
   for (size_t k = 0; k < 4; ++k) {
     foot_from_basis[k] = Place(box, starts[k], k, &tangencies);
     for (size_t i = 0; i < 3; ++i) log_half_axes[i][k] = starts[k].parameters[3 + i];
