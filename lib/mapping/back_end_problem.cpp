@@ -176,6 +176,7 @@ void BackEndProblem::AddRatio(size_t object_index) {
 }
 
 void BackEndProblem::AddDetections() {
+  HeldViews held_views;
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
     if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
@@ -189,35 +190,51 @@ void BackEndProblem::AddDetections() {
       ++summary_.gated["landmark_behind_camera"];
       continue;
     }
-    AddDetection(i, landmark_in_camera);
+    AddDetection(i, landmark_in_camera, &held_views);
     ++summary_.residuals["detection"];
+  }
+  for (const auto& [landmark, views] : held_views) {
+    terms_.push_back(std::make_unique<HeldViewsTerm>(landmark, variables_.Values(landmark), views,
+                                                     options_.huber_delta));
   }
   if (options_.detection_model == DetectionModel::kTangency) AddBias();
 }
 
-void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_camera) {
+void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_camera,
+                                  HeldViews* held_views) {
   const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.CameraOf(detection);
-  const int pose = Pose(detection);
-  const int landmark = LandmarkOf(detection);
   if (options_.detection_model == DetectionModel::kQuadric) {
     terms_.push_back(TermOf(std::make_unique<DetectionResidual>(camera, detection.box,
                                                                 options_.variances.DetectionM4()),
-                            {pose, landmark}, options_.huber_delta));
+                            {Pose(detection), LandmarkOf(detection)}, options_.huber_delta));
     return;
   }
-  const int bias = variables_.Bias();
   const auto edges =
       BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction);
-  auto term = std::make_unique<TangencyTerm>(
+  const TangentBox box(edges, landmark_in_camera);
+  // A body so near that it reaches behind the camera has no tangent point in view.
+  const int left_out = static_cast<int>(edges.size()) - box.num_edges;
+  if (left_out > 0) summary_.gated["edge_behind_camera"] += left_out;
+  AddTangencies(index, box, held_views);
+}
+
+void BackEndProblem::AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views) {
+  const Detection& detection = input_.sequence.detections[index];
+  const int pose = Pose(detection);
+  const int landmark = LandmarkOf(detection);
+  const int bias = variables_.Bias();
+  if (options_.hold_poses && !(options_.detector_bias_sigma_px > 0.0)) {
+    const Rigid3d world_from_camera =
+        variables_.PoseValue(static_cast<size_t>(detection.frame_index));
+    (*held_views)[landmark].push_back({world_from_camera, box, view_weights_[index]});
+    return;
+  }
+  terms_.push_back(std::make_unique<TangencyTerm>(
       std::array{pose, landmark, bias},
       TangencyTerm::Blocks{variables_.Values(pose), variables_.Values(landmark),
                            variables_.Values(bias)},
-      edges, landmark_in_camera, options_.huber_delta, view_weights_[index]);
-  // A body so near that it reaches behind the camera has no tangent point in view.
-  const int left_out = static_cast<int>(edges.size()) - term->NumEdges();
-  if (left_out > 0) summary_.gated["edge_behind_camera"] += left_out;
-  terms_.push_back(std::move(term));
+      box, options_.huber_delta, view_weights_[index]));
 }
 
 void BackEndProblem::AddBias() {

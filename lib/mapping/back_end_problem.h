@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "initialisation/landmark_cost.h"
 #include "mapping/back_end.h"
 #include "mapping/back_end_variables.h"
+#include "mapping/held_views_term.h"
 #include "mapping/normal_equations.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
@@ -48,7 +50,10 @@ class BackEndProblem {
   void AddStanding(size_t object_index);
   void AddRatio(size_t object_index);
   void AddDetections();
-  void AddDetection(size_t index, const Landmark& landmark_in_camera);
+  // Of held poses, without a bias: by the landmark's variable.
+  using HeldViews = std::map<int, std::vector<HeldView>>;
+  void AddDetection(size_t index, const Landmark& landmark_in_camera, HeldViews* held_views);
+  void AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views);
   void AddBias();
 
   // What one image says of one landmark, where the variables are; or why nothing.

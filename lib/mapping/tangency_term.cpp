@@ -10,8 +10,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kLeastDepth = 0.1;  // of the start's
-
 using ByPose = Eigen::Matrix<double, 4, kPoseDof>;
 using ByLandmark = Eigen::Matrix<double, 4, kLandmarkDof>;
 using PoseGradient = Eigen::Matrix<double, kPoseDof, 1>;
@@ -166,29 +164,18 @@ class TangencyTerm::SecondDerivatives {
 };
 
 TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks,
-                           const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera,
-                           double huber_delta, double weight)
+                           const TangentBox& box, double huber_delta, double weight)
     : Term({variables.begin(), variables.end()}),
       blocks_(blocks),
-      shape_exponent_(start_in_camera.shape_exponent),
-      least_depth_m_(kLeastDepth * start_in_camera.Centre().z()),
+      box_(box),
       loss_{huber_delta},
-      weight_(weight) {
-  for (size_t i = 0; i < edges.size(); ++i) {
-    const double depth_m = TangentDepth(edges[i], start_in_camera);
-    if (!(depth_m > 0.0)) continue;
-    const double by_centre_depth = depth_m / start_in_camera.Centre().z();
-    edges_[static_cast<size_t>(num_edges_++)] = {
-        edges[i].plane / (by_centre_depth * edges[i].sigma_px), 1.0 / edges[i].sigma_px,
-        static_cast<int>(i), edges[i].is_bound};
-  }
-}
+      weight_(weight) {}
 
 double TangencyTerm::Cost() const {
-  const View view(blocks_, shape_exponent_, least_depth_m_);
+  const View view(blocks_, box_.shape_exponent, box_.least_depth_m);
   double cost = 0.0;
-  for (int i = 0; i < num_edges_; ++i) {
-    const Edge& edge = edges_[static_cast<size_t>(i)];
+  for (int i = 0; i < box_.num_edges; ++i) {
+    const Edge& edge = box_.edges[static_cast<size_t>(i)];
     const double excess = view.Of(edge).value;
     if (!(edge.is_bound && excess > 0.0)) cost += loss_(std::abs(excess)).cost;
   }
@@ -196,16 +183,16 @@ double TangencyTerm::Cost() const {
 }
 
 double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
-  const View view(blocks_, shape_exponent_, least_depth_m_);
+  const View view(blocks_, box_.shape_exponent, box_.least_depth_m);
   const double inverse_depth = 1.0 / view.depth();
   Rows rows;
   rows.depth_by_centre = inverse_depth * view.depth_by_offset();
   rows.depth_by_camera_turn = inverse_depth * view.depth_by_offset().cross(view.offset());
-  const bool has_kinks = hessian == Hessian::kFar && shape_exponent_ < kEllipsoidExponent;
+  const bool has_kinks = hessian == Hessian::kFar && box_.shape_exponent < kEllipsoidExponent;
   const bool has_second = hessian == Hessian::kNear || has_kinks;
   SecondDerivatives second;
-  for (int i = 0; i < num_edges_; ++i) {
-    const Edge& edge = edges_[static_cast<size_t>(i)];
+  for (int i = 0; i < box_.num_edges; ++i) {
+    const Edge& edge = box_.edges[static_cast<size_t>(i)];
     const View::Excess excess = view.Of(edge);
     if (edge.is_bound && excess.value > 0.0) continue;
     const HuberLoss::Value loss = loss_(std::abs(excess.value));
@@ -264,8 +251,8 @@ void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_objec
     }
   }
   if (of_bias == nullptr) return;
-  for (int i = 0; i < num_edges_; ++i) {
-    const Edge& edge = edges_[static_cast<size_t>(i)];
+  for (int i = 0; i < box_.num_edges; ++i) {
+    const Edge& edge = box_.edges[static_cast<size_t>(i)];
     of_bias[edge.side] -= edge.per_px * rows.slopes[i];
     places.hessian[2][2][(kBiasSize + 1) * edge.side] +=
         edge.per_px * edge.per_px * rows.curvatures[i];

@@ -82,8 +82,9 @@ void TangencyOfBox(benchmark::State& state) {
   view.landmark_in_camera.shape_exponent = 0.01 * static_cast<double>(state.range(0));
   const std::array<double, kBiasSize> bias{};
   const TangencyTerm term({0, 1, 2}, {view.pose.data(), view.landmark.data(), bias.data()},
-                          BoxEdges(view.sequence.camera, view.detection.box, {}, 0.02),
-                          view.landmark_in_camera, 1.0, 1.0);
+                          TangentBox(BoxEdges(view.sequence.camera, view.detection.box, {}, 0.02),
+                                     view.landmark_in_camera),
+                          1.0, 1.0);
   Eigen::Matrix<double, kPoseDof, 1> of_pose;
   Eigen::Matrix<double, kLandmarkDof, 1> of_landmark;
   Eigen::Matrix<double, kPoseDof, kPoseDof> pose_pose;

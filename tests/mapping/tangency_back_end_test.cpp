@@ -74,6 +74,26 @@ TEST(TangencyBackEnd, PosesThatAreHeldStayAsTheyAre) {
   ExpectTruth(sequence, map, 0.99);
 }
 
+// Views are looked at one by one where there is a bias.
+TEST(TangencyBackEnd, HeldPosesWithABiasThatIsNextToNoneAreTheSameProblem) {
+  const Sequence sequence = CuboidSequence(4, 12);
+  BackEndInput input = TruthInput(sequence);
+  Disturb(&input);
+  OptimiseOptions options = TangencyOptions();
+  options.hold_poses = true;
+  const MapEstimate without = OptimiseMap(input, options);
+  options.detector_bias_sigma_px = 1e-9;
+  const MapEstimate with = OptimiseMap(input, options);
+  EXPECT_NEAR(with.solver.initial_cost, without.solver.initial_cost,
+              1e-9 * without.solver.initial_cost);
+  EXPECT_NEAR(with.solver.final_cost, without.solver.final_cost,
+              1e-6 * without.solver.initial_cost);
+  for (size_t i = 0; i < without.objects.size(); ++i) {
+    const Landmark& one = *without.objects[i].landmark_in_world;
+    EXPECT_LT((with.objects[i].landmark_in_world->Centre() - one.Centre()).norm(), 1e-3);
+  }
+}
+
 TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   const Sequence sequence = CuboidSequence(5, 20);
   const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());

@@ -27,7 +27,7 @@ struct ViewOfBox {
     term = std::make_unique<TangencyTerm>(
         std::array{0, 1, 2},
         TangencyTerm::Blocks{view.camera_block.data(), view.landmark_block.data(), bias.data()},
-        edges, start, huber_delta, kWeight);
+        TangentBox(edges, start), huber_delta, kWeight);
   }
 
   // Where a step of all variables leads.
@@ -235,13 +235,12 @@ TEST(TangencyTerm, ABodyBehindTheCameraIsComparedAtATenthOfItsDepth) {
   }
 }
 
-TEST(TangencyTerm, LeavesOutEdgesBehindTheCamera) {
+TEST(TangentBox, LeavesOutEdgesBehindTheCamera) {
   ViewOfBox view(2.0, {}, 1.0);
-  EXPECT_EQ(view.term->NumEdges(), 4);
+  EXPECT_EQ(TangentBox(view.edges, view.start).num_edges, 4);
   Landmark behind = view.start;
   behind.frame_from_object.translation.z() = -5.0;
-  const TangencyTerm term({0, 1, 2}, {}, view.edges, behind, 1.0, 1.0);
-  EXPECT_EQ(term.NumEdges(), 0);
+  EXPECT_EQ(TangentBox(view.edges, behind).num_edges, 0);
 }
 
 }  // namespace

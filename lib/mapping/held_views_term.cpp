@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/held_views_term.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constraints/tangent_space.h"
+#include "geometry/norm_of_four.h"
+
+namespace soslam {
+namespace {
+
+using FourViews = HeldViewsTerm::FourViews;
+
+struct Body {
+  Eigen::Matrix3d world_from_object;
+  Eigen::Vector3d centre;
+  Eigen::Vector3d half_axes;
+  double shape_exponent;
+};
+
+// By the turn of the body in its own frame, its centre in the world and the logarithms of its half
+// axes.
+enum { kTurn = 0, kCentre = 3, kAxes = 6 };
+using Gradient = std::array<Four, kLandmarkDof>;
+
+struct alignas(kFourAlignment) Sums {
+  Four cost{};
+  Gradient gradient{};
+  std::array<Gradient, kLandmarkDof> hessian{};  // the lower triangle
+};
+
+// The centres as four cameras see them.
+struct Depths {
+  ThreeFours offset;  // from the camera
+  Four inverse;
+  ThreeFours by_centre;  // relative change; 0 where the depth is held
+};
+
+// The support function h(m) of the body towards the planes m behind an edge.
+struct Support {
+  ThreeFours normal;   // m, in the object frame
+  ThreeFours squares;  // of the rounded |m_i|, see support_function.h; those of m for an ellipsoid
+  Four extent;         // h
+  Four inverse;        // 1 / h; 1 of a flat body from its side
+  ThreeFours by_axes;  // dh / ds, s the logarithms of the half axes
+  ThreeFours shares;   // dh / ds over squares
+  ThreeFours by_turn;  // dh / dm x m
+};
+
+// What lies outside the plane behind an edge, over the centre's depth.
+struct Excess {
+  Support support;
+  Four value;
+  Gradient gradient;
+};
+
+// What the losses make of four excesses.
+struct Losses {
+  Four cost;
+  Four slope;
+  Four curvature;
+};
+
+SOSLAM_IN_WIDE_LOOPS double SquaredRounding(double shape_exponent) {
+  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
+  return rounding * rounding;
+}
+
+SOSLAM_IN_WIDE_LOOPS void FindDepths(const FourViews& views, const Body& body, Depths* depths) {
+  Four depth{};
+  for (size_t i = 0; i < 3; ++i) {
+    depths->offset[i] = body.centre[static_cast<int>(i)] - views.camera[i];
+    depth += views.optical_axis[i] * depths->offset[i];
+  }
+  const FourMask is_free = depth > views.least_depth_m;
+  depths->inverse = 1.0 / (is_free ? depth : views.least_depth_m);
+  for (int i = 0; i < 3; ++i) {
+    depths->by_centre[i] = is_free ? depths->inverse * views.optical_axis[i] : Four{};
+  }
+}
+
+SOSLAM_IN_WIDE_LOOPS void FindSupport(const Body& body, Support* support) {
+  const ThreeFours& m = support->normal;
+  const double p = body.shape_exponent;
+  const Eigen::Vector3d& half_axes = body.half_axes;
+  const bool is_ellipsoid = p == kEllipsoidExponent;
+  ThreeFours& squares = support->squares;
+  for (int i = 0; i < 3; ++i) squares[i] = m[i] * m[i];
+  const Four rounding = SquaredRounding(p) * (squares[0] + squares[1] + squares[2]);
+  ThreeFours u;
+  for (int i = 0; i < 3; ++i) {
+    squares[i] += rounding;
+    u[i] = half_axes[i] * m[i];
+    if (is_ellipsoid) continue;
+    for (int k = 0; k < 4; ++k) u[i][k] = half_axes[i] * std::sqrt(squares[i][k]);
+  }
+  NormByLogarithms(p, u, &support->extent, &support->by_axes);
+  support->inverse = 1.0 / (support->extent > 0.0 ? support->extent : Four{} + 1.0);
+  for (int i = 0; i < 3; ++i) {
+    support->shares[i] = is_ellipsoid ? half_axes[i] * half_axes[i] * support->inverse
+                                      : support->by_axes[i] / squares[i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    support->by_turn[i] = m[j] * m[k] * (support->shares[j] - support->shares[k]);
+  }
+}
+
+SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const Body& body,
+                                     const Depths& depths, Excess* excess) {
+  Four outside{};
+  for (int i = 0; i < 3; ++i) {
+    outside += plane[i] * depths.offset[i];
+    excess->support.normal[i] = body.world_from_object(0, i) * plane[0] +
+                                body.world_from_object(1, i) * plane[1] +
+                                body.world_from_object(2, i) * plane[2];
+  }
+  FindSupport(body, &excess->support);
+  excess->value = (outside + excess->support.extent) * depths.inverse;
+  for (int i = 0; i < 3; ++i) {
+    excess->gradient[kTurn + i] = depths.inverse * excess->support.by_turn[i];
+    excess->gradient[kCentre + i] = depths.inverse * plane[i] - excess->value * depths.by_centre[i];
+    excess->gradient[kAxes + i] = depths.inverse * excess->support.by_axes[i];
+  }
+}
+
+// HuberLoss. A bound that is not reached costs nothing.
+SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourViews& views, size_t side, const Four& excess,
+                                     double delta, bool is_near, Losses* losses) {
+  const Four length = excess < 0.0 ? -excess : excess;
+  const FourMask is_beyond = length > delta;
+  const FourMask is_idle = (views.is_bound[side] > 0.0) & (excess > 0.0);
+  const Four weight = is_idle ? Four{} : views.weights[side];
+  const Four share = is_beyond ? delta / length : Four{} + 1.0;
+  losses->cost = weight * (is_beyond ? delta * (length - 0.5 * delta) : 0.5 * length * length);
+  losses->slope = weight * share * excess;
+  losses->curvature = weight * share;
+  if (is_near)
+    Replace(is_beyond, HuberLoss::kLeastCurvature * losses->curvature, &losses->curvature);
+}
+
+SOSLAM_IN_WIDE_LOOPS void AddInformation(const std::array<Excess, 4>& excesses,
+                                         const std::array<Losses, 4>& losses, Sums* sums) {
+  for (size_t i = 0; i < kLandmarkDof; ++i) {
+    std::array<Four, 4> weighted;
+    for (size_t side = 0; side < 4; ++side) {
+      weighted[side] = losses[side].curvature * excesses[side].gradient[i];
+    }
+    for (size_t j = 0; j <= i; ++j) {
+      Four& sum = sums->hessian[i][j];
+      for (size_t side = 0; side < 4; ++side) sum += weighted[side] * excesses[side].gradient[j];
+    }
+  }
+}
+
+// By turns, what h grows by as the contact moves along the body: its second derivatives by m
+// (CurvatureOfSupport). What those have along m itself is not seen by a turn.
+SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Support& support,
+                                           const Four& factor, Sums* sums) {
+  const ThreeFours& m = support.normal;
+  const ThreeFours& shares = support.shares;
+  const double p = body.shape_exponent;
+  const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
+  ThreeFours diagonal;
+  for (size_t i = 0; i < 3; ++i) {
+    diagonal[i] = shares[i] + rounding;
+    if (p == kEllipsoidExponent) continue;
+    diagonal[i] -= (2.0 - p) * shares[i] * m[i] * m[i] / support.squares[i];
+  }
+  const Four less = (p - 1.0) * support.inverse;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    const Four turn = less * support.by_turn[i];
+    auto& by_turn = sums->hessian[kTurn + i];
+    by_turn[kTurn + i] += factor * (diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j] -
+                                    turn * support.by_turn[i]);
+    for (size_t l = 0; l < i; ++l) {
+      by_turn[kTurn + l] -=
+          factor * (diagonal[3 - i - l] * m[i] * m[l] + turn * support.by_turn[l]);
+    }
+  }
+}
+
+// All others of h: by turns of a contact q that stays, and by the half axes.
+SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const Body& body, const Support& support,
+                                            const Four& factor, Sums* sums) {
+  const ThreeFours& m = support.normal;
+  const ThreeFours& shares = support.shares;
+  const double p = body.shape_exponent;
+  const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
+  const Four less = (p - 1.0) * support.inverse;
+  ThreeFours q;
+  for (size_t i = 0; i < 3; ++i) q[i] = (shares[i] + rounding) * m[i];
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    auto& by_turn = sums->hessian[kTurn + i];
+    by_turn[kTurn + i] -= factor * (m[j] * q[j] + m[k] * q[k]);
+    for (size_t l = 0; l < i; ++l) {
+      by_turn[kTurn + l] += 0.5 * factor * (m[i] * q[l] + m[l] * q[i]);
+    }
+
+    auto& by_axis = sums->hessian[kAxes + i];
+    const Four axis = factor * less * support.by_axes[i];
+    const Four edge = factor * p * shares[i] * m[i];
+    by_axis[kTurn + j] -= edge * m[k];
+    by_axis[kTurn + k] += edge * m[j];
+    for (size_t l = 0; l < 3; ++l) by_axis[kTurn + l] -= axis * support.by_turn[l];
+    by_axis[kAxes + i] += factor * p * support.by_axes[i];
+    for (size_t l = 0; l <= i; ++l) by_axis[kAxes + l] -= axis * support.by_axes[l];
+  }
+}
+
+// The depth divides all: less the gradient times its relative change, both ways round.
+SOSLAM_IN_WIDE_LOOPS void AddDepthProducts(const Gradient& gradient, const ThreeFours& by_centre,
+                                           Sums* sums) {
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) {
+      sums->hessian[kCentre + i][kTurn + j] -= by_centre[i] * gradient[kTurn + j];
+      sums->hessian[kAxes + i][kCentre + j] -= gradient[kAxes + i] * by_centre[j];
+    }
+    for (size_t j = 0; j <= i; ++j) {
+      sums->hessian[kCentre + i][kCentre + j] -=
+          gradient[kCentre + i] * by_centre[j] + by_centre[i] * gradient[kCentre + j];
+    }
+  }
+}
+
+SOSLAM_WIDE_LOOPS void AddViews(const std::vector<FourViews>& all, const Body& body, double delta,
+                                Hessian hessian, Sums* sums) {
+  const bool is_near = hessian == Hessian::kNear;
+  const bool has_kinks = hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
+  for (const FourViews& views : all) {
+    Depths depths;
+    FindDepths(views, body, &depths);
+    std::array<Excess, 4> excesses;
+    std::array<Losses, 4> losses;
+    Gradient gradient{};
+    for (size_t side = 0; side < 4; ++side) {
+      Excess& excess = excesses[side];
+      FindExcess(views.planes[side], body, depths, &excess);
+      FindLosses(views, side, excess.value, delta, is_near, &losses[side]);
+      sums->cost += losses[side].cost;
+      const Four& slope = losses[side].slope;
+      for (size_t i = 0; i < kLandmarkDof; ++i) gradient[i] += slope * excess.gradient[i];
+      const Four factor = slope * depths.inverse;
+      if (is_near) {
+        AddMoveOfContact(body, excess.support, factor, sums);
+        AddOtherCurvature(body, excess.support, factor, sums);
+      } else if (has_kinks) {
+        // Where the body turns past an edge or a face that should come nearer, it is held there.
+        // Not so where it should go away from it.
+        AddMoveOfContact(body, excess.support, factor > 0.0 ? factor : Four{}, sums);
+      }
+    }
+    for (size_t i = 0; i < kLandmarkDof; ++i) sums->gradient[i] += gradient[i];
+    AddInformation(excesses, losses, sums);
+    if (is_near) AddDepthProducts(gradient, depths.by_centre, sums);
+  }
+}
+
+}  // namespace
+
+HeldViewsTerm::HeldViewsTerm(int variable, const double* landmark_in_world,
+                             const std::vector<HeldView>& views, double huber_delta)
+    : Term({variable}),
+      landmark_in_world_(landmark_in_world),
+      shape_exponent_(views.front().box.shape_exponent),
+      loss_{huber_delta},
+      views_((views.size() + 3) / 4) {
+  for (size_t i = 0; i < 4 * views_.size(); ++i) {
+    const HeldView& view = views[std::min(i, views.size() - 1)];
+    FourViews& four = views_[i / 4];
+    const size_t place = i % 4;
+    const Eigen::Matrix3d world_from_camera = view.world_from_camera.rotation.toRotationMatrix();
+    const auto set = [place](const Eigen::Vector3d& vector, ThreeFours* of_four) {
+      for (size_t k = 0; k < 3; ++k) (*of_four)[k][place] = vector[static_cast<int>(k)];
+    };
+    set(view.world_from_camera.translation, &four.camera);
+    set(world_from_camera.col(2), &four.optical_axis);
+    four.least_depth_m[place] = view.box.least_depth_m;
+    for (size_t side = 0; side < 4; ++side) {
+      set(world_from_camera.col(2), &four.planes[side]);
+      four.weights[side][place] = four.is_bound[side][place] = 0.0;
+    }
+    for (int k = 0; k < view.box.num_edges; ++k) {
+      const TangentBox::Edge& edge = view.box.edges[static_cast<size_t>(k)];
+      const auto side = static_cast<size_t>(edge.side);
+      set(world_from_camera * edge.plane, &four.planes[side]);
+      four.weights[side][place] = i < views.size() ? view.weight : 0.0;
+      four.is_bound[side][place] = edge.is_bound ? 1.0 : 0.0;
+    }
+  }
+}
+
+double HeldViewsTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
+  const Body body = {
+      Eigen::Quaterniond(landmark_in_world_).toRotationMatrix(),
+      Eigen::Vector3d(landmark_in_world_ + 4),
+      Eigen::Vector3d(landmark_in_world_ + kPoseSize).array().exp(),
+      shape_exponent_,
+  };
+  Sums sums;
+  AddViews(views_, body, loss_.delta, hessian, &sums);
+  const double cost = Sum(sums.cost);
+  if (!std::isfinite(cost)) return std::numeric_limits<double>::infinity();
+  if (places.gradient[0] == nullptr) return cost;
+
+  Eigen::Map<Eigen::Matrix<double, kLandmarkDof, 1>> gradient(places.gradient[0]);
+  Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>> square(places.hessian[0][0]);
+  const Eigen::Matrix3d& to_world = body.world_from_object;
+  const Eigen::Vector3d by_turn(Sum(sums.gradient[0]), Sum(sums.gradient[1]),
+                                Sum(sums.gradient[2]));
+  gradient.head<3>() += to_world * by_turn;
+  Eigen::Matrix<double, kLandmarkDof, 3> turn_columns;
+  for (int i = 0; i < kLandmarkDof; ++i) {
+    for (int j = 0; j < 3; ++j)
+      turn_columns(i, j) = Sum(sums.hessian[std::max(i, j)][std::min(i, j)]);
+    if (i < 3) continue;
+    gradient[i] += Sum(sums.gradient[i]);
+    for (int j = 3; j <= i; ++j) square(i, j) += Sum(sums.hessian[i][j]);
+  }
+  turn_columns = turn_columns.lazyProduct(to_world.transpose()).eval();
+  turn_columns.topRows<3>() = (to_world * turn_columns.topRows<3>()).eval();
+  square.leftCols<3>() += turn_columns;
+  return cost;
+}
+
+}  // namespace soslam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "constraints/tangency.h"
+#include "geometry/landmark.h"
+
+namespace soslam {
+
+// The edges of a detection's box as the back end compares them with a body. The depth of a tangent
+// point is that of the centre times what it is of it on `start_in_camera`, whose shape exponent is
+// that of the body and whose centre is in front: with depths that stay as they were, a smaller
+// world would have smaller residuals. A centre nearer than a tenth of that, or behind the camera,
+// counts as if it were there. Edges whose tangent point is not in front of the camera at the start
+// are left out.
+struct TangentBox {
+  struct Edge {
+    Eigen::Vector3d plane;  // in the camera frame; over sigma and the point's depth by the centre's
+    double per_px;          // 1 / sigma
+    int side;               // which one of the box
+    bool is_bound;
+  };
+
+  TangentBox(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera);
+
+  double shape_exponent;
+  double least_depth_m;  // of the centre
+  int num_edges = 0;
+  std::array<Edge, 4> edges;
+};
+
+}  // namespace soslam
