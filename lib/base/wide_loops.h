@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 // Before a function whose loops the compiler turns into vector code: compiles it twice, for any
@@ -57,6 +58,10 @@ using FourMask = decltype(Four{} < Four{});
 // Whether it holds for any of the four.
 SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Four& of, Four* root) {
+  for (size_t k = 0; k < 4; ++k) (*root)[k] = std::sqrt(of[k]);
 }
 
 // All four together.

@@ -69,21 +69,28 @@ void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* s
   sum->information.bottomRightCorner<3, 3>() += ratio_.information;
 }
 
-void BoxFit::AddYaw(double yaw, QuadraticModel<6>* sum) const {
+std::array<BoxFit::YawRow, 2> BoxFit::YawRows(double yaw) const {
   const double amplitude = std::sqrt(2.0 * observation_.axes_weight);
   const double angle = 2.0 * (yaw - axis_yaw_);
-  const UprightVector by_yaw = UprightVector::Unit(kYaw);
-  sum->Add(amplitude * std::sin(angle), 2.0 * amplitude * std::cos(angle) * by_yaw);
-  if (!observation_.yaw_prior) return;
+  const YawRow of_axes = {amplitude * std::sin(angle), 2.0 * amplitude * std::cos(angle)};
+  if (!observation_.yaw_prior) return {of_axes, YawRow()};
   const YawPrior& prior = *observation_.yaw_prior;
-  sum->Add(YawDifferenceModuloPi(yaw, prior.yaw) / prior.sigma, by_yaw / prior.sigma);
+  return {of_axes, {YawDifferenceModuloPi(yaw, prior.yaw) / prior.sigma, 1.0 / prior.sigma}};
+}
+
+double BoxFit::YawCost(double yaw) const {
+  double cost = 0.0;
+  for (const YawRow& row : YawRows(yaw)) cost += 0.5 * row.residual * row.residual;
+  return cost;
 }
 
 QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
   QuadraticModel<6> sum;
   AddTangencies(depths_m, at, &sum);
   AddRatio(at.tail<3>(), &sum);
-  AddYaw(at[kYaw], &sum);
+  for (const YawRow& row : YawRows(at[kYaw])) {
+    sum.Add(row.residual, row.by_yaw * UprightVector::Unit(kYaw));
+  }
   return sum;
 }
 
@@ -114,9 +121,7 @@ std::vector<double> BoxFit::MinimiseAtYaws(std::span<StartAtYaw> starts) const {
       const auto fits =
           FitFourYaws(box_, ratio_, observation_.prior.shape_exponent, kMaxIterations, four);
       for (size_t k = 0; k < four.size() && first + k < starts.size(); ++k) {
-        QuadraticModel<6> of_yaw;
-        AddYaw(fits[k].parameters[kYaw], &of_yaw);
-        costs[first + k] = fits[k].cost + of_yaw.cost;
+        costs[first + k] = fits[k].cost + YawCost(fits[k].parameters[kYaw]);
         starts[first + k].parameters = fits[k].parameters;
       }
     }

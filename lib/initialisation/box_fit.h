@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,13 @@ class BoxFit {
   void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
                      QuadraticModel<6>* sum) const;
   void AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const;
-  void AddYaw(double yaw, QuadraticModel<6>* sum) const;
+  // What AxisTerm and the yaw prior say.
+  struct YawRow {
+    double residual = 0.0;
+    double by_yaw = 0.0;
+  };
+  std::array<YawRow, 2> YawRows(double yaw) const;
+  double YawCost(double yaw) const;
 
   const UprightObservation& observation_;
   UprightGround ground_;

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 
+#include "base/wide_loops.h"
 #include "constraints/tangency.h"
 #include "initialisation/upright.h"
 
@@ -40,5 +42,19 @@ inline Eigen::Vector3d TurnedBack(const Eigen::Vector3d& direction, double cosin
   return {cosine * direction.x() + sine * direction.y(),
           cosine * direction.y() - sine * direction.x(), direction.z()};
 }
+
+// The same for four bodies.
+struct alignas(kFourAlignment) FourHeadings {
+  Four cosines{}, sines{};
+
+  void Set(size_t place, double yaw) {
+    cosines[place] = std::cos(yaw);
+    sines[place] = std::sin(yaw);
+  }
+  SOSLAM_IN_WIDE_LOOPS ThreeFours TurnedBack(const Eigen::Vector3d& direction) const {
+    return {cosines * direction.x() + sines * direction.y(),
+            cosines * direction.y() - sines * direction.x(), Four{} + direction.z()};
+  }
+};
 
 }  // namespace soslam

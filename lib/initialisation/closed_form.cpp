@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/wide_loops.h"
-#include "geometry/support_function.h"
+#include "geometry/support_of_four.h"
 
 namespace soslam {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kDepthTolerance = 1e-10;
 using FourEdges = std::array<Four, 4>;
 
 // At four yaws.
-struct alignas(kFourAlignment) FourBodies {
+struct FourBodies {
   FourEdges by_half_height{};        // a
   FourEdges depth_by_half_height{};  // of the tangent points, from that of the foot
   Four nearest_by_half_height{};     // of the body's point nearest to the camera's plane
@@ -40,25 +40,24 @@ struct alignas(kFourAlignment) FourSolutions {
   FourEdges depths_m{};  // of the tangent points
 };
 
-// One of the four.
-void Place(const BoxEquations& equations, double yaw, size_t place, FourBodies* bodies) {
+SOSLAM_IN_WIDE_LOOPS void Place(const BoxEquations& equations, const FourHeadings& headings,
+                                FourBodies* bodies) {
   const BoxOnGround& box = equations.box;
-  const double cosine = std::cos(yaw);
-  const double sine = std::sin(yaw);
-  const auto support_towards = [&](const Eigen::Vector3d& direction) {
-    return SupportFunction(equations.proportions, equations.shape_exponent,
-                           TurnedBack(direction, cosine, sine));
-  };
-  const Eigen::Vector3d axis_in_object = TurnedBack(box.optical_axis, cosine, sine);
+  const double p = equations.shape_exponent;
+  const double height_of_axis = box.optical_axis.z();
+  const ThreeFours axis = headings.TurnedBack(box.optical_axis);
+  SupportOfFour support;
   for (size_t edge = 0; edge < 4; ++edge) {
-    const Eigen::Vector3d normal = box.normals.row(edge);
-    const SupportValue support = support_towards(normal);
-    bodies->by_half_height[edge][place] = normal.z() + support.extent;
-    bodies->depth_by_half_height[edge][place] =
-        box.optical_axis.z() + axis_in_object.dot(support.contact);
+    const Eigen::Vector3d normal = box.normals.row(static_cast<int>(edge));
+    const ThreeFours in_object = headings.TurnedBack(normal);
+    FindSupport(equations.proportions, p, in_object, &support);
+    const ThreeFours contact = support.Contact(p, in_object);
+    bodies->by_half_height[edge] = normal.z() + support.extent;
+    bodies->depth_by_half_height[edge] =
+        height_of_axis + axis[0] * contact[0] + axis[1] * contact[1] + axis[2] * contact[2];
   }
-  bodies->nearest_by_half_height[place] =
-      box.optical_axis.z() - support_towards(box.optical_axis).extent;
+  FindSupport(equations.proportions, p, axis, &support);
+  bodies->nearest_by_half_height = height_of_axis - support.extent;
 }
 
 SOSLAM_IN_WIDE_LOOPS void EliminateFoot(const BoxEquations& equations, const FourBodies& bodies,
@@ -126,9 +125,11 @@ SOSLAM_IN_WIDE_LOOPS FourSolutions SolveFor(const BoxEquations& equations, const
 }
 
 // Leaves half heights at 0 where there is no body in front of the camera.
-SOSLAM_WIDE_LOOPS void Solve(const BoxEquations& equations, const FourBodies& bodies,
+SOSLAM_WIDE_LOOPS void Solve(const BoxEquations& equations, const FourHeadings& headings,
                              FourSolutions* solutions) {
   const BoxOnGround& box = equations.box;
+  FourBodies bodies;
+  Place(equations, headings, &bodies);
   FourSystems systems;
   EliminateFoot(equations, bodies, &systems);
   const bool has_bound = (box.is_bound != 0.0).any();
@@ -165,6 +166,7 @@ SOSLAM_WIDE_LOOPS void Solve(const BoxEquations& equations, const FourBodies& bo
 BoxEquations::BoxEquations(const UprightObservation& observation)
     : box(observation.edges, Rigid3d(), UprightGround(observation.plane_in_camera)),
       proportions(observation.prior.ratio.x(), observation.prior.ratio.y(), 1.0),
+      log_proportions(proportions.array().log()),
       shape_exponent(observation.prior.shape_exponent) {
   const Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>> of_foot(box.normals.leftCols<2>());
   const Eigen::Matrix4d orthonormal = of_foot.householderQ();
@@ -178,16 +180,16 @@ std::vector<std::optional<StartAtYaw>> ClosedForm::At(const std::vector<double>&
   if (!HasEnoughEdges()) return starts;
   for (size_t first = 0; first < yaws.size(); first += 4) {
     const size_t count = std::min<size_t>(4, yaws.size() - first);
-    FourBodies bodies;
-    for (size_t k = 0; k < count; ++k) Place(equations_, yaws[first + k], k, &bodies);
+    FourHeadings headings;
+    for (size_t k = 0; k < count; ++k) headings.Set(k, yaws[first + k]);
     FourSolutions solutions;
-    Solve(equations_, bodies, &solutions);
+    Solve(equations_, headings, &solutions);
     for (size_t k = 0; k < count; ++k) {
       const double half_height = solutions.half_height[k];
       if (!(half_height > 0.0)) continue;
       StartAtYaw& start = starts[first + k].emplace();
       start.parameters << yaws[first + k], solutions.foot[0][k], solutions.foot[1][k],
-          (half_height * equations_.proportions).array().log().matrix();
+          equations_.log_proportions + Eigen::Vector3d::Constant(std::log(half_height));
       for (size_t edge = 0; edge < 4; ++edge) {
         start.depths_m[edge] = solutions.depths_m[edge][k];
       }

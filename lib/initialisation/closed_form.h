@@ -19,6 +19,7 @@ struct BoxEquations {
 
   BoxOnGround box;
   Eigen::Vector3d proportions;  // (a, b, c) / c
+  Eigen::Vector3d log_proportions;
   double shape_exponent;
   Eigen::Matrix<double, 4, 2> without_foot;  // N with N^T F = 0, orthonormal
   Eigen::Matrix<double, 2, 4> foot_by_b;     // pseudo-inverse of F

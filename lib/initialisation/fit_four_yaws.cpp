@@ -3,30 +3,38 @@
 
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "base/wide_loops.h"
-#include "geometry/norm_of_four.h"
 #include "geometry/support_function.h"
+#include "geometry/support_of_four.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
 namespace {
 
+// Where fits start.
+struct alignas(kFourAlignment) FourStarts {
+  FourHeadings headings;
+  std::array<Four, 4> depths_m{};  // by edge
+  ThreeFours log_half_axes{};
+};
+
 // The edges of the box as the four bodies see them.
-struct alignas(kFourAlignment) Tangencies {
+struct Tangencies {
   double shape_exponent;
   // By edge. Of a residual at the ground's origin, over the weight: its value and its derivative by
   // the body's height.
-  std::array<double, 4> at_origin;
-  std::array<double, 4> by_height;
+  Eigen::Array4d at_origin;
+  Eigen::Array4d by_height;
   std::array<Four, 4> weight;         // 1 / (m px)
-  std::array<ThreeFours, 4> rounded;  // the normal in the object frame, RoundedDirection
-  std::array<std::array<Four, 2>, 4> foot_basis;  // derivatives by the foot: orthonormal columns
+  std::array<ThreeFours, 4> rounded;  // the normal in the object frame, see support_function.h
+  // Derivatives by the foot: orthonormal columns Q of Q R.
+  std::array<std::array<Four, 2>, 4> foot_basis;
+  Four r_xx, r_xy, r_yy;
 };
 
 // The fits to second order, as QuadraticModel has it; of the information, the lower triangle.
-struct alignas(kFourAlignment) Model {
+struct Model {
   Four cost{};
   std::array<Four, 2> foot{};  // the best one's negative, in its basis
   ThreeFours gradient{};
@@ -139,8 +147,8 @@ SOSLAM_IN_WIDE_LOOPS void SolveForNegative(const std::array<ThreeFours, 3>& a, c
 }
 
 // MinimiseSquares, line by line. Leaves the model at the minimum.
-SOSLAM_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& ratio,
-                                int max_iterations, ThreeFours* log_half_axes, Model* at) {
+SOSLAM_IN_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& ratio,
+                                   int max_iterations, ThreeFours* log_half_axes, Model* at) {
   using namespace levenberg_marquardt;
   Evaluate(tangencies, ratio, *log_half_axes, at);
   Four damping = Four{} + kFirstDamping;
@@ -180,35 +188,67 @@ SOSLAM_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& r
   }
 }
 
-// Of one body, at a place among the four. Returns what leads from its foot in the basis, which is
-// the best one's negative, to that on the ground; none where the edges do not tell the foot.
-std::optional<Eigen::Matrix2d> Place(const BoxOnGround& box, const StartAtYaw& start, size_t place,
-                                     Tangencies* tangencies) {
-  const Eigen::Array4d weights = (start.depths_m * box.sigma_px).inverse();
-  // Gram and Schmidt's orthonormal basis of two columns.
-  const Eigen::Vector4d by_x = weights * box.normals.col(0).array();
-  const Eigen::Vector4d by_y = weights * box.normals.col(1).array();
-  const double xx = by_x.norm();
-  const Eigen::Vector4d first = by_x / xx;
-  const double xy = first.dot(by_y);
-  const Eigen::Vector4d rest = by_y - xy * first;
-  const double yy = rest.norm();
-  constexpr double kLeastShare = 1e-6;
-  if (!(xx > kLeastShare * yy && yy > kLeastShare * xx)) return std::nullopt;
-
-  const double cosine = std::cos(start.parameters[0]);
-  const double sine = std::sin(start.parameters[0]);
-  for (size_t edge = 0; edge < 4; ++edge) {
-    const Eigen::Array3d rounded = RoundedDirection(TurnedBack(box.normals.row(edge), cosine, sine),
-                                                    tangencies->shape_exponent);
-    for (size_t i = 0; i < 3; ++i) tangencies->rounded[edge][i][place] = rounded[i];
-    tangencies->weight[edge][place] = weights[edge];
-    tangencies->foot_basis[edge][0][place] = first[edge];
-    tangencies->foot_basis[edge][1][place] = rest[edge] / yy;
+// Gram and Schmidt's orthonormal basis of two columns.
+SOSLAM_IN_WIDE_LOOPS void FindFootBasis(const BoxOnGround& box, Tangencies* tangencies) {
+  Four squares{}, products{}, rest_squares{};
+  for (int edge = 0; edge < 4; ++edge) {
+    auto& [by_x, by_y] = tangencies->foot_basis[edge];
+    by_x = tangencies->weight[edge] * box.normals(edge, 0);
+    by_y = tangencies->weight[edge] * box.normals(edge, 1);
+    squares += by_x * by_x;
   }
-  Eigen::Matrix2d foot_from_basis;
-  foot_from_basis << -1.0 / xx, xy / (xx * yy), 0.0, -1.0 / yy;
-  return foot_from_basis;
+  SquareRoot(squares, &tangencies->r_xx);
+  for (auto& [by_x, by_y] : tangencies->foot_basis) {
+    by_x /= tangencies->r_xx;
+    products += by_x * by_y;
+  }
+  tangencies->r_xy = products;
+  for (auto& [by_x, by_y] : tangencies->foot_basis) {
+    by_y -= products * by_x;
+    rest_squares += by_y * by_y;
+  }
+  SquareRoot(rest_squares, &tangencies->r_yy);
+  for (auto& [by_x, by_y] : tangencies->foot_basis) by_y /= tangencies->r_yy;
+}
+
+SOSLAM_IN_WIDE_LOOPS void Place(const BoxOnGround& box, double shape_exponent,
+                                const FourStarts& starts, Tangencies* tangencies) {
+  tangencies->shape_exponent = shape_exponent;
+  tangencies->at_origin = box.at_origin;
+  tangencies->by_height = box.normals.col(2);
+  for (int edge = 0; edge < 4; ++edge) {
+    tangencies->weight[edge] = 1.0 / (starts.depths_m[edge] * box.sigma_px[edge]);
+    const ThreeFours normal = starts.headings.TurnedBack(box.normals.row(edge));
+    ThreeFours squares;
+    SquaresOfRounded(shape_exponent, normal, &squares);
+    for (size_t i = 0; i < 3; ++i) SquareRoot(squares[i], &tangencies->rounded[edge][i]);
+  }
+  FindFootBasis(box, tangencies);
+}
+
+// Of one body each: NaN where the edges do not tell the foot, or the start has no cost.
+struct alignas(kFourAlignment) FourFits {
+  Four cost;
+  std::array<Four, 2> foot;
+  ThreeFours log_half_axes;
+};
+
+SOSLAM_WIDE_LOOPS void Fit(const BoxOnGround& box, const RatioRows& ratio, double shape_exponent,
+                           int max_iterations, const FourStarts& starts, FourFits* fits) {
+  Tangencies tangencies;
+  Place(box, shape_exponent, starts, &tangencies);
+  fits->log_half_axes = starts.log_half_axes;
+  Model at;
+  Minimise(tangencies, ratio, max_iterations, &fits->log_half_axes, &at);
+
+  constexpr double kLeastShare = 1e-6;
+  const Four& xx = tangencies.r_xx;
+  const Four& yy = tangencies.r_yy;
+  const FourMask is_told = (xx > kLeastShare * yy) & (yy > kLeastShare * xx);
+  const FourMask has_cost = at.cost < std::numeric_limits<double>::infinity();
+  fits->cost = is_told & has_cost ? at.cost : Four{} + std::numeric_limits<double>::quiet_NaN();
+  fits->foot[1] = -at.foot[1] / yy;
+  fits->foot[0] = -(at.foot[0] + tangencies.r_xy * fits->foot[1]) / xx;
 }
 
 }  // namespace
@@ -216,29 +256,21 @@ std::optional<Eigen::Matrix2d> Place(const BoxOnGround& box, const StartAtYaw& s
 std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& ratio,
                                     double shape_exponent, int max_iterations,
                                     const std::array<StartAtYaw, 4>& starts) {
-  Tangencies tangencies{};
-  tangencies.shape_exponent = shape_exponent;
-  for (size_t edge = 0; edge < 4; ++edge) {
-    tangencies.at_origin[edge] = box.at_origin[edge];
-    tangencies.by_height[edge] = box.normals(edge, 2);
+  FourStarts four;
+  for (size_t k = 0; k < starts.size(); ++k) {
+    four.headings.Set(k, starts[k].parameters[0]);
+    for (int edge = 0; edge < 4; ++edge) four.depths_m[edge][k] = starts[k].depths_m[edge];
+    for (int i = 0; i < 3; ++i) four.log_half_axes[i][k] = starts[k].parameters[3 + i];
   }
-  std::array<std::optional<Eigen::Matrix2d>, 4> foot_from_basis;
-  alignas(kFourAlignment) ThreeFours log_half_axes;
-  for (size_t k = 0; k < 4; ++k) {
-    foot_from_basis[k] = Place(box, starts[k], k, &tangencies);
-    for (size_t i = 0; i < 3; ++i) log_half_axes[i][k] = starts[k].parameters[3 + i];
-  }
-  Model at;
-  Minimise(tangencies, ratio, max_iterations, &log_half_axes, &at);
+  FourFits found;
+  Fit(box, ratio, shape_exponent, max_iterations, four, &found);
 
   std::array<FitAtYaw, 4> fits;
-  for (size_t k = 0; k < 4; ++k) {
-    fits[k] = {std::numeric_limits<double>::quiet_NaN(), starts[k].parameters};
-    if (!foot_from_basis[k] || !std::isfinite(at.cost[k])) continue;
-    fits[k].cost = at.cost[k];
-    fits[k].parameters << starts[k].parameters[0],
-        *foot_from_basis[k] * Eigen::Vector2d(at.foot[0][k], at.foot[1][k]), log_half_axes[0][k],
-        log_half_axes[1][k], log_half_axes[2][k];
+  for (size_t k = 0; k < fits.size(); ++k) {
+    fits[k] = {found.cost[k], starts[k].parameters};
+    if (std::isnan(found.cost[k])) continue;
+    fits[k].parameters.tail<5>() << found.foot[0][k], found.foot[1][k], found.log_half_axes[0][k],
+        found.log_half_axes[1][k], found.log_half_axes[2][k];
   }
   return fits;
 }

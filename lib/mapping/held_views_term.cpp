@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "constraints/tangent_space.h"
-#include "geometry/norm_of_four.h"
+#include "geometry/support_of_four.h"
 
 namespace soslam {
 namespace {
@@ -39,20 +39,11 @@ struct Depths {
   ThreeFours by_centre;  // relative change; 0 where the depth is held
 };
 
-// The support function h(m) of the body towards the planes m behind an edge.
-struct Support {
-  ThreeFours normal;   // m, in the object frame
-  ThreeFours squares;  // of the rounded |m_i|, see support_function.h; those of m for an ellipsoid
-  Four extent;         // h
-  Four inverse;        // 1 / h; 1 of a flat body from its side
-  ThreeFours by_axes;  // dh / ds, s the logarithms of the half axes
-  ThreeFours shares;   // dh / ds over squares
-  ThreeFours by_turn;  // dh / dm x m
-};
-
 // What lies outside the plane behind an edge, over the centre's depth.
 struct Excess {
-  Support support;
+  ThreeFours normal;  // m, of the plane in the object frame
+  SupportOfFour support;
+  ThreeFours by_turn;  // dh / dm x m
   Four value;
   Gradient gradient;
 };
@@ -63,11 +54,6 @@ struct Losses {
   Four slope;
   Four curvature;
 };
-
-SOSLAM_IN_WIDE_LOOPS double SquaredRounding(double shape_exponent) {
-  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
-  return rounding * rounding;
-}
 
 SOSLAM_IN_WIDE_LOOPS void FindDepths(const FourViews& views, const Body& body, Depths* depths) {
   Four depth{};
@@ -82,48 +68,27 @@ SOSLAM_IN_WIDE_LOOPS void FindDepths(const FourViews& views, const Body& body, D
   }
 }
 
-SOSLAM_IN_WIDE_LOOPS void FindSupport(const Body& body, Support* support) {
-  const ThreeFours& m = support->normal;
-  const double p = body.shape_exponent;
-  const Eigen::Vector3d& half_axes = body.half_axes;
-  const bool is_ellipsoid = p == kEllipsoidExponent;
-  ThreeFours& squares = support->squares;
-  for (int i = 0; i < 3; ++i) squares[i] = m[i] * m[i];
-  const Four rounding = SquaredRounding(p) * (squares[0] + squares[1] + squares[2]);
-  ThreeFours u;
-  for (int i = 0; i < 3; ++i) {
-    squares[i] += rounding;
-    u[i] = half_axes[i] * m[i];
-    if (is_ellipsoid) continue;
-    for (int k = 0; k < 4; ++k) u[i][k] = half_axes[i] * std::sqrt(squares[i][k]);
-  }
-  NormByLogarithms(p, u, &support->extent, &support->by_axes);
-  support->inverse = 1.0 / (support->extent > 0.0 ? support->extent : Four{} + 1.0);
-  for (int i = 0; i < 3; ++i) {
-    support->shares[i] = is_ellipsoid ? half_axes[i] * half_axes[i] * support->inverse
-                                      : support->by_axes[i] / squares[i];
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    support->by_turn[i] = m[j] * m[k] * (support->shares[j] - support->shares[k]);
-  }
-}
-
 SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const Body& body,
                                      const Depths& depths, Excess* excess) {
   Four outside{};
   for (int i = 0; i < 3; ++i) {
     outside += plane[i] * depths.offset[i];
-    excess->support.normal[i] = body.world_from_object(0, i) * plane[0] +
-                                body.world_from_object(1, i) * plane[1] +
-                                body.world_from_object(2, i) * plane[2];
+    excess->normal[i] = body.world_from_object(0, i) * plane[0] +
+                        body.world_from_object(1, i) * plane[1] +
+                        body.world_from_object(2, i) * plane[2];
   }
-  FindSupport(body, &excess->support);
-  excess->value = (outside + excess->support.extent) * depths.inverse;
+  const ThreeFours& m = excess->normal;
+  SupportOfFour& support = excess->support;
+  FindSupport(body.half_axes, body.shape_exponent, m, &support);
   for (int i = 0; i < 3; ++i) {
-    excess->gradient[kTurn + i] = depths.inverse * excess->support.by_turn[i];
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    excess->by_turn[i] = m[j] * m[k] * (support.shares[j] - support.shares[k]);
+  }
+  excess->value = (outside + support.extent) * depths.inverse;
+  for (int i = 0; i < 3; ++i) {
+    excess->gradient[kTurn + i] = depths.inverse * excess->by_turn[i];
     excess->gradient[kCentre + i] = depths.inverse * plane[i] - excess->value * depths.by_centre[i];
-    excess->gradient[kAxes + i] = depths.inverse * excess->support.by_axes[i];
+    excess->gradient[kAxes + i] = depths.inverse * support.by_log_half_axes[i];
   }
 }
 
@@ -158,9 +123,10 @@ SOSLAM_IN_WIDE_LOOPS void AddInformation(const std::array<Excess, 4>& excesses,
 
 // By turns, what h grows by as the contact moves along the body: its second derivatives by m
 // (CurvatureOfSupport). What those have along m itself is not seen by a turn.
-SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Support& support,
+SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Excess& excess,
                                            const Four& factor, Sums* sums) {
-  const ThreeFours& m = support.normal;
+  const ThreeFours& m = excess.normal;
+  const SupportOfFour& support = excess.support;
   const ThreeFours& shares = support.shares;
   const double p = body.shape_exponent;
   const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
@@ -173,27 +139,25 @@ SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Support& supp
   const Four less = (p - 1.0) * support.inverse;
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const Four turn = less * support.by_turn[i];
+    const Four turn = less * excess.by_turn[i];
     auto& by_turn = sums->hessian[kTurn + i];
-    by_turn[kTurn + i] += factor * (diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j] -
-                                    turn * support.by_turn[i]);
+    by_turn[kTurn + i] +=
+        factor * (diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j] - turn * excess.by_turn[i]);
     for (size_t l = 0; l < i; ++l) {
-      by_turn[kTurn + l] -=
-          factor * (diagonal[3 - i - l] * m[i] * m[l] + turn * support.by_turn[l]);
+      by_turn[kTurn + l] -= factor * (diagonal[3 - i - l] * m[i] * m[l] + turn * excess.by_turn[l]);
     }
   }
 }
 
 // All others of h: by turns of a contact q that stays, and by the half axes.
-SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const Body& body, const Support& support,
+SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const Body& body, const Excess& excess,
                                             const Four& factor, Sums* sums) {
-  const ThreeFours& m = support.normal;
+  const ThreeFours& m = excess.normal;
+  const SupportOfFour& support = excess.support;
   const ThreeFours& shares = support.shares;
   const double p = body.shape_exponent;
-  const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
   const Four less = (p - 1.0) * support.inverse;
-  ThreeFours q;
-  for (size_t i = 0; i < 3; ++i) q[i] = (shares[i] + rounding) * m[i];
+  const ThreeFours q = support.Contact(p, m);
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
     auto& by_turn = sums->hessian[kTurn + i];
@@ -203,13 +167,13 @@ SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const Body& body, const Support& sup
     }
 
     auto& by_axis = sums->hessian[kAxes + i];
-    const Four axis = factor * less * support.by_axes[i];
+    const Four axis = factor * less * support.by_log_half_axes[i];
     const Four edge = factor * p * shares[i] * m[i];
     by_axis[kTurn + j] -= edge * m[k];
     by_axis[kTurn + k] += edge * m[j];
-    for (size_t l = 0; l < 3; ++l) by_axis[kTurn + l] -= axis * support.by_turn[l];
-    by_axis[kAxes + i] += factor * p * support.by_axes[i];
-    for (size_t l = 0; l <= i; ++l) by_axis[kAxes + l] -= axis * support.by_axes[l];
+    for (size_t l = 0; l < 3; ++l) by_axis[kTurn + l] -= axis * excess.by_turn[l];
+    by_axis[kAxes + i] += factor * p * support.by_log_half_axes[i];
+    for (size_t l = 0; l <= i; ++l) by_axis[kAxes + l] -= axis * support.by_log_half_axes[l];
   }
 }
 
@@ -247,12 +211,12 @@ SOSLAM_WIDE_LOOPS void AddViews(const std::vector<FourViews>& all, const Body& b
       for (size_t i = 0; i < kLandmarkDof; ++i) gradient[i] += slope * excess.gradient[i];
       const Four factor = slope * depths.inverse;
       if (is_near) {
-        AddMoveOfContact(body, excess.support, factor, sums);
-        AddOtherCurvature(body, excess.support, factor, sums);
+        AddMoveOfContact(body, excess, factor, sums);
+        AddOtherCurvature(body, excess, factor, sums);
       } else if (has_kinks) {
         // Where the body turns past an edge or a face that should come nearer, it is held there.
         // Not so where it should go away from it.
-        AddMoveOfContact(body, excess.support, factor > 0.0 ? factor : Four{}, sums);
+        AddMoveOfContact(body, excess, factor > 0.0 ? factor : Four{}, sums);
       }
     }
     for (size_t i = 0; i < kLandmarkDof; ++i) sums->gradient[i] += gradient[i];

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "base/wide_loops.h"
+#include "geometry/support_function.h"
+
+namespace soslam {
+
+// h = || u ||_p and dh / d log u, of four u at once; 1 <= p <= 2, u >= 0 or, for
+// p = 2, of any sign. Not finite for u = 0
+// where p is neither 1 nor 2.
+SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* h,
+                                           ThreeFours* by_log_u) {
+  if (p == kCuboidExponent) {
+    *h = u[0] + u[1] + u[2];
+    *by_log_u = u;
+    return;
+  }
+  if (p == kEllipsoidExponent) {
+    const Four squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+    SquareRoot(squares, h);
+    const Four inverse = 1.0 / (*h > 0.0 ? *h : Four{} + 1.0);
+    for (size_t i = 0; i < 3; ++i) (*by_log_u)[i] = u[i] * u[i] * inverse;
+    return;
+  }
+  for (size_t k = 0; k < 4; ++k) {
+    const Eigen::Array3d u_of_one(u[0][k], u[1][k], u[2][k]);
+    double norm = 0.0;
+    const Eigen::Array3d by_u = NormByComponents(u_of_one, p, &norm);
+    (*h)[k] = norm;
+    for (size_t i = 0; i < 3; ++i) (*by_log_u)[i][k] = by_u[i] * u_of_one[i];
+  }
+}
+
+// e^2 of support_function.h.
+SOSLAM_IN_WIDE_LOOPS double SquaredRounding(double shape_exponent) {
+  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
+  return rounding * rounding;
+}
+
+// Of the rounded |m_i|.
+SOSLAM_IN_WIDE_LOOPS void SquaresOfRounded(double shape_exponent, const ThreeFours& m,
+                                           ThreeFours* squares) {
+  for (size_t i = 0; i < 3; ++i) (*squares)[i] = m[i] * m[i];
+  const Four rounding =
+      SquaredRounding(shape_exponent) * ((*squares)[0] + (*squares)[1] + (*squares)[2]);
+  for (Four& square : *squares) square += rounding;
+}
+
+// SupportFunction of a body towards four directions m at once.
+struct SupportOfFour {
+  ThreeFours squares;  // of the rounded |m_i|
+  Four extent;         // h
+  Four inverse;        // 1 / h; 1 of a flat body from its side
+  ThreeFours by_log_half_axes;
+  ThreeFours shares;  // those over the squares
+
+  // dh / dm.
+  SOSLAM_IN_WIDE_LOOPS ThreeFours Contact(double shape_exponent, const ThreeFours& m) const {
+    const Four rounding = SquaredRounding(shape_exponent) * (shares[0] + shares[1] + shares[2]);
+    ThreeFours contact;
+    for (size_t i = 0; i < 3; ++i) contact[i] = (shares[i] + rounding) * m[i];
+    return contact;
+  }
+};
+
+SOSLAM_IN_WIDE_LOOPS void FindSupport(const Eigen::Vector3d& half_axes, double shape_exponent,
+                                      const ThreeFours& m, SupportOfFour* support) {
+  const double p = shape_exponent;
+  const bool is_ellipsoid = p == kEllipsoidExponent;
+  SquaresOfRounded(p, m, &support->squares);
+  ThreeFours u;
+  for (size_t i = 0; i < 3; ++i) {
+    Four rounded = m[i];
+    if (!is_ellipsoid) SquareRoot(support->squares[i], &rounded);
+    u[i] = half_axes[static_cast<int>(i)] * rounded;
+  }
+  NormByLogarithms(p, u, &support->extent, &support->by_log_half_axes);
+  support->inverse = 1.0 / (support->extent > 0.0 ? support->extent : Four{} + 1.0);
+  for (size_t i = 0; i < 3; ++i) {
+    const double half_axis = half_axes[static_cast<int>(i)];
+    support->shares[i] = is_ellipsoid ? half_axis * half_axis * support->inverse
+                                      : support->by_log_half_axes[i] / support->squares[i];
+  }
+}
+
+}  // namespace soslam
