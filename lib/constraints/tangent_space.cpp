@@ -93,4 +93,16 @@ ValuesByStep ByStep(VariableKind kind, const double* values) {
   }
 }
 
+void ChainToSteps(VariableKind kind, const double* values, const ByValues& by_values,
+                  Eigen::MatrixXd* by_steps) {
+  if (kind != VariableKind::kPose && kind != VariableKind::kLandmark) {
+    by_steps->noalias() = by_values.lazyProduct(ByStep(kind, values));
+    return;
+  }
+  by_steps->leftCols<3>().noalias() =
+      by_values.leftCols<4>().lazyProduct(QuaternionByRotationVector(values));
+  const int others = NumTangents(kind) - 3;
+  by_steps->rightCols(others) = by_values.rightCols(others);
+}
+
 }  // namespace soslam

@@ -49,7 +49,7 @@ double CostFunctionTerm::Linearise(Hessian hessian, const TermPlaces& places) co
   for (size_t i = 0; i < blocks_.size(); ++i) {
     if (places.gradient[i] == nullptr) continue;
     const int size = NumTangents(blocks_[i].kind);
-    by_steps_[i].noalias() = by_values_[i].lazyProduct(ByStep(blocks_[i].kind, blocks_[i].values));
+    ChainToSteps(blocks_[i].kind, blocks_[i].values, by_values_[i], &by_steps_[i]);
     Eigen::Map<Eigen::VectorXd>(places.gradient[i], size).noalias() +=
         loss.weight * by_steps_[i].transpose() * residuals_;
     for (size_t j = 0; j <= i; ++j) {

@@ -35,14 +35,12 @@ class CostFunctionTerm final : public Term {
   double Linearise(Hessian hessian, const TermPlaces& places) const override;
 
  private:
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   std::unique_ptr<const ceres::CostFunction> function_;
   std::vector<Block> blocks_;
   std::vector<const double*> values_;
   HuberLoss loss_;
   mutable Eigen::VectorXd residuals_;
-  mutable std::vector<RowMajor> by_values_;
+  mutable std::vector<ByValues> by_values_;
   mutable std::vector<Eigen::MatrixXd> by_steps_;
 };
 
