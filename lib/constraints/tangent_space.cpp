@@ -95,14 +95,22 @@ ValuesByStep ByStep(VariableKind kind, const double* values) {
 
 void ChainToSteps(VariableKind kind, const double* values, const ByValues& by_values,
                   Eigen::MatrixXd* by_steps) {
-  if (kind != VariableKind::kPose && kind != VariableKind::kLandmark) {
-    by_steps->noalias() = by_values.lazyProduct(ByStep(kind, values));
-    return;
+  switch (kind) {
+    case VariableKind::kPose:
+    case VariableKind::kLandmark: {
+      const int others = NumTangents(kind) - 3;
+      by_steps->resize(by_values.rows(), NumTangents(kind));
+      by_steps->leftCols<3>().noalias() =
+          by_values.leftCols<4>().lazyProduct(QuaternionByRotationVector(values));
+      by_steps->rightCols(others) = by_values.rightCols(others);
+      return;
+    }
+    case VariableKind::kNormal:
+      by_steps->noalias() = by_values.lazyProduct(AxesAcross(Eigen::Vector3d(values)));
+      return;
+    default:
+      *by_steps = by_values;
   }
-  by_steps->leftCols<3>().noalias() =
-      by_values.leftCols<4>().lazyProduct(QuaternionByRotationVector(values));
-  const int others = NumTangents(kind) - 3;
-  by_steps->rightCols(others) = by_values.rightCols(others);
 }
 
 }  // namespace soslam

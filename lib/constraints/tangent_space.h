@@ -32,8 +32,8 @@ using ValuesByStep = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
                                    kLandmarkSize, kLandmarkDof>;
 ValuesByStep ByStep(VariableKind kind, const double* values);
 
-// by_steps = by_values ByStep(kind, values), which need not be made: all but a rotation's values
-// are steps already.
+// by_steps = by_values ByStep(kind, values), by_values with NumValues columns. But for rotations
+// and normals, values are steps, and are copied.
 using ByValues = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 void ChainToSteps(VariableKind kind, const double* values, const ByValues& by_values,
                   Eigen::MatrixXd* by_steps);

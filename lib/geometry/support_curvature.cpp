@@ -30,8 +30,7 @@ SupportCurvature CurvatureOfSupport(const Eigen::Vector3d& half_axes, double sha
   const Eigen::Vector3d& m = direction_in_object;
   const Eigen::Vector3d& by_log = value.by_log_half_axes;
   const double p = shape_exponent;
-  const double rounding = kEdgeRounding * (kEllipsoidExponent - p);
-  const double e2 = rounding * rounding;
+  const double e2 = SquaredRounding(p);
   SupportCurvature curvature;
   if (!(value.extent > 0.0)) {  // a flat body, from its side
     curvature.by_direction.setZero();

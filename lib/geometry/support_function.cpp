@@ -18,18 +18,13 @@ SupportValue OfEllipsoid(const Eigen::Vector3d& half_axes, const Eigen::Vector3d
   return {extent, inverse * half_axes.cwiseProduct(scaled), inverse * scaled.cwiseAbs2()};
 }
 
-// e^2
-double SquaredRounding(double shape_exponent) {
-  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
-  return rounding * rounding;
-}
-
-}  // namespace
-
+// |m_i|
 Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_exponent) {
   return (direction.array().square() + SquaredRounding(shape_exponent) * direction.squaredNorm())
       .sqrt();
 }
+
+}  // namespace
 
 Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm) {
   if (p == kCuboidExponent) {

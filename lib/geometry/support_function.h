@@ -23,13 +23,15 @@ struct SupportValue {
   Eigen::Vector3d by_log_half_axes;  // dh / d log (a, b, c)
 };
 inline constexpr double kEdgeRounding = 1e-3;
+constexpr double SquaredRounding(double shape_exponent) {  // e^2
+  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
+  return rounding * rounding;
+}
 
 // 1 <= shape_exponent <= 2, half_axes >= 0, direction not zero.
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object);
 
-// |m_i|, rounded as said above.
-Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_exponent);
 // The derivatives d h / d u_i = (u_i / h)^(p - 1) of the norm h = || u ||_p; u >= 0, not zero.
 Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm);
 

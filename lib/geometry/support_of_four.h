@@ -9,9 +9,8 @@
 
 namespace soslam {
 
-// h = || u ||_p and dh / d log u, of four u at once; 1 <= p <= 2, u >= 0 or, for
-// p = 2, of any sign. Not finite for u = 0
-// where p is neither 1 nor 2.
+// h = || u ||_p and dh / d log u, of four u at once; 1 <= p <= 2, u >= 0 or, for p = 2, of any
+// sign.
 SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* h,
                                            ThreeFours* by_log_u) {
   if (p == kCuboidExponent) {
@@ -22,23 +21,18 @@ SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* 
   if (p == kEllipsoidExponent) {
     const Four squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
     SquareRoot(squares, h);
-    const Four inverse = 1.0 / (*h > 0.0 ? *h : Four{} + 1.0);
+    const Four inverse = *h > 0.0 ? 1.0 / *h : Four{};
     for (size_t i = 0; i < 3; ++i) (*by_log_u)[i] = u[i] * u[i] * inverse;
     return;
   }
   for (size_t k = 0; k < 4; ++k) {
     const Eigen::Array3d u_of_one(u[0][k], u[1][k], u[2][k]);
     double norm = 0.0;
-    const Eigen::Array3d by_u = NormByComponents(u_of_one, p, &norm);
+    Eigen::Array3d by_u = Eigen::Array3d::Zero();
+    if (!(u_of_one == 0.0).all()) by_u = NormByComponents(u_of_one, p, &norm);
     (*h)[k] = norm;
     for (size_t i = 0; i < 3; ++i) (*by_log_u)[i][k] = by_u[i] * u_of_one[i];
   }
-}
-
-// e^2 of support_function.h.
-SOSLAM_IN_WIDE_LOOPS double SquaredRounding(double shape_exponent) {
-  const double rounding = kEdgeRounding * (kEllipsoidExponent - shape_exponent);
-  return rounding * rounding;
 }
 
 // Of the rounded |m_i|.
@@ -50,11 +44,11 @@ SOSLAM_IN_WIDE_LOOPS void SquaresOfRounded(double shape_exponent, const ThreeFou
   for (Four& square : *squares) square += rounding;
 }
 
-// SupportFunction of a body towards four directions m at once.
+// SupportFunction of a body towards four directions m, not zero, at once.
 struct SupportOfFour {
   ThreeFours squares;  // of the rounded |m_i|
   Four extent;         // h
-  Four inverse;        // 1 / h; 1 of a flat body from its side
+  Four inverse;        // 1 / h; 0 of a flat body from its side
   ThreeFours by_log_half_axes;
   ThreeFours shares;  // those over the squares
 
@@ -79,7 +73,7 @@ SOSLAM_IN_WIDE_LOOPS void FindSupport(const Eigen::Vector3d& half_axes, double s
     u[i] = half_axes[static_cast<int>(i)] * rounded;
   }
   NormByLogarithms(p, u, &support->extent, &support->by_log_half_axes);
-  support->inverse = 1.0 / (support->extent > 0.0 ? support->extent : Four{} + 1.0);
+  support->inverse = support->extent > 0.0 ? 1.0 / support->extent : Four{};
   for (size_t i = 0; i < 3; ++i) {
     const double half_axis = half_axes[static_cast<int>(i)];
     support->shares[i] = is_ellipsoid ? half_axis * half_axis * support->inverse

@@ -181,7 +181,7 @@ std::vector<std::optional<StartAtYaw>> ClosedForm::At(const std::vector<double>&
   for (size_t first = 0; first < yaws.size(); first += 4) {
     const size_t count = std::min<size_t>(4, yaws.size() - first);
     FourHeadings headings;
-    for (size_t k = 0; k < count; ++k) headings.Set(k, yaws[first + k]);
+    for (size_t k = 0; k < 4; ++k) headings.Set(k, yaws[std::min(first + k, yaws.size() - 1)]);
     FourSolutions solutions;
     Solve(equations_, headings, &solutions);
     for (size_t k = 0; k < count; ++k) {

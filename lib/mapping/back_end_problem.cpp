@@ -221,15 +221,15 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_came
 
 void BackEndProblem::AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views) {
   const Detection& detection = input_.sequence.detections[index];
-  const int pose = Pose(detection);
   const int landmark = LandmarkOf(detection);
-  const int bias = variables_.Bias();
   if (options_.hold_poses && !(options_.detector_bias_sigma_px > 0.0)) {
     const Rigid3d world_from_camera =
         variables_.PoseValue(static_cast<size_t>(detection.frame_index));
     (*held_views)[landmark].push_back({world_from_camera, box, view_weights_[index]});
     return;
   }
+  const int pose = Pose(detection);
+  const int bias = variables_.Bias();
   terms_.push_back(std::make_unique<TangencyTerm>(
       std::array{pose, landmark, bias},
       TangencyTerm::Blocks{variables_.Values(pose), variables_.Values(landmark),

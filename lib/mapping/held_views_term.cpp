@@ -92,19 +92,15 @@ SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const Body& body,
   }
 }
 
-// HuberLoss. A bound that is not reached costs nothing.
+// Of an edge that has no weight, and of a bound that is not reached, nothing.
 SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourViews& views, size_t side, const Four& excess,
-                                     double delta, bool is_near, Losses* losses) {
-  const Four length = excess < 0.0 ? -excess : excess;
-  const FourMask is_beyond = length > delta;
-  const FourMask is_idle = (views.is_bound[side] > 0.0) & (excess > 0.0);
-  const Four weight = is_idle ? Four{} : views.weights[side];
-  const Four share = is_beyond ? delta / length : Four{} + 1.0;
-  losses->cost = weight * (is_beyond ? delta * (length - 0.5 * delta) : 0.5 * length * length);
-  losses->slope = weight * share * excess;
-  losses->curvature = weight * share;
-  if (is_near)
-    Replace(is_beyond, HuberLoss::kLeastCurvature * losses->curvature, &losses->curvature);
+                                     const HuberLoss& loss, bool is_near, Losses* losses) {
+  const Four& weight = views.weights[side];
+  const FourMask is_idle = (weight == 0.0) | ((views.is_bound[side] > 0.0) & (excess > 0.0));
+  const HuberLoss::FourValues values = loss(excess < 0.0 ? -excess : excess);
+  losses->cost = is_idle ? Four{} : weight * values.cost;
+  losses->slope = is_idle ? Four{} : weight * values.weight * excess;
+  losses->curvature = is_idle ? Four{} : weight * (is_near ? values.curvature : values.weight);
 }
 
 SOSLAM_IN_WIDE_LOOPS void AddInformation(const std::array<Excess, 4>& excesses,
@@ -140,11 +136,12 @@ SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Excess& exces
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
     const Four turn = less * excess.by_turn[i];
-    auto& by_turn = sums->hessian[kTurn + i];
-    by_turn[kTurn + i] +=
+    auto& turn_row = sums->hessian[kTurn + i];
+    turn_row[kTurn + i] +=
         factor * (diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j] - turn * excess.by_turn[i]);
     for (size_t l = 0; l < i; ++l) {
-      by_turn[kTurn + l] -= factor * (diagonal[3 - i - l] * m[i] * m[l] + turn * excess.by_turn[l]);
+      turn_row[kTurn + l] -=
+          factor * (diagonal[3 - i - l] * m[i] * m[l] + turn * excess.by_turn[l]);
     }
   }
 }
@@ -160,20 +157,20 @@ SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const Body& body, const Excess& exce
   const ThreeFours q = support.Contact(p, m);
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    auto& by_turn = sums->hessian[kTurn + i];
-    by_turn[kTurn + i] -= factor * (m[j] * q[j] + m[k] * q[k]);
+    auto& turn_row = sums->hessian[kTurn + i];
+    turn_row[kTurn + i] -= factor * (m[j] * q[j] + m[k] * q[k]);
     for (size_t l = 0; l < i; ++l) {
-      by_turn[kTurn + l] += 0.5 * factor * (m[i] * q[l] + m[l] * q[i]);
+      turn_row[kTurn + l] += 0.5 * factor * (m[i] * q[l] + m[l] * q[i]);
     }
 
-    auto& by_axis = sums->hessian[kAxes + i];
+    auto& axis_row = sums->hessian[kAxes + i];
     const Four axis = factor * less * support.by_log_half_axes[i];
     const Four edge = factor * p * shares[i] * m[i];
-    by_axis[kTurn + j] -= edge * m[k];
-    by_axis[kTurn + k] += edge * m[j];
-    for (size_t l = 0; l < 3; ++l) by_axis[kTurn + l] -= axis * excess.by_turn[l];
-    by_axis[kAxes + i] += factor * p * support.by_log_half_axes[i];
-    for (size_t l = 0; l <= i; ++l) by_axis[kAxes + l] -= axis * support.by_log_half_axes[l];
+    axis_row[kTurn + j] -= edge * m[k];
+    axis_row[kTurn + k] += edge * m[j];
+    for (size_t l = 0; l < 3; ++l) axis_row[kTurn + l] -= axis * excess.by_turn[l];
+    axis_row[kAxes + i] += factor * p * support.by_log_half_axes[i];
+    for (size_t l = 0; l <= i; ++l) axis_row[kAxes + l] -= axis * support.by_log_half_axes[l];
   }
 }
 
@@ -192,8 +189,8 @@ SOSLAM_IN_WIDE_LOOPS void AddDepthProducts(const Gradient& gradient, const Three
   }
 }
 
-SOSLAM_WIDE_LOOPS void AddViews(const std::vector<FourViews>& all, const Body& body, double delta,
-                                Hessian hessian, Sums* sums) {
+SOSLAM_WIDE_LOOPS void AddViews(const std::vector<FourViews>& all, const Body& body,
+                                const HuberLoss& loss, Hessian hessian, Sums* sums) {
   const bool is_near = hessian == Hessian::kNear;
   const bool has_kinks = hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
   for (const FourViews& views : all) {
@@ -205,7 +202,7 @@ SOSLAM_WIDE_LOOPS void AddViews(const std::vector<FourViews>& all, const Body& b
     for (size_t side = 0; side < 4; ++side) {
       Excess& excess = excesses[side];
       FindExcess(views.planes[side], body, depths, &excess);
-      FindLosses(views, side, excess.value, delta, is_near, &losses[side]);
+      FindLosses(views, side, excess.value, loss, is_near, &losses[side]);
       sums->cost += losses[side].cost;
       const Four& slope = losses[side].slope;
       for (size_t i = 0; i < kLandmarkDof; ++i) gradient[i] += slope * excess.gradient[i];
@@ -246,7 +243,7 @@ HeldViewsTerm::HeldViewsTerm(int variable, const double* landmark_in_world,
     set(world_from_camera.col(2), &four.optical_axis);
     four.least_depth_m[place] = view.box.least_depth_m;
     for (size_t side = 0; side < 4; ++side) {
-      set(world_from_camera.col(2), &four.planes[side]);
+      set(world_from_camera.col(2), &four.planes[side]);  // any but zero
       four.weights[side][place] = four.is_bound[side][place] = 0.0;
     }
     for (int k = 0; k < view.box.num_edges; ++k) {
@@ -267,7 +264,7 @@ double HeldViewsTerm::Linearise(Hessian hessian, const TermPlaces& places) const
       shape_exponent_,
   };
   Sums sums;
-  AddViews(views_, body, loss_.delta, hessian, &sums);
+  AddViews(views_, body, loss_, hessian, &sums);
   const double cost = Sum(sums.cost);
   if (!std::isfinite(cost)) return std::numeric_limits<double>::infinity();
   if (places.gradient[0] == nullptr) return cost;

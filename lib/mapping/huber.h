@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/wide_loops.h"
+
 namespace soslam {
 
 // The Huber loss of a residual of length r: r^2 / 2 up to delta, and linear from there.
@@ -19,6 +21,19 @@ struct HuberLoss {
     if (!(length > delta)) return {0.5 * length * length, 1.0, 1.0};
     const double weight = delta / length;
     return {delta * (length - 0.5 * delta), weight, kLeastCurvature * weight};
+  }
+
+  // Of four residuals.
+  struct FourValues {
+    Four cost, weight, curvature;
+  };
+  SOSLAM_IN_WIDE_LOOPS FourValues operator()(const Four& length) const {
+    const FourMask is_beyond = length > delta;
+    FourValues values;
+    values.weight = is_beyond ? delta / length : Four{} + 1.0;
+    values.cost = is_beyond ? delta * (length - 0.5 * delta) : 0.5 * length * length;
+    values.curvature = is_beyond ? kLeastCurvature * values.weight : values.weight;
+    return values;
   }
 
   static constexpr double kLeastCurvature = 0.01;

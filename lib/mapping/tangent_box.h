@@ -17,10 +17,11 @@ namespace soslam {
 // are left out.
 struct TangentBox {
   struct Edge {
-    Eigen::Vector3d plane;  // in the camera frame; over sigma and the point's depth by the centre's
-    double per_px;          // 1 / sigma
-    int side;               // which one of the box
-    bool is_bound;
+    // In the camera frame; over sigma and the point's depth by the centre's.
+    Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+    double per_px = 0.0;  // 1 / sigma
+    int side = 0;         // which one of the box
+    bool is_bound = false;
   };
 
   TangentBox(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera);
@@ -28,7 +29,7 @@ struct TangentBox {
   double shape_exponent;
   double least_depth_m;  // of the centre
   int num_edges = 0;
-  std::array<Edge, 4> edges;
+  std::array<Edge, 4> edges{};
 };
 
 }  // namespace soslam

@@ -35,7 +35,7 @@ TEST(SupportOfFour, IsTheSupportFunctionOfEach) {
 }
 
 TEST(SupportOfFour, OfABodyWithoutSizeIsZero) {
-  for (const double p : {kCuboidExponent, kEllipsoidExponent}) {
+  for (const double p : kShapeExponents) {
     alignas(kFourAlignment) ThreeFours m{};
     for (size_t k = 0; k < 4; ++k) m[2][k] = RandomUniform(0.5, 1.0);
     const Eigen::Vector3d half_axes = Eigen::Vector3d::Zero();
@@ -44,6 +44,8 @@ TEST(SupportOfFour, OfABodyWithoutSizeIsZero) {
     const ThreeFours contact = support.Contact(p, m);
     for (size_t k = 0; k < 4; ++k) {
       EXPECT_EQ(support.extent[k], SupportFunction(half_axes, p, {0.0, 0.0, m[2][k]}).extent);
+      EXPECT_EQ(support.inverse[k], 0.0);
+      EXPECT_EQ(support.shares[2][k], 0.0);
       EXPECT_EQ(contact[2][k], 0.0);
     }
   }

@@ -235,13 +235,5 @@ TEST(TangencyTerm, ABodyBehindTheCameraIsComparedAtATenthOfItsDepth) {
   }
 }
 
-TEST(TangentBox, LeavesOutEdgesBehindTheCamera) {
-  ViewOfBox view(2.0, {}, 1.0);
-  EXPECT_EQ(TangentBox(view.edges, view.start).num_edges, 4);
-  Landmark behind = view.start;
-  behind.frame_from_object.translation.z() = -5.0;
-  EXPECT_EQ(TangentBox(view.edges, behind).num_edges, 0);
-}
-
 }  // namespace
 }  // namespace soslam
