@@ -92,15 +92,16 @@ SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const Body& body,
   }
 }
 
-// Of an edge that has no weight, and of a bound that is not reached, nothing.
+// Of a bound that is not reached, nothing. Excesses that are not finite make the cost so, even
+// those without weight: nothing that is made of them is to be added.
 SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourViews& views, size_t side, const Four& excess,
                                      const HuberLoss& loss, bool is_near, Losses* losses) {
-  const Four& weight = views.weights[side];
-  const FourMask is_idle = (weight == 0.0) | ((views.is_bound[side] > 0.0) & (excess > 0.0));
+  const FourMask is_idle = (views.is_bound[side] > 0.0) & (excess > 0.0);
+  const Four weight = is_idle ? Four{} : views.weights[side];
   const HuberLoss::FourValues values = loss(excess < 0.0 ? -excess : excess);
-  losses->cost = is_idle ? Four{} : weight * values.cost;
-  losses->slope = is_idle ? Four{} : weight * values.weight * excess;
-  losses->curvature = is_idle ? Four{} : weight * (is_near ? values.curvature : values.weight);
+  losses->cost = weight * values.cost;
+  losses->slope = weight * values.weight * excess;
+  losses->curvature = weight * (is_near ? values.curvature : values.weight);
 }
 
 SOSLAM_IN_WIDE_LOOPS void AddInformation(const std::array<Excess, 4>& excesses,
@@ -277,8 +278,9 @@ double HeldViewsTerm::Linearise(Hessian hessian, const TermPlaces& places) const
   gradient.head<3>() += to_world * by_turn;
   Eigen::Matrix<double, kLandmarkDof, 3> turn_columns;
   for (int i = 0; i < kLandmarkDof; ++i) {
-    for (int j = 0; j < 3; ++j)
+    for (int j = 0; j < 3; ++j) {
       turn_columns(i, j) = Sum(sums.hessian[std::max(i, j)][std::min(i, j)]);
+    }
     if (i < 3) continue;
     gradient[i] += Sum(sums.gradient[i]);
     for (int j = 3; j <= i; ++j) square(i, j) += Sum(sums.hessian[i][j]);
