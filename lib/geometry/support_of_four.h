@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 
 #include "base/wide_loops.h"
 #include "geometry/support_function.h"

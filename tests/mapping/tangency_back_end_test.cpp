@@ -58,12 +58,17 @@ TEST(TangencyBackEnd, PlanesThatAreGivenOrNotToBeRefinedStayAsTheyAre) {
   EXPECT_EQ(OptimiseMap(TruthInput(sequence), options).planes_in_world[0].normal, before.normal);
 }
 
-TEST(TangencyBackEnd, PosesThatAreHeldStayAsTheyAre) {
+struct HeldPosesTest : testing::Test {
+  HeldPosesTest() {
+    Disturb(&input);
+    options.hold_poses = true;
+  }
   const Sequence sequence = CuboidSequence(4, 12);
   BackEndInput input = TruthInput(sequence);
-  Disturb(&input);
   OptimiseOptions options = TangencyOptions();
-  options.hold_poses = true;
+};
+
+TEST_F(HeldPosesTest, StayAsTheyAre) {
   const MapEstimate map = OptimiseMap(input, options);
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     const Rigid3d& given = sequence.frames[i].world_from_camera;
@@ -75,12 +80,7 @@ TEST(TangencyBackEnd, PosesThatAreHeldStayAsTheyAre) {
 }
 
 // Views are looked at one by one where there is a bias.
-TEST(TangencyBackEnd, HeldPosesWithABiasThatIsNextToNoneAreTheSameProblem) {
-  const Sequence sequence = CuboidSequence(4, 12);
-  BackEndInput input = TruthInput(sequence);
-  Disturb(&input);
-  OptimiseOptions options = TangencyOptions();
-  options.hold_poses = true;
+TEST_F(HeldPosesTest, AreTheSameProblemWithABiasThatIsNextToNone) {
   const MapEstimate without = OptimiseMap(input, options);
   options.detector_bias_sigma_px = 1e-9;
   const MapEstimate with = OptimiseMap(input, options);
