@@ -55,6 +55,18 @@ inline constexpr size_t kFourAlignment = sizeof(Four);
 // What comparing them gives: all bits of a number's place, or none.
 using FourMask = decltype(Four{} < Four{});
 
+// Among other numbers. (GCC would copy what std::memcpy takes by halves.)
+using FourInMemory
+    [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] =
+        double;
+SOSLAM_IN_WIDE_LOOPS void Load(const double* from, Four* four) {
+  *four = *reinterpret_cast<const FourInMemory*>(from);
+}
+
+SOSLAM_IN_WIDE_LOOPS void Store(const Four& four, double* to) {
+  *reinterpret_cast<FourInMemory*>(to) = four;
+}
+
 // Whether it holds for any of the four.
 SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;

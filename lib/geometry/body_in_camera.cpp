@@ -3,7 +3,26 @@
 
 #include <algorithm>
 
+#include "base/wide_loops.h"
+
 namespace soslam {
+namespace {
+
+// The rays (x, y, 1) in the object frame.
+SOSLAM_WIDE_LOOPS void TurnBack(const Eigen::Matrix3d& rotation, const Batch& x, const Batch& y,
+                                BatchOfVectors* rays) {
+  for (int i = 0; i < 3; ++i) {
+    const double by_x = rotation(0, i), by_y = rotation(1, i), by_z = rotation(2, i);
+    for (int at = 0; at < kBatchSize; at += 4) {
+      Four four_x, four_y;
+      Load(x.data() + at, &four_x);
+      Load(y.data() + at, &four_y);
+      Store(by_x * four_x + by_y * four_y + by_z, (*rays)[i].data() + at);
+    }
+  }
+}
+
+}  // namespace
 
 BodyInCamera::BodyInCamera(const Landmark& landmark_in_camera)
     : rotation(landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
@@ -15,10 +34,7 @@ void BodyInCamera::Meet(const double* x, const double* y, size_t count, RayBatch
   Batch ray_x = Batch::Zero(), ray_y = Batch::Zero();
   std::copy_n(x, count, ray_x.data());
   std::copy_n(y, count, ray_y.data());
-  for (int i = 0; i < 3; ++i) {
-    rays->direction[static_cast<size_t>(i)] =
-        rotation(0, i) * ray_x + rotation(1, i) * ray_y + rotation(2, i);
-  }
+  TurnBack(rotation, ray_x, ray_y, &rays->direction);
   surface.Meet(camera_in_object, rays);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/wide_loops.h"
 #include "geometry/support_function.h"
 
 namespace soslam {
@@ -37,6 +38,34 @@ std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& o
   }
   if (!(entry < exit) || !(exit > 0.0)) return std::nullopt;
   return std::pair(entry, exit);
+}
+
+// As QuadricEntry and Gradient, for many rays.
+SOSLAM_WIDE_LOOPS void MeetQuadric(const Eigen::Vector3d& origin,
+                                   const Eigen::Vector3d& inverse_axes, RayBatch* rays) {
+  // With half axes of one.
+  const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes);
+  const double c = o.squaredNorm() - 1.0;
+  for (int at = 0; at < kBatchSize; at += 4) {
+    ThreeFours direction;
+    Four a{}, half_b{}, root;
+    for (int i = 0; i < 3; ++i) {
+      Load(rays->direction[i].data() + at, &direction[i]);
+      const Four d = inverse_axes[i] * direction[i];
+      a += d * d;
+      half_b += o[i] * d;
+    }
+    SquareRoot(half_b * half_b - a * c, &root);
+    // NaN for a ray that misses, negative for one that leads away; of an origin inside, none.
+    Four depth = Four{} - 1.0;
+    if (c > 0.0) depth = c / (root - half_b);
+    Store(depth, rays->depth.data() + at);
+    for (int i = 0; i < 3; ++i) {
+      const Four point = origin[i] + depth * direction[i];
+      Store(point, rays->point[i].data() + at);
+      Store((inverse_axes[i] * inverse_axes[i]) * point, rays->gradient[i].data() + at);
+    }
+  }
 }
 
 // The same for many rays: from entry to exit where entry < exit and exit > 0.
@@ -218,7 +247,7 @@ std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& orig
 
 void BodySurface::Meet(const Eigen::Vector3d& origin, RayBatch* rays) const {
   if (q_ == kEllipsoidExponent) {
-    MeetQuadric(origin, rays);
+    MeetQuadric(origin, inverse_axes_, rays);
     return;
   }
   // With half axes of one.
@@ -246,25 +275,6 @@ void BodySurface::Meet(const Eigen::Vector3d& origin, RayBatch* rays) const {
     for (size_t k = 0; k < 3; ++k) {
       rays->gradient[k][i] = gradient[static_cast<Eigen::Index>(k)];
     }
-  }
-}
-
-void BodySurface::MeetQuadric(const Eigen::Vector3d& origin, RayBatch* rays) const {
-  // With half axes of one; see QuadricEntry.
-  const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
-  const double c = o.squaredNorm() - 1.0;
-  Batch a = Batch::Zero(), half_b = Batch::Zero();
-  for (size_t i = 0; i < 3; ++i) {
-    const Batch d = inverse_axes_[i] * rays->direction[i];
-    a += d.square();
-    half_b += o[i] * d;
-  }
-  // NaN for a ray that misses, negative for one that leads away.
-  rays->depth = c / ((half_b.square() - a * c).sqrt() - half_b);
-  if (!(c > 0.0)) rays->depth.setConstant(-1.0);  // inside
-  for (int i = 0; i < 3; ++i) {
-    rays->point[i] = origin[i] + rays->depth * rays->direction[i];
-    rays->gradient[i] = (inverse_axes_[i] * inverse_axes_[i]) * rays->point[i];
   }
 }
 

@@ -49,7 +49,6 @@ class BodySurface {
                                      const Eigen::Vector3d& direction) const;
   std::optional<double> SuperquadricEntry(const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction) const;
-  void MeetQuadric(const Eigen::Vector3d& origin, RayBatch* rays) const;
 
   Eigen::Vector3d inverse_axes_;
   double q_;

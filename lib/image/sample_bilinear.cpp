@@ -2,12 +2,12 @@
 #include "image/sample_bilinear.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 #include "base/wide_loops.h"
+#include "image/sample_batch.h"
 
 namespace soslam {
 namespace {
@@ -33,74 +33,37 @@ std::optional<Sample> SampleTyped(const cv::Mat& map, const Eigen::Vector2d& pix
   return sample;
 }
 
-// Where pixels lie between the pixel centres of a map.
-struct Cells {
-  std::array<int, kBatchSize> top_left;  // offset of that centre in the map
-  Batch dx;                              // from it
-  Batch dy;
-  Batch nothing_outside;  // 0 inside of the map, NaN outside
-};
-
-SOSLAM_WIDE_LOOPS void Locate(const BatchOfPixels& __restrict pixels, int columns, int rows,
-                              int step, Cells* __restrict cells) {
-  const double* all_x = pixels[0].data();
-  const double* all_y = pixels[1].data();
-  const double last_x = columns - 1.0;
-  const double last_y = rows - 1.0;
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double x = all_x[i];
-    const double y = all_y[i];
-    const double inside_x = x >= 0.0 && x <= last_x ? x : 0.0;
-    const double inside_y = y >= 0.0 && y <= last_y ? y : 0.0;
-    const int column = std::min(static_cast<int>(inside_x), columns - 2);
-    const int row = std::min(static_cast<int>(inside_y), rows - 2);
-    cells->dx[i] = inside_x - column;
-    cells->dy[i] = inside_y - row;
-    cells->nothing_outside[i] = (inside_x == x ? 0.0 : kNone) + (inside_y == y ? 0.0 : kNone);
-    cells->top_left[static_cast<size_t>(i)] = row * step + column;
-  }
-}
-
-// The map at the four pixel centres around: top left, top right, bottom left, bottom right.
-using Corners = std::array<Batch, 4>;
-
 template <typename Scalar>
-void Gather(const cv::Mat& map, const Cells& cells, Corners* corners) {
-  const auto* values = map.ptr<Scalar>();
-  const size_t step = map.step1();
-  for (int i = 0; i < kBatchSize; ++i) {
-    const Scalar* corner = values + cells.top_left[static_cast<size_t>(i)];
-    (*corners)[0][i] = corner[0];
-    (*corners)[1][i] = corner[1];
-    (*corners)[2][i] = corner[step];
-    (*corners)[3][i] = corner[step + 1];
+SOSLAM_IN_WIDE_LOOPS void SampleBatch(const MapView<Scalar>& map, const BatchOfPixels& pixels,
+                                      Batch* values, BatchOfPixels* gradients) {
+  Cells cells;
+  for (int i = 0; i < kBatchSize; i += 4) {
+    Four x, y;
+    Load(pixels[0].data() + i, &x);
+    Load(pixels[1].data() + i, &y);
+    cells.Locate(map, x, y, i);
+  }
+  for (int i = 0; i < kBatchSize; i += 4) {
+    const SampleOfFour sample(map, cells, i);
+    Four value;
+    sample.Interpolate(&value);
+    Store(value, values->data() + i);
+    if (gradients == nullptr) continue;
+    Four by_x, by_y;
+    sample.Differentiate(&by_x, &by_y);
+    Store(by_x, (*gradients)[0].data() + i);
+    Store(by_y, (*gradients)[1].data() + i);
   }
 }
 
-SOSLAM_WIDE_LOOPS void Interpolate(const Corners& corners, const Cells& cells, Batch* values) {
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double dx = cells.dx[i];
-    const double dy = cells.dy[i];
-    const double top = (1.0 - dx) * corners[0][i] + dx * corners[1][i];
-    const double bottom = (1.0 - dx) * corners[2][i] + dx * corners[3][i];
-    (*values)[i] = (1.0 - dy) * top + dy * bottom + cells.nothing_outside[i];
-  }
+SOSLAM_WIDE_LOOPS void SampleBytes(const MapView<std::uint8_t>& map, const BatchOfPixels& pixels,
+                                   Batch* values, BatchOfPixels* gradients) {
+  SampleBatch(map, pixels, values, gradients);
 }
 
-SOSLAM_WIDE_LOOPS void Differentiate(const Corners& corners, const Cells& cells,
-                                     BatchOfPixels* gradients) {
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double dx = cells.dx[i];
-    const double dy = cells.dy[i];
-    const double by_x = (1.0 - dy) * (corners[1][i] - corners[0][i]) +  //
-                        dy * (corners[3][i] - corners[2][i]);
-    const double by_y = (1.0 - dx) * (corners[2][i] - corners[0][i]) +  //
-                        dx * (corners[3][i] - corners[1][i]);
-    // x - x is NaN for what is infinite or NaN.
-    const double zero_if_finite = (by_x - by_x) + (by_y - by_y) + cells.nothing_outside[i];
-    (*gradients)[0][i] = zero_if_finite == 0.0 ? by_x : 0.0;
-    (*gradients)[1][i] = zero_if_finite == 0.0 ? by_y : 0.0;
-  }
+SOSLAM_WIDE_LOOPS void SampleFloats(const MapView<float>& map, const BatchOfPixels& pixels,
+                                    Batch* values, BatchOfPixels* gradients) {
+  SampleBatch(map, pixels, values, gradients);
 }
 
 }  // namespace
@@ -124,14 +87,9 @@ Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels, BatchOfPix
     if (gradients != nullptr) gradients->fill(Batch::Zero());
     return Batch::Constant(kNone);
   }
-  Cells cells;
-  Locate(pixels, map.cols, map.rows, static_cast<int>(map.step1()), &cells);
-  Corners corners;
-  map.type() == CV_8UC1 ? Gather<std::uint8_t>(map, cells, &corners)
-                        : Gather<float>(map, cells, &corners);
   Batch values;
-  Interpolate(corners, cells, &values);
-  if (gradients != nullptr) Differentiate(corners, cells, gradients);
+  map.type() == CV_8UC1 ? SampleBytes(MapView<std::uint8_t>(map), pixels, &values, gradients)
+                        : SampleFloats(MapView<float>(map), pixels, &values, gradients);
   return values;
 }
 

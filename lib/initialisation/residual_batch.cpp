@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/residual_batch.h"
 
-#include <cstring>
-
 #include "base/wide_loops.h"
 
 namespace soslam {
@@ -24,11 +22,11 @@ SOSLAM_WIDE_LOOPS void Multiply(const Columns& columns, Products* __restrict pro
       Four sums{};
       for (int i = 0; i < kBatchSize; i += 4) {
         Four a, b;
-        std::memcpy(&a, one + i, sizeof(a));
-        std::memcpy(&b, other + i, sizeof(b));
+        Load(one + i, &a);
+        Load(other + i, &b);
         sums += a * b;
       }
-      (*products)[next++] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+      (*products)[next++] = Sum(sums);
     }
   }
 }

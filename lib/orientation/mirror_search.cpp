@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 #include <utility>
 
 #include "base/wide_loops.h"
+#include "image/sample_batch.h"
 #include "image/sample_bilinear.h"
 
 namespace soslam {
@@ -35,28 +37,63 @@ std::vector<T> Ordered(const std::vector<T>& values, const std::vector<size_t>& 
   return ordered;
 }
 
-// The pixels of points that are shifted first; NaN behind the camera.
-SOSLAM_WIDE_LOOPS void Project(const Camera& camera, const BatchOfVectors& points,
-                               const Eigen::Vector3d& shift, BatchOfPixels* pixels) {
+// A batch of mirrored points and the values at their own pixels; NaN where there is no point.
+struct Points {
+  const BatchOfVectors& in_camera;
+  const Batch& values;
+};
+
+// How points that are shifted first compare with the map there: adds d^2 / (d^2 + squared_scale)
+// and numbers of pairs. `is_pair` is 1 or 0: d is NaN or infinite where there is no pair.
+template <typename Scalar>
+SOSLAM_IN_WIDE_LOOPS void Compare(const MapView<Scalar>& map, double unit, const Camera& camera,
+                                  const Points& points, const Eigen::Vector3d& shift,
+                                  double squared_scale, MirrorSearch::Sums* sums, Batch* is_pair) {
+  // Copies, as what is written may be anything to the compiler.
   const auto [fx, fy, cx, cy] = std::tuple(camera.fx, camera.fy, camera.cx, camera.cy);
   const auto [shift_x, shift_y, shift_z] = std::tuple(shift.x(), shift.y(), shift.z());
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double depth = points[2][i] + shift_z;
-    const double inverse_depth = 1.0 / depth + (depth > 0.0 ? 0.0 : kNone);
-    (*pixels)[0][i] = fx * (points[0][i] + shift_x) * inverse_depth + cx;
-    (*pixels)[1][i] = fy * (points[1][i] + shift_y) * inverse_depth + cy;
+  const MapView<Scalar> view = map;
+  Cells cells;
+  for (int i = 0; i < kBatchSize; i += 4) {
+    Four x, y, depth;
+    Load(points.in_camera[0].data() + i, &x);
+    Load(points.in_camera[1].data() + i, &y);
+    Load(points.in_camera[2].data() + i, &depth);
+    depth += shift_z;
+    const Four inverse_depth = depth > 0.0 ? 1.0 / depth : Four{} + kNone;
+    cells.Locate(view, fx * (x + shift_x) * inverse_depth + cx,
+                 fy * (y + shift_y) * inverse_depth + cy, i);
   }
+  Four differences{}, pairs{};
+  for (int i = 0; i < kBatchSize; i += 4) {
+    Four value, mirrored;
+    Load(points.values.data() + i, &value);
+    SampleOfFour(view, cells, i).Interpolate(&mirrored);
+    const Four difference = value - unit * mirrored;
+    const Four squared = difference * difference;
+    const Four share = squared / (squared + squared_scale);
+    const FourMask known = share >= 0.0;
+    const Four pair = known ? Four{} + 1.0 : Four{};
+    differences += known ? share : Four{};
+    pairs += pair;
+    Store(pair, is_pair->data() + i);
+  }
+  sums->differences += Sum(differences);
+  sums->pairs += Sum(pairs);
 }
 
-// d^2 / (d^2 + scale^2), and 1, for each pair; 0 where d^2 is NaN or infinite: there is no pair.
-SOSLAM_WIDE_LOOPS void Count(const Batch& squared, double squared_scale, Batch* difference,
-                             Batch* pair) {
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double share = squared[i] / (squared[i] + squared_scale);
-    const bool is_pair = share >= 0.0;
-    (*difference)[i] = is_pair ? share : 0.0;
-    (*pair)[i] = is_pair ? 1.0 : 0.0;
-  }
+SOSLAM_WIDE_LOOPS void CompareBytes(const MapView<std::uint8_t>& map, double unit,
+                                    const Camera& camera, const Points& points,
+                                    const Eigen::Vector3d& shift, double squared_scale,
+                                    MirrorSearch::Sums* sums, Batch* is_pair) {
+  Compare(map, unit, camera, points, shift, squared_scale, sums, is_pair);
+}
+
+SOSLAM_WIDE_LOOPS void CompareFloats(const MapView<float>& map, double unit, const Camera& camera,
+                                     const Points& points, const Eigen::Vector3d& shift,
+                                     double squared_scale, MirrorSearch::Sums* sums,
+                                     Batch* is_pair) {
+  Compare(map, unit, camera, points, shift, squared_scale, sums, is_pair);
 }
 
 }  // namespace
@@ -86,17 +123,16 @@ void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_co
   y_axis_ = landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitY();
 }
 
-Batch MirrorSearch::SquaredDifferences(size_t batch, const Eigen::Vector3d& shift) const {
-  BatchOfPixels pixels;
-  Project(camera_, points_.in_camera[batch], shift, &pixels);
-  return (values_of_points_[batch] - unit_ * SampleBilinear(map_, pixels)).square();
-}
-
-void MirrorSearch::Add(size_t batch, double squared_scale, Place* place) const {
-  Batch difference, pair;
-  Count(SquaredDifferences(batch, place->shift), squared_scale, &difference, &pair);
-  place->sums.differences += difference.sum();
-  place->sums.pairs += pair.sum();
+void MirrorSearch::Add(size_t batch, double squared_scale, const Eigen::Vector3d& shift, Sums* sums,
+                       Batch* is_pair) const {
+  const Points points{points_.in_camera[batch], values_of_points_[batch]};
+  if (map_.type() == CV_8UC1) {
+    CompareBytes(MapView<std::uint8_t>(map_), unit_, camera_, points, shift, squared_scale, sums,
+                 is_pair);
+  } else {
+    CompareFloats(MapView<float>(map_), unit_, camera_, points, shift, squared_scale, sums,
+                  is_pair);
+  }
 }
 
 std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<double>& places,
@@ -105,21 +141,22 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
   const size_t batches = points_.in_camera.size();
   if (batches == 0) return least;
   const double squared_scale = scale * scale;
+  Batch is_pair;
   places_.clear();
   for (size_t i = 0; i < places.size(); ++i) {
     places_.push_back({i, Shift(places[i]), {}});
-    Add(0, squared_scale, &places_.back());
+    Add(0, squared_scale, places_.back().shift, &places_.back().sums, &is_pair);
   }
   // The most promising place first: the others need not be looked at to the end.
-  std::stable_sort(places_.begin(), places_.end(), [](const Place& one, const Place& other) {
-    return one.sums.differences < other.sums.differences;
-  });
+  std::iter_swap(places_.begin(), std::ranges::min_element(places_, {}, [](const Place& place) {
+                   return place.sums.differences;
+                 }));
   const auto most_pairs = static_cast<double>(points_.ray.size());
   for (Place& place : places_) {
     const double enough =
         least ? least->mean * most_pairs * kRounding : std::numeric_limits<double>::infinity();
     for (size_t batch = 1; batch < batches && place.sums.differences <= enough; ++batch) {
-      Add(batch, squared_scale, &place);
+      Add(batch, squared_scale, place.shift, &place.sums, &is_pair);
     }
     if (place.sums.differences > enough || place.sums.pairs < min_pairs) continue;
     const double mean = place.sums.differences / place.sums.pairs;
@@ -133,9 +170,11 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
 std::vector<Eigen::Vector2d> MirrorSearch::PixelsOfPairs(double place) const {
   std::vector<size_t> found;
   for (size_t batch = 0; batch < points_.in_camera.size(); ++batch) {
-    const Batch squared = SquaredDifferences(batch, Shift(place));
+    Batch is_pair;
+    Sums sums;
+    Add(batch, 1.0, Shift(place), &sums, &is_pair);
     for (int i = 0; i < kBatchSize; ++i) {
-      if (!std::isfinite(squared[i])) continue;
+      if (is_pair[i] == 0.0) continue;
       found.push_back(order_[points_.ray[batch * kBatchSize + static_cast<size_t>(i)]]);
     }
   }

@@ -17,9 +17,15 @@ namespace soslam {
 // SymmetryDescriptor finds pair by pair.
 class MirrorSearch {
  public:
-  // `image` has to outlive it.
+  // `image` has to outlive it; of at least 2 x 2 pixels.
   MirrorSearch(const SymmetryImage& image, const Camera& camera, Descriptor descriptor,
                std::vector<Eigen::Vector2d> pixels);
+
+  // Over pairs.
+  struct Sums {
+    double differences = 0.0;  // d^2 / (d^2 + scale^2)
+    double pairs = 0.0;
+  };
 
   // The landmark that the following is about.
   void See(const Landmark& landmark_in_camera, double min_viewing_cosine);
@@ -38,10 +44,6 @@ class MirrorSearch {
   std::vector<Eigen::Vector2d> PixelsOfPairs(double place) const;
 
  private:
-  struct Sums {
-    double differences = 0.0;  // d^2 / (d^2 + scale^2)
-    double pairs = 0.0;
-  };
   struct Place {
     size_t index;
     Eigen::Vector3d shift;  // what it adds to all mirror images, in the camera frame
@@ -49,9 +51,9 @@ class MirrorSearch {
   };
 
   Eigen::Vector3d Shift(double place) const { return 2.0 * place * size_ * y_axis_; }
-  // d^2 of a batch of points; NaN where there is no pair.
-  Batch SquaredDifferences(size_t batch, const Eigen::Vector3d& shift) const;
-  void Add(size_t batch, double squared_scale, Place* place) const;
+  // Adds what a batch of points comes to when shifted; `is_pair` is 1 or 0 for each.
+  void Add(size_t batch, double squared_scale, const Eigen::Vector3d& shift, Sums* sums,
+           Batch* is_pair) const;
 
   const cv::Mat map_;
   double unit_;  // of the map's values

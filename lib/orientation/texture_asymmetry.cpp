@@ -56,7 +56,9 @@ bool IsInAMap(Descriptor descriptor) {
 std::optional<MirrorSearch> MakeSearch(const SymmetryImage& image, const Camera& camera,
                                        const SymmetryOptions& options) {
   SampleCandidates candidates(image, options);
-  if (!IsInAMap(options.descriptor) || candidates.corners.size() > candidates.max_corners) {
+  const bool has_map =
+      IsInAMap(options.descriptor) && image.maps.grey.cols >= 2 && image.maps.grey.rows >= 2;
+  if (!has_map || candidates.corners.size() > candidates.max_corners) {
     return std::nullopt;
   }
   std::vector<Eigen::Vector2d> pixels = std::move(candidates.corners);
