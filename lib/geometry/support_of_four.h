@@ -43,6 +43,13 @@ SOSLAM_IN_WIDE_LOOPS void SquaresOfRounded(double shape_exponent, const ThreeFou
   for (Four& square : *squares) square += rounding;
 }
 
+SOSLAM_IN_WIDE_LOOPS void FindRounded(double shape_exponent, const ThreeFours& m,
+                                      ThreeFours* rounded) {
+  ThreeFours squares;
+  SquaresOfRounded(shape_exponent, m, &squares);
+  for (size_t i = 0; i < 3; ++i) SquareRoot(squares[i], &(*rounded)[i]);
+}
+
 // SupportFunction of a body towards four directions m, not zero, at once.
 struct SupportOfFour {
   ThreeFours squares;  // of the rounded |m_i|

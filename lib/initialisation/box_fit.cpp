@@ -25,29 +25,34 @@ BoxFit::BoxFit(const UprightObservation& observation)
                            observation.world_axis_in_camera.dot(ground_.x))) {}
 
 Eigen::Array4d BoxFit::TangentDepths(const UprightVector& start) const {
-  const double cosine = std::cos(start[kYaw]);
-  const double sine = std::sin(start[kYaw]);
+  const Heading heading(start[kYaw]);
   const Eigen::Vector3d half_axes = start.tail<3>().array().exp();
-  const Eigen::Vector3d axis_in_object = TurnedBack(box_.optical_axis, cosine, sine);
+  const Eigen::Vector3d axis_in_object = heading.TurnedBack(box_.optical_axis);
   const double centre_depth = box_.DepthOf({start[kFootX], start[kFootY], half_axes.z()});
   Eigen::Array4d depths_m;
   for (int i = 0; i < 4; ++i) {
     const SupportValue support = SupportFunction(half_axes, observation_.prior.shape_exponent,
-                                                 TurnedBack(box_.normals.row(i), cosine, sine));
+                                                 heading.TurnedBack(box_.normals.row(i)));
     depths_m[i] = centre_depth + axis_in_object.dot(support.contact);
   }
   return depths_m;
 }
 
+double BoxFit::NearestDepth(const UprightVector& at) const {
+  const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
+  const Eigen::Vector3d axis_in_object = Heading(at[kYaw]).TurnedBack(box_.optical_axis);
+  return box_.DepthOf({at[kFootX], at[kFootY], half_axes.z()}) -
+         SupportFunction(half_axes, observation_.prior.shape_exponent, axis_in_object).extent;
+}
+
 void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
                            QuadraticModel<6>* sum) const {
-  const double cosine = std::cos(at[kYaw]);
-  const double sine = std::sin(at[kYaw]);
+  const Heading heading(at[kYaw]);
   const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
   const Eigen::Vector3d centre(at[kFootX], at[kFootY], half_axes.z());
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d normal = box_.normals.row(i);
-    const Eigen::Vector3d in_object = TurnedBack(normal, cosine, sine);
+    const Eigen::Vector3d in_object = heading.TurnedBack(normal);
     const SupportValue support =
         SupportFunction(half_axes, observation_.prior.shape_exponent, in_object);
     const double outside = box_.at_origin[i] + normal.dot(centre) + support.extent;
@@ -110,28 +115,32 @@ double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
          ConstantCost(further);
 }
 
-std::vector<double> BoxFit::MinimiseAtYaws(std::span<StartAtYaw> starts) const {
-  std::vector<double> costs(starts.size(), std::numeric_limits<double>::quiet_NaN());
+std::vector<FitAtYaw> BoxFit::MinimiseAtYaws(std::span<const StartAtYaw> starts) const {
+  std::vector<FitAtYaw> fits(
+      starts.size(), {std::numeric_limits<double>::quiet_NaN(), UprightVector::Zero(), 0.0});
   if (!(box_.is_bound != 0.0).any()) {
     for (size_t first = 0; first < starts.size(); first += 4) {
       std::array<StartAtYaw, 4> four;
       for (size_t k = 0; k < four.size(); ++k) {
         four[k] = starts[std::min(first + k, starts.size() - 1)];
       }
-      const auto fits =
+      const auto found =
           FitFourYaws(box_, ratio_, observation_.prior.shape_exponent, kMaxIterations, four);
       for (size_t k = 0; k < four.size() && first + k < starts.size(); ++k) {
-        costs[first + k] = fits[k].cost + YawCost(fits[k].parameters[kYaw]);
-        starts[first + k].parameters = fits[k].parameters;
+        fits[first + k] = found[k];
+        fits[first + k].cost += YawCost(four[k].parameters[kYaw]);
       }
     }
   }
   // Whether edges that are bounds count depends on the foot; and others may not tell it.
   for (size_t i = 0; i < starts.size(); ++i) {
-    if (!std::isnan(costs[i])) continue;
-    costs[i] = Minimise({}, /*yaw_is_free=*/false, &starts[i].parameters);
+    FitAtYaw& fit = fits[i];
+    if (!std::isnan(fit.cost)) continue;
+    fit.parameters = starts[i].parameters;
+    fit.cost = Minimise({}, /*yaw_is_free=*/false, &fit.parameters);
+    fit.nearest_depth_m = NearestDepth(fit.parameters);
   }
-  return costs;
+  return fits;
 }
 
 }  // namespace soslam

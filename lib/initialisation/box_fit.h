@@ -31,12 +31,13 @@ class BoxFit {
   double Minimise(const LandmarkCosts& further, bool yaw_is_free, UprightVector* start) const;
 
   StartAtYaw StartAt(const UprightVector& parameters) const {
-    return {parameters, TangentDepths(parameters)};
+    return {parameters, Heading(parameters[0]), TangentDepths(parameters)};
   }
-  // The same without further costs and with yaws fixed, of all starts, whose parameters become
-  // those of the minima; four side by side.
-  std::vector<double> MinimiseAtYaws(std::span<StartAtYaw> starts) const;
+  // The same without further costs and with yaws fixed, of all starts; four side by side.
+  std::vector<FitAtYaw> MinimiseAtYaws(std::span<const StartAtYaw> starts) const;
 
+  // Of the body's points, m.
+  double NearestDepth(const UprightVector& at) const;
   double CostAtOwnDepths(const UprightVector& at) const {
     return Evaluate(TangentDepths(at), at).cost;
   }

@@ -31,30 +31,40 @@ struct BoxOnGround {
   double origin_depth;           // of the ground's origin, m
 };
 
-// A body, and how deep the points are where it touches the planes: where fits to a box start.
-struct StartAtYaw {
-  UprightVector parameters;
-  Eigen::Array4d depths_m;
-};
+// Where a body at a yaw faces.
+struct Heading {
+  Heading() = default;
+  explicit Heading(double yaw) : cosine(std::cos(yaw)), sine(std::sin(yaw)) {}
 
-// A direction of the ground's frame as seen from a body at a yaw with this cosine and sine.
-inline Eigen::Vector3d TurnedBack(const Eigen::Vector3d& direction, double cosine, double sine) {
-  return {cosine * direction.x() + sine * direction.y(),
-          cosine * direction.y() - sine * direction.x(), direction.z()};
-}
+  // A direction of the ground's frame as seen from the body.
+  Eigen::Vector3d TurnedBack(const Eigen::Vector3d& direction) const {
+    return {cosine * direction.x() + sine * direction.y(),
+            cosine * direction.y() - sine * direction.x(), direction.z()};
+  }
+
+  double cosine = 1.0;
+  double sine = 0.0;
+};
 
 // The same for four bodies.
 struct alignas(kFourAlignment) FourHeadings {
   Four cosines{}, sines{};
 
-  void Set(size_t place, double yaw) {
-    cosines[place] = std::cos(yaw);
-    sines[place] = std::sin(yaw);
+  void Set(size_t place, const Heading& heading) {
+    cosines[place] = heading.cosine;
+    sines[place] = heading.sine;
   }
   SOSLAM_IN_WIDE_LOOPS ThreeFours TurnedBack(const Eigen::Vector3d& direction) const {
     return {cosines * direction.x() + sines * direction.y(),
             cosines * direction.y() - sines * direction.x(), Four{} + direction.z()};
   }
+};
+
+// A body, and how deep the points are where it touches the planes: where fits to a box start.
+struct StartAtYaw {
+  UprightVector parameters;
+  Heading heading;  // of its yaw
+  Eigen::Array4d depths_m;
 };
 
 }  // namespace soslam

@@ -181,7 +181,11 @@ std::vector<std::optional<StartAtYaw>> ClosedForm::At(const std::vector<double>&
   for (size_t first = 0; first < yaws.size(); first += 4) {
     const size_t count = std::min<size_t>(4, yaws.size() - first);
     FourHeadings headings;
-    for (size_t k = 0; k < 4; ++k) headings.Set(k, yaws[std::min(first + k, yaws.size() - 1)]);
+    std::array<Heading, 4> of_yaws;
+    for (size_t k = 0; k < 4; ++k) {
+      of_yaws[k] = Heading(yaws[std::min(first + k, yaws.size() - 1)]);
+      headings.Set(k, of_yaws[k]);
+    }
     FourSolutions solutions;
     Solve(equations_, headings, &solutions);
     for (size_t k = 0; k < count; ++k) {
@@ -190,6 +194,7 @@ std::vector<std::optional<StartAtYaw>> ClosedForm::At(const std::vector<double>&
       StartAtYaw& start = starts[first + k].emplace();
       start.parameters << yaws[first + k], solutions.foot[0][k], solutions.foot[1][k],
           equations_.log_proportions + Eigen::Vector3d::Constant(std::log(half_height));
+      start.heading = of_yaws[k];
       for (size_t edge = 0; edge < 4; ++edge) {
         start.depths_m[edge] = solutions.depths_m[edge][k];
       }

@@ -35,6 +35,7 @@ struct Tangencies {
 
 // The fits to second order, as QuadraticModel has it; of the information, the lower triangle.
 struct Model {
+  ThreeFours half_axes{};
   Four cost{};
   std::array<Four, 2> foot{};  // the best one's negative, in its basis
   ThreeFours gradient{};
@@ -48,12 +49,8 @@ struct Rows {
 };
 
 // Of bodies whose foot is the ground's origin.
-SOSLAM_IN_WIDE_LOOPS void RowsAtOrigin(const Tangencies& tangencies,
-                                       const ThreeFours& log_half_axes, Rows* rows) {
-  ThreeFours half_axes;
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t k = 0; k < 4; ++k) half_axes[i][k] = std::exp(log_half_axes[i][k]);
-  }
+SOSLAM_IN_WIDE_LOOPS void RowsAtOrigin(const Tangencies& tangencies, const ThreeFours& half_axes,
+                                       Rows* rows) {
   for (size_t edge = 0; edge < 4; ++edge) {
     const Four weight = tangencies.weight[edge];
     ThreeFours u;
@@ -116,13 +113,17 @@ SOSLAM_IN_WIDE_LOOPS void AddRatio(const RatioRows& ratio, const ThreeFours& log
 SOSLAM_IN_WIDE_LOOPS void Evaluate(const Tangencies& tangencies, const RatioRows& ratio,
                                    const ThreeFours& log_half_axes, Model* model) {
   *model = Model();
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t k = 0; k < 4; ++k) model->half_axes[i][k] = std::exp(log_half_axes[i][k]);
+  }
   Rows rows;
-  RowsAtOrigin(tangencies, log_half_axes, &rows);
+  RowsAtOrigin(tangencies, model->half_axes, &rows);
   AddTangencies(tangencies, rows, model);
   AddRatio(ratio, log_half_axes, model);
 }
 
 SOSLAM_IN_WIDE_LOOPS void ReplaceModel(const FourMask& where, const Model& from, Model* to) {
+  Replace(where, from.half_axes, &to->half_axes);
   Replace(where, from.cost, &to->cost);
   Replace(where, from.foot, &to->foot);
   Replace(where, from.gradient, &to->gradient);
@@ -219,9 +220,7 @@ SOSLAM_IN_WIDE_LOOPS void Place(const BoxOnGround& box, double shape_exponent,
   for (int edge = 0; edge < 4; ++edge) {
     tangencies->weight[edge] = 1.0 / (starts.depths_m[edge] * box.sigma_px[edge]);
     const ThreeFours normal = starts.headings.TurnedBack(box.normals.row(edge));
-    ThreeFours squares;
-    SquaresOfRounded(shape_exponent, normal, &squares);
-    for (size_t i = 0; i < 3; ++i) SquareRoot(squares[i], &tangencies->rounded[edge][i]);
+    FindRounded(shape_exponent, normal, &tangencies->rounded[edge]);
   }
   FindFootBasis(box, tangencies);
 }
@@ -231,7 +230,21 @@ struct alignas(kFourAlignment) FourFits {
   Four cost;
   std::array<Four, 2> foot;
   ThreeFours log_half_axes;
+  Four nearest_depth_m;
 };
+
+SOSLAM_IN_WIDE_LOOPS void FindNearestDepth(const BoxOnGround& box, double shape_exponent,
+                                           const FourHeadings& headings,
+                                           const ThreeFours& half_axes, FourFits* fits) {
+  ThreeFours reach, by_logarithms;
+  FindRounded(shape_exponent, headings.TurnedBack(box.optical_axis), &reach);
+  for (size_t i = 0; i < 3; ++i) reach[i] *= half_axes[i];
+  Four extent;
+  NormByLogarithms(shape_exponent, reach, &extent, &by_logarithms);
+  const Eigen::Vector3d& axis = box.optical_axis;
+  fits->nearest_depth_m = box.origin_depth + axis[0] * fits->foot[0] + axis[1] * fits->foot[1] +
+                          axis[2] * half_axes[2] - extent;
+}
 
 SOSLAM_WIDE_LOOPS void Fit(const BoxOnGround& box, const RatioRows& ratio, double shape_exponent,
                            int max_iterations, const FourStarts& starts, FourFits* fits) {
@@ -249,6 +262,7 @@ SOSLAM_WIDE_LOOPS void Fit(const BoxOnGround& box, const RatioRows& ratio, doubl
   fits->cost = is_told & has_cost ? at.cost : Four{} + std::numeric_limits<double>::quiet_NaN();
   fits->foot[1] = -at.foot[1] / yy;
   fits->foot[0] = -(at.foot[0] + tangencies.r_xy * fits->foot[1]) / xx;
+  FindNearestDepth(box, shape_exponent, starts.headings, at.half_axes, fits);
 }
 
 }  // namespace
@@ -258,7 +272,7 @@ std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& rat
                                     const std::array<StartAtYaw, 4>& starts) {
   FourStarts four;
   for (size_t k = 0; k < starts.size(); ++k) {
-    four.headings.Set(k, starts[k].parameters[0]);
+    four.headings.Set(k, starts[k].heading);
     for (int edge = 0; edge < 4; ++edge) four.depths_m[edge][k] = starts[k].depths_m[edge];
     for (int i = 0; i < 3; ++i) four.log_half_axes[i][k] = starts[k].parameters[3 + i];
   }
@@ -267,7 +281,7 @@ std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& rat
 
   std::array<FitAtYaw, 4> fits;
   for (size_t k = 0; k < fits.size(); ++k) {
-    fits[k] = {found.cost[k], starts[k].parameters};
+    fits[k] = {found.cost[k], starts[k].parameters, found.nearest_depth_m[k]};
     if (std::isnan(found.cost[k])) continue;
     fits[k].parameters.tail<5>() << found.foot[0][k], found.foot[1][k], found.log_half_axes[0][k],
         found.log_half_axes[1][k], found.log_half_axes[2][k];

@@ -13,6 +13,7 @@ namespace soslam {
 struct FitAtYaw {
   double cost;               // NaN where the edges do not tell the foot, or the start has no cost
   UprightVector parameters;  // those of the start then
+  double nearest_depth_m;    // of the body's points; where there is a cost
 };
 
 // MinimiseSquares of what a box, none of whose edges is a bound, and its prior's ratios say, with

@@ -120,8 +120,7 @@ class LinearViews {
   std::optional<UprightSolution> SolveAt(double yaw) const {
     Body body = start_;
     body.yaw = yaw;
-    body.cosine = std::cos(yaw);
-    body.sine = std::sin(yaw);
+    body.heading = Heading(yaw);
     for (int round = 0; round < kMaxRounds; ++round) {
       const Eigen::Vector3d before = body.half_axes;
       const bool is_first = round == 0;
@@ -143,8 +142,7 @@ class LinearViews {
     Eigen::Vector3d centre;
     Eigen::Vector3d half_axes;
     double yaw = 0.0;
-    double cosine = 1.0;
-    double sine = 0.0;
+    Heading heading;
   };
 
   // As large as the boxes are high, where their rays meet.
@@ -175,7 +173,7 @@ class LinearViews {
   // `direction` in the ground's frame.
   SupportValue SupportOf(const Body& body, const Eigen::Vector3d& direction) const {
     return SupportFunction(body.half_axes, observation_.ShapeExponent(),
-                           TurnedBack(direction, body.cosine, body.sine));
+                           body.heading.TurnedBack(direction));
   }
 
   template <int kUnknowns>
@@ -210,8 +208,7 @@ class LinearViews {
     const Eigen::Vector3d normal = box.normals.row(edge);
     Contact contact{SupportOf(body, normal), box.DepthOf(body.centre), 0.0};
     if (!is_first) {
-      contact.depth_m +=
-          TurnedBack(box.optical_axis, body.cosine, body.sine).dot(contact.support.contact);
+      contact.depth_m += body.heading.TurnedBack(box.optical_axis).dot(contact.support.contact);
     }
     const double outside = box.at_origin[edge] + normal.dot(body.centre) + contact.support.extent;
     contact.excess = outside / (contact.depth_m * box.sigma_px[edge]);

@@ -149,8 +149,6 @@ QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& 
 struct UprightSolution {
   Landmark landmark;
   double cost;
-  // Part of it: what the further costs of a YawObjective of several rounds say.
-  double further_cost = 0.0;
 };
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkCosts& costs, bool yaw_is_free);

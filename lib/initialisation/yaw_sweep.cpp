@@ -32,73 +32,73 @@ class Fitter {
 
   // Of costs that depend on their start, again to those of the result; the cost is then that of the
   // result's own.
-  std::optional<UprightSolution> Fit(UprightVector parameters, bool yaw_is_free) const {
-    UprightSolution solution{};
+  std::optional<UprightFit> Fit(UprightVector parameters, bool yaw_is_free) const {
+    double cost = 0.0;
     for (int round = 0; round < objective_.rounds; ++round) {
-      solution.cost = box_fit_.Minimise(FurtherCosts(parameters), yaw_is_free, &parameters);
-      solution.landmark = LandmarkAt(parameters);
-      if (!IsPossible(solution)) return std::nullopt;
+      cost = box_fit_.Minimise(FurtherCosts(parameters), yaw_is_free, &parameters);
+      if (!IsPossible(cost, box_fit_.NearestDepth(parameters))) return std::nullopt;
     }
-    if (objective_.rounds > 1) {
-      solution.further_cost = TotalCost(FurtherCosts(parameters), solution.landmark);
-      solution.cost = box_fit_.CostAtOwnDepths(parameters) + solution.further_cost;
-    }
-    return WithExtraCost(solution);
+    if (objective_.rounds == 1) return WithExtraCost({parameters, cost});
+    const double further_cost = TotalCost(FurtherCosts(parameters), LandmarkAt(parameters));
+    return WithExtraCost(
+        {parameters, box_fit_.CostAtOwnDepths(parameters) + further_cost, further_cost});
   }
 
   using Starts = std::vector<std::optional<StartAtYaw>>;
   // At the yaws of all starts; none where there is no start, or no landmark.
-  std::vector<std::optional<UprightSolution>> FitAtYaws(const Starts& starts) const {
-    std::vector<std::optional<UprightSolution>> solutions(starts.size());
+  std::vector<std::optional<UprightFit>> FitAtYaws(const Starts& starts) const {
+    std::vector<std::optional<UprightFit>> fits(starts.size());
     if (objective_.further_costs || objective_.rounds > 1) {
       for (size_t i = 0; i < starts.size(); ++i) {
-        if (starts[i]) solutions[i] = Fit(starts[i]->parameters, /*yaw_is_free=*/false);
+        if (starts[i]) fits[i] = Fit(starts[i]->parameters, /*yaw_is_free=*/false);
       }
-      return solutions;
+      return fits;
     }
-    std::vector<StartAtYaw> fits;
+    std::vector<StartAtYaw> given;
     for (const auto& start : starts) {
-      if (start) fits.push_back(*start);
+      if (start) given.push_back(*start);
     }
-    const std::vector<double> costs = box_fit_.MinimiseAtYaws(fits);
-    size_t next = 0;
+    const std::vector<FitAtYaw> found = box_fit_.MinimiseAtYaws(given);
+    auto next = found.begin();
     for (size_t i = 0; i < starts.size(); ++i) {
       if (!starts[i]) continue;
-      const UprightSolution solution{LandmarkAt(fits[next].parameters), costs[next]};
-      if (IsPossible(solution)) solutions[i] = WithExtraCost(solution);
+      if (IsPossible(next->cost, next->nearest_depth_m)) {
+        fits[i] = WithExtraCost({next->parameters, next->cost});
+      }
       ++next;
     }
-    return solutions;
+    return fits;
   }
 
   // The best landmark near a grid point. Without an extra cost the fit finds the yaw; with one a
   // finer grid does.
-  std::optional<UprightSolution> RefineYaw(const Landmark& start, double step) const {
-    const UprightVector parameters = box_fit_.ground().ParametersOf(start);
-    if (!objective_.extra_cost) return Fit(parameters, /*yaw_is_free=*/true);
+  std::optional<UprightFit> RefineYaw(const UprightVector& start, double step) const {
+    if (!objective_.extra_cost) return Fit(start, /*yaw_is_free=*/true);
     Starts turned;
     for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
-      UprightVector at = parameters;
+      UprightVector at = start;
       at[0] += i * step / kRefinementSteps;
       turned.push_back(box_fit_.StartAt(at));
     }
-    std::optional<UprightSolution> best;
-    for (const auto& solution : FitAtYaws(turned)) {
-      if (solution && (!best || solution->cost < best->cost)) best = solution;
+    std::optional<UprightFit> best;
+    for (const auto& fit : FitAtYaws(turned)) {
+      if (fit && (!best || fit->cost < best->cost)) best = fit;
     }
     return best;
   }
 
- private:
-  static bool IsPossible(const UprightSolution& solution) {
-    return std::isfinite(solution.cost) && IsInFront(solution.landmark);
-  }
-  UprightSolution WithExtraCost(UprightSolution solution) const {
-    if (objective_.extra_cost) solution.cost += objective_.extra_cost(solution.landmark);
-    return solution;
-  }
   Landmark LandmarkAt(const UprightVector& parameters) const {
     return box_fit_.ground().LandmarkAt(parameters, shape_exponent_);
+  }
+
+ private:
+  // Of landmarks in front of the camera.
+  static bool IsPossible(double cost, double nearest_depth_m) {
+    return std::isfinite(cost) && nearest_depth_m > 0.0;
+  }
+  UprightFit WithExtraCost(UprightFit fit) const {
+    if (objective_.extra_cost) fit.cost += objective_.extra_cost(LandmarkAt(fit.parameters));
+    return fit;
   }
   LandmarkCosts FurtherCosts(const UprightVector& start) const {
     return objective_.further_costs ? objective_.further_costs(LandmarkAt(start)) : LandmarkCosts();
@@ -118,8 +118,8 @@ std::string WhyNoSolution(const UprightObservation& observation) {
 
 std::vector<double> YawSweep::Costs() const {
   std::vector<double> costs;
-  for (const auto& solution : solutions) {
-    costs.push_back(solution ? solution->cost : std::numeric_limits<double>::quiet_NaN());
+  for (const auto& fit : fits) {
+    costs.push_back(fit ? fit->cost : std::numeric_limits<double>::quiet_NaN());
   }
   return costs;
 }
@@ -133,8 +133,8 @@ double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
     nodes.emplace_back(YawDifferenceModuloPi(optimum.yaw, centre), optimum.cost);
   }
   for (size_t i = 0; i < yaw.size(); ++i) {
-    if (!solutions[i]) continue;
-    nodes.emplace_back(YawDifferenceModuloPi(yaw[i], centre), solutions[i]->cost);
+    if (!fits[i]) continue;
+    nodes.emplace_back(YawDifferenceModuloPi(yaw[i], centre), fits[i]->cost);
   }
   std::sort(nodes.begin(), nodes.end());
   double lowest = std::numeric_limits<double>::infinity();
@@ -166,14 +166,15 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
   YawSweep sweep;
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
   for (int i = 0; i < steps; ++i) sweep.yaw.push_back(i * std::numbers::pi / steps);
-  sweep.solutions = Fitter(observation, objective).FitAtYaws(ClosedForm(observation).At(sweep.yaw));
+  sweep.fits = Fitter(observation, objective).FitAtYaws(ClosedForm(observation).At(sweep.yaw));
   return sweep;
 }
 
 std::vector<size_t> CircularMinima(const std::vector<double>& values) {
   const size_t n = values.size();
   const auto height = [&](size_t i) {
-    return std::isnan(values[i % n]) ? std::numeric_limits<double>::infinity() : values[i % n];
+    const double value = values[i < n ? i : i - n];
+    return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
   };
   std::vector<size_t> minima;
   for (size_t i = 0; i < n; ++i) {
@@ -195,30 +196,34 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
                                          const YawObjective& objective, const YawSweep& sweep,
                                          size_t max_count) {
   const double step = std::numbers::pi / static_cast<double>(sweep.yaw.size());
-  const auto yaw_of = [&](const UprightSolution& solution) {
-    return Yaw(observation.plane_in_camera.normal, solution.landmark.frame_from_object.rotation);
+  const auto yaw_of = [](const UprightFit& fit) {
+    return std::remainder(fit.parameters[0], 2.0 * std::numbers::pi);
   };
   const Fitter fitter(observation, objective);
-  std::vector<UprightSolution> optima;
+  std::vector<UprightFit> optima;
   std::vector<size_t> minima = CircularMinima(sweep.Costs());
   minima.resize(std::min(minima.size(), std::max(max_count, kRefinedMinima)));
   for (const size_t i : minima) {
-    const auto solution = fitter.RefineYaw(sweep.solutions[i]->landmark, step);
-    if (!solution) continue;
+    const auto fit = fitter.RefineYaw(sweep.fits[i]->parameters, step);
+    if (!fit) continue;
     const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {
-      return std::abs(YawDifferenceModuloPi(yaw_of(*solution), yaw_of(other))) < kSameYaw;
+      return std::abs(YawDifferenceModuloPi(yaw_of(*fit), yaw_of(other))) < kSameYaw;
     });
-    if (!known) optima.push_back(*solution);
+    if (!known) optima.push_back(*fit);
   }
   // Of a body as deep as wide, two yaws cost the same: they are in order of the yaw, not of what
   // rounding leaves of the costs.
-  const auto rank = [&](const UprightSolution& solution) {
-    return std::pair(static_cast<float>(1.0 + solution.cost), yaw_of(solution));
+  const auto rank = [&](const UprightFit& fit) {
+    return std::pair(static_cast<float>(1.0 + fit.cost), yaw_of(fit));
   };
   std::sort(optima.begin(), optima.end(),
             [&](const auto& one, const auto& other) { return rank(one) < rank(other); });
   optima.resize(std::min(optima.size(), max_count));
-  return optima;
+  std::vector<UprightSolution> solutions;
+  for (const UprightFit& fit : optima) {
+    solutions.push_back({fitter.LandmarkAt(fit.parameters), fit.cost});
+  }
+  return solutions;
 }
 
 }  // namespace soslam

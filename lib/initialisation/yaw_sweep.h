@@ -25,11 +25,18 @@ struct YawObjective {
   std::function<double(const Landmark& landmark_in_camera)> extra_cost;
 };
 
-// The landmark that is best at each yaw of a grid over half a turn, and its cost. Entries without a
-// landmark are empty.
+// A landmark on the ground of its observation's plane, see UprightGround.
+struct UprightFit {
+  UprightVector parameters;
+  double cost;
+  // Part of it: what the further costs of a YawObjective of several rounds say.
+  double further_cost = 0.0;
+};
+
+// The landmark that is best at each yaw of a grid over half a turn. Entries without one are empty.
 struct YawSweep {
   std::vector<double> yaw;  // rad, see Yaw
-  std::vector<std::optional<UprightSolution>> solutions;
+  std::vector<std::optional<UprightFit>> fits;
 
   std::vector<double> Costs() const;  // NaN where there is no landmark
   // The spread of the yaw (rad) about the first of its optima (yaw and cost; between those of the

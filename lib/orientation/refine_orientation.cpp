@@ -84,12 +84,12 @@ void RecordCurves(const YawSweep& sweep, const std::vector<double>& texture_cost
   record->cost["total"] = sweep.Costs();
   auto texture_cost = texture_costs.begin();
   const double none = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& solution : sweep.solutions) {
+  for (const auto& fit : sweep.fits) {
     if (options.edge_alignment) {
-      record->cost["edge_alignment"].push_back(solution ? solution->further_cost : none);
+      record->cost["edge_alignment"].push_back(fit ? fit->further_cost : none);
     }
     if (options.texture_symmetry) {
-      record->cost["texture_symmetry"].push_back(solution ? *texture_cost++ : none);
+      record->cost["texture_symmetry"].push_back(fit ? *texture_cost++ : none);
     }
   }
 }

@@ -46,8 +46,8 @@ void FitFour(benchmark::State& state) {
     starts[i] = *ClosedForm(box.observation).At(yaw);
   }
   for (auto _ : state) {
-    auto parameters = starts;
-    benchmark::DoNotOptimize(fit.MinimiseAtYaws(parameters));
+    benchmark::DoNotOptimize(starts.data());
+    benchmark::DoNotOptimize(fit.MinimiseAtYaws(starts));
   }
 }
 BENCHMARK(FitFour)->Name("single_frame/fit_four_yaws");

@@ -96,15 +96,17 @@ TEST(BoxFit, OfSeveralYawsIsThatOfEachOfThem) {
         if (const auto start = ClosedForm(observation).At(RandomYaw())) starts.push_back(*start);
       }
       const BoxFit fit(observation);
-      std::vector<StartAtYaw> together = starts;
-      const std::vector<double> costs = fit.MinimiseAtYaws(together);
-      ASSERT_EQ(costs.size(), starts.size());
+      const std::vector<FitAtYaw> together = fit.MinimiseAtYaws(starts);
+      ASSERT_EQ(together.size(), starts.size());
       for (size_t k = 0; k < starts.size(); ++k) {
         ++checked;
+        const UprightVector& found = together[k].parameters;
         const double alone = fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters);
-        EXPECT_NEAR(costs[k], alone, tolerance * (1.0 + alone));
-        EXPECT_NEAR(costs[k], fit.Evaluate(starts[k].depths_m, together[k].parameters).cost,
+        EXPECT_NEAR(together[k].cost, alone, tolerance * (1.0 + alone));
+        EXPECT_NEAR(together[k].cost, fit.Evaluate(starts[k].depths_m, found).cost,
                     1e-9 * (1.0 + alone));
+        EXPECT_NEAR(together[k].nearest_depth_m, fit.NearestDepth(found),
+                    1e-12 * (1.0 + found.segment<2>(1).norm()));
       }
     }
   }
@@ -121,12 +123,25 @@ TEST(BoxFit, OfSeveralYawsIsThatOfEachWhereTheEdgesDoNotTellTheFoot) {
   std::vector<StartAtYaw> starts = {fit.StartAt(at)};
   at[0] += 0.5;
   starts.push_back(fit.StartAt(at));
-  std::vector<StartAtYaw> together = starts;
-  const std::vector<double> costs = fit.MinimiseAtYaws(together);
+  const std::vector<FitAtYaw> together = fit.MinimiseAtYaws(starts);
   for (size_t k = 0; k < starts.size(); ++k) {
-    EXPECT_EQ(costs[k], fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters));
+    EXPECT_EQ(together[k].cost, fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters));
     EXPECT_EQ(together[k].parameters, starts[k].parameters);
-    EXPECT_TRUE(std::isfinite(costs[k]));
+    EXPECT_EQ(together[k].nearest_depth_m, fit.NearestDepth(starts[k].parameters));
+    EXPECT_TRUE(std::isfinite(together[k].cost));
+  }
+}
+
+TEST(BoxFit, NearestDepthIsThatOfTheBodysNearestPoint) {
+  for (const double p : kShapeExponents) {
+    const StandingBody body(p);
+    const BoxFit fit(body.observation);
+    for (int i = 0; i < 20; ++i) {
+      const UprightVector at = RandomUprightParameters();
+      const Landmark landmark = fit.ground().LandmarkAt(at, p);
+      EXPECT_NEAR(fit.NearestDepth(at), Farthest(landmark, -Eigen::Vector3d::UnitZ()).point.z(),
+                  1e-9 * (1.0 + landmark.half_axes.maxCoeff()));
+    }
   }
 }
 

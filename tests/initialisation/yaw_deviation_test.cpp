@@ -20,7 +20,7 @@ YawSweep SweepOf(Cost cost, int points) {
   YawSweep sweep;
   for (int i = 0; i < points; ++i) {
     sweep.yaw.push_back(i * kPi / points);
-    sweep.solutions.push_back(UprightSolution{Landmark(), cost(sweep.yaw.back())});
+    sweep.fits.push_back(UprightFit{UprightVector::Zero(), cost(sweep.yaw.back())});
   }
   return sweep;
 }
@@ -88,7 +88,7 @@ TEST(YawSweep, StandardDeviationLeavesOutYawsWithoutALandmark) {
   const auto leave_out = [&](double from, double to) {
     for (size_t i = 0; i < sweep.yaw.size(); ++i) {
       const double distance = (sweep.yaw[i] - mean) / kDegrees;
-      if (distance > from && distance < to) sweep.solutions[i].reset();
+      if (distance > from && distance < to) sweep.fits[i].reset();
     }
   };
   leave_out(-90, -10);

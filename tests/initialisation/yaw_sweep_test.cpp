@@ -50,19 +50,24 @@ TEST(BoxTerms, CostsNothingAtTheTruth) {
   }
 }
 
+Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit) {
+  return UprightGround(observation.plane_in_camera)
+      .LandmarkAt(fit.parameters, observation.prior.shape_exponent);
+}
+
 TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
   for (const double step_deg : {1.0, 3.0, 7.0, 45.0}) {
     const StandingBody body(1.5);
     const YawSweep sweep = SweepYaw(body.observation, {}, step_deg * kDegrees);
     ASSERT_EQ(sweep.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
-    ASSERT_EQ(sweep.solutions.size(), sweep.yaw.size());
+    ASSERT_EQ(sweep.fits.size(), sweep.yaw.size());
     const std::vector<double> costs = sweep.Costs();
     const double step = kPi / static_cast<double>(sweep.yaw.size());
     for (size_t i = 0; i < sweep.yaw.size(); ++i) {
       EXPECT_NEAR(sweep.yaw[i], step * static_cast<double>(i), 1e-12);
-      ASSERT_TRUE(sweep.solutions[i]);
-      EXPECT_EQ(costs[i], sweep.solutions[i]->cost);
-      const Landmark& landmark = sweep.solutions[i]->landmark;
+      ASSERT_TRUE(sweep.fits[i]);
+      EXPECT_EQ(costs[i], sweep.fits[i]->cost);
+      const Landmark landmark = LandmarkOf(body.observation, *sweep.fits[i]);
       const double yaw = Yaw(body.plane.normal, landmark.frame_from_object.rotation);
       EXPECT_NEAR(YawDifferenceModuloPi(yaw, sweep.yaw[i]), 0.0, 1e-9);
       EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
@@ -115,9 +120,9 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
           FitUpright(body.plane, landmark, BoxTerms(body.observation, landmark), false)->landmark;
     }
     EXPECT_TRUE(IsSameBody(starts[4 * i + 3], landmark, kFitted));
-    EXPECT_TRUE(IsSameBody(sweep.solutions[i]->landmark, landmark, kFitted));
-    EXPECT_NEAR(sweep.solutions[i]->cost,
-                CostAtOwnDepths(body.observation, sweep.solutions[i]->landmark) + 7.0, 1e-9);
+    const Landmark found = LandmarkOf(body.observation, *sweep.fits[i]);
+    EXPECT_TRUE(IsSameBody(found, landmark, kFitted));
+    EXPECT_NEAR(sweep.fits[i]->cost, CostAtOwnDepths(body.observation, found) + 7.0, 1e-9);
   }
 }
 
