@@ -50,6 +50,8 @@ void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& 
   const Heading heading(at[kYaw]);
   const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
   const Eigen::Vector3d centre(at[kFootX], at[kFootY], half_axes.z());
+  Eigen::Vector4d residuals = Eigen::Vector4d::Zero();
+  Eigen::Matrix<double, 4, 6> jacobian = Eigen::Matrix<double, 4, 6>::Zero();
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d normal = box_.normals.row(i);
     const Eigen::Vector3d in_object = heading.TurnedBack(normal);
@@ -58,13 +60,17 @@ void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& 
     const double outside = box_.at_origin[i] + normal.dot(centre) + support.extent;
     const double weight = 1.0 / (depths_m[i] * box_.sigma_px[i]);
     if (box_.is_bound[i] != 0.0 && weight * outside > 0.0) continue;
-    UprightVector by_parameters;
+    Eigen::Matrix<double, 1, 6> by_parameters;
     by_parameters[kYaw] = support.contact.x() * in_object.y() - support.contact.y() * in_object.x();
     by_parameters.segment<2>(kFootX) = normal.head<2>();
     by_parameters.tail<3>() = support.by_log_half_axes;
     by_parameters[kLogC] += normal.z() * half_axes.z();
-    sum->Add(weight * outside, weight * by_parameters);
+    residuals[i] = weight * outside;
+    jacobian.row(i) = weight * by_parameters;
   }
+  sum->cost += 0.5 * residuals.squaredNorm();
+  sum->gradient += jacobian.transpose().lazyProduct(residuals);
+  sum->information += jacobian.transpose().lazyProduct(jacobian);
 }
 
 void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const {
@@ -94,7 +100,9 @@ QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const Upright
   AddTangencies(depths_m, at, &sum);
   AddRatio(at.tail<3>(), &sum);
   for (const YawRow& row : YawRows(at[kYaw])) {
-    sum.Add(row.residual, row.by_yaw * UprightVector::Unit(kYaw));
+    sum.cost += 0.5 * row.residual * row.residual;
+    sum.gradient[kYaw] += row.by_yaw * row.residual;
+    sum.information(kYaw, kYaw) += row.by_yaw * row.by_yaw;
   }
   return sum;
 }
