@@ -2,10 +2,13 @@
 #include "initialisation/box_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/wide_loops.h"
 #include "geometry/support_function.h"
+#include "geometry/support_of_four.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
@@ -14,6 +17,80 @@ namespace {
 constexpr int kMaxIterations = 50;
 enum { kYaw, kFootX, kFootY, kLogA, kLogB, kLogC };
 
+// A body on the ground.
+struct Body {
+  Body(double p, const UprightVector& at)
+      : shape_exponent(p),
+        heading(at[kYaw]),
+        half_axes(at.tail<3>().array().exp()),
+        centre(at[kFootX], at[kFootY], half_axes.z()) {}
+
+  double shape_exponent;
+  Heading heading;
+  Eigen::Vector3d half_axes;
+  Eigen::Vector3d centre;
+};
+
+// The edges of a box side by side: the planes behind them, and how the body supports them.
+struct FourEdges {
+  ThreeFours normals;    // in the frame of the ground
+  ThreeFours in_object;  // those as the body sees them
+  SupportOfFour support;
+};
+
+SOSLAM_IN_WIDE_LOOPS void FindEdges(const BoxOnGround& box, const Body& body, FourEdges* edges) {
+  for (size_t i = 0; i < 3; ++i) Load(box.normals.col(i).data(), &edges->normals[i]);
+  const auto& [x, y, z] = edges->normals;
+  const auto [cosine, sine] = body.heading;
+  edges->in_object = {cosine * x + sine * y, cosine * y - sine * x, z};
+  FindSupport(body.half_axes, body.shape_exponent, edges->in_object, &edges->support);
+}
+
+SOSLAM_WIDE_LOOPS void FindTangentDepths(const BoxOnGround& box, const Body& body,
+                                         Eigen::Array4d* depths_m) {
+  FourEdges edges;
+  FindEdges(box, body, &edges);
+  const ThreeFours contact = edges.support.Contact(body.shape_exponent, edges.in_object);
+  const Eigen::Vector3d axis_in_object = body.heading.TurnedBack(box.optical_axis);
+  Four depths = Four{} + box.DepthOf(body.centre);
+  for (size_t i = 0; i < 3; ++i) depths += axis_in_object[i] * contact[i];
+  Store(depths, depths_m->data());
+}
+
+// Residuals (px / sigma) of the edges, and their derivatives by the parameters.
+struct Rows {
+  Eigen::Vector4d residuals;
+  Eigen::Matrix<double, 4, 6> jacobian;
+};
+
+SOSLAM_WIDE_LOOPS void FindRows(const BoxOnGround& box, const Body& body,
+                                const Eigen::Array4d& depths_m, Rows* rows) {
+  FourEdges edges;
+  FindEdges(box, body, &edges);
+  const SupportOfFour& support = edges.support;
+  Four outside, depths, sigmas, is_bound;
+  Load(box.at_origin.data(), &outside);
+  Load(depths_m.data(), &depths);
+  Load(box.sigma_px.data(), &sigmas);
+  Load(box.is_bound.data(), &is_bound);
+  for (size_t i = 0; i < 3; ++i) outside += edges.normals[i] * body.centre[i];
+  outside += support.extent;
+  Four weight = 1.0 / (depths * sigmas);
+  weight = (is_bound != 0.0) & (weight * outside > 0.0) ? Four{} : weight;
+  Store(weight * outside, rows->residuals.data());
+
+  const auto& [x, y, z] = edges.in_object;
+  const std::array<Four, 6> by_parameters = {
+      x * y * (support.shares[0] - support.shares[1]),
+      edges.normals[0],
+      edges.normals[1],
+      support.by_log_half_axes[0],
+      support.by_log_half_axes[1],
+      support.by_log_half_axes[2] + z * body.half_axes.z(),
+  };
+  for (int i = 0; i < 6; ++i) Store(weight * by_parameters[i], rows->jacobian.col(i).data());
+}
+
 }  // namespace
 
 BoxFit::BoxFit(const UprightObservation& observation)
@@ -21,56 +98,20 @@ BoxFit::BoxFit(const UprightObservation& observation)
       ground_(observation.plane_in_camera),
       box_(observation.edges, Rigid3d(), ground_),
       ratio_(observation.prior),
-      axis_yaw_(std::atan2(observation.world_axis_in_camera.dot(ground_.y),
-                           observation.world_axis_in_camera.dot(ground_.x))) {}
+      twice_the_axis_(2.0 * std::atan2(observation.world_axis_in_camera.dot(ground_.y),
+                                       observation.world_axis_in_camera.dot(ground_.x))) {}
 
 Eigen::Array4d BoxFit::TangentDepths(const UprightVector& start) const {
-  const Heading heading(start[kYaw]);
-  const Eigen::Vector3d half_axes = start.tail<3>().array().exp();
-  const Eigen::Vector3d axis_in_object = heading.TurnedBack(box_.optical_axis);
-  const double centre_depth = box_.DepthOf({start[kFootX], start[kFootY], half_axes.z()});
   Eigen::Array4d depths_m;
-  for (int i = 0; i < 4; ++i) {
-    const SupportValue support = SupportFunction(half_axes, observation_.prior.shape_exponent,
-                                                 heading.TurnedBack(box_.normals.row(i)));
-    depths_m[i] = centre_depth + axis_in_object.dot(support.contact);
-  }
+  FindTangentDepths(box_, Body(observation_.prior.shape_exponent, start), &depths_m);
   return depths_m;
 }
 
 double BoxFit::NearestDepth(const UprightVector& at) const {
-  const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
-  const Eigen::Vector3d axis_in_object = Heading(at[kYaw]).TurnedBack(box_.optical_axis);
-  return box_.DepthOf({at[kFootX], at[kFootY], half_axes.z()}) -
-         SupportFunction(half_axes, observation_.prior.shape_exponent, axis_in_object).extent;
-}
-
-void BoxFit::AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
-                           QuadraticModel<6>* sum) const {
-  const Heading heading(at[kYaw]);
-  const Eigen::Vector3d half_axes = at.tail<3>().array().exp();
-  const Eigen::Vector3d centre(at[kFootX], at[kFootY], half_axes.z());
-  Eigen::Vector4d residuals = Eigen::Vector4d::Zero();
-  Eigen::Matrix<double, 4, 6> jacobian = Eigen::Matrix<double, 4, 6>::Zero();
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d normal = box_.normals.row(i);
-    const Eigen::Vector3d in_object = heading.TurnedBack(normal);
-    const SupportValue support =
-        SupportFunction(half_axes, observation_.prior.shape_exponent, in_object);
-    const double outside = box_.at_origin[i] + normal.dot(centre) + support.extent;
-    const double weight = 1.0 / (depths_m[i] * box_.sigma_px[i]);
-    if (box_.is_bound[i] != 0.0 && weight * outside > 0.0) continue;
-    Eigen::Matrix<double, 1, 6> by_parameters;
-    by_parameters[kYaw] = support.contact.x() * in_object.y() - support.contact.y() * in_object.x();
-    by_parameters.segment<2>(kFootX) = normal.head<2>();
-    by_parameters.tail<3>() = support.by_log_half_axes;
-    by_parameters[kLogC] += normal.z() * half_axes.z();
-    residuals[i] = weight * outside;
-    jacobian.row(i) = weight * by_parameters;
-  }
-  sum->cost += 0.5 * residuals.squaredNorm();
-  sum->gradient += jacobian.transpose().lazyProduct(residuals);
-  sum->information += jacobian.transpose().lazyProduct(jacobian);
+  const Body body(observation_.prior.shape_exponent, at);
+  const Eigen::Vector3d axis_in_object = body.heading.TurnedBack(box_.optical_axis);
+  return box_.DepthOf(body.centre) -
+         SupportFunction(body.half_axes, body.shape_exponent, axis_in_object).extent;
 }
 
 void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const {
@@ -80,26 +121,35 @@ void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* s
   sum->information.bottomRightCorner<3, 3>() += ratio_.information;
 }
 
-std::array<BoxFit::YawRow, 2> BoxFit::YawRows(double yaw) const {
+std::array<BoxFit::YawRow, 2> BoxFit::YawRows(double yaw, const Heading& heading) const {
   const double amplitude = std::sqrt(2.0 * observation_.axes_weight);
-  const double angle = 2.0 * (yaw - axis_yaw_);
-  const YawRow of_axes = {amplitude * std::sin(angle), 2.0 * amplitude * std::cos(angle)};
+  // Sine and cosine of twice the angle between yaw and axis.
+  const auto [c, s] = heading;
+  const Eigen::Vector3d from_axis = twice_the_axis_.TurnedBack({c * c - s * s, 2.0 * s * c, 0.0});
+  const YawRow of_axes = {amplitude * from_axis.y(), 2.0 * amplitude * from_axis.x()};
   if (!observation_.yaw_prior) return {of_axes, YawRow()};
   const YawPrior& prior = *observation_.yaw_prior;
   return {of_axes, {YawDifferenceModuloPi(yaw, prior.yaw) / prior.sigma, 1.0 / prior.sigma}};
 }
 
-double BoxFit::YawCost(double yaw) const {
+double BoxFit::YawCost(const StartAtYaw& start) const {
   double cost = 0.0;
-  for (const YawRow& row : YawRows(yaw)) cost += 0.5 * row.residual * row.residual;
+  for (const YawRow& row : YawRows(start.parameters[kYaw], start.heading)) {
+    cost += 0.5 * row.residual * row.residual;
+  }
   return cost;
 }
 
 QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
   QuadraticModel<6> sum;
-  AddTangencies(depths_m, at, &sum);
+  const Body body(observation_.prior.shape_exponent, at);
+  Rows rows;
+  FindRows(box_, body, depths_m, &rows);
+  sum.cost = 0.5 * rows.residuals.squaredNorm();
+  sum.gradient = rows.jacobian.transpose().lazyProduct(rows.residuals);
+  sum.information = rows.jacobian.transpose().lazyProduct(rows.jacobian);
   AddRatio(at.tail<3>(), &sum);
-  for (const YawRow& row : YawRows(at[kYaw])) {
+  for (const YawRow& row : YawRows(at[kYaw], body.heading)) {
     sum.cost += 0.5 * row.residual * row.residual;
     sum.gradient[kYaw] += row.by_yaw * row.residual;
     sum.information(kYaw, kYaw) += row.by_yaw * row.by_yaw;
@@ -136,7 +186,7 @@ std::vector<FitAtYaw> BoxFit::MinimiseAtYaws(std::span<const StartAtYaw> starts)
           FitFourYaws(box_, ratio_, observation_.prior.shape_exponent, kMaxIterations, four);
       for (size_t k = 0; k < four.size() && first + k < starts.size(); ++k) {
         fits[first + k] = found[k];
-        fits[first + k].cost += YawCost(four[k].parameters[kYaw]);
+        fits[first + k].cost += YawCost(four[k]);
       }
     }
   }

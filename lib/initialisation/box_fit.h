@@ -44,22 +44,20 @@ class BoxFit {
   const UprightGround& ground() const { return ground_; }
 
  private:
-  void AddTangencies(const Eigen::Array4d& depths_m, const UprightVector& at,
-                     QuadraticModel<6>* sum) const;
   void AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* sum) const;
   // What AxisTerm and the yaw prior say.
   struct YawRow {
     double residual = 0.0;
     double by_yaw = 0.0;
   };
-  std::array<YawRow, 2> YawRows(double yaw) const;
-  double YawCost(double yaw) const;
+  std::array<YawRow, 2> YawRows(double yaw, const Heading& heading) const;
+  double YawCost(const StartAtYaw& start) const;
 
   const UprightObservation& observation_;
   UprightGround ground_;
   BoxOnGround box_;
   RatioRows ratio_;
-  double axis_yaw_;
+  Heading twice_the_axis_;  // of twice the yaw of the world's axis
 };
 
 }  // namespace soslam
