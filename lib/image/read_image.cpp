@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <vector>
@@ -26,8 +25,9 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
   }
   NoteInput(path);
-  std::ifstream stream(path, std::ios::binary);
-  std::vector<char> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  std::vector<char> bytes(static_cast<size_t>(std::max<std::streamoff>(0, stream.tellg())));
+  stream.seekg(0).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
   if (bytes.empty()) {
     throw InputError(fmt::format("{}: is empty; expected an image", path.string()));

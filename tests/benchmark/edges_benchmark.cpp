@@ -62,16 +62,26 @@ BENCHMARK_CAPTURE(EdgesAndDistances, ours, ExactDistances)->Name("edges/canny_an
 BENCHMARK_CAPTURE(EdgesAndDistances, opencv, OpenCvDistances)
     ->Name("edges/canny_and_distances/opencv");
 
-// All maps with corners, from an image file into the artefact, as soslam-edges makes them.
-void ImageToArtefact(benchmark::State& state) {
+// From an image file into the artefact.
+void ImageToArtefact(benchmark::State& state, EdgeMaps (*maps)(const cv::Mat& grey)) {
   const auto path =
       std::filesystem::temp_directory_path() / fmt::format("soslam-bench-edges-{}.h5", getpid());
   EdgesWriter writer(path, {});
   int frame_id = 0;
-  for (auto _ : state)
-    writer.Write(frame_id++, PackedEdgeMaps(ComputeEdgeMaps(RoomAImage(), EdgesOptions())));
+  for (auto _ : state) writer.Write(frame_id++, PackedEdgeMaps(maps(RoomAImage())));
 }
-BENCHMARK(ImageToArtefact)->Name("edges/image_to_artefact");
+// As soslam-edges makes them, with corners and the grey image.
+BENCHMARK_CAPTURE(ImageToArtefact, all, [](const cv::Mat& grey) {
+  return ComputeEdgeMaps(grey, EdgesOptions());
+})->Name("edges/image_to_artefact");
+// What OpenCV's functions above make.
+BENCHMARK_CAPTURE(ImageToArtefact, edges_and_distances, [](const cv::Mat& grey) {
+  EdgeMaps maps;
+  maps.edges = Edges(grey);
+  maps.nearest_edge = NearestEdgeMap(maps.edges);
+  maps.distance = DistanceMap(maps.nearest_edge);
+  return maps;
+})->Name("edges/image_to_artefact/edges_and_distances");
 
 // With corners: what soslam-edges computes for an image.
 void AllMaps(benchmark::State& state) {
