@@ -18,6 +18,7 @@
 #include "constraints/tangency.h"
 #include "initialisation/landmark_term_residual.h"
 #include "initialisation/view_weights.h"
+#include "mapping/axis_cost_term.h"
 #include "mapping/cost_function_term.h"
 #include "mapping/minimise.h"
 #include "mapping/tangency_term.h"
@@ -149,9 +150,8 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   }
   if (options_.ratio) AddRatio(object_index);
   if (options_.detection_model == DetectionModel::kTangency && options_.axes_weight > 0.0) {
-    terms_.push_back(TermOf(std::make_unique<LandmarkTermResidual>(std::make_unique<AxisTerm>(
-                                plane, WorldAxis(plane), options_.axes_weight)),
-                            {landmark}, kNoLoss));
+    terms_.push_back(std::make_unique<AxisCostTerm>(landmark, variables_.Values(landmark), plane,
+                                                    options_.axes_weight));
   }
 }
 

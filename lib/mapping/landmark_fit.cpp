@@ -7,7 +7,7 @@
 namespace soslam {
 
 void Damping::StepTaken(double gain) {
-  value_ = std::max(least_, value_ * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3)));
+  value_ = std::max(least_, value_ * std::max(fall_, 1.0 - std::pow(2.0 * gain - 1.0, 3)));
   growth_ = 2.0;
 }
 

@@ -17,8 +17,9 @@ namespace soslam {
 class Damping {
  public:
   Damping() = default;
-  // From `value` on; never less than `least`.
-  Damping(double value, double least) : value_(value), least_(least) {}
+  // From `value` on; never less than `least`. A step that brings what was predicted lets it fall to
+  // `fall` of itself.
+  Damping(double value, double least, double fall) : value_(value), least_(least), fall_(fall) {}
   // What is added to the Hessian's diagonal.
   template <typename Vector>
   Vector Of(const Vector& diagonal) const {
@@ -34,6 +35,7 @@ class Damping {
  private:
   double value_ = 1e-4;
   double least_ = 1e-12;
+  double fall_ = 1.0 / 3.0;
   double growth_ = 2.0;
 };
 

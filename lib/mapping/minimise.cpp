@@ -24,12 +24,17 @@ constexpr double kLeastGain = 1e-8;
 // Costs of residuals that are all but zero.
 constexpr double kNoCost = 1e-18;
 // Of each landmark for itself, after a step of all variables, as long as they lower its cost by
-// this share of a landmark's mean cost, or bring more for their time than that step: of so many
-// landmarks, one or two that are far from their minimum would keep all others waiting.
+// this share of a landmark's mean cost, or bring more for their time than that step while all other
+// landmarks wait: of many landmarks, a few creep along a flat valley, and would ask for a step of
+// all variables for each of their own.
 constexpr int kLandmarkSteps = 20;
-constexpr double kLandmarkTolerance = 1e-3;
+constexpr double kLandmarkTolerance = 3e-4;
 // Where an iteration lowers the cost by less than this share, the minimum is near.
 constexpr double kNear = 1e-2;
+// Of steps of all variables. As landmarks look after themselves, what is left to damp is the bend
+// of the drive, which takes many steps to come to rest when damping falls slowly.
+constexpr double kFirstDamping = 1e-4;
+constexpr double kDampingFall = 1e-2;
 // Of steps that are hardly damped, at first and at last, which is hardly more than rounding: 1e-12
 // still holds back the bend of 32000 frames.
 constexpr double kHardlyDamped = 1e-12;
@@ -157,11 +162,15 @@ class Minimiser {
     if (!(predicted > Tolerance())) return false;
 
     const double before = cost_;
+    const Hessian of_step = hessian_;
     const std::vector<double> values = Values();
     MoveAll(step);
+    // Where the step leads to, the next one begins.
+    hessian_ = predicted < kNear * before ? Hessian::kNear : Hessian::kFar;
     LineariseFits();
     cost_ = Cost();
-    const double worth_a_step = std::min(kLandmarkTolerance * std::min(before, cost_), predicted);
+    const double worth_a_step =
+        std::min(kLandmarkTolerance * std::min(before, cost_), predicted / NumLandmarks());
     const double tolerance = std::max(kLeastGain * before, worth_a_step) / NumLandmarks();
     ForEachFit([&](LandmarkFit& fit, auto* candidate) {
       for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance, candidate); ++i) {
@@ -170,18 +179,16 @@ class Minimiser {
     cost_ = Cost();
     const double gain = before - cost_;  // with what landmarks brought
     if (gain > 0.0) {
-      const bool was_near = hessian_ == Hessian::kNear;
-      hessian_ = gain < kNear * before ? Hessian::kNear : Hessian::kFar;
-      if (was_near && hessian_ == Hessian::kFar) LineariseFits();
       are_set_up_ = false;
       damping_.StepTaken(gain / predicted);
       if (hessian_ == Hessian::kNear && std::exchange(options_.hardly_damped_near, false)) {
-        damping_ = Damping(kHardlyDamped, kLeastDamping);
+        damping_ = Damping(kHardlyDamped, kLeastDamping, kDampingFall);
       }
       return gain > kLeastGain * before;
     }
     Restore(values);
     cost_ = before;
+    hessian_ = of_step;
     if (hessian_ == Hessian::kNear) LineariseFar();
     return RefuseStep();
   }
@@ -221,7 +228,7 @@ class Minimiser {
   std::vector<PlacedTerm> without_landmark_;
   std::optional<NormalEquations> equations_;
   std::optional<BlockCholesky> factor_;
-  Damping damping_;
+  Damping damping_{kFirstDamping, kHardlyDamped, kDampingFall};
   bool are_set_up_ = false;  // the equations, where the variables are
   Hessian hessian_ = Hessian::kFar;
   Eigen::VectorXd damping_diagonal_;

@@ -14,7 +14,8 @@ namespace soslam {
 namespace {
 
 // It is a start, not the result.
-constexpr int kIterationsPerPart = 10;
+constexpr int kIterationsPerPart = 6;
+constexpr int kIterationsPerLandmark = 10;
 // A part is solved again where its last iteration, and landmarks that were fitted anew, have
 // lowered its cost by more than this share: every later part starts from where it ends.
 constexpr double kUnsettled = 0.02;
@@ -188,7 +189,7 @@ class PartByPart {
       const Rigid3d corrected = Correction(MiddlePose(of_landmark));
       Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
     }
-    Minimise(terms, {kIterationsPerPart, threads_}, &some);
+    Minimise(terms, {kIterationsPerLandmark, threads_}, &some);
     for (const auto& [landmark, of_landmark] : landmarks) {
       const auto& [cost, values] = before.at(landmark);
       if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);

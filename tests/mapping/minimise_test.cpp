@@ -206,7 +206,7 @@ TEST_F(OffsetTest, WhatIsHeldStays) {
 
 TEST(DampingTest, FallsToItsLeastAndNoFurther) {
   Damping usual;
-  Damping hardly(1e-12, 1e-15);
+  Damping hardly(1e-12, 1e-15, 0.1);
   const Eigen::Vector2d diagonal(2.0, 3.0);
   for (int i = 0; i < 30; ++i) {
     usual.StepTaken(1.0);
