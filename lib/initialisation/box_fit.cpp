@@ -76,7 +76,8 @@ SOSLAM_WIDE_LOOPS void FindRows(const BoxOnGround& box, const Body& body,
   for (size_t i = 0; i < 3; ++i) outside += edges.normals[i] * body.centre[i];
   outside += support.extent;
   Four weight = 1.0 / (depths * sigmas);
-  weight = (is_bound != 0.0) & (weight * outside > 0.0) ? Four{} : weight;
+  const FourMask is_idle = (is_bound != 0.0) & (weight * outside > 0.0);
+  Replace(is_idle, Four{}, &weight);
   Store(weight * outside, rows->residuals.data());
 
   const auto& [x, y, z] = edges.in_object;
