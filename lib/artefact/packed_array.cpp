@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/packed_array.h"
 
+#include <fmt/format.h>
 #include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
 
@@ -39,14 +40,15 @@ std::string Deflate(std::span<std::uint8_t> bytes) {
   const size_t bound =
       bytes.size() + kPerBlock * (bytes.size() / kStoredBlock + 1) + kHeaderAndChecksum;
   if (bound > std::numeric_limits<std::uint32_t>::max()) {
-    throw std::length_error("an array of 4 GiB cannot be packed");
+    throw std::length_error(fmt::format(
+        "an array of {} bytes cannot be packed; expected less than 4 GiB", bytes.size()));
   }
   const auto deflated = std::make_unique_for_overwrite<std::uint8_t[]>(bound);
-  std::vector<std::uint8_t> memory(ISAL_DEF_LVL1_DEFAULT);
+  const auto work_space = std::make_unique_for_overwrite<std::uint8_t[]>(ISAL_DEF_LVL1_DEFAULT);
   isal_zstream stream;
   isal_deflate_stateless_init(&stream);
   stream.level = 1;  // up to 2, all x86-64 processors with SSE 4.2 give the same bytes
-  stream.level_buf = memory.data();
+  stream.level_buf = work_space.get();
   stream.level_buf_size = ISAL_DEF_LVL1_DEFAULT;
   stream.gzip_flag = IGZIP_ZLIB;
   stream.end_of_stream = 1;
@@ -54,9 +56,8 @@ std::string Deflate(std::span<std::uint8_t> bytes) {
   stream.avail_in = static_cast<std::uint32_t>(bytes.size());
   stream.next_out = deflated.get();
   stream.avail_out = static_cast<std::uint32_t>(bound);
-  if (isal_deflate_stateless(&stream) != COMP_OK) {
-    throw std::length_error("an array was packed to more than its bound");
-  }
+  const int error = isal_deflate_stateless(&stream);
+  if (error != COMP_OK) throw std::runtime_error(fmt::format("ISA-L: error {}", error));
   return {deflated.get(), deflated.get() + stream.total_out};
 }
 

@@ -12,8 +12,8 @@ namespace soslam {
 void KeepFreedMemory() {
 #ifdef __GLIBC__
   constexpr int kMiB = 1 << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 * kMiB);  // the largest that it takes
-  mallopt(M_TRIM_THRESHOLD, 256 * kMiB);
+  // Where the first is refused, the second would switch off what glibc does by itself.
+  if (mallopt(M_MMAP_THRESHOLD, 32 * kMiB) != 0) mallopt(M_TRIM_THRESHOLD, 256 * kMiB);
 #endif
 }
 

@@ -25,7 +25,7 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
   }
   NoteInput(path);
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);  // whose place is its size
   std::vector<char> bytes(static_cast<size_t>(std::max<std::streamoff>(0, stream.tellg())));
   stream.seekg(0).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));

@@ -122,10 +122,10 @@ void BoxFit::AddRatio(const Eigen::Vector3d& log_half_axes, QuadraticModel<6>* s
   sum->information.bottomRightCorner<3, 3>() += ratio_.information;
 }
 
-std::array<BoxFit::YawRow, 2> BoxFit::YawRows(double yaw, const Heading& heading) const {
+std::array<BoxFit::YawRow, 2> BoxFit::YawRows(double yaw, const Heading& heading_of_yaw) const {
   const double amplitude = std::sqrt(2.0 * observation_.axes_weight);
   // Sine and cosine of twice the angle between yaw and axis.
-  const auto [c, s] = heading;
+  const auto [c, s] = heading_of_yaw;
   const Eigen::Vector3d from_axis = twice_the_axis_.TurnedBack({c * c - s * s, 2.0 * s * c, 0.0});
   const YawRow of_axes = {amplitude * from_axis.y(), 2.0 * amplitude * from_axis.x()};
   if (!observation_.yaw_prior) return {of_axes, YawRow()};

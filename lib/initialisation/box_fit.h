@@ -50,7 +50,7 @@ class BoxFit {
     double residual = 0.0;
     double by_yaw = 0.0;
   };
-  std::array<YawRow, 2> YawRows(double yaw, const Heading& heading) const;
+  std::array<YawRow, 2> YawRows(double yaw, const Heading& heading_of_yaw) const;
   double YawCost(const StartAtYaw& start) const;
 
   const UprightObservation& observation_;

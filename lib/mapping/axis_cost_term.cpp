@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 
 #include "constraints/tangent_space.h"
 #include "geometry/landmark.h"
-#include "initialisation/upright.h"
 
 namespace soslam {
 
@@ -15,12 +15,11 @@ AxisCostTerm::AxisCostTerm(int landmark, const double* landmark_in_world,
     : Term({landmark}),
       landmark_in_world_(landmark_in_world),
       normal_(plane_in_world.normal),
-      axis_yaw_(Yaw(normal_, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(),
-                                                                WorldAxis(plane_in_world)))),
       weight_(weight) {}
 
+// Yaw counts from the world's axis (WorldAxis).
 double AxisCostTerm::AngleToAxis() const {
-  return Yaw(normal_, Eigen::Quaterniond(landmark_in_world_)) - axis_yaw_;
+  return Yaw(normal_, Eigen::Quaterniond(landmark_in_world_));
 }
 
 double AxisCostTerm::Cost() const {
@@ -33,6 +32,7 @@ double AxisCostTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
   const double sine = std::sin(2.0 * angle);
   const double cosine = std::cos(2.0 * angle);
   const double cost = weight_ * sine * sine;
+  if (!std::isfinite(cost)) return std::numeric_limits<double>::infinity();
   if (places.gradient[0] == nullptr) return cost;
   Eigen::Map<Eigen::Vector3d>(places.gradient[0]) += 4.0 * weight_ * sine * cosine * normal_;
   const double repelled = hessian == Hessian::kNear ? sine * sine : 0.0;

@@ -23,7 +23,6 @@ class AxisCostTerm final : public Term {
 
   const double* landmark_in_world_;
   Eigen::Vector3d normal_;
-  double axis_yaw_;
   double weight_;
 };
 

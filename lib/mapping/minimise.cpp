@@ -17,28 +17,27 @@
 namespace soslam {
 namespace {
 
-constexpr double kTolerance = 1e-10;  // of the cost
-// An iteration that lowers the cost by less than this share is the last: what images say has kinks
-// at every pixel, between which steps would go on to and fro.
-constexpr double kLeastGain = 1e-8;
+// Of the least gain: steps that are expected to bring less are not tried.
+constexpr double kHopeless = 1e-2;
 // Costs of residuals that are all but zero.
 constexpr double kNoCost = 1e-18;
-// Of each landmark for itself, after a step of all variables, as long as they lower its cost by
-// this share of a landmark's mean cost, or bring more for their time than that step while all other
-// landmarks wait: of many landmarks, a few creep along a flat valley, and would ask for a step of
-// all variables for each of their own.
+// Of each landmark for itself, after a step of all variables. The shares are of a landmark's mean
+// cost: steps that bring one of them are taken, those that bring less than the other are not.
 constexpr int kLandmarkSteps = 20;
-constexpr double kLandmarkTolerance = 3e-4;
-// Where an iteration lowers the cost by less than this share, the minimum is near.
+constexpr double kLandmarkGain = 3e-4;
+constexpr double kLeastLandmarkGain = 1e-8;
+// Where a step is expected to lower the cost by less than this share, the minimum is near; with
+// nothing but landmarks, where it has.
 constexpr double kNear = 1e-2;
 // Of steps of all variables. As landmarks look after themselves, what is left to damp is the bend
 // of the drive, which takes many steps to come to rest when damping falls slowly.
 constexpr double kFirstDamping = 1e-4;
 constexpr double kDampingFall = 1e-2;
-// Of steps that are hardly damped, at first and at last, which is hardly more than rounding: 1e-12
-// still holds back the bend of 32000 frames.
+constexpr double kLeastDamping = 1e-12;
+// Of steps that are hardly damped, at last hardly more than rounding: 1e-12 still holds back the
+// bend of 32000 frames.
 constexpr double kHardlyDamped = 1e-12;
-constexpr double kLeastDamping = 1e-15;
+constexpr double kLeastHardlyDamped = 1e-15;
 
 class Minimiser {
  public:
@@ -91,7 +90,7 @@ class Minimiser {
   }
 
  private:
-  double Tolerance() const { return kTolerance * cost_ + kNoCost; }
+  double Tolerance() const { return kHopeless * options_.least_gain * cost_ + kNoCost; }
 
   // Fits change nothing that others read. The equations are for steps to be tried in.
   using WorkOnFit = std::function<void(LandmarkFit&, LandmarkFit::Equations*)>;
@@ -169,29 +168,40 @@ class Minimiser {
     hessian_ = predicted < kNear * before ? Hessian::kNear : Hessian::kFar;
     LineariseFits();
     cost_ = Cost();
-    const double worth_a_step =
-        std::min(kLandmarkTolerance * std::min(before, cost_), predicted / NumLandmarks());
-    const double tolerance = std::max(kLeastGain * before, worth_a_step) / NumLandmarks();
+    StepsOfLandmarks(before, predicted);
+    const double gain = before - cost_;  // with what landmarks brought
+    if (gain > 0.0) {
+      are_set_up_ = false;
+      damping_.StepTaken(gain / predicted);
+      if (gain < kNear * before && std::exchange(options_.hardly_damped_near, false)) {
+        damping_ = Damping(kHardlyDamped, kLeastHardlyDamped, kDampingFall);
+      }
+      return gain > options_.least_gain * before;
+    }
+    Restore(values);
+    cost_ = before;
+    // The equations of a far step are still those of where the variables are again.
+    hessian_ = Hessian::kFar;
+    if (of_step == Hessian::kNear) LineariseFar();
+    return RefuseStep();
+  }
+
+  // Of many landmarks, a few creep along a flat valley, and would ask for a step of all variables
+  // for each of their own. So they go on alone for as little as one landmark's share of what that
+  // step brings to a landmark in the mean.
+  void StepsOfLandmarks(double cost_before, double predicted) {
+    const double mean_cost = cost_before / NumLandmarks();
+    const double mean_share = predicted / NumLandmarks() / NumLandmarks();
+    const double worth_it =
+        std::min(kLandmarkGain * std::min(mean_cost, cost_ / NumLandmarks()), mean_share);
+    const double tolerance = std::max(kLeastLandmarkGain * mean_cost, worth_it);
     ForEachFit([&](LandmarkFit& fit, auto* candidate) {
       for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance, candidate); ++i) {
       }
     });
     cost_ = Cost();
-    const double gain = before - cost_;  // with what landmarks brought
-    if (gain > 0.0) {
-      are_set_up_ = false;
-      damping_.StepTaken(gain / predicted);
-      if (hessian_ == Hessian::kNear && std::exchange(options_.hardly_damped_near, false)) {
-        damping_ = Damping(kHardlyDamped, kLeastDamping, kDampingFall);
-      }
-      return gain > kLeastGain * before;
-    }
-    Restore(values);
-    cost_ = before;
-    hessian_ = of_step;
-    if (hessian_ == Hessian::kNear) LineariseFar();
-    return RefuseStep();
   }
+
   // Whether another one may be taken.
   bool RefuseStep() {
     damping_.StepRefused();
@@ -228,7 +238,7 @@ class Minimiser {
   std::vector<PlacedTerm> without_landmark_;
   std::optional<NormalEquations> equations_;
   std::optional<BlockCholesky> factor_;
-  Damping damping_{kFirstDamping, kHardlyDamped, kDampingFall};
+  Damping damping_{kFirstDamping, kLeastDamping, kDampingFall};
   bool are_set_up_ = false;  // the equations, where the variables are
   Hessian hessian_ = Hessian::kFar;
   Eigen::VectorXd damping_diagonal_;

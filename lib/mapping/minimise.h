@@ -11,8 +11,8 @@ namespace soslam {
 // How a minimisation went.
 struct Minimisation {
   std::vector<double> costs;  // at the start and after each iteration
-  // The last iteration lowered the cost by less than 1e-8 of it, or is expected to by less than
-  // 1e-10, or no step lowers it.
+  // The last iteration lowered the cost by less than the least gain, or is expected to by less than
+  // a hundredth of it, or no step lowers it.
   bool converged = false;
 };
 
@@ -22,6 +22,9 @@ struct MinimiseOptions {
   // Once the minimum is near, steps of all variables are hardly damped from then on: what the terms
   // say little about, as the bend of a long drive, would take many more of them to come to rest.
   bool hardly_damped_near = false;
+  // A share of the cost. What images say has kinks at every pixel, between which steps would go on
+  // to and fro for less.
+  double least_gain = 1e-8;
 };
 
 // Minimises the sum of all terms over all variables that are not held, from where they are, by

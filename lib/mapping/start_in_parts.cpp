@@ -13,7 +13,9 @@
 namespace soslam {
 namespace {
 
-// It is a start, not the result.
+// It is a start, not the result. But parts that end at a gain of 1e-2 instead cost a whole drive
+// 0.06 % more in the end: landmarks that are fitted anew need good poses to find their valleys.
+constexpr double kLeastGain = 1e-3;
 constexpr int kIterationsPerPart = 6;
 constexpr int kIterationsPerLandmark = 10;
 // A part is solved again where its last iteration, and landmarks that were fitted anew, have
@@ -170,7 +172,11 @@ class PartByPart {
     }
     for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<double> costs =
-          Minimise(terms, {kIterationsPerPart, threads_}, &some).costs;
+          Minimise(
+              terms,
+              {.max_iterations = kIterationsPerPart, .threads = threads_, .least_gain = kLeastGain},
+              &some)
+              .costs;
       FitLandmarksAnew(part.landmarks);
       if (TotalCost(terms) >= (1.0 - kUnsettled) * costs[costs.size() - 2]) break;
     }
@@ -189,7 +195,10 @@ class PartByPart {
       const Rigid3d corrected = Correction(MiddlePose(of_landmark));
       Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
     }
-    Minimise(terms, {kIterationsPerLandmark, threads_}, &some);
+    Minimise(
+        terms,
+        {.max_iterations = kIterationsPerLandmark, .threads = threads_, .least_gain = kLeastGain},
+        &some);
     for (const auto& [landmark, of_landmark] : landmarks) {
       const auto& [cost, values] = before.at(landmark);
       if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);

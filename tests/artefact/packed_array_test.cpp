@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstdint>
+#include <random>
 
 namespace soslam {
 namespace {
@@ -28,6 +30,21 @@ TEST(PackedArrayTest, NothingPacksToNothing) {
 
 TEST(PackedArrayTest, WhatRepeatsIsPackedSmall) {
   EXPECT_LT(Pack(std::vector<double>(10'000, 1.0 / 3.0)).bytes.size(), 1000U);
+}
+
+TEST(PackedArrayTest, WhatCannotBeMadeSmallerUnpacksToTheSame) {
+  // Around the most that one stored block of zlib's format has, and several of them.
+  for (const size_t count : {16383, 16384, 70'000}) {
+    std::mt19937 random(static_cast<std::mt19937::result_type>(count));
+    std::vector<float> values(count);
+    for (float& value : values) {
+      const auto bits = static_cast<std::uint32_t>(random());
+      value = std::bit_cast<float>((bits & 0xbfffffffU) | 0x20000000U);  // no NaN
+    }
+    const std::string packed = Pack(values).bytes;
+    EXPECT_GT(packed.size(), 9 * count * sizeof(float) / 10);
+    EXPECT_EQ(Unpacked(packed, count), values);
+  }
 }
 
 TEST(PackedArrayTest, AnotherSizeIsRefused) {

@@ -81,9 +81,9 @@ BENCHMARK_CAPTURE(ImageToArtefact, edges_and_distances, [](const cv::Mat& grey) 
   maps.nearest_edge = NearestEdgeMap(maps.edges);
   maps.distance = DistanceMap(maps.nearest_edge);
   return maps;
-})->Name("edges/canny_and_distances_with_files/ours");
+})->Name("edges/canny_and_distances_ours_with_files/ours");
 BENCHMARK_CAPTURE(EdgesAndDistances, without_files, OpenCvDistances)
-    ->Name("edges/canny_and_distances_with_files/opencv");
+    ->Name("edges/canny_and_distances_ours_with_files/opencv");
 
 // With corners: what soslam-edges computes for an image.
 void AllMaps(benchmark::State& state) {
