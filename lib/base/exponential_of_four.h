@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numbers>
+
+#include "base/wide_loops.h"
+
+namespace soslam {
+
+// The first elements of a series sum over n of f_n x^n by f_0 and f_n / f_(n - 1).
+template <size_t kCount, typename Ratio>
+constexpr std::array<double, kCount> SeriesByRatios(double first, Ratio ratio) {
+  std::array<double, kCount> factors{first};
+  for (size_t n = 1; n < kCount; ++n) {
+    factors[n] = factors[n - 1] * ratio(static_cast<double>(n));
+  }
+  return factors;
+}
+
+// Several x at once, as each step of one has to wait for the one before.
+template <size_t kSize, size_t kCount>
+SOSLAM_IN_WIDE_LOOPS void SumSeries(const std::array<double, kSize>& factors,
+                                    const std::array<Four, kCount>& x,
+                                    std::array<Four, kCount>* sums) {
+  *sums = {};
+  for (size_t n = kSize; n-- > 0;) {
+    for (size_t i = 0; i < kCount; ++i) (*sums)[i] = factors[n] + x[i] * (*sums)[i];
+  }
+}
+
+// e^x, good to 1e-14 of it. x below -708 counts as that, x beyond 709 as that: powers are those of
+// normal numbers.
+template <size_t kCount>
+SOSLAM_IN_WIDE_LOOPS void Exponential(std::array<Four, kCount> x,
+                                      std::array<Four, kCount>* exponential) {
+  constexpr double kLeast = -708.0, kMost = 709.0;
+  // Added to a number, it leaves no place for fractions: the lowest bits are the nearest integer.
+  constexpr double kRounding = 0x1.8p52;
+  // ln 2 in two parts, the first with so few bits that its product with a power is exact.
+  constexpr double kLn2 = 0x1.62e42feep-1, kRestOfLn2 = 0x1.a39ef35793c76p-33;
+  constexpr int kExponent = 52;  // the bit where it begins
+  constexpr auto kFactors = SeriesByRatios<12>(1.0, [](double n) { return 1.0 / n; });
+
+  std::array<FourMask, kCount> powers;
+  for (size_t i = 0; i < kCount; ++i) {
+    x[i] = x[i] > kLeast ? x[i] : Four{} + kLeast;
+    x[i] = x[i] < kMost ? x[i] : Four{} + kMost;
+    const Four rounded = x[i] * std::numbers::log2e + kRounding;
+    const Four power = rounded - kRounding;
+    x[i] = (x[i] - power * kLn2) - power * kRestOfLn2;
+    powers[i] = reinterpret_cast<FourMask>(rounded) << kExponent;
+  }
+  std::array<Four, kCount> rest;
+  SumSeries(kFactors, x, &rest);
+  for (size_t i = 0; i < kCount; ++i) {
+    (*exponential)[i] = reinterpret_cast<Four>(reinterpret_cast<FourMask>(rest[i]) + powers[i]);
+  }
+}
+
+}  // namespace soslam
