@@ -39,11 +39,10 @@ bool SolveForNegative(Eigen::Matrix<double, kSize, kSize> a,
   for (int j = 0; j < kSize; ++j) {
     if (!(a(j, j) > 0.0)) return false;
     inverse_d[j] = 1.0 / a(j, j);
-    for (int i = j + 1; i < kSize; ++i) {
-      const double l = a(i, j) * inverse_d[j];
-      for (int k = j + 1; k <= i; ++k) a(i, k) -= l * a(k, j);
-      solution[i] -= l * solution[j];
-    }
+    // Whole columns take no longer than what is below the diagonal.
+    for (int k = j + 1; k < kSize; ++k) a.col(k) -= a(k, j) * inverse_d[j] * a.col(j);
+    const double share = solution[j] * inverse_d[j];
+    for (int i = j + 1; i < kSize; ++i) solution[i] -= share * a(i, j);
   }
   for (int j = kSize - 1; j >= 0; --j) {
     for (int i = j + 1; i < kSize; ++i) solution[j] -= a(i, j) * solution[i];

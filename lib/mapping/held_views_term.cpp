@@ -35,6 +35,7 @@ struct alignas(kFourAlignment) Sums {
 // The centres as four cameras see them.
 struct Depths {
   ThreeFours offset;  // from the camera
+  Four depth_m;
   Four inverse;
   ThreeFours by_centre;  // relative change; 0 where the depth is held
 };
@@ -62,7 +63,8 @@ SOSLAM_IN_WIDE_LOOPS void FindDepths(const FourViews& views, const Body& body, D
     depth += views.optical_axis[i] * depths->offset[i];
   }
   const FourMask is_free = depth > views.least_depth_m;
-  depths->inverse = 1.0 / (is_free ? depth : views.least_depth_m);
+  depths->depth_m = is_free ? depth : views.least_depth_m;
+  depths->inverse = 1.0 / depths->depth_m;
   for (int i = 0; i < 3; ++i) {
     depths->by_centre[i] = is_free ? depths->inverse * views.optical_axis[i] : Four{};
   }
@@ -104,22 +106,81 @@ SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourViews& views, size_t side, const 
   losses->curvature = weight * (is_near ? values.curvature : values.weight);
 }
 
-SOSLAM_IN_WIDE_LOOPS void AddInformation(const std::array<Excess, 4>& excesses,
-                                         const std::array<Losses, 4>& losses, Sums* sums) {
-  for (size_t i = 0; i < kLandmarkDof; ++i) {
-    std::array<Four, 4> weighted;
-    for (size_t side = 0; side < 4; ++side) {
-      weighted[side] = losses[side].curvature * excesses[side].gradient[i];
-    }
-    for (size_t j = 0; j <= i; ++j) {
+// Where the body turns past an edge or a face that should come nearer, it is held there. Not so
+// where it should go away from it.
+SOSLAM_IN_WIDE_LOOPS bool HasKinks(const Body& body, Hessian hessian) {
+  return hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
+}
+
+// What multiplies products of the gradient of an excess in the Hessian: d^2 cost / d excess^2, and
+// where h bends, less what it bends by along its own gradient, by turns and half axes.
+struct Weights {
+  Four turn_turn;
+  Four centre;  // by all
+  Four axes;    // by turns and axes
+  // By the centre and all, of the gradient times the relative change of the depth, which divides
+  // all.
+  Four depth;
+};
+
+SOSLAM_IN_WIDE_LOOPS void FindWeights(const Body& body, const Depths& depths, const Excess& excess,
+                                      const Losses& losses, Hessian hessian, Weights* weights) {
+  const Four less =
+      losses.slope * depths.depth_m * (body.shape_exponent - 1.0) * excess.support.inverse;
+  *weights = {losses.curvature, losses.curvature, losses.curvature, Four{}};
+  if (hessian == Hessian::kNear) {
+    weights->turn_turn -= less;
+    weights->axes -= less;
+    weights->depth = losses.slope;
+  } else if (HasKinks(body, hessian)) {
+    weights->turn_turn -= less > 0.0 ? less : Four{};
+  }
+}
+
+// The products of gradients.
+SOSLAM_IN_WIDE_LOOPS void AddProducts(const std::array<Excess, 4>& excesses,
+                                      const std::array<Weights, 4>& weights,
+                                      const ThreeFours& depth_by_centre, Sums* sums) {
+  const auto add = [&](size_t i, size_t begin, size_t end, const std::array<Four, 4>& weighted) {
+    for (size_t j = begin; j < end; ++j) {
       Four& sum = sums->hessian[i][j];
       for (size_t side = 0; side < 4; ++side) sum += weighted[side] * excesses[side].gradient[j];
+    }
+  };
+  std::array<Four, 4> weighted;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t side = 0; side < 4; ++side) {
+      weighted[side] = weights[side].turn_turn * excesses[side].gradient[kTurn + i];
+    }
+    add(kTurn + i, kTurn, kTurn + i + 1, weighted);
+    for (size_t side = 0; side < 4; ++side) {
+      weighted[side] = weights[side].axes * excesses[side].gradient[kAxes + i];
+    }
+    add(kAxes + i, kTurn, kTurn + 3, weighted);
+    add(kAxes + i, kAxes, kAxes + i + 1, weighted);
+    Four slope{};
+    for (size_t side = 0; side < 4; ++side) {
+      const Four& by_centre = excesses[side].gradient[kCentre + i];
+      slope += weights[side].depth * by_centre;
+      weighted[side] = weights[side].centre * by_centre - weights[side].depth * depth_by_centre[i];
+    }
+    add(kCentre + i, kTurn, kTurn + 3, weighted);
+    add(kCentre + i, kCentre, kCentre + i + 1, weighted);
+    for (size_t j = 0; j <= i; ++j) {
+      sums->hessian[kCentre + i][kCentre + j] -= slope * depth_by_centre[j];
+    }
+    for (size_t j = 0; j < 3; ++j) {
+      Four& sum = sums->hessian[kAxes + j][kCentre + i];
+      for (size_t side = 0; side < 4; ++side) {
+        sum += weighted[side] * excesses[side].gradient[kAxes + j];
+      }
     }
   }
 }
 
 // By turns, what h grows by as the contact moves along the body: its second derivatives by m
-// (CurvatureOfSupport). What those have along m itself is not seen by a turn.
+// (CurvatureOfSupport). What those have along m itself is not seen by a turn. Less what
+// FindWeights has of it.
 SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Excess& excess,
                                            const Four& factor, Sums* sums) {
   const ThreeFours& m = excess.normal;
@@ -129,21 +190,15 @@ SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const Body& body, const Excess& exces
   const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
   ThreeFours diagonal;
   for (size_t i = 0; i < 3; ++i) {
-    diagonal[i] = shares[i] + rounding;
+    diagonal[i] = factor * (shares[i] + rounding);
     if (p == kEllipsoidExponent) continue;
-    diagonal[i] -= (2.0 - p) * shares[i] * m[i] * m[i] / support.squares[i];
+    diagonal[i] -= factor * (2.0 - p) * shares[i] * m[i] * m[i] / support.squares[i];
   }
-  const Four less = (p - 1.0) * support.inverse;
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const Four turn = less * excess.by_turn[i];
     auto& turn_row = sums->hessian[kTurn + i];
-    turn_row[kTurn + i] +=
-        factor * (diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j] - turn * excess.by_turn[i]);
-    for (size_t l = 0; l < i; ++l) {
-      turn_row[kTurn + l] -=
-          factor * (diagonal[3 - i - l] * m[i] * m[l] + turn * excess.by_turn[l]);
-    }
+    turn_row[kTurn + i] += diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j];
+    for (size_t l = 0; l < i; ++l) turn_row[kTurn + l] -= diagonal[3 - i - l] * m[i] * m[l];
   }
 }
 
@@ -152,74 +207,51 @@ SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const Body& body, const Excess& exce
                                             const Four& factor, Sums* sums) {
   const ThreeFours& m = excess.normal;
   const SupportOfFour& support = excess.support;
-  const ThreeFours& shares = support.shares;
   const double p = body.shape_exponent;
-  const Four less = (p - 1.0) * support.inverse;
-  const ThreeFours q = support.Contact(p, m);
+  const Four factor_of_axes = factor * p;
+  ThreeFours q = support.Contact(p, m);
+  for (size_t i = 0; i < 3; ++i) q[i] *= factor;
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
     auto& turn_row = sums->hessian[kTurn + i];
-    turn_row[kTurn + i] -= factor * (m[j] * q[j] + m[k] * q[k]);
-    for (size_t l = 0; l < i; ++l) {
-      turn_row[kTurn + l] += 0.5 * factor * (m[i] * q[l] + m[l] * q[i]);
-    }
+    turn_row[kTurn + i] -= m[j] * q[j] + m[k] * q[k];
+    for (size_t l = 0; l < i; ++l) turn_row[kTurn + l] += 0.5 * (m[i] * q[l] + m[l] * q[i]);
 
     auto& axis_row = sums->hessian[kAxes + i];
-    const Four axis = factor * less * support.by_log_half_axes[i];
-    const Four edge = factor * p * shares[i] * m[i];
+    const Four edge = factor_of_axes * support.shares[i] * m[i];
     axis_row[kTurn + j] -= edge * m[k];
     axis_row[kTurn + k] += edge * m[j];
-    for (size_t l = 0; l < 3; ++l) axis_row[kTurn + l] -= axis * excess.by_turn[l];
-    axis_row[kAxes + i] += factor * p * support.by_log_half_axes[i];
-    for (size_t l = 0; l <= i; ++l) axis_row[kAxes + l] -= axis * support.by_log_half_axes[l];
-  }
-}
-
-// The depth divides all: less the gradient times its relative change, both ways round.
-SOSLAM_IN_WIDE_LOOPS void AddDepthProducts(const Gradient& gradient, const ThreeFours& by_centre,
-                                           Sums* sums) {
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t j = 0; j < 3; ++j) {
-      sums->hessian[kCentre + i][kTurn + j] -= by_centre[i] * gradient[kTurn + j];
-      sums->hessian[kAxes + i][kCentre + j] -= gradient[kAxes + i] * by_centre[j];
-    }
-    for (size_t j = 0; j <= i; ++j) {
-      sums->hessian[kCentre + i][kCentre + j] -=
-          gradient[kCentre + i] * by_centre[j] + by_centre[i] * gradient[kCentre + j];
-    }
+    axis_row[kAxes + i] += factor_of_axes * support.by_log_half_axes[i];
   }
 }
 
 SOSLAM_WIDE_LOOPS void AddViews(const std::vector<FourViews>& all, const Body& body,
                                 const HuberLoss& loss, Hessian hessian, Sums* sums) {
   const bool is_near = hessian == Hessian::kNear;
-  const bool has_kinks = hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
   for (const FourViews& views : all) {
     Depths depths;
     FindDepths(views, body, &depths);
     std::array<Excess, 4> excesses;
-    std::array<Losses, 4> losses;
+    std::array<Weights, 4> weights;
     Gradient gradient{};
     for (size_t side = 0; side < 4; ++side) {
       Excess& excess = excesses[side];
       FindExcess(views.planes[side], body, depths, &excess);
-      FindLosses(views, side, excess.value, loss, is_near, &losses[side]);
-      sums->cost += losses[side].cost;
-      const Four& slope = losses[side].slope;
-      for (size_t i = 0; i < kLandmarkDof; ++i) gradient[i] += slope * excess.gradient[i];
-      const Four factor = slope * depths.inverse;
+      Losses losses;
+      FindLosses(views, side, excess.value, loss, is_near, &losses);
+      sums->cost += losses.cost;
+      for (size_t i = 0; i < kLandmarkDof; ++i) gradient[i] += losses.slope * excess.gradient[i];
+      FindWeights(body, depths, excess, losses, hessian, &weights[side]);
+      const Four factor = losses.slope * depths.inverse;
       if (is_near) {
         AddMoveOfContact(body, excess, factor, sums);
         AddOtherCurvature(body, excess, factor, sums);
-      } else if (has_kinks) {
-        // Where the body turns past an edge or a face that should come nearer, it is held there.
-        // Not so where it should go away from it.
+      } else if (HasKinks(body, hessian)) {
         AddMoveOfContact(body, excess, factor > 0.0 ? factor : Four{}, sums);
       }
     }
     for (size_t i = 0; i < kLandmarkDof; ++i) sums->gradient[i] += gradient[i];
-    AddInformation(excesses, losses, sums);
-    if (is_near) AddDepthProducts(gradient, depths.by_centre, sums);
+    AddProducts(excesses, weights, depths.by_centre, sums);
   }
 }
 

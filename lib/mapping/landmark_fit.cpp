@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/landmark_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
 
@@ -82,7 +83,9 @@ void LandmarkFit::AddToPlaces() const {
 
 void LandmarkFit::Evaluate(Hessian hessian, Equations* equations) const {
   Add(hessian, equations);
-  if (hessian == Hessian::kNear && equations->hessian.llt().info() != Eigen::Success) {
+  Gradient step;
+  if (hessian == Hessian::kNear &&
+      !SolveForNegative(equations->hessian, equations->gradient, &step)) {
     Add(Hessian::kFar, equations);
   }
 }
@@ -93,12 +96,11 @@ bool LandmarkFit::Step(Hessian hessian, double tolerance, Equations* candidate) 
   const auto diagonal = damping_.Of<Gradient>(at_.hessian.diagonal());
   Square damped = at_.hessian;
   damped.diagonal() += diagonal;
-  const Eigen::LLT<Square> factor(damped);
-  if (factor.info() != Eigen::Success) {
+  Gradient step;
+  if (!SolveForNegative(damped, at_.gradient, &step)) {
     damping_.StepRefused();
     return !damping_.IsExhausted();
   }
-  const Gradient step = -factor.solve(at_.gradient);
   const double predicted = 0.5 * step.dot(diagonal.cwiseProduct(step) - at_.gradient);
   if (!(predicted > tolerance)) return false;
   std::array<double, kLandmarkSize> before;
