@@ -6,9 +6,6 @@
 #include "geometry/rigid3.h"
 
 namespace soslam {
-namespace {
-
-// Two axes at right angles to a unit normal, and to each other.
 Eigen::Matrix<double, 3, 2> AxesAcross(const Eigen::Vector3d& normal) {
   Eigen::Matrix<double, 3, 2> axes;
   axes.col(0) = normal.unitOrthogonal();
@@ -16,43 +13,12 @@ Eigen::Matrix<double, 3, 2> AxesAcross(const Eigen::Vector3d& normal) {
   return axes;
 }
 
-// Of a unit quaternion (x, y, z, w), as RotationVectorByQuaternion is of the inverse.
 Eigen::Matrix<double, 4, 3> QuaternionByRotationVector(const double* quaternion_xyzw) {
   const Eigen::Vector3d vec(quaternion_xyzw);
   Eigen::Matrix<double, 4, 3> matrix;
   matrix.topRows<3>() = 0.5 * (quaternion_xyzw[3] * Eigen::Matrix3d::Identity() - Skew(vec));
   matrix.bottomRows<1>() = -0.5 * vec.transpose();
   return matrix;
-}
-
-}  // namespace
-
-int NumValues(VariableKind kind) {
-  switch (kind) {
-    case VariableKind::kPose:
-      return kPoseSize;
-    case VariableKind::kLandmark:
-      return kLandmarkSize;
-    case VariableKind::kNormal:
-      return kNormalSize;
-    case VariableKind::kOffset:
-      return kOffsetSize;
-    default:
-      return kBiasSize;
-  }
-}
-
-int NumTangents(VariableKind kind) {
-  switch (kind) {
-    case VariableKind::kPose:
-      return kPoseDof;
-    case VariableKind::kLandmark:
-      return kLandmarkDof;
-    case VariableKind::kNormal:
-      return kNormalDof;
-    default:
-      return NumValues(kind);
-  }
 }
 
 void Move(VariableKind kind, const double* step, double* values) {
@@ -90,26 +56,6 @@ ValuesByStep ByStep(VariableKind kind, const double* values) {
     default:
       by_step.setIdentity();
       return by_step;
-  }
-}
-
-void ChainToSteps(VariableKind kind, const double* values, const ByValues& by_values,
-                  Eigen::MatrixXd* by_steps) {
-  switch (kind) {
-    case VariableKind::kPose:
-    case VariableKind::kLandmark: {
-      const int others = NumTangents(kind) - 3;
-      by_steps->resize(by_values.rows(), NumTangents(kind));
-      by_steps->leftCols<3>().noalias() =
-          by_values.leftCols<4>().lazyProduct(QuaternionByRotationVector(values));
-      by_steps->rightCols(others) = by_values.rightCols(others);
-      return;
-    }
-    case VariableKind::kNormal:
-      by_steps->noalias() = by_values.lazyProduct(AxesAcross(Eigen::Vector3d(values)));
-      return;
-    default:
-      *by_steps = by_values;
   }
 }
 

@@ -20,8 +20,33 @@ inline constexpr int kPoseDof = 6;
 inline constexpr int kNormalDof = 2;
 inline constexpr int kBiasSize = 4;
 
-int NumValues(VariableKind kind);
-int NumTangents(VariableKind kind);
+constexpr int NumValues(VariableKind kind) {
+  switch (kind) {
+    case VariableKind::kPose:
+      return kPoseSize;
+    case VariableKind::kLandmark:
+      return kLandmarkSize;
+    case VariableKind::kNormal:
+      return kNormalSize;
+    case VariableKind::kOffset:
+      return kOffsetSize;
+    default:
+      return kBiasSize;
+  }
+}
+
+constexpr int NumTangents(VariableKind kind) {
+  switch (kind) {
+    case VariableKind::kPose:
+      return kPoseDof;
+    case VariableKind::kLandmark:
+      return kLandmarkDof;
+    case VariableKind::kNormal:
+      return kNormalDof;
+    default:
+      return NumValues(kind);
+  }
+}
 
 // Where a step leads.
 void Move(VariableKind kind, const double* step, double* values);
@@ -32,10 +57,33 @@ using ValuesByStep = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
                                    kLandmarkSize, kLandmarkDof>;
 ValuesByStep ByStep(VariableKind kind, const double* values);
 
-// by_steps = by_values ByStep(kind, values), by_values with NumValues columns. But for rotations
-// and normals, values are steps, and are copied.
-using ByValues = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-void ChainToSteps(VariableKind kind, const double* values, const ByValues& by_values,
-                  Eigen::MatrixXd* by_steps);
+// Two axes at right angles to a unit normal, and to each other.
+Eigen::Matrix<double, 3, 2> AxesAcross(const Eigen::Vector3d& normal);
+
+// Of a unit quaternion (x, y, z, w), as RotationVectorByQuaternion is of the inverse.
+Eigen::Matrix<double, 4, 3> QuaternionByRotationVector(const double* quaternion_xyzw);
+
+// A Jacobian as residual blocks write it, row by row.
+template <int kRows, int kColumns>
+using JacobianRows =
+    Eigen::Matrix<double, kRows, kColumns, kColumns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+
+// by_values ByStep(kKind, values). But for rotations and normals, values are steps, and are copied.
+template <VariableKind kKind, int kRows>
+Eigen::Matrix<double, kRows, NumTangents(kKind)> ChainedToSteps(
+    const double* values, const JacobianRows<kRows, NumValues(kKind)>& by_values) {
+  if constexpr (kKind == VariableKind::kPose || kKind == VariableKind::kLandmark) {
+    Eigen::Matrix<double, kRows, NumTangents(kKind)> by_steps;
+    by_steps.template leftCols<3>() =
+        by_values.template leftCols<4>().lazyProduct(QuaternionByRotationVector(values));
+    constexpr int kOthers = NumTangents(kKind) - 3;
+    by_steps.template rightCols<kOthers>() = by_values.template rightCols<kOthers>();
+    return by_steps;
+  } else if constexpr (kKind == VariableKind::kNormal) {
+    return by_values.lazyProduct(AxesAcross(Eigen::Vector3d(values)));
+  } else {
+    return by_values;
+  }
+}
 
 }  // namespace soslam

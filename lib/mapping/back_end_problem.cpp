@@ -16,11 +16,11 @@
 #include "constraints/standing.h"
 #include "constraints/support.h"
 #include "constraints/tangency.h"
-#include "initialisation/landmark_term_residual.h"
 #include "initialisation/view_weights.h"
 #include "mapping/axis_cost_term.h"
-#include "mapping/cost_function_term.h"
 #include "mapping/minimise.h"
+#include "mapping/ratio_cost_term.h"
+#include "mapping/residual_term.h"
 #include "mapping/tangency_term.h"
 #include "mapping/view_term.h"
 #include "orientation/texture_asymmetry.h"
@@ -41,7 +41,11 @@ constexpr double kNoLoss = std::numeric_limits<double>::infinity();
 
 BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions& options,
                                int threads)
-    : input_(input), options_(options), threads_(threads), variables_(input) {
+    : input_(input),
+      options_(options),
+      threads_(threads),
+      detections_by_object_(DetectionsByObject(input.sequence)),
+      variables_(input) {
   HoldPoses();
   WeighViews();
   if (!options.hold_poses) AddOdometry();
@@ -51,15 +55,16 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   AddDetections();
 }
 
+template <typename Residual, VariableKind... kKinds, typename... Arguments>
 std::unique_ptr<const Term> BackEndProblem::TermOf(
-    std::unique_ptr<const ceres::CostFunction> residual, const std::vector<int>& variables,
-    double huber_delta) const {
-  std::vector<CostFunctionTerm::Block> blocks;
-  for (const int index : variables) {
-    const Variable& variable = variables_.all()[static_cast<size_t>(index)];
-    blocks.push_back({index, variable.kind, variable.values});
+    const std::array<int, sizeof...(kKinds)>& variables, double huber_delta,
+    Arguments&&... arguments) const {
+  using Made = ResidualTerm<Residual, kKinds...>;
+  std::array<typename Made::Block, sizeof...(kKinds)> blocks;
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    blocks[i] = {variables[i], variables_.Values(variables[i])};
   }
-  return std::make_unique<CostFunctionTerm>(std::move(residual), blocks, huber_delta);
+  return std::make_unique<Made>(blocks, huber_delta, std::forward<Arguments>(arguments)...);
 }
 
 Terms BackEndProblem::AllTerms() const {
@@ -77,13 +82,13 @@ Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
 
 void BackEndProblem::WeighViews() {
   view_weights_.assign(input_.sequence.detections.size(), 1.0);
-  const auto detections = DetectionsByObject(input_.sequence);
-  for (size_t i = 0; i < detections.size(); ++i) {
+  for (size_t i = 0; i < detections_by_object_.size(); ++i) {
     if (!input_.starts[i]) continue;
-    const auto weights = ViewWeights(input_.sequence, detections[i], input_.starts[i]->Centre(),
+    const std::vector<int>& detections = detections_by_object_[i];
+    const auto weights = ViewWeights(input_.sequence, detections, input_.starts[i]->Centre(),
                                      options_.view_correlation_deg * std::numbers::pi / 180.0);
     for (size_t k = 0; k < weights.size(); ++k) {
-      view_weights_[static_cast<size_t>(detections[i][k])] = weights[k];
+      view_weights_[static_cast<size_t>(detections[k])] = weights[k];
     }
   }
 }
@@ -104,11 +109,10 @@ void BackEndProblem::AddOdometry() {
     if (frames[i].segment != frames[i - 1].segment) continue;
     const Rigid3d first_from_second =
         frames[i - 1].world_from_camera.Inverse() * frames[i].world_from_camera;
-    terms_.push_back(TermOf(
-        std::make_unique<OdometryResidual>(
-            first_from_second, options_.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
-            options_.odometry_translation_sigma_m),
-        {variables_.Pose(i - 1), variables_.Pose(i)}, options_.huber_delta));
+    terms_.push_back(TermOf<OdometryResidual, VariableKind::kPose, VariableKind::kPose>(
+        {variables_.Pose(i - 1), variables_.Pose(i)}, options_.huber_delta, first_from_second,
+        options_.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
+        options_.odometry_translation_sigma_m));
     ++summary_.residuals["odometry"];
   }
 }
@@ -119,16 +123,17 @@ void BackEndProblem::AddStanding(size_t object_index) {
   const int normal = variables_.Normal(plane_index);
   const int offset = variables_.Offset(plane_index);
   // No loss: a body that floats is not an outlier, but wrong.
-  terms_.push_back(TermOf(std::make_unique<StandingResidual>(
-                              options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
-                              options_.standing_height_sigma_m, variables_.NormalSide(plane_index)),
-                          {variables_.Landmark(object_index), normal, offset}, kNoLoss));
+  terms_.push_back(TermOf<StandingResidual, VariableKind::kLandmark, VariableKind::kNormal,
+                          VariableKind::kOffset>(
+      {variables_.Landmark(object_index), normal, offset}, kNoLoss,
+      options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
+      options_.standing_height_sigma_m, variables_.NormalSide(plane_index)));
   const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
   if (!attitude || !options_.refine_planes) {
     variables_.Hold(normal);
     variables_.Hold(offset);
   } else if (normals_under_objects_.insert(normal).second) {
-    terms_.push_back(TermOf(std::make_unique<AttitudeResidual>(*attitude), {normal}, kNoLoss));
+    terms_.push_back(TermOf<AttitudeResidual, VariableKind::kNormal>({normal}, kNoLoss, *attitude));
   }
 }
 
@@ -141,10 +146,9 @@ void BackEndProblem::AddLandmark(size_t object_index) {
     if (options_.detection_model == DetectionModel::kTangency) {
       AddStanding(object_index);
     } else {
-      terms_.push_back(
-          TermOf(std::make_unique<SupportResidual>(plane, options_.variances.SupportAngleRad2(),
-                                                   options_.variances.SupportTangencyM4()),
-                 {landmark}, options_.huber_delta));
+      terms_.push_back(TermOf<SupportResidual, VariableKind::kLandmark>(
+          {landmark}, options_.huber_delta, plane, options_.variances.SupportAngleRad2(),
+          options_.variances.SupportTangencyM4()));
     }
     ++summary_.residuals["support"];
   }
@@ -165,34 +169,36 @@ void BackEndProblem::AddRatio(size_t object_index) {
   if (options_.detection_model == DetectionModel::kTangency) {
     // No loss: a ratio far from the prior is as unlikely as its spread says.
     terms_.push_back(
-        TermOf(std::make_unique<LandmarkTermResidual>(std::make_unique<RatioTerm>(*prior)),
-               {landmark}, kNoLoss));
+        std::make_unique<RatioCostTerm>(landmark, variables_.Values(landmark), *prior));
   } else {
-    terms_.push_back(
-        TermOf(std::make_unique<ScaleRatioResidual>(prior->ratio, options_.variances.ratio),
-               {landmark}, options_.huber_delta));
+    terms_.push_back(TermOf<ScaleRatioResidual, VariableKind::kLandmark>(
+        {landmark}, options_.huber_delta, prior->ratio, options_.variances.ratio));
   }
   ++summary_.residuals["ratio"];
 }
 
 void BackEndProblem::AddDetections() {
   HeldViews held_views;
+  int added = 0;
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
-    if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
+    const auto& start = input_.starts[static_cast<size_t>(detection.object_index)];
+    if (!start) {
       ++summary_.gated[input_.sequence.ObjectOf(detection).is_static
                            ? "detection_of_object_without_start"
                            : "detection_of_moving_object"];
       continue;
     }
-    const Landmark landmark_in_camera = LandmarkInCamera(detection);
-    if (!(landmark_in_camera.Centre().z() > 0.0)) {
+    const Rigid3d& world_from_camera = input_.sequence.FrameOf(detection).world_from_camera;
+    const Landmark start_in_camera = Transform(world_from_camera.Inverse(), *start);
+    if (!(start_in_camera.Centre().z() > 0.0)) {
       ++summary_.gated["landmark_behind_camera"];
       continue;
     }
-    AddDetection(i, landmark_in_camera, &held_views);
-    ++summary_.residuals["detection"];
+    AddDetection(i, start_in_camera, &held_views);
+    ++added;
   }
+  if (added > 0) summary_.residuals["detection"] = added;
   for (const auto& [landmark, views] : held_views) {
     terms_.push_back(std::make_unique<HeldViewsTerm>(landmark, variables_.Values(landmark), views,
                                                      options_.huber_delta));
@@ -200,19 +206,19 @@ void BackEndProblem::AddDetections() {
   if (options_.detection_model == DetectionModel::kTangency) AddBias();
 }
 
-void BackEndProblem::AddDetection(size_t index, const Landmark& landmark_in_camera,
+void BackEndProblem::AddDetection(size_t index, const Landmark& start_in_camera,
                                   HeldViews* held_views) {
   const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.CameraOf(detection);
   if (options_.detection_model == DetectionModel::kQuadric) {
-    terms_.push_back(TermOf(std::make_unique<DetectionResidual>(camera, detection.box,
-                                                                options_.variances.DetectionM4()),
-                            {Pose(detection), LandmarkOf(detection)}, options_.huber_delta));
+    terms_.push_back(TermOf<DetectionResidual, VariableKind::kPose, VariableKind::kLandmark>(
+        {Pose(detection), LandmarkOf(detection)}, options_.huber_delta, camera, detection.box,
+        options_.variances.DetectionM4()));
     return;
   }
   const auto edges =
       BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction);
-  const TangentBox box(edges, landmark_in_camera);
+  const TangentBox box(edges, start_in_camera);
   // A body so near that it reaches behind the camera has no tangent point in view.
   const int left_out = static_cast<int>(edges.size()) - box.num_edges;
   if (left_out > 0) summary_.gated["edge_behind_camera"] += left_out;
@@ -223,9 +229,12 @@ void BackEndProblem::AddTangencies(size_t index, const TangentBox& box, HeldView
   const Detection& detection = input_.sequence.detections[index];
   const int landmark = LandmarkOf(detection);
   if (options_.hold_poses && !(options_.detector_bias_sigma_px > 0.0)) {
-    const Rigid3d world_from_camera =
-        variables_.PoseValue(static_cast<size_t>(detection.frame_index));
-    (*held_views)[landmark].push_back({world_from_camera, box, view_weights_[index]});
+    std::vector<HeldView>& views = (*held_views)[landmark];
+    if (views.empty()) {
+      views.reserve(detections_by_object_[static_cast<size_t>(detection.object_index)].size());
+    }
+    views.push_back(
+        {input_.sequence.FrameOf(detection).world_from_camera, box, view_weights_[index]});
     return;
   }
   const int pose = Pose(detection);
@@ -239,8 +248,8 @@ void BackEndProblem::AddTangencies(size_t index, const TangentBox& box, HeldView
 
 void BackEndProblem::AddBias() {
   if (options_.detector_bias_sigma_px > 0.0) {
-    terms_.push_back(TermOf(std::make_unique<BiasResidual>(options_.detector_bias_sigma_px),
-                            {variables_.Bias()}, kNoLoss));
+    terms_.push_back(TermOf<BiasResidual, VariableKind::kBias>({variables_.Bias()}, kNoLoss,
+                                                               options_.detector_bias_sigma_px));
   } else {
     variables_.Hold(variables_.Bias());
   }
@@ -311,10 +320,9 @@ BackEndProblem::ImageTerms BackEndProblem::PairsOf(
   ImageTerms made{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}};
   if (made.residuals < symmetry.min_pairs) return made;
   for (const Eigen::Vector2d& pixel : visible) {
-    made.terms.push_back(TermOf(
-        std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
-                                           in_camera.shape_exponent, options_.symmetry_sigma),
-        {Pose(detection), LandmarkOf(detection)}, options_.huber_delta));
+    made.terms.push_back(TermOf<SymmetryResidual, VariableKind::kPose, VariableKind::kLandmark>(
+        {Pose(detection), LandmarkOf(detection)}, options_.huber_delta, symmetry.descriptor, image,
+        camera, pixel, in_camera.shape_exponent, options_.symmetry_sigma));
   }
   return made;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/cost_function.h>
-
+#include <array>
 #include <limits>
 #include <map>
 #include <memory>
@@ -52,7 +51,7 @@ class BackEndProblem {
   void AddDetections();
   // Of held poses, without a bias: by the landmark's variable.
   using HeldViews = std::map<int, std::vector<HeldView>>;
-  void AddDetection(size_t index, const Landmark& landmark_in_camera, HeldViews* held_views);
+  void AddDetection(size_t index, const Landmark& start_in_camera, HeldViews* held_views);
   void AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views);
   void AddBias();
 
@@ -79,13 +78,15 @@ class BackEndProblem {
   int LandmarkOf(const Detection& detection) const {
     return variables_.Landmark(static_cast<size_t>(detection.object_index));
   }
-  // A residual block of these variables.
-  std::unique_ptr<const Term> TermOf(std::unique_ptr<const ceres::CostFunction> residual,
-                                     const std::vector<int>& variables, double huber_delta) const;
+  // A residual block of these variables, which are of these kinds; `arguments` are the residual's.
+  template <typename Residual, VariableKind... kKinds, typename... Arguments>
+  std::unique_ptr<const Term> TermOf(const std::array<int, sizeof...(kKinds)>& variables,
+                                     double huber_delta, Arguments&&... arguments) const;
 
   const BackEndInput& input_;
   const OptimiseOptions& options_;
   int threads_;
+  std::vector<std::vector<int>> detections_by_object_;
   std::vector<double> view_weights_;  // one per detection
   BackEndVariables variables_;
   std::set<int> normals_under_objects_;

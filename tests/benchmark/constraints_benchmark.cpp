@@ -15,10 +15,10 @@
 #include "constraints/symmetry.h"
 #include "constraints/tangency.h"
 #include "constraints/tangent_space.h"
-#include "initialisation/landmark_term_residual.h"
 #include "mapping/tangency_term.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/texture_asymmetry.h"
+#include "support/landmark_term_residual.h"
 
 namespace soslam {
 namespace {

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "constraints/tangent_space.h"
-#include "initialisation/landmark_term_residual.h"
-#include "mapping/cost_function_term.h"
+#include "support/cost_function_term.h"
+#include "support/landmark_term_residual.h"
 
 namespace soslam {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "mapping/back_end_problem.h"
-#include "mapping/cost_function_term.h"
+#include "support/cost_function_term.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 #include "support/standing_scene.h"

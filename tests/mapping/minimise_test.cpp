@@ -11,11 +11,11 @@
 #include "constraints/manifolds.h"
 #include "constraints/odometry.h"
 #include "constraints/standing.h"
-#include "initialisation/landmark_term_residual.h"
 #include "mapping/back_end_problem.h"
-#include "mapping/cost_function_term.h"
 #include "mapping/landmark_fit.h"
+#include "support/cost_function_term.h"
 #include "support/cuboid_map.h"
+#include "support/landmark_term_residual.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
 

@@ -8,7 +8,7 @@
 
 #include "constraints/tangent_space.h"
 #include "initialisation/upright.h"
-#include "mapping/cost_function_term.h"
+#include "support/cost_function_term.h"
 #include "support/random_scene.h"
 #include "support/shape_exponents.h"
 
