@@ -7,6 +7,23 @@
 #include "mapping/schur_complement.h"
 
 namespace soslam {
+namespace {
+
+// below := below L^-T. What Eigen does before and after takes longer than few columns.
+void DivideByRoot(const Eigen::Ref<const Eigen::MatrixXd>& root,
+                  Eigen::Ref<Eigen::MatrixXd>* below) {
+  constexpr Eigen::Index kFew = 12;
+  if (root.cols() > kFew) {
+    root.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(*below);
+    return;
+  }
+  for (Eigen::Index j = 0; j < root.cols(); ++j) {
+    for (Eigen::Index k = 0; k < j; ++k) below->col(j) -= root(j, k) * below->col(k);
+    below->col(j) /= root(j, j);
+  }
+}
+
+}  // namespace
 
 BlockCholesky::BlockCholesky(const SymmetricBlocks& pattern) {
   const std::vector<EliminationGroup> groups = EliminationTree(pattern);
@@ -151,9 +168,9 @@ bool BlockCholesky::Factor(const SymmetricBlocks& matrix, const Eigen::VectorXd&
     if (root.info() != Eigen::Success) return false;
     columns.topRows(front.pivots) = corner;
     if (neighbours == 0) continue;
-    auto below = columns.bottomRows(neighbours);
+    Eigen::Ref<Eigen::MatrixXd> below = columns.bottomRows(neighbours);
     below = dense.bottomLeftCorner(neighbours, front.pivots);
-    corner.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
+    DivideByRoot(corner, &below);
     Eigen::Map<Eigen::MatrixXd> update(&stack_[front.update], neighbours, neighbours);
     SchurComplement(dense.bottomRightCorner(neighbours, neighbours), below, &panels_, update);
   }
@@ -178,18 +195,23 @@ Eigen::VectorXd BlockCholesky::Solve(const Eigen::VectorXd& right_side) const {
   for (Eigen::Index i = 0; i < x.size(); ++i)
     x[i] = right_side[original_rows_[static_cast<size_t>(i)]];
   for (const Front& front : fronts_) {
-    const auto columns = FactorOf(front);
-    auto pivots = x.segment(front.first, front.pivots);
-    columns.topRows(front.pivots).triangularView<Eigen::Lower>().solveInPlace(pivots);
-    const auto below = columns.bottomRows(front.size - front.pivots);
-    x(front.rows) -= below * pivots;
+    for (int j = 0; j < front.pivots; ++j) {
+      const double* column = &factor_[front.factor + static_cast<size_t>(j * front.size)];
+      const double value = x[front.first + j] /= column[j];
+      for (int i = j + 1; i < front.pivots; ++i) x[front.first + i] -= value * column[i];
+      column += front.pivots;
+      for (size_t i = 0; i < front.rows.size(); ++i) x[front.rows[i]] -= value * column[i];
+    }
   }
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
-    const auto columns = FactorOf(*front);
-    auto pivots = x.segment(front->first, front->pivots);
-    const auto below = columns.bottomRows(front->size - front->pivots);
-    pivots -= below.transpose() * x(front->rows);
-    columns.topRows(front->pivots).triangularView<Eigen::Lower>().transpose().solveInPlace(pivots);
+    for (int j = front->pivots - 1; j >= 0; --j) {
+      const double* column = &factor_[front->factor + static_cast<size_t>(j * front->size)];
+      double value = x[front->first + j];
+      for (int i = j + 1; i < front->pivots; ++i) value -= column[i] * x[front->first + i];
+      const double* below = column + front->pivots;
+      for (size_t i = 0; i < front->rows.size(); ++i) value -= below[i] * x[front->rows[i]];
+      x[front->first + j] = value / column[j];
+    }
   }
   Eigen::VectorXd solution(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i)
