@@ -36,7 +36,7 @@ struct HuberLoss {
     return values;
   }
 
-  static constexpr double kLeastCurvature = 0.01;
+  static constexpr double kLeastCurvature = 1e-3;
 };
 
 }  // namespace soslam

@@ -26,9 +26,11 @@ constexpr double kNoCost = 1e-18;
 constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkGain = 3e-4;
 constexpr double kLeastLandmarkGain = 1e-8;
-// Where a step is expected to lower the cost by less than this share, the minimum is near; with
-// nothing but landmarks, where it has.
+// Where a step is expected to lower the cost by less than this share, the minimum is near.
 constexpr double kNear = 1e-2;
+// Where it has done so and nothing but landmarks varies: each goes back to kFar by itself where
+// kNear leads nowhere, and is spared the steps that halve what is left.
+constexpr double kNearForLandmarks = 0.3;
 // Of steps of all variables. As landmarks look after themselves, what is left to damp is the bend
 // of the drive, which takes many steps to come to rest when damping falls slowly.
 constexpr double kFirstDamping = 1e-4;
@@ -107,9 +109,14 @@ class Minimiser {
     ForEachFit([&](LandmarkFit& fit, auto*) { fit.Linearise(hessian_); });
   }
   // Of all terms; where the fits were linearised.
-  double Cost() const {
+  double Cost() const { return CostOfFits() + CostOfOthers(); }
+  double CostOfFits() const {
     double cost = 0.0;
     for (const LandmarkFit& fit : fits_) cost += fit.cost();
+    return cost;
+  }
+  double CostOfOthers() const {
+    double cost = 0.0;
     for (const PlacedTerm& placed : without_landmark_) cost += placed.term->Cost();
     return cost;
   }
@@ -123,7 +130,7 @@ class Minimiser {
     });
     const double before = cost_;
     cost_ = Cost();
-    hessian_ = before - cost_ < kNear * before ? Hessian::kNear : Hessian::kFar;
+    hessian_ = before - cost_ < kNearForLandmarks * before ? Hessian::kNear : Hessian::kFar;
     return moves;
   }
   double NumLandmarks() const { return static_cast<double>(std::max<size_t>(1, fits_.size())); }
@@ -167,8 +174,10 @@ class Minimiser {
     // Where the step leads to, the next one begins.
     hessian_ = predicted < kNear * before ? Hessian::kNear : Hessian::kFar;
     LineariseFits();
-    cost_ = Cost();
+    const double cost_of_others = CostOfOthers();
+    cost_ = CostOfFits() + cost_of_others;
     StepsOfLandmarks(before, predicted);
+    cost_ = CostOfFits() + cost_of_others;
     const double gain = before - cost_;  // with what landmarks brought
     if (gain > 0.0) {
       are_set_up_ = false;
@@ -199,7 +208,6 @@ class Minimiser {
       for (int i = 0; i < kLandmarkSteps && fit.Step(hessian_, tolerance, candidate); ++i) {
       }
     });
-    cost_ = Cost();
   }
 
   // Whether another one may be taken.
