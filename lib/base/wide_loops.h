@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 // Before a function whose loops the compiler turns into vector code: compiles it twice, for any
 // processor and for those with AVX2, which take twice as many numbers at once; the program chooses
@@ -79,6 +80,30 @@ SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Four& of, Four* root) {
 // All four together.
 SOSLAM_IN_WIDE_LOOPS double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
+}
+
+// Eight numbers of single precision side by side, and how they are compared and converted.
+using Eight [[gnu::vector_size(8 * sizeof(float))]] = float;
+using EightMask = decltype(Eight{} < Eight{});
+using EightIntegers [[gnu::vector_size(8 * sizeof(int))]] = int;
+
+using EightInMemory
+    [[gnu::vector_size(8 * sizeof(float)), gnu::aligned(alignof(float)), gnu::may_alias]] = float;
+SOSLAM_IN_WIDE_LOOPS void Load(const float* from, Eight* eight) {
+  *eight = *reinterpret_cast<const EightInMemory*>(from);
+}
+
+SOSLAM_IN_WIDE_LOOPS void Store(const Eight& eight, float* to) {
+  *reinterpret_cast<EightInMemory*>(to) = eight;
+}
+
+// All eight together, in double precision.
+SOSLAM_IN_WIDE_LOOPS double Sum(const Eight& eight) {
+  using EightDoubles [[gnu::vector_size(8 * sizeof(double))]] = double;
+  const EightDoubles numbers = __builtin_convertvector(eight, EightDoubles);
+  std::array<Four, 2> halves;
+  std::memcpy(&halves, &numbers, sizeof(halves));
+  return Sum(halves[0] + halves[1]);
 }
 
 // Takes the numbers of `from` where the mask holds.

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <tuple>
 
 #include "base/wide_loops.h"
 #include "geometry/body_in_camera.h"
@@ -12,48 +14,76 @@
 namespace soslam {
 namespace {
 
-std::array<const double*, 3> Data(const BatchOfVectors& vectors) {
-  return {vectors[0].data(), vectors[1].data(), vectors[2].data()};
+// The mirror images of a batch in the image (see MirroredPoints), and which of them count (1 or 0).
+struct MirroredBatch {
+  std::array<std::array<float, kBatchSize>, 3> in_image;
+  alignas(kFourAlignment) std::array<std::int64_t, kBatchSize> is_on_surface;
+  alignas(kFourAlignment) std::array<std::int64_t, kBatchSize> is_visible;
+};
+
+SOSLAM_IN_WIDE_LOOPS void LoadVectors(const BatchOfVectors& vectors, int at, ThreeFours* four) {
+  for (size_t k = 0; k < 3; ++k) Load(vectors[k].data() + at, &(*four)[k]);
 }
 
-// Mirror images, in the camera frame, of the points where rays meet the surface. `excess` is 0 or
-// more where the camera sees both: where v, the dot product of normal and direction to the camera,
-// is at least min_viewing_cosine |normal| |direction|.
-SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& __restrict rays, const BodyInCamera& body,
-                                     double min_viewing_cosine, BatchOfVectors* __restrict mirrored,
-                                     Batch* __restrict excess) {
-  const Eigen::Matrix3d rotation = body.rotation;
-  const Eigen::Vector3d centre = body.centre;
-  const Eigen::Vector3d camera = body.camera_in_object;
+SOSLAM_IN_WIDE_LOOPS void Dot(const ThreeFours& a, const ThreeFours& b, Four* dot) {
+  *dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+SOSLAM_IN_WIDE_LOOPS void StoreOnes(const FourMask& mask, std::int64_t* to) {
+  const FourMask ones = mask & 1;
+  std::memcpy(to, &ones, sizeof(ones));
+}
+
+// Whether v, the dot product of normal and direction to the camera, is at least cosine |normal|
+// |direction|.
+SOSLAM_IN_WIDE_LOOPS void IsSeen(const Four& v, const Four& squared_normal,
+                                 const Four& squared_to_camera, double squared_cosine,
+                                 FourMask* is_seen) {
+  *is_seen = (v >= 0.0) & (v * v >= squared_cosine * squared_normal * squared_to_camera);
+}
+
+// Visible is what the camera sees on both sides. `image_from_object` is 3 x 4.
+SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d& camera,
+                                     const Eigen::Matrix<double, 3, 4>& image_from_object,
+                                     double min_viewing_cosine, MirroredBatch* mirrored) {
+  using FourFloats [[gnu::vector_size(4 * sizeof(float))]] = float;
   const double squared_cosine = min_viewing_cosine * min_viewing_cosine;
-  const auto [x, y, z] = Data(rays.point);
-  const auto [normal_x, normal_y, normal_z] = Data(rays.gradient);
-  const auto [ray_x, ray_y, ray_z] = Data(rays.direction);
-  for (int i = 0; i < kBatchSize; ++i) {
-    const double least = squared_cosine * (normal_x[i] * normal_x[i] + normal_y[i] * normal_y[i] +
-                                           normal_z[i] * normal_z[i]);
-    const double here = -(normal_x[i] * ray_x[i] + normal_y[i] * ray_y[i] + normal_z[i] * ray_z[i]);
-    const double squared_ray = ray_x[i] * ray_x[i] + ray_y[i] * ray_y[i] + ray_z[i] * ray_z[i];
-    // From the mirror image, whose normal is mirrored as well.
-    const double to_x = camera.x() - x[i];
-    const double to_y = camera.y() + y[i];
-    const double to_z = camera.z() - z[i];
-    const double there = normal_x[i] * to_x - normal_y[i] * to_y + normal_z[i] * to_z;
-    const double squared_to = to_x * to_x + to_y * to_y + to_z * to_z;
-    (*excess)[i] = std::min(here * std::abs(here) - least * squared_ray,
-                            there * std::abs(there) - least * squared_to);
-    (*mirrored)[0][i] =
-        rotation(0, 0) * x[i] - rotation(0, 1) * y[i] + rotation(0, 2) * z[i] + centre.x();
-    (*mirrored)[1][i] =
-        rotation(1, 0) * x[i] - rotation(1, 1) * y[i] + rotation(1, 2) * z[i] + centre.y();
-    (*mirrored)[2][i] =
-        rotation(2, 0) * x[i] - rotation(2, 1) * y[i] + rotation(2, 2) * z[i] + centre.z();
+  const Eigen::Matrix<double, 3, 4> matrix = image_from_object;
+  for (int at = 0; at < kBatchSize; at += 4) {
+    ThreeFours point, normal, ray;
+    LoadVectors(rays.point, at, &point);
+    LoadVectors(rays.gradient, at, &normal);
+    LoadVectors(rays.direction, at, &ray);
+    const ThreeFours mirror_image = {point[0], -point[1], point[2]};
+    const ThreeFours mirrored_normal = {normal[0], -normal[1], normal[2]};
+    const ThreeFours to_camera = {camera.x() - point[0], camera.y() + point[1],
+                                  camera.z() - point[2]};
+    Four squared_normal, away, squared_ray, there, squared_to, depth;
+    Dot(normal, normal, &squared_normal);
+    Dot(normal, ray, &away);
+    Dot(ray, ray, &squared_ray);
+    Dot(mirrored_normal, to_camera, &there);
+    Dot(to_camera, to_camera, &squared_to);
+    Load(rays.depth.data() + at, &depth);
+    const FourMask is_on_surface = depth > 0.0;
+    StoreOnes(is_on_surface, mirrored->is_on_surface.data() + at);
+    FourMask is_seen, is_mirror_image_seen;
+    IsSeen(-away, squared_normal, squared_ray, squared_cosine, &is_seen);
+    IsSeen(there, squared_normal, squared_to, squared_cosine, &is_mirror_image_seen);
+    StoreOnes(is_on_surface & is_seen & is_mirror_image_seen, mirrored->is_visible.data() + at);
+    for (int k = 0; k < 3; ++k) {
+      const Four coordinate = matrix(k, 0) * mirror_image[0] + matrix(k, 1) * mirror_image[1] +
+                              matrix(k, 2) * mirror_image[2] + matrix(k, 3);
+      const FourFloats floats = __builtin_convertvector(coordinate, FourFloats);
+      std::memcpy(mirrored->in_image[k].data() + at, &floats, sizeof(floats));
+    }
   }
 }
 
 }  // namespace
 
-PixelRays::PixelRays(const Camera& camera, const std::vector<Eigen::Vector2d>& pixels) {
+PixelRays::PixelRays(const Camera& of_camera, const std::vector<Eigen::Vector2d>& pixels)
+    : camera(of_camera) {
   for (const Eigen::Vector2d& pixel : pixels) {
     const Eigen::Vector3d ray = camera.Ray(pixel);
     x.push_back(ray.x());
@@ -61,35 +91,37 @@ PixelRays::PixelRays(const Camera& camera, const std::vector<Eigen::Vector2d>& p
   }
 }
 
-void MirroredPoints::Append(const BatchOfVectors& points, Eigen::Index index) {
-  const auto place = static_cast<Eigen::Index>(ray.size()) % kBatchSize;
-  if (place == 0) {
-    in_camera.emplace_back().fill(Batch::Constant(std::numeric_limits<double>::quiet_NaN()));
-  }
-  for (size_t i = 0; i < 3; ++i) in_camera.back()[i][place] = points[i][index];
-}
-
 void MirroredPoints::Find(const Landmark& landmark_in_camera, const PixelRays& rays,
                           double min_viewing_cosine) {
   const BodyInCamera body(landmark_in_camera);
+  const Eigen::Matrix<double, 3, 4> image_from_object =
+      rays.camera.ProjectionMatrix(landmark_in_camera.frame_from_object);
   on_surface = 0;
-  in_camera.clear();
-  ray.clear();
+  // Every ray is written where the next one that counts belongs.
+  ray.resize(rays.x.size() + 1);
+  for (auto& coordinate : in_image) coordinate.resize(rays.x.size() + kBatchSize);
+  const auto [x, y, depth] = std::tuple(in_image[0].data(), in_image[1].data(), in_image[2].data());
+  size_t found = 0;
   RayBatch batch;
-  BatchOfVectors mirrored;
-  Batch excess;
+  MirroredBatch mirrored;
   for (size_t begin = 0; begin < rays.x.size(); begin += kBatchSize) {
     const size_t count = std::min<size_t>(rays.x.size() - begin, kBatchSize);
     body.Meet(rays.x.data() + begin, rays.y.data() + begin, count, &batch);
-    MirrorVisible(batch, body, min_viewing_cosine, &mirrored, &excess);
+    MirrorVisible(batch, body.camera_in_object, image_from_object, min_viewing_cosine, &mirrored);
     for (size_t i = 0; i < count; ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      if (!(batch.depth[at] > 0.0)) continue;
-      ++on_surface;
-      if (!(excess[at] >= 0.0)) continue;
-      Append(mirrored, at);
-      ray.push_back(begin + i);
+      x[found] = mirrored.in_image[0][i];
+      y[found] = mirrored.in_image[1][i];
+      depth[found] = mirrored.in_image[2][i];
+      ray[found] = begin + i;
+      on_surface += static_cast<size_t>(mirrored.is_on_surface[i]);
+      found += static_cast<size_t>(mirrored.is_visible[i]);
     }
+  }
+  ray.resize(found);
+  for (auto& coordinate : in_image) {
+    coordinate.resize((found + kBatchSize - 1) / kBatchSize * kBatchSize);
+    std::fill(coordinate.begin() + static_cast<std::ptrdiff_t>(found), coordinate.end(),
+              std::numeric_limits<float>::quiet_NaN());
   }
 }
 

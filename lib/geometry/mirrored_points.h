@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -13,8 +13,9 @@ namespace soslam {
 
 // The viewing rays of many pixels, z = 1, as Camera::Ray gives them one by one.
 struct PixelRays {
-  PixelRays(const Camera& camera, const std::vector<Eigen::Vector2d>& pixels);
+  PixelRays(const Camera& of_camera, const std::vector<Eigen::Vector2d>& pixels);
 
+  Camera camera;
   std::vector<double> x;
   std::vector<double> y;
 };
@@ -26,14 +27,12 @@ class MirroredPoints {
   void Find(const Landmark& landmark_in_camera, const PixelRays& rays, double min_viewing_cosine);
 
   size_t on_surface = 0;  // how many rays meet the surface
-  // The mirror images in the xz plane, in the camera frame, of those points that the camera sees,
-  // as it sees their mirror images, with a viewing cosine of at least min_viewing_cosine >= 0.
-  // Batch by batch; what is left of the last one is NaN.
-  std::vector<BatchOfVectors> in_camera;
+  // The mirror images in the xz plane of those points that the camera sees, as it sees their mirror
+  // images, with a viewing cosine of at least min_viewing_cosine >= 0; in the image: depth times
+  // pixel x, depth times pixel y, and depth (m). Whole batches: what is left of the last is NaN.
+  std::array<std::vector<float>, 3> in_image;
   std::vector<size_t> ray;  // of each of these points
-
- private:
-  void Append(const BatchOfVectors& points, Eigen::Index index);
+  size_t NumBatches() const { return in_image[0].size() / kBatchSize; }
 };
 
 }  // namespace soslam

@@ -2,20 +2,20 @@
 #include "orientation/mirror_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "base/wide_loops.h"
 #include "image/sample_batch.h"
 #include "image/sample_bilinear.h"
+#include "image/sample_of_eight.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // Bounds may be off by what rounding does to a sum.
 constexpr double kRounding = 1.0 + 1e-9;
 
@@ -37,115 +37,126 @@ std::vector<T> Ordered(const std::vector<T>& values, const std::vector<size_t>& 
   return ordered;
 }
 
-// A batch of mirrored points and the values at their own pixels; NaN where there is no point.
+// Of the pixels of grey values 0 to 1, or of distances in px.
+cv::Mat MapOf(const EdgeMaps& maps, Descriptor descriptor) {
+  if (descriptor != Descriptor::kGrey) return maps.distance;
+  cv::Mat grey;
+  maps.grey.convertTo(grey, CV_32F, 1.0 / 255.0);
+  return grey;
+}
+
+// Mirrored points (see MirroredPoints) and the values at the points' own pixels.
 struct Points {
-  const BatchOfVectors& in_camera;
-  const Batch& values;
+  std::array<const float*, 3> in_image;
+  const float* values;
 };
 
-// How points that are shifted first compare with the map there: adds d^2 / (d^2 + squared_scale)
-// and numbers of pairs. `is_pair` is 1 or 0: d is NaN or infinite where there is no pair.
-template <typename Scalar>
-SOSLAM_IN_WIDE_LOOPS void Compare(const MapView<Scalar>& map, double unit, const Camera& camera,
-                                  const Points& points, const Eigen::Vector3d& shift,
-                                  double squared_scale, MirrorSearch::Sums* sums, Batch* is_pair) {
-  // Copies, as what is written may be anything to the compiler.
-  const auto [fx, fy, cx, cy] = std::tuple(camera.fx, camera.fy, camera.cx, camera.cy);
-  const auto [shift_x, shift_y, shift_z] = std::tuple(shift.x(), shift.y(), shift.z());
-  const MapView<Scalar> view = map;
-  Cells cells;
-  for (int i = 0; i < kBatchSize; i += 4) {
-    Four x, y, depth;
-    Load(points.in_camera[0].data() + i, &x);
-    Load(points.in_camera[1].data() + i, &y);
-    Load(points.in_camera[2].data() + i, &depth);
-    depth += shift_z;
-    const Four inverse_depth = depth > 0.0 ? 1.0 / depth : Four{} + kNone;
-    cells.Locate(view, fx * (x + shift_x) * inverse_depth + cx,
-                 fy * (y + shift_y) * inverse_depth + cy, i);
-  }
-  Four differences{}, pairs{};
-  for (int i = 0; i < kBatchSize; i += 4) {
-    Four value, mirrored;
-    Load(points.values.data() + i, &value);
-    SampleOfFour(view, cells, i).Interpolate(&mirrored);
-    const Four difference = value - unit * mirrored;
-    const Four squared = difference * difference;
-    const Four share = squared / (squared + squared_scale);
-    const FourMask known = share >= 0.0;
-    const Four pair = known ? Four{} + 1.0 : Four{};
-    differences += known ? share : Four{};
-    pairs += pair;
-    Store(pair, is_pair->data() + i);
-  }
-  sums->differences += Sum(differences);
-  sums->pairs += Sum(pairs);
+Points PointsOf(const MirroredPoints& points, const std::vector<float>& values) {
+  const auto& [x, y, depth] = points.in_image;
+  return {{x.data(), y.data(), depth.data()}, values.data()};
 }
 
-SOSLAM_WIDE_LOOPS void CompareBytes(const MapView<std::uint8_t>& map, double unit,
-                                    const Camera& camera, const Points& points,
-                                    const Eigen::Vector3d& shift, double squared_scale,
-                                    MirrorSearch::Sums* sums, Batch* is_pair) {
-  Compare(map, unit, camera, points, shift, squared_scale, sums, is_pair);
+// How they compare with the map where they are when shifted.
+struct Comparison {
+  MapView<float> map;
+  Eigen::Vector3f shift;
+  float squared_scale;
+};
+
+// d^2 / (d^2 + squared_scale) of a batch; NaN where there is no pair, as d is NaN or infinite.
+using Shares = std::array<Eight, kBatchSize / 8>;
+SOSLAM_IN_WIDE_LOOPS void FindShares(const Comparison& comparison, const Points& points,
+                                     size_t batch, Shares* shares) {
+  CellsOfEight cells;
+  for (size_t i = 0; i < shares->size(); ++i) {
+    const size_t at = batch * kBatchSize + 8 * i;
+    Eight x, y, depth;
+    Load(points.in_image[0] + at, &x);
+    Load(points.in_image[1] + at, &y);
+    Load(points.in_image[2] + at, &depth);
+    depth += comparison.shift[2];
+    const Eight inverse_depth = depth > 0.0F ? 1.0F / depth : Eight{} + kNone;
+    cells.Locate(comparison.map, (x + comparison.shift[0]) * inverse_depth,
+                 (y + comparison.shift[1]) * inverse_depth, i);
+  }
+  for (size_t i = 0; i < shares->size(); ++i) {
+    Eight value, mirrored;
+    Load(points.values + batch * kBatchSize + 8 * i, &value);
+    Interpolate(comparison.map, cells, i, &mirrored);
+    const Eight difference = value - mirrored;
+    const Eight squared = difference * difference;
+    (*shares)[i] = squared / (squared + comparison.squared_scale);
+  }
 }
 
-SOSLAM_WIDE_LOOPS void CompareFloats(const MapView<float>& map, double unit, const Camera& camera,
-                                     const Points& points, const Eigen::Vector3d& shift,
-                                     double squared_scale, MirrorSearch::Sums* sums,
-                                     Batch* is_pair) {
-  Compare(map, unit, camera, points, shift, squared_scale, sums, is_pair);
+// Adds batches from `first` on, as long as they come to no more than `enough`.
+SOSLAM_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points, size_t first,
+                           size_t end, double enough, MirrorSearch::Sums* sums) {
+  const Comparison copy = comparison;  // what is written may be anything to the compiler
+  double differences = sums->differences;
+  EightIntegers pairs{};
+  for (size_t batch = first; batch < end && differences <= enough; ++batch) {
+    Shares shares;
+    FindShares(copy, points, batch, &shares);
+    Eight sum{};
+    for (const Eight& share : shares) {
+      const EightMask known = share >= 0.0F;
+      sum += known ? share : Eight{};
+      pairs -= known;
+    }
+    differences += Sum(sum);
+  }
+  sums->differences = differences;
+  for (size_t i = 0; i < 8; ++i) sums->pairs += pairs[i];
+}
+
+// Which ones of a batch are pairs.
+SOSLAM_WIDE_LOOPS void FindPairs(const Comparison& comparison, const Points& points, size_t batch,
+                                 std::array<bool, kBatchSize>* is_pair) {
+  Shares shares;
+  FindShares(comparison, points, batch, &shares);
+  for (size_t i = 0; i < kBatchSize; ++i) (*is_pair)[i] = shares[i / 8][i % 8] >= 0.0F;
 }
 
 }  // namespace
 
 MirrorSearch::MirrorSearch(const SymmetryImage& image, const Camera& camera, Descriptor descriptor,
                            std::vector<Eigen::Vector2d> pixels)
-    : map_(descriptor == Descriptor::kGrey ? image.maps.grey : image.maps.distance),
-      unit_(descriptor == Descriptor::kGrey ? 1.0 / 255.0 : 1.0),
-      camera_(camera),
+    : map_(MapOf(image.maps, descriptor)),
       pixels_(std::move(pixels)),
       order_(InTurns(pixels_.size())),
       rays_(camera, Ordered(pixels_, order_)) {
   for (const size_t i : order_) {
     const auto sample = SampleBilinear(map_, pixels_[i]);
-    values_.push_back(sample ? unit_ * sample->value : kNone);
+    values_.push_back(sample ? static_cast<float>(sample->value) : kNone);
   }
 }
 
 void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_cosine) {
   points_.Find(landmark_in_camera, rays_, min_viewing_cosine);
-  values_of_points_.assign(points_.in_camera.size(), Batch::Zero());
-  for (size_t i = 0; i < points_.ray.size(); ++i) {
-    values_of_points_[i / kBatchSize][static_cast<Eigen::Index>(i % kBatchSize)] =
-        values_[points_.ray[i]];
-  }
-  size_ = std::cbrt(landmark_in_camera.half_axes.prod());
-  y_axis_ = landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitY();
+  values_of_points_.resize(points_.in_image[0].size());
+  for (size_t i = 0; i < points_.ray.size(); ++i) values_of_points_[i] = values_[points_.ray[i]];
+  const double size = std::cbrt(landmark_in_camera.half_axes.prod());
+  const Eigen::Vector3d y_axis =
+      landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitY();
+  shift_by_place_ = rays_.camera.Intrinsics() * (2.0 * size * y_axis);
 }
 
-void MirrorSearch::Add(size_t batch, double squared_scale, const Eigen::Vector3d& shift, Sums* sums,
-                       Batch* is_pair) const {
-  const Points points{points_.in_camera[batch], values_of_points_[batch]};
-  if (map_.type() == CV_8UC1) {
-    CompareBytes(MapView<std::uint8_t>(map_), unit_, camera_, points, shift, squared_scale, sums,
-                 is_pair);
-  } else {
-    CompareFloats(MapView<float>(map_), unit_, camera_, points, shift, squared_scale, sums,
-                  is_pair);
-  }
+void MirrorSearch::Add(size_t first, size_t end, double enough, double scale, Place* place) const {
+  soslam::Add({MapView<float>(map_), place->shift, static_cast<float>(scale * scale)},
+              PointsOf(points_, values_of_points_), first, end, enough, &place->sums);
 }
 
 std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<double>& places,
                                                            double scale, double min_pairs) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::optional<Least> least;
-  const size_t batches = points_.in_camera.size();
+  const size_t batches = points_.NumBatches();
   if (batches == 0) return least;
-  const double squared_scale = scale * scale;
-  Batch is_pair;
   places_.clear();
   for (size_t i = 0; i < places.size(); ++i) {
     places_.push_back({i, Shift(places[i]), {}});
-    Add(0, squared_scale, places_.back().shift, &places_.back().sums, &is_pair);
+    Add(0, 1, kInfinity, scale, &places_.back());
   }
   // The most promising place first: the others need not be looked at to the end.
   std::iter_swap(places_.begin(), std::ranges::min_element(places_, {}, [](const Place& place) {
@@ -153,11 +164,8 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
                  }));
   const auto most_pairs = static_cast<double>(points_.ray.size());
   for (Place& place : places_) {
-    const double enough =
-        least ? least->mean * most_pairs * kRounding : std::numeric_limits<double>::infinity();
-    for (size_t batch = 1; batch < batches && place.sums.differences <= enough; ++batch) {
-      Add(batch, squared_scale, place.shift, &place.sums, &is_pair);
-    }
+    const double enough = least ? least->mean * most_pairs * kRounding : kInfinity;
+    Add(1, batches, enough, scale, &place);
     if (place.sums.differences > enough || place.sums.pairs < min_pairs) continue;
     const double mean = place.sums.differences / place.sums.pairs;
     if (!least || mean < least->mean || (mean == least->mean && place.index < least->place)) {
@@ -169,13 +177,12 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
 
 std::vector<Eigen::Vector2d> MirrorSearch::PixelsOfPairs(double place) const {
   std::vector<size_t> found;
-  for (size_t batch = 0; batch < points_.in_camera.size(); ++batch) {
-    Batch is_pair;
-    Sums sums;
-    Add(batch, 1.0, Shift(place), &sums, &is_pair);
-    for (int i = 0; i < kBatchSize; ++i) {
-      if (is_pair[i] == 0.0) continue;
-      found.push_back(order_[points_.ray[batch * kBatchSize + static_cast<size_t>(i)]]);
+  for (size_t batch = 0; batch < points_.NumBatches(); ++batch) {
+    std::array<bool, kBatchSize> is_pair;
+    FindPairs({MapView<float>(map_), Shift(place), 1.0F}, PointsOf(points_, values_of_points_),
+              batch, &is_pair);
+    for (size_t i = 0; i < kBatchSize; ++i) {
+      if (is_pair[i]) found.push_back(order_[points_.ray[batch * kBatchSize + i]]);
     }
   }
   std::sort(found.begin(), found.end());

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "constraints/symmetry.h"
-#include "geometry/batch.h"
 #include "geometry/camera.h"
 #include "geometry/mirrored_points.h"
 
@@ -14,7 +13,7 @@ namespace soslam {
 
 // Mirrored pairs of the pixels of one observation, on the surfaces of many landmarks, compared by a
 // descriptor that is a map's value at a pixel: kGrey and kDistanceTransform. Finds what
-// SymmetryDescriptor finds pair by pair.
+// SymmetryDescriptor finds pair by pair, in single precision: means are off by up to 1e-5.
 class MirrorSearch {
  public:
   // `image` has to outlive it; of at least 2 x 2 pixels.
@@ -46,28 +45,24 @@ class MirrorSearch {
  private:
   struct Place {
     size_t index;
-    Eigen::Vector3d shift;  // what it adds to all mirror images, in the camera frame
+    Eigen::Vector3f shift;  // what it adds to all mirror images, in the image
     Sums sums;
   };
 
-  Eigen::Vector3d Shift(double place) const { return 2.0 * place * size_ * y_axis_; }
-  // Adds what a batch of points comes to when shifted; `is_pair` is 1 or 0 for each.
-  void Add(size_t batch, double squared_scale, const Eigen::Vector3d& shift, Sums* sums,
-           Batch* is_pair) const;
+  Eigen::Vector3f Shift(double place) const { return (place * shift_by_place_).cast<float>(); }
+  // Adds what batches from `first` on come to at a place, as long as that is no more than `enough`.
+  void Add(size_t first, size_t end, double enough, double scale, Place* place) const;
 
-  const cv::Mat map_;
-  double unit_;  // of the map's values
-  Camera camera_;
+  const cv::Mat map_;  // CV_32FC1
   std::vector<Eigen::Vector2d> pixels_;
-  std::vector<size_t> order_;   // in which they are compared
-  std::vector<double> values_;  // at the pixels in that order; NaN where there is none
-  PixelRays rays_;              // in that order
+  std::vector<size_t> order_;  // in which they are compared
+  std::vector<float> values_;  // at the pixels in that order; NaN where there is none
+  PixelRays rays_;             // in that order
 
   // Of the landmark.
   MirroredPoints points_;
-  std::vector<Batch> values_of_points_;
-  double size_ = 0.0;
-  Eigen::Vector3d y_axis_ = Eigen::Vector3d::UnitY();  // in the camera frame
+  std::vector<float> values_of_points_;
+  Eigen::Vector3d shift_by_place_ = Eigen::Vector3d::Zero();
 
   std::vector<Place> places_;
 };

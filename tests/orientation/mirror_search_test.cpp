@@ -77,7 +77,8 @@ TEST(MirrorSearch, FindsWhatAllPairsSay) {
           const auto least = search.FindLeast(places, scale, min_pairs);
           ASSERT_EQ(least.has_value(), expected.mean.has_value());
           if (!least) continue;
-          EXPECT_NEAR(least->mean, *expected.mean, 1e-12);
+          // Single precision is off by 1e-4 px, which a share of 0.2 per px at most averages out.
+          EXPECT_NEAR(least->mean, *expected.mean, 1e-5);
           EXPECT_EQ(least->place, expected.place);
           EXPECT_EQ(search.PixelsOfPairs(places[least->place]), expected.pixels);
           ++found;
