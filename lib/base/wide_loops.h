@@ -97,6 +97,13 @@ SOSLAM_IN_WIDE_LOOPS void Store(const Eight& eight, float* to) {
   *reinterpret_cast<EightInMemory*>(to) = eight;
 }
 
+// What is read from here on comes from memory. Compilers would take what they just stored, number
+// by number, out of the registers it came from, which takes longer where numbers are addresses.
+template <typename T>
+SOSLAM_IN_WIDE_LOOPS void ReadFromMemory(const T& stored) {
+  asm volatile("" : : "r"(&stored) : "memory");
+}
+
 // All eight together, in double precision.
 SOSLAM_IN_WIDE_LOOPS double Sum(const Eight& eight) {
   using EightDoubles [[gnu::vector_size(8 * sizeof(double))]] = double;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <tuple>
 
 #include "base/wide_loops.h"
@@ -119,9 +118,9 @@ void MirroredPoints::Find(const Landmark& landmark_in_camera, const PixelRays& r
   }
   ray.resize(found);
   for (auto& coordinate : in_image) {
-    coordinate.resize((found + kBatchSize - 1) / kBatchSize * kBatchSize);
-    std::fill(coordinate.begin() + static_cast<std::ptrdiff_t>(found), coordinate.end(),
-              std::numeric_limits<float>::quiet_NaN());
+    const float last = found > 0 ? coordinate[found - 1] : 0.0F;
+    coordinate.resize(found);
+    coordinate.resize((found + kBatchSize - 1) / kBatchSize * kBatchSize, last);
   }
 }
 

@@ -29,7 +29,7 @@ class MirroredPoints {
   size_t on_surface = 0;  // how many rays meet the surface
   // The mirror images in the xz plane of those points that the camera sees, as it sees their mirror
   // images, with a viewing cosine of at least min_viewing_cosine >= 0; in the image: depth times
-  // pixel x, depth times pixel y, and depth (m). Whole batches: what is left of the last is NaN.
+  // pixel x, depth times pixel y, and depth (m). Whole batches: the last point is repeated.
   std::array<std::vector<float>, 3> in_image;
   std::vector<size_t> ray;  // of each of these points
   size_t NumBatches() const { return in_image[0].size() / kBatchSize; }

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "base/wide_loops.h"
-#include "image/sample_batch.h"
+#include "image/neighbours.h"
 #include "image/sample_bilinear.h"
-#include "image/sample_of_eight.h"
 
 namespace soslam {
 namespace {
@@ -56,85 +58,152 @@ Points PointsOf(const MirroredPoints& points, const std::vector<float>& values) 
   return {{x.data(), y.data(), depth.data()}, values.data()};
 }
 
-// How they compare with the map where they are when shifted.
+// The pixels of all points at both shifts; NaN where one is behind the camera.
+SOSLAM_WIDE_LOOPS void FindBounds(const Points& points, size_t batches,
+                                  const std::array<Eigen::Vector3f, 2>& shifts,
+                                  PixelBounds* bounds) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Eight least_x = Eight{} + kInfinity, least_y = least_x, least_depth = least_x;
+  Eight largest_x = Eight{} - kInfinity, largest_y = largest_x;
+  for (size_t at = 0; at < batches * kBatchSize; at += 8) {
+    Eight x, y, depth;
+    Load(points.in_image[0] + at, &x);
+    Load(points.in_image[1] + at, &y);
+    Load(points.in_image[2] + at, &depth);
+    for (const Eigen::Vector3f& shift : shifts) {
+      const Eight shifted_depth = depth + shift[2];
+      const Eight inverse_depth = 1.0F / shifted_depth;
+      const Eight pixel_x = (x + shift[0]) * inverse_depth;
+      const Eight pixel_y = (y + shift[1]) * inverse_depth;
+      least_x = pixel_x < least_x ? pixel_x : least_x;
+      least_y = pixel_y < least_y ? pixel_y : least_y;
+      least_depth = shifted_depth < least_depth ? shifted_depth : least_depth;
+      largest_x = pixel_x > largest_x ? pixel_x : largest_x;
+      largest_y = pixel_y > largest_y ? pixel_y : largest_y;
+    }
+  }
+  *bounds = {kInfinity, kInfinity, -kInfinity, -kInfinity};
+  for (size_t i = 0; i < 8; ++i) {
+    bounds->least_x = std::min(bounds->least_x, least_x[i]);
+    bounds->least_y = std::min(bounds->least_y, least_y[i]);
+    bounds->largest_x = std::max(bounds->largest_x, largest_x[i]);
+    bounds->largest_y = std::max(bounds->largest_y, largest_y[i]);
+    if (!(least_depth[i] > 0.0F)) *bounds = {kNone, kNone, kNone, kNone};
+  }
+}
+
+// How they compare with a map.
 struct Comparison {
-  MapView<float> map;
-  Eigen::Vector3f shift;
+  Neighbours::View map;
   float squared_scale;
 };
 
-// d^2 / (d^2 + squared_scale) of a batch; NaN where there is no pair, as d is NaN or infinite.
-using Shares = std::array<Eight, kBatchSize / 8>;
-SOSLAM_IN_WIDE_LOOPS void FindShares(const Comparison& comparison, const Points& points,
-                                     size_t batch, Shares* shares) {
-  CellsOfEight cells;
-  for (size_t i = 0; i < shares->size(); ++i) {
+// Where the points of a batch are when shifted.
+template <bool may_be_outside>
+SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& map, const Points& points, size_t batch,
+                                 const Eigen::Vector3f& shift, CellsOfEight* cells) {
+  for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
     const size_t at = batch * kBatchSize + 8 * i;
     Eight x, y, depth;
     Load(points.in_image[0] + at, &x);
     Load(points.in_image[1] + at, &y);
     Load(points.in_image[2] + at, &depth);
-    depth += comparison.shift[2];
-    const Eight inverse_depth = depth > 0.0F ? 1.0F / depth : Eight{} + kNone;
-    cells.Locate(comparison.map, (x + comparison.shift[0]) * inverse_depth,
-                 (y + comparison.shift[1]) * inverse_depth, i);
-  }
-  for (size_t i = 0; i < shares->size(); ++i) {
-    Eight value, mirrored;
-    Load(points.values + batch * kBatchSize + 8 * i, &value);
-    Interpolate(comparison.map, cells, i, &mirrored);
-    const Eight difference = value - mirrored;
-    const Eight squared = difference * difference;
-    (*shares)[i] = squared / (squared + comparison.squared_scale);
+    depth += shift[2];
+    Eight inverse_depth = 1.0F / depth;
+    if constexpr (may_be_outside) {
+      inverse_depth = depth > 0.0F ? inverse_depth : Eight{} + kNone;
+    }
+    cells->Locate<may_be_outside>(map, (x + shift[0]) * inverse_depth,
+                                  (y + shift[1]) * inverse_depth, i);
   }
 }
 
-// Adds batches from `first` on, as long as they come to no more than `enough`.
-SOSLAM_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points, size_t first,
-                           size_t end, double enough, MirrorSearch::Sums* sums) {
+// d^2 / (d^2 + squared_scale) of the i-th eight points of the batch; NaN where there is no pair, as
+// d is NaN or infinite.
+SOSLAM_IN_WIDE_LOOPS void FindShares(const Comparison& comparison, const Points& points,
+                                     size_t batch, const CellsOfEight& cells, size_t i,
+                                     Eight* shares) {
+  Eight values, mirrored;
+  Load(points.values + batch * kBatchSize + 8 * i, &values);
+  Interpolate(comparison.map, cells, i, &mirrored);
+  const Eight differences = values - mirrored;
+  const Eight squared = differences * differences;
+  *shares = squared / (squared + comparison.squared_scale);
+}
+
+// Adds batches to what each place comes to.
+template <bool may_be_outside>
+SOSLAM_IN_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points, size_t first,
+                              size_t end, std::span<MirrorSearch::Place* const> places) {
   const Comparison copy = comparison;  // what is written may be anything to the compiler
-  double differences = sums->differences;
-  EightIntegers pairs{};
-  for (size_t batch = first; batch < end && differences <= enough; ++batch) {
-    Shares shares;
-    FindShares(copy, points, batch, &shares);
-    Eight sum{};
-    for (const Eight& share : shares) {
-      const EightMask known = share >= 0.0F;
-      sum += known ? share : Eight{};
-      pairs -= known;
+  for (MirrorSearch::Place* place : places) {
+    const Eigen::Vector3f shift = place->shift;
+    double differences = place->differences;
+    EightIntegers pairs;
+    std::memcpy(&pairs, &place->pairs, sizeof(pairs));
+    for (size_t batch = first; batch < end; ++batch) {
+      CellsOfEight cells;
+      Locate<may_be_outside>(copy.map, points, batch, shift, &cells);
+      ReadFromMemory(cells);
+      Eight sum{};
+      for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
+        Eight shares;
+        FindShares(copy, points, batch, cells, i, &shares);
+        const EightMask known = shares >= 0.0F;
+        sum += known ? shares : Eight{};
+        pairs -= known;
+      }
+      differences += Sum(sum);
     }
-    differences += Sum(sum);
+    place->differences = differences;
+    std::memcpy(&place->pairs, &pairs, sizeof(pairs));
   }
-  sums->differences = differences;
-  for (size_t i = 0; i < 8; ++i) sums->pairs += pairs[i];
+}
+
+SOSLAM_WIDE_LOOPS void AddInside(const Comparison& comparison, const Points& points, size_t first,
+                                 size_t end, std::span<MirrorSearch::Place* const> places) {
+  Add<false>(comparison, points, first, end, places);
+}
+
+SOSLAM_WIDE_LOOPS void AddAnywhere(const Comparison& comparison, const Points& points, size_t first,
+                                   size_t end, std::span<MirrorSearch::Place* const> places) {
+  Add<true>(comparison, points, first, end, places);
 }
 
 // Which ones of a batch are pairs.
 SOSLAM_WIDE_LOOPS void FindPairs(const Comparison& comparison, const Points& points, size_t batch,
+                                 const Eigen::Vector3f& shift,
                                  std::array<bool, kBatchSize>* is_pair) {
-  Shares shares;
-  FindShares(comparison, points, batch, &shares);
-  for (size_t i = 0; i < kBatchSize; ++i) (*is_pair)[i] = shares[i / 8][i % 8] >= 0.0F;
+  CellsOfEight cells;
+  Locate<true>(comparison.map, points, batch, shift, &cells);
+  for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
+    Eight shares;
+    FindShares(comparison, points, batch, cells, i, &shares);
+    for (size_t k = 0; k < 8; ++k) (*is_pair)[8 * i + k] = shares[k] >= 0.0F;
+  }
 }
 
 }  // namespace
 
 MirrorSearch::MirrorSearch(const SymmetryImage& image, const Camera& camera, Descriptor descriptor,
                            std::vector<Eigen::Vector2d> pixels)
-    : map_(MapOf(image.maps, descriptor)),
+    : MirrorSearch(MapOf(image.maps, descriptor), camera, std::move(pixels)) {}
+
+MirrorSearch::MirrorSearch(const cv::Mat& map, const Camera& camera,
+                           std::vector<Eigen::Vector2d> pixels)
+    : map_(map),
       pixels_(std::move(pixels)),
       order_(InTurns(pixels_.size())),
       rays_(camera, Ordered(pixels_, order_)) {
   for (const size_t i : order_) {
-    const auto sample = SampleBilinear(map_, pixels_[i]);
+    const auto sample = SampleBilinear(map, pixels_[i]);
     values_.push_back(sample ? static_cast<float>(sample->value) : kNone);
   }
 }
 
 void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_cosine) {
   points_.Find(landmark_in_camera, rays_, min_viewing_cosine);
-  values_of_points_.resize(points_.in_image[0].size());
+  values_of_points_.assign(points_.in_image[0].size(), kNone);
   for (size_t i = 0; i < points_.ray.size(); ++i) values_of_points_[i] = values_[points_.ray[i]];
   const double size = std::cbrt(landmark_in_camera.half_axes.prod());
   const Eigen::Vector3d y_axis =
@@ -142,45 +211,66 @@ void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_co
   shift_by_place_ = rays_.camera.Intrinsics() * (2.0 * size * y_axis);
 }
 
-void MirrorSearch::Add(size_t first, size_t end, double enough, double scale, Place* place) const {
-  soslam::Add({MapView<float>(map_), place->shift, static_cast<float>(scale * scale)},
-              PointsOf(points_, values_of_points_), first, end, enough, &place->sums);
+// A point's pixel moves along a line from place to place.
+void MirrorSearch::Cover(double least_place, double largest_place) {
+  PixelBounds bounds;
+  FindBounds(PointsOf(points_, values_of_points_), points_.NumBatches(),
+             {Shift(least_place), Shift(largest_place)}, &bounds);
+  map_.Cover(bounds);
+  are_inside_ = map_.AreInside(bounds);
+}
+
+void MirrorSearch::Add(size_t first, size_t end, double scale, std::span<Place* const> places) {
+  const auto add = are_inside_ ? AddInside : AddAnywhere;
+  add({map_.view(), static_cast<float>(scale * scale)}, PointsOf(points_, values_of_points_), first,
+      end, places);
 }
 
 std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<double>& places,
                                                            double scale, double min_pairs) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::optional<Least> least;
   const size_t batches = points_.NumBatches();
-  if (batches == 0) return least;
+  if (batches == 0) return std::nullopt;
+  const auto [least_place, largest_place] = std::ranges::minmax(places);
+  Cover(least_place, largest_place);
   places_.clear();
-  for (size_t i = 0; i < places.size(); ++i) {
-    places_.push_back({i, Shift(places[i]), {}});
-    Add(0, 1, kInfinity, scale, &places_.back());
-  }
-  // The most promising place first: the others need not be looked at to the end.
-  std::iter_swap(places_.begin(), std::ranges::min_element(places_, {}, [](const Place& place) {
-                   return place.sums.differences;
-                 }));
-  const auto most_pairs = static_cast<double>(points_.ray.size());
+  for (const double place : places) places_.push_back({Shift(place)});
+  // The place that was the last landmark's goes first: others need not be looked at to the end,
+  // which takes turns, as a processor does not wait then for what each comes to.
+  Place& likely = places_[last_least_ < places.size() ? last_least_ : 0];
+  Add(0, batches, scale, std::array{&likely});
+  const double enough = likely.NumPairs() < min_pairs
+                            ? std::numeric_limits<double>::infinity()
+                            : likely.differences / likely.NumPairs() *
+                                  static_cast<double>(points_.ray.size()) * kRounding;
+  open_.clear();
   for (Place& place : places_) {
-    const double enough = least ? least->mean * most_pairs * kRounding : kInfinity;
-    Add(1, batches, enough, scale, &place);
-    if (place.sums.differences > enough || place.sums.pairs < min_pairs) continue;
-    const double mean = place.sums.differences / place.sums.pairs;
-    if (!least || mean < least->mean || (mean == least->mean && place.index < least->place)) {
-      least = Least{mean, place.index};
+    if (&place != &likely) open_.push_back(&place);
+  }
+  for (size_t batch = 0; batch < batches; ++batch) {
+    Add(batch, batch + 1, scale, open_);
+    std::erase_if(open_, [&](const Place* place) { return place->differences > enough; });
+  }
+  open_.push_back(&likely);
+  std::optional<Least> least;
+  for (const Place* place : open_) {
+    if (place->NumPairs() < min_pairs) continue;
+    const Least of_place{place->differences / place->NumPairs(),
+                         static_cast<size_t>(place - places_.data())};
+    if (!least || std::tie(of_place.mean, of_place.place) < std::tie(least->mean, least->place)) {
+      least = of_place;
     }
   }
+  if (least) last_least_ = least->place;
   return least;
 }
 
-std::vector<Eigen::Vector2d> MirrorSearch::PixelsOfPairs(double place) const {
+std::vector<Eigen::Vector2d> MirrorSearch::PixelsOfPairs(double place) {
   std::vector<size_t> found;
+  Cover(place, place);
   for (size_t batch = 0; batch < points_.NumBatches(); ++batch) {
     std::array<bool, kBatchSize> is_pair;
-    FindPairs({MapView<float>(map_), Shift(place), 1.0F}, PointsOf(points_, values_of_points_),
-              batch, &is_pair);
+    FindPairs({map_.view(), 1.0F}, PointsOf(points_, values_of_points_), batch, Shift(place),
+              &is_pair);
     for (size_t i = 0; i < kBatchSize; ++i) {
       if (is_pair[i]) found.push_back(order_[points_.ray[batch * kBatchSize + i]]);
     }

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
 #include "geometry/mirrored_points.h"
+#include "image/neighbours.h"
 
 namespace soslam {
 
@@ -20,10 +24,13 @@ class MirrorSearch {
   MirrorSearch(const SymmetryImage& image, const Camera& camera, Descriptor descriptor,
                std::vector<Eigen::Vector2d> pixels);
 
-  // Over pairs.
-  struct Sums {
-    double differences = 0.0;  // d^2 / (d^2 + scale^2)
-    double pairs = 0.0;
+  // A place of the mirror plane.
+  struct Place {
+    double NumPairs() const { return std::accumulate(pairs.begin(), pairs.end(), 0.0); }
+
+    Eigen::Vector3f shift;          // what it adds to all mirror images, in the image
+    double differences = 0.0;       // sum over pairs of d^2 / (d^2 + scale^2)
+    std::array<int, 8> pairs = {};  // how many of every eighth point
   };
 
   // The landmark that the following is about.
@@ -40,20 +47,18 @@ class MirrorSearch {
   };
   std::optional<Least> FindLeast(const std::vector<double>& places, double scale, double min_pairs);
   // One pixel of each pair at a place, in their order.
-  std::vector<Eigen::Vector2d> PixelsOfPairs(double place) const;
+  std::vector<Eigen::Vector2d> PixelsOfPairs(double place);
 
  private:
-  struct Place {
-    size_t index;
-    Eigen::Vector3f shift;  // what it adds to all mirror images, in the image
-    Sums sums;
-  };
+  MirrorSearch(const cv::Mat& map, const Camera& camera, std::vector<Eigen::Vector2d> pixels);
 
+  // Before the points are looked up at these places and those in between.
+  void Cover(double least_place, double largest_place);
   Eigen::Vector3f Shift(double place) const { return (place * shift_by_place_).cast<float>(); }
-  // Adds what batches from `first` on come to at a place, as long as that is no more than `enough`.
-  void Add(size_t first, size_t end, double enough, double scale, Place* place) const;
+  // Adds batches to what each place comes to.
+  void Add(size_t first, size_t end, double scale, std::span<Place* const> places);
 
-  const cv::Mat map_;  // CV_32FC1
+  Neighbours map_;
   std::vector<Eigen::Vector2d> pixels_;
   std::vector<size_t> order_;  // in which they are compared
   std::vector<float> values_;  // at the pixels in that order; NaN where there is none
@@ -63,8 +68,11 @@ class MirrorSearch {
   MirroredPoints points_;
   std::vector<float> values_of_points_;
   Eigen::Vector3d shift_by_place_ = Eigen::Vector3d::Zero();
+  bool are_inside_ = false;  // the points' pixels at all places, in the map
 
   std::vector<Place> places_;
+  std::vector<Place*> open_;  // places that may still be the best
+  size_t last_least_ = 0;     // the best place of the last landmark
 };
 
 }  // namespace soslam

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/neighbours.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "image/sample_bilinear.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kColumns = 60, kRows = 40;
+
+cv::Mat RandomMap() {
+  cv::Mat map(kRows, kColumns, CV_32FC1);
+  for (float& value : cv::Mat_<float>(map)) value = static_cast<float>(RandomUniform(0.0, 10.0));
+  return map;
+}
+
+template <bool may_be_outside>
+float Value(const Neighbours& map, float x, float y) {
+  CellsOfEight cells;
+  cells.Locate<may_be_outside>(map.view(), Eight{} + x, Eight{} + y, 0);
+  Eight values;
+  Interpolate(map.view(), cells, 0, &values);
+  for (size_t k = 1; k < 8; ++k) {
+    EXPECT_TRUE(values[k] == values[0] || (std::isnan(values[k]) && std::isnan(values[0])));
+  }
+  return values[0];
+}
+
+// Pixels are off by 60 * 6e-8, values then by 20 times that.
+constexpr double kTolerance = 1e-4;
+
+TEST(Neighbours, AreInterpolatedAsInDoublePrecision) {
+  const cv::Mat map = RandomMap();
+  Neighbours neighbours(map);
+  for (int i = 0; i < 200; ++i) {
+    const auto x = static_cast<float>(RandomUniform(-5.0, kColumns + 5.0));
+    const auto y = static_cast<float>(RandomUniform(-5.0, kRows + 5.0));
+    const PixelBounds bounds{x, y, x, y};
+    neighbours.Cover(bounds);
+    const auto expected = SampleBilinear(map, {x, y});
+    const float value = Value<true>(neighbours, x, y);
+    ASSERT_EQ(std::isfinite(value), expected.has_value());
+    if (!expected) continue;
+    EXPECT_NEAR(value, expected->value, kTolerance);
+    if (neighbours.AreInside(bounds)) {
+      EXPECT_EQ(Value<false>(neighbours, x, y), value);
+    }
+  }
+}
+
+TEST(Neighbours, ReachTheMapsBorderAndNoFurther) {
+  const cv::Mat map = RandomMap();
+  Neighbours neighbours(map);
+  neighbours.Cover({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
+  EXPECT_NEAR(Value<true>(neighbours, 0.0F, 0.0F), map.at<float>(0, 0), kTolerance);
+  EXPECT_NEAR(Value<true>(neighbours, kColumns - 1.0F, kRows - 1.0F),
+              map.at<float>(kRows - 1, kColumns - 1), kTolerance);
+  EXPECT_TRUE(std::isnan(Value<true>(neighbours, -0.01F, 5.0F)));
+  EXPECT_TRUE(std::isnan(Value<true>(neighbours, 5.0F, kRows - 0.99F)));
+  EXPECT_TRUE(std::isnan(Value<true>(neighbours, std::nanf(""), 5.0F)));
+  EXPECT_FALSE(neighbours.AreInside({0.0F, 5.0F, 10.0F, 10.0F}));
+  EXPECT_FALSE(neighbours.AreInside({5.0F, 5.0F, 10.0F, kRows - 1.0F}));
+  EXPECT_TRUE(neighbours.AreInside({5.0F, 5.0F, 10.0F, 10.0F}));
+}
+
+TEST(Neighbours, OfNoKnownBoundsAreTheWholeMap) {
+  Neighbours neighbours(RandomMap());
+  const float nan = std::nanf("");
+  neighbours.Cover({nan, nan, nan, nan});
+  EXPECT_EQ(neighbours.view().part, cv::Rect(0, 0, kColumns, kRows));
+  EXPECT_FALSE(neighbours.AreInside({nan, nan, nan, nan}));
+}
+
+TEST(Neighbours, CoverTwoPixelsAtLeast) {
+  Neighbours neighbours(RandomMap());
+  neighbours.Cover({1e9F, -1e9F, 1e9F, -1e9F});
+  EXPECT_GE(neighbours.view().part.width, 2);
+  EXPECT_GE(neighbours.view().part.height, 2);
+  EXPECT_TRUE(std::isnan(Value<true>(neighbours, 1e9F, -1e9F)));
+}
+
+}  // namespace
+}  // namespace soslam
