@@ -97,6 +97,10 @@ SOSLAM_IN_WIDE_LOOPS void Store(const Eight& eight, float* to) {
   *reinterpret_cast<EightInMemory*>(to) = eight;
 }
 
+SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Eight& of, Eight* root) {
+  for (size_t k = 0; k < 8; ++k) (*root)[k] = std::sqrt(of[k]);
+}
+
 // What is read from here on comes from memory. Compilers would take what they just stored, number
 // by number, out of the registers it came from, which takes longer where numbers are addresses.
 template <typename T>

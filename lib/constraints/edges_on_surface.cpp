@@ -40,7 +40,7 @@ EdgesOnSurface::EdgesOnSurface(const Camera& camera, const Landmark& landmark_in
   RayBatch met;
   for (size_t begin = 0; begin < edge_pixels.size(); begin += kBatchSize) {
     const size_t count = std::min<size_t>(edge_pixels.size() - begin, kBatchSize);
-    body.Meet(rays.x.data() + begin, rays.y.data() + begin, count, &met);
+    body.Meet(rays.x.data() + begin, rays.y.data() + begin, &met);
     for (size_t i = 0; i < count; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       if (!(met.depth[at] > 0.0)) continue;

@@ -13,9 +13,9 @@ namespace soslam {
 struct BodyInCamera {
   explicit BodyInCamera(const Landmark& landmark_in_camera);
 
-  // Where up to kBatchSize rays of the camera frame, (x, y, 1), meet the surface; all in the object
+  // Where kBatchSize rays of the camera frame, (x, y, 1), meet the surface; all in the object
   // frame.
-  void Meet(const double* x, const double* y, size_t count, RayBatch* rays) const;
+  void Meet(const double* x, const double* y, RayBatch* rays) const;
 
   Eigen::Matrix3d rotation;  // camera_from_object
   Eigen::Vector3d centre;

@@ -11,13 +11,22 @@
 
 namespace soslam {
 
-// The viewing rays of many pixels, z = 1, as Camera::Ray gives them one by one.
+// The viewing rays of many pixels, z = 1, as Camera::Ray gives them one by one; and rays along the
+// optical axis up to whole batches.
 struct PixelRays {
   PixelRays(const Camera& of_camera, const std::vector<Eigen::Vector2d>& pixels);
 
   Camera camera;
+  size_t count;
   std::vector<double> x;
   std::vector<double> y;
+};
+
+// The mirror images of a batch in the image (see MirroredPoints), and which of them count (1 or 0).
+struct MirroredBatch {
+  std::array<std::array<float, kBatchSize>, 3> in_image;
+  std::array<int, kBatchSize> is_on_surface;
+  std::array<int, kBatchSize> is_visible;
 };
 
 // Of many rays at once what VisibleSurface::FromPixel, ViewingCosine and MirrorImage give one by
@@ -33,6 +42,12 @@ class MirroredPoints {
   std::array<std::vector<float>, 3> in_image;
   std::vector<size_t> ray;  // of each of these points
   size_t NumBatches() const { return in_image[0].size() / kBatchSize; }
+
+ private:
+  // Keeps what is visible of the mirror images of all rays.
+  void Pack(size_t num_rays);
+
+  std::vector<MirroredBatch> mirrored_;
 };
 
 }  // namespace soslam

@@ -126,8 +126,7 @@ class MirrorResiduals::View {
   void Find(size_t batch, bool with_derivatives, ResidualBatch* rows) {
     const PixelRays& rays = residuals_.rays_;
     const size_t begin = batch * kBatchSize;
-    const size_t count = std::min<size_t>(kBatchSize, rays.x.size() - begin);
-    body_.Meet(rays.x.data() + begin, rays.y.data() + begin, count, &rays_);
+    body_.Meet(rays.x.data() + begin, rays.y.data() + begin, &rays_);
     Mirror(residuals_.camera_, body_, rays_.point, place_, &images_);
     BatchOfPixels gradients;
     const Batch mirrored =

@@ -19,9 +19,9 @@ std::vector<Eigen::Vector2d> PixelsAroundTheMiddle(int count) {
   return pixels;
 }
 
-// Points are the same up to rounding to single precision (6e-8 of a number), and by 1e-12 before
-// that. Which ones are visible is the same but for pixels that miss the limit by as little; there
-// are none among these.
+// Points are the same up to rounding to single precision (6e-8 of a number), on ellipsoids up to
+// that of some 20 operations in it. Which ones are visible is the same but for pixels that miss the
+// limit by as little; there are none among these.
 TEST(MirroredPoints, AreThoseOfEachPixel) {
   constexpr double kMinCosine = 0.3;
   const Camera camera = TestCamera();
@@ -35,6 +35,7 @@ TEST(MirroredPoints, AreThoseOfEachPixel) {
       landmark.shape_exponent = shape_exponent;
       points.Find(landmark, rays, kMinCosine);
       const VisibleSurface surface(camera, landmark);
+      const double tolerance = shape_exponent == kEllipsoidExponent ? 5e-6 : 1e-7;
       size_t on_surface = 0;
       size_t next = 0;
       for (size_t k = 0; k < pixels.size(); ++k) {
@@ -52,7 +53,7 @@ TEST(MirroredPoints, AreThoseOfEachPixel) {
         const Eigen::Vector3d in_image = camera.Intrinsics() * in_camera;
         for (size_t axis = 0; axis < 3; ++axis) {
           const double expected = in_image[static_cast<Eigen::Index>(axis)];
-          EXPECT_NEAR(points.in_image[axis][next], expected, 1e-7 * std::abs(expected) + 1e-12);
+          EXPECT_NEAR(points.in_image[axis][next], expected, tolerance * std::abs(expected));
         }
         ++next;
       }
