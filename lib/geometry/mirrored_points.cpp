@@ -197,22 +197,25 @@ void MirroredPoints::Find(const Landmark& landmark_in_camera, const PixelRays& r
 }
 
 void MirroredPoints::Pack(size_t num_rays) {
-  on_surface = 0;
   // Every ray is written where the next one that counts belongs.
   ray.resize(num_rays + 1);
   for (auto& coordinate : in_image) coordinate.resize(num_rays + kBatchSize);
+  // Copies, as what is written may be anything to the compiler.
   const auto [x, y, depth] = std::tuple(in_image[0].data(), in_image[1].data(), in_image[2].data());
-  size_t found = 0;
-  for (size_t i = 0; i < num_rays; ++i) {
-    const MirroredBatch& batch = mirrored_[i / kBatchSize];
-    const size_t at = i % kBatchSize;
-    x[found] = batch.in_image[0][at];
-    y[found] = batch.in_image[1][at];
-    depth[found] = batch.in_image[2][at];
-    ray[found] = i;
-    on_surface += static_cast<size_t>(batch.is_on_surface[at]);
-    found += static_cast<size_t>(batch.is_visible[at]);
+  size_t* const rays = ray.data();
+  size_t hits = 0, found = 0, next = 0;
+  for (const MirroredBatch& batch : mirrored_) {
+    const size_t count = std::min<size_t>(num_rays - next, kBatchSize);
+    for (size_t i = 0; i < count; ++i) {
+      x[found] = batch.in_image[0][i];
+      y[found] = batch.in_image[1][i];
+      depth[found] = batch.in_image[2][i];
+      rays[found] = next++;
+      hits += static_cast<size_t>(batch.is_on_surface[i]);
+      found += static_cast<size_t>(batch.is_visible[i]);
+    }
   }
+  on_surface = hits;
   ray.resize(found);
   for (auto& coordinate : in_image) {
     const float last = found > 0 ? coordinate[found - 1] : 0.0F;
