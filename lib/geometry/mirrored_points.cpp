@@ -47,7 +47,6 @@ SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d
                                      double min_viewing_cosine, MirroredBatch* mirrored) {
   using FourFloats [[gnu::vector_size(4 * sizeof(float))]] = float;
   const double squared_cosine = min_viewing_cosine * min_viewing_cosine;
-  const Eigen::Matrix<double, 3, 4> matrix = image_from_object;
   for (int at = 0; at < kBatchSize; at += 4) {
     ThreeFours point, normal, ray;
     LoadVectors(rays.point, at, &point);
@@ -71,8 +70,9 @@ SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d
     IsSeen(there, squared_normal, squared_to, squared_cosine, &is_mirror_image_seen);
     StoreOnes(is_on_surface & is_seen & is_mirror_image_seen, mirrored->is_visible.data() + at);
     for (int k = 0; k < 3; ++k) {
-      const Four coordinate = matrix(k, 0) * mirror_image[0] + matrix(k, 1) * mirror_image[1] +
-                              matrix(k, 2) * mirror_image[2] + matrix(k, 3);
+      const Four coordinate = image_from_object(k, 0) * mirror_image[0] +
+                              image_from_object(k, 1) * mirror_image[1] +
+                              image_from_object(k, 2) * mirror_image[2] + image_from_object(k, 3);
       const FourFloats floats = __builtin_convertvector(coordinate, FourFloats);
       std::memcpy(mirrored->in_image[k].data() + at, &floats, sizeof(floats));
     }
