@@ -30,8 +30,8 @@ SOSLAM_IN_WIDE_LOOPS void SumSeries(const std::array<double, kSize>& factors,
   }
 }
 
-// e^x, good to 1e-14 of it. x below -708 counts as that, x beyond 709 as that: powers are those of
-// normal numbers.
+// e^x, good to 1e-14 of it. x below -708 and NaN count as -708, x beyond 709 as 709: powers are
+// those of normal numbers.
 template <size_t kCount>
 SOSLAM_IN_WIDE_LOOPS void Exponential(std::array<Four, kCount> x,
                                       std::array<Four, kCount>* exponential) {

@@ -2,6 +2,7 @@
 #include "image/neighbours.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace soslam {
@@ -45,7 +46,8 @@ void Neighbours::Cover(const PixelBounds& bounds) {
 
 bool Neighbours::AreInside(const PixelBounds& bounds) const {
   constexpr float kRounding = 0.01F;
-  return bounds.least_x >= kRounding && bounds.least_y >= kRounding &&
+  const bool are_any = bounds.least_x <= bounds.largest_x && bounds.least_y <= bounds.largest_y;
+  return are_any && bounds.least_x >= kRounding && bounds.least_y >= kRounding &&
          bounds.largest_x <= static_cast<float>(map_.cols - 1) - kRounding &&
          bounds.largest_y <= static_cast<float>(map_.rows - 1) - kRounding;
 }

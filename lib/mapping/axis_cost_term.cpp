@@ -22,10 +22,7 @@ double AxisCostTerm::AngleToAxis() const {
   return Yaw(normal_, Eigen::Quaterniond(landmark_in_world_));
 }
 
-double AxisCostTerm::Cost() const {
-  const double sine = std::sin(2.0 * AngleToAxis());
-  return weight_ * sine * sine;
-}
+double AxisCostTerm::Cost() const { return Linearise(Hessian::kFar, TermPlaces()); }
 
 double AxisCostTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
   const double angle = AngleToAxis();

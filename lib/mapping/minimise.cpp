@@ -21,8 +21,9 @@ namespace {
 constexpr double kHopeless = 1e-2;
 // Costs of residuals that are all but zero.
 constexpr double kNoCost = 1e-18;
-// Of each landmark for itself, after a step of all variables. The shares are of a landmark's mean
-// cost: steps that bring one of them are taken, those that bring less than the other are not.
+// Of each landmark for itself, after a step of all variables. Of a landmark's mean cost, steps that
+// bring `kLandmarkGain` are always taken, those that bring less than `kLeastLandmarkGain` never; in
+// between see StepsOfLandmarks.
 constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkGain = 3e-4;
 constexpr double kLeastLandmarkGain = 1e-8;

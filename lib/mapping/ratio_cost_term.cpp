@@ -15,7 +15,7 @@ Eigen::Vector2d RatioCostTerm::Residuals() const {
   return rows_.Residuals(Eigen::Vector3d(landmark_in_world_ + kPoseSize));
 }
 
-double RatioCostTerm::Cost() const { return 0.5 * Residuals().squaredNorm(); }
+double RatioCostTerm::Cost() const { return Linearise(Hessian::kFar, TermPlaces()); }
 
 double RatioCostTerm::Linearise(Hessian /*hessian*/, const TermPlaces& places) const {
   const Eigen::Vector2d residuals = Residuals();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation/mirror_residuals.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

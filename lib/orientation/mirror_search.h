@@ -20,7 +20,7 @@ namespace soslam {
 // SymmetryDescriptor finds pair by pair, in single precision: means are off by up to 1e-5.
 class MirrorSearch {
  public:
-  // `image` has to outlive it; of at least 2 x 2 pixels.
+  // `image` is of at least 2 x 2 pixels.
   MirrorSearch(const SymmetryImage& image, const Camera& camera, Descriptor descriptor,
                std::vector<Eigen::Vector2d> pixels);
 

@@ -5,7 +5,8 @@
 
 #include <cstdlib>  // says which C library it is
 
-#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)  // has mallinfo2
+#ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 33)  // has mallinfo2
 #include <malloc.h>
 
 #include <vector>
@@ -23,4 +24,5 @@ TEST(KeepFreedMemory, AnImageStaysWhenItIsFreed) {
 
 }  // namespace
 }  // namespace soslam
+#endif
 #endif

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
 
 #include "image/sample_bilinear.h"
@@ -67,6 +68,8 @@ TEST(Neighbours, ReachTheMapsBorderAndNoFurther) {
   EXPECT_FALSE(neighbours.AreInside({0.0F, 5.0F, 10.0F, 10.0F}));
   EXPECT_FALSE(neighbours.AreInside({5.0F, 5.0F, 10.0F, kRows - 1.0F}));
   EXPECT_TRUE(neighbours.AreInside({5.0F, 5.0F, 10.0F, 10.0F}));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(neighbours.AreInside({kInfinity, kInfinity, -kInfinity, -kInfinity}));
 }
 
 TEST(Neighbours, OfNoKnownBoundsAreTheWholeMap) {

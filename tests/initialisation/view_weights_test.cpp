@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
@@ -51,6 +52,24 @@ TEST(ViewWeights, TwoViewsAtTheCorrelationAngle) {
   const Circle circle({1, 2, 3}, {0.7, 0.7 + 15 * kDegrees});
   for (const double weight : circle.Weights(15 * kDegrees)) {
     EXPECT_NEAR(weight, 1.0 / (1.0 + std::exp(-0.5)), 1e-12);
+  }
+}
+
+// As the header defines them. Not a multiple of four views, two of them opposite to each other.
+TEST(ViewWeights, OfAllAnglesAreThoseOfTheDefinition) {
+  std::vector<double> angles = {0.4, 0.4 + std::numbers::pi};
+  for (int i = 0; i < 9; ++i) angles.push_back(RandomUniform(0.0, 2.0 * std::numbers::pi));
+  const Circle circle(RandomVector(-2, 2), angles);
+  for (const double correlation : {10 * kDegrees, 60 * kDegrees, 180 * kDegrees}) {
+    const std::vector<double> weights = circle.Weights(correlation);
+    for (size_t i = 0; i < angles.size(); ++i) {
+      double similar_views = 0.0;
+      for (const double other : angles) {
+        const double angle = std::remainder(angles[i] - other, 2.0 * std::numbers::pi);
+        similar_views += std::exp(-0.5 * std::pow(angle / correlation, 2));
+      }
+      EXPECT_NEAR(weights[i], 1.0 / similar_views, 1e-10);
+    }
   }
 }
 

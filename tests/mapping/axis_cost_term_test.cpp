@@ -90,6 +90,7 @@ TEST_P(AxisCostTermTest, IsInfiniteWhereItIsNotDefined) {
   values_[0] = std::numeric_limits<double>::quiet_NaN();
   const Derivatives nowhere(*term_, Hessian::kNear);
   EXPECT_EQ(nowhere.cost, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(term_->Cost(), std::numeric_limits<double>::infinity());
   EXPECT_TRUE(nowhere.gradient.isZero(0.0));
 }
 

@@ -140,6 +140,7 @@ TEST_F(StartInPartsTest, StartsASegmentWhereItStarts) {
   constexpr size_t kFifthOfSegment = kSecond / 5;
   // In so short parts and with the fixture's turns, rounding decides whether a landmark is lost.
   drive_ = Drive(kFrames, kFrames / 2, 0.25 * kTurnSigma);
+  options_.odometry_rotation_sigma_deg *= 0.25;
   input_.starts = drive_.starts;
   for (size_t i = kSecond; i < kFrames; ++i) drive_.sequence.frames[i].segment = 1;
   MakeProblem();
