@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/exponential_of_four.h"
 #include "base/wide_loops.h"
 #include "geometry/support_function.h"
 #include "geometry/support_of_four.h"
@@ -113,9 +114,7 @@ SOSLAM_IN_WIDE_LOOPS void AddRatio(const RatioRows& ratio, const ThreeFours& log
 SOSLAM_IN_WIDE_LOOPS void Evaluate(const Tangencies& tangencies, const RatioRows& ratio,
                                    const ThreeFours& log_half_axes, Model* model) {
   *model = Model();
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t k = 0; k < 4; ++k) model->half_axes[i][k] = std::exp(log_half_axes[i][k]);
-  }
+  Exponential(log_half_axes, &model->half_axes);
   Rows rows;
   RowsAtOrigin(tangencies, model->half_axes, &rows);
   AddTangencies(tangencies, rows, model);
