@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "image/sample_bilinear.h"
 #include "support/random.h"
@@ -15,8 +16,8 @@ namespace {
 
 constexpr int kColumns = 60, kRows = 40;
 
-cv::Mat RandomMap() {
-  cv::Mat map(kRows, kColumns, CV_32FC1);
+cv::Mat RandomMap(int rows = kRows, int columns = kColumns) {
+  cv::Mat map(rows, columns, CV_32FC1);
   for (float& value : cv::Mat_<float>(map)) value = static_cast<float>(RandomUniform(0.0, 10.0));
   return map;
 }
@@ -36,12 +37,12 @@ float Value(const Neighbours& map, float x, float y) {
 // Pixels are off by 60 * 6e-8, values then by 20 times that.
 constexpr double kTolerance = 1e-4;
 
-TEST(Neighbours, AreInterpolatedAsInDoublePrecision) {
-  const cv::Mat map = RandomMap();
+void ExpectAsInDoublePrecision(const cv::Mat& map) {
   Neighbours neighbours(map);
+  int num_inside = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto x = static_cast<float>(RandomUniform(-5.0, kColumns + 5.0));
-    const auto y = static_cast<float>(RandomUniform(-5.0, kRows + 5.0));
+    const auto x = static_cast<float>(RandomUniform(-0.1, 1.1) * (map.cols - 1));
+    const auto y = static_cast<float>(RandomUniform(-0.1, 1.1) * (map.rows - 1));
     const PixelBounds bounds{x, y, x, y};
     neighbours.Cover(bounds);
     const auto expected = SampleBilinear(map, {x, y});
@@ -49,9 +50,46 @@ TEST(Neighbours, AreInterpolatedAsInDoublePrecision) {
     ASSERT_EQ(std::isfinite(value), expected.has_value());
     if (!expected) continue;
     EXPECT_NEAR(value, expected->value, kTolerance);
-    if (neighbours.AreInside(bounds)) {
-      EXPECT_EQ(Value<false>(neighbours, x, y), value);
-    }
+    if (!neighbours.AreInside(bounds)) continue;
+    ++num_inside;
+    EXPECT_EQ(Value<false>(neighbours, x, y), value);
+  }
+  EXPECT_GT(num_inside, 100);
+}
+
+TEST(Neighbours, AreInterpolatedAsInDoublePrecision) { ExpectAsInDoublePrecision(RandomMap()); }
+
+TEST(Neighbours, AreThoseOfSmallMaps) {
+  for (const auto& [rows, columns] : {std::pair(2, 2), {2, 3}, {3, 2}, {2, kColumns}, {kRows, 2}}) {
+    ExpectAsInDoublePrecision(RandomMap(rows, columns));
+  }
+}
+
+// Whose rows do not follow each other in memory.
+TEST(Neighbours, AreThoseOfAPartOfAMap) {
+  const cv::Mat map = RandomMap();
+  for (const cv::Rect& part : {cv::Rect(7, 5, 30, 20), cv::Rect(kColumns - 20, 0, 20, kRows),
+                               cv::Rect(30, kRows - 2, 2, 2), cv::Rect(30, 10, 2, 2)}) {
+    ASSERT_FALSE(map(part).isContinuous());
+    ExpectAsInDoublePrecision(map(part));
+  }
+}
+
+// And what is near, but not the whole map.
+TEST(Neighbours, CoverWhatIsAskedForAndWhatWasBefore) {
+  const cv::Mat map = RandomMap(300, 400);
+  Neighbours neighbours(map);
+  neighbours.Cover({110.5F, 80.5F, 120.5F, 90.5F});
+  const cv::Rect first = neighbours.view().part;
+  EXPECT_EQ(first & cv::Rect(110, 80, 12, 12), cv::Rect(110, 80, 12, 12));
+  EXPECT_LT(first.area(), 100 * 100);
+  neighbours.Cover({210.5F, 180.5F, 220.5F, 190.5F});
+  const cv::Rect both = neighbours.view().part;
+  EXPECT_EQ(both & first, first);
+  EXPECT_LT(both.area(), 200 * 200);
+  for (const cv::Point2f& pixel : {cv::Point2f(115.3F, 85.7F), cv::Point2f(215.3F, 185.7F)}) {
+    EXPECT_NEAR(Value<true>(neighbours, pixel.x, pixel.y),
+                SampleBilinear(map, {pixel.x, pixel.y})->value, 10.0 * kTolerance);
   }
 }
 
@@ -70,6 +108,16 @@ TEST(Neighbours, ReachTheMapsBorderAndNoFurther) {
   EXPECT_TRUE(neighbours.AreInside({5.0F, 5.0F, 10.0F, 10.0F}));
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   EXPECT_FALSE(neighbours.AreInside({kInfinity, kInfinity, -kInfinity, -kInfinity}));
+}
+
+// What follows the last pixel of a row in memory is not beside it.
+TEST(Neighbours, OfTheLastColumnAreNotThoseOfTheFirst) {
+  cv::Mat map = RandomMap();
+  map.col(0) = std::numeric_limits<float>::infinity();
+  Neighbours neighbours(map);
+  neighbours.Cover({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
+  EXPECT_NEAR(Value<true>(neighbours, kColumns - 1.0F, 3.0F), map.at<float>(3, kColumns - 1),
+              kTolerance);
 }
 
 TEST(Neighbours, OfNoKnownBoundsAreTheWholeMap) {
