@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace soslam {
@@ -26,6 +27,14 @@ double Found(double x) {
 
 TEST(ExponentialOfFour, IsThatOfTheStandardLibrary) {
   for (double x = -700.0; x < 700.0; x += 0.37) EXPECT_NEAR(Found(x) / std::exp(x), 1.0, 1e-14);
+}
+
+TEST(ExponentialOfFour, IsThatOfTheLeastOrTheMostBeyondThem) {
+  EXPECT_NEAR(Found(-708.0) / std::exp(-708.0), 1.0, 1e-14);
+  EXPECT_NEAR(Found(709.0) / std::exp(709.0), 1.0, 1e-14);
+  EXPECT_EQ(Found(-1e9), Found(-708.0));
+  EXPECT_EQ(Found(std::nan("")), Found(-708.0));
+  EXPECT_EQ(Found(1e9), Found(709.0));
 }
 
 TEST(ExponentialOfFour, StaysNormal) {
