@@ -75,7 +75,8 @@ class ResidualTerm final : public Term {
   struct Weights {
     Residuals gradient;  // w r
     double across;       // w
-    double less_along;   // (w - k) / r^2; 0 where the loss's curvature does not count
+    // (w - k) / r^2: 0 where the loss's curvature does not count, NaN where r is 0.
+    double less_along;
     const Residuals& residuals;
   };
 
