@@ -74,16 +74,14 @@ void ImageToArtefact(benchmark::State& state, EdgeMaps (*maps)(const cv::Mat& gr
 BENCHMARK_CAPTURE(ImageToArtefact, all, [](const cv::Mat& grey) {
   return ComputeEdgeMaps(grey, EdgesOptions());
 })->Name("edges/image_to_artefact");
-// What OpenCV's functions make, beside the time that these take without files.
+// What OpenCV's functions make.
 BENCHMARK_CAPTURE(ImageToArtefact, edges_and_distances, [](const cv::Mat& grey) {
   EdgeMaps maps;
   maps.edges = Edges(grey);
   maps.nearest_edge = NearestEdgeMap(maps.edges);
   maps.distance = DistanceMap(maps.nearest_edge);
   return maps;
-})->Name("edges/canny_and_distances_ours_with_files/ours");
-BENCHMARK_CAPTURE(EdgesAndDistances, without_files, OpenCvDistances)
-    ->Name("edges/canny_and_distances_ours_with_files/opencv");
+})->Name("edges/canny_and_distances/ours_with_files");
 
 // With corners: what soslam-edges computes for an image.
 void AllMaps(benchmark::State& state) {

@@ -172,19 +172,20 @@ double PartSeconds(const nlohmann::json& median) {
                                               : Seconds(median);
 }
 
-// All others; what does the same as OpenCV beside it.
+// All others; what is PART/ours..., beside PART/opencv.
 Table PartsTable(const Medians& medians) {
   Table table{"parts", "Parts", {"", "time", "OpenCV", "of OpenCV's"}, {}, 1, {}};
   for (const auto& [name, median] : medians) {
     const bool is_elsewhere = name.rfind("table_v/", 0) == 0 || name.rfind("scale/", 0) == 0 ||
                               name.rfind("pipeline/", 0) == 0;
     if (is_elsewhere || name.ends_with("/opencv")) continue;
-    const bool is_ours = name.ends_with("/ours");
-    const std::string part = is_ours ? name.substr(0, name.rfind('/')) : name;
+    const size_t ours = name.find("/ours");
+    const std::string part = name.substr(0, ours);
     const double seconds = PartSeconds(median);
-    std::vector<Cell> row = {PartName(part, median), Duration(seconds), kNoValue, kNoValue};
+    std::vector<Cell> row = {PartName(name.ends_with("/ours") ? part : name, median),
+                             Duration(seconds), kNoValue, kNoValue};
     const auto opencv = medians.find(part + "/opencv");
-    if (is_ours && opencv != medians.end()) {
+    if (ours != std::string::npos && opencv != medians.end()) {
       row[2] = Duration(Seconds(opencv->second));
       row[3] = fmt::format("{:.2f} x", seconds / Seconds(opencv->second));
     }
