@@ -2,6 +2,8 @@
 #include "mapping/landmark_fit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "initialisation/levenberg_marquardt.h"
 

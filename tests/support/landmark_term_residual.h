@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 
 #include <memory>
+#include <utility>
 
 #include "constraints/parameters.h"
 #include "initialisation/upright.h"
