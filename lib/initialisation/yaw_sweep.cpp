@@ -2,11 +2,14 @@
 #include "initialisation/yaw_sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "base/exponential_of_four.h"
+#include "base/wide_loops.h"
 #include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
 
@@ -20,7 +23,40 @@ constexpr size_t kRefinedMinima = 6;
 // Of the finer grid around a grid point, either way.
 constexpr int kRefinementSteps = 10;
 // Of the likelihood between two yaws of the grid.
-constexpr int kLikelihoodSteps = 100;
+constexpr size_t kLikelihoodSteps = 100;
+
+// Of exp(-height^2), between two angles that are no further than pi from 0, where it is linear in
+// the angle: its mass, and its second moment about 0 modulo pi.
+struct Likelihood {
+  double mass = 0.0;
+  double squares = 0.0;
+};
+SOSLAM_WIDE_LOOPS void AddStretch(const std::array<double, 2>& angles,
+                                  const std::array<double, 2>& heights, Likelihood* sum) {
+  constexpr size_t kFours = 5;
+  const auto [from, to] = angles;
+  const auto [from_height, to_height] = heights;
+  Four mass{}, squares{};
+  for (size_t k = 0; k < kLikelihoodSteps; k += 4 * kFours) {
+    std::array<Four, kFours> distance, density;
+    for (size_t i = 0; i < kFours; ++i) {
+      const Four share = (Four{0.5, 1.5, 2.5, 3.5} + static_cast<double>(k + 4 * i)) /
+                         static_cast<double>(kLikelihoodSteps);
+      const Four height = from_height + share * (to_height - from_height);
+      density[i] = -height * height;
+      const Four angle = from + share * (to - from);
+      distance[i] = angle < std::numbers::pi / 2.0 ? angle : std::numbers::pi - angle;
+    }
+    Exponential(density, &density);
+    for (size_t i = 0; i < kFours; ++i) {
+      mass += density[i];
+      squares += density[i] * distance[i] * distance[i];
+    }
+  }
+  const double step = (to - from) / static_cast<double>(kLikelihoodSteps);
+  sum->mass += step * Sum(mass);
+  sum->squares += step * Sum(squares);
+}
 
 // Fits landmarks to an observation and an objective.
 class Fitter {
@@ -142,23 +178,17 @@ double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
   nodes.emplace_back(nodes.front().first + std::numbers::pi, nodes.front().second);
 
   const double step = std::numbers::pi / static_cast<double>(yaw.size());
-  double sum = 0.0;
-  double squares = 0.0;
+  Likelihood likelihood;
   for (size_t i = 1; i < nodes.size(); ++i) {
     const double from = nodes[i - 1].first;
     const double to = nodes[i].first;
     if (to - from > 1.5 * step) continue;  // no landmark in between
-    const double from_height = std::sqrt(nodes[i - 1].second - lowest);
-    const double to_height = std::sqrt(nodes[i].second - lowest);
-    for (int k = 0; k < kLikelihoodSteps; ++k) {
-      const double share = (k + 0.5) / kLikelihoodSteps;
-      const double height = from_height + share * (to_height - from_height);
-      const double mass = (to - from) * std::exp(-height * height);
-      sum += mass;
-      squares += mass * std::pow(YawDifferenceModuloPi(from + share * (to - from), 0.0), 2);
-    }
+    AddStretch({from, to},
+               {std::sqrt(nodes[i - 1].second - lowest), std::sqrt(nodes[i].second - lowest)},
+               &likelihood);
   }
-  return sum > 0.0 ? std::sqrt(squares / sum) : 0.5 * step;  // between two yaws without a landmark
+  if (!(likelihood.mass > 0.0)) return 0.5 * step;  // between two yaws without a landmark
+  return std::sqrt(likelihood.squares / likelihood.mass);
 }
 
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
