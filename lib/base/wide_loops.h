@@ -82,6 +82,18 @@ SOSLAM_IN_WIDE_LOOPS double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
+// Of each of `fours`, which are four.
+SOSLAM_IN_WIDE_LOOPS void SumEach(const Four* fours, Four* sums) {
+  std::array<Four, 2> pairs;
+  for (size_t i = 0; i < 2; ++i) {
+    const Four &a = fours[2 * i], &b = fours[2 * i + 1];
+    pairs[i] =
+        __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  }
+  *sums = __builtin_shufflevector(pairs[0], pairs[1], 0, 1, 4, 5) +
+          __builtin_shufflevector(pairs[0], pairs[1], 2, 3, 6, 7);
+}
+
 // Eight numbers of single precision side by side, and how they are compared and converted.
 using Eight [[gnu::vector_size(8 * sizeof(float))]] = float;
 using EightMask = decltype(Eight{} < Eight{});

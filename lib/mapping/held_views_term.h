@@ -20,8 +20,7 @@ struct HeldView {
 };
 
 // The sum of one landmark's TangencyTerms where all poses are held and the detector has no bias,
-// four views side by side in wide registers. Infinite where any edge's excess is not finite, also
-// that of a bound, which a TangencyTerm leaves out. Variable: the landmark.
+// four views side by side in wide registers. Variable: the landmark.
 class HeldViewsTerm final : public Term {
  public:
   // `variable` is the landmark's index. One view or more, all of the landmark's shape exponent.

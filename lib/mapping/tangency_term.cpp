@@ -1,300 +1,166 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/tangency_term.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 
 #include "constraints/tangent_space.h"
-#include "geometry/support_curvature.h"
+#include "mapping/tangencies_of_four.h"
 
 namespace soslam {
 namespace {
 
-using ByPose = Eigen::Matrix<double, 4, kPoseDof>;
-using ByLandmark = Eigen::Matrix<double, 4, kLandmarkDof>;
+using FourEdges = TangencyTerm::FourEdges;
 using PoseGradient = Eigen::Matrix<double, kPoseDof, 1>;
-using LandmarkGradient = Eigen::Matrix<double, kLandmarkDof, 1>;
-using PosePose = Eigen::Map<Eigen::Matrix<double, kPoseDof, kPoseDof>>;
-using LandmarkPose = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kPoseDof>>;
-using LandmarkLandmark = Eigen::Map<Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>>;
+using PosePose = Eigen::Matrix<double, kPoseDof, kPoseDof>;
+template <int kRows>
+using ByLandmark = Eigen::Matrix<double, kRows, kLandmarkDof>;
+template <int kRows>
+using ByPose = Eigen::Matrix<double, kRows, kPoseDof>;
+
+struct CameraInWorld {
+  explicit CameraInWorld(const double* world_from_camera)
+      : rotation(Eigen::Quaterniond(world_from_camera).toRotationMatrix()),
+        centre(world_from_camera + 4) {}
+
+  Eigen::Matrix3d rotation;  // world from camera
+  Eigen::Vector3d centre;
+};
+
+// Derivatives by the detector's bias, a row for each side.
+struct alignas(kFourAlignment) BiasRows {
+  Eigen::Vector4d gradient;
+  Eigen::Vector4d curvatures;
+  ByLandmark<kBiasSize> by_landmark;  // second ones; of these, turns are in the object frame
+};
+
+SOSLAM_WIDE_LOOPS void AddUpEdges(const FourEdges& edges, const CameraInWorld& camera,
+                                  double least_depth_m, const double* bias_px,
+                                  const BodyInWorld& body, const HuberLoss& loss, Hessian hessian,
+                                  LandmarkSums<double>* totals, BiasRows* of_bias) {
+  ThreeFours centre, optical_axis, planes;
+  for (int i = 0; i < 3; ++i) {
+    const auto component = static_cast<size_t>(i);
+    centre[component] = Four{} + camera.centre[i];
+    optical_axis[component] = Four{} + camera.rotation(i, 2);
+    planes[component] = camera.rotation(i, 0) * edges.planes[0] +
+                        camera.rotation(i, 1) * edges.planes[1] +
+                        camera.rotation(i, 2) * edges.planes[2];
+  }
+  DepthsOfFour depths;
+  FindDepths(centre, optical_axis, Four{} + least_depth_m, body, &depths);
+  std::array<ExcessOfFour, 1> excess;
+  FindExcess(planes, body, depths, excess.data());
+  Four bias;
+  Load(bias_px, &bias);
+  LossesOfFour losses;
+  FindLosses(edges.weights, edges.is_bound, excess[0].value - edges.per_px * bias, loss, hessian,
+             &losses);
+  std::array<WeightsOfFour, 1> weights;
+  FindWeights(body, depths, excess[0], losses, hessian, weights.data());
+  SumsOfFour sums{};
+  AddAllButProducts(body, depths, excess[0], losses, hessian, &sums);
+  AddProducts(excess, weights, depths.by_centre, &sums);
+  AddUp(sums, totals);
+  if (of_bias == nullptr) return;
+  const Four by_excess = -edges.per_px * losses.curvature;
+  Store(-edges.per_px * losses.slope, of_bias->gradient.data());
+  Store(-edges.per_px * by_excess, of_bias->curvatures.data());
+  for (size_t i = 0; i < kLandmarkDof; ++i) {
+    Store(by_excess * excess[0].gradient[i],
+          of_bias->by_landmark.col(static_cast<Eigen::Index>(i)).data());
+  }
+}
+
+// Of derivatives by a landmark, in rows, those by turns v of the camera that sees it: the landmark
+// turns by -v, and around the camera.
+template <int kRows>
+Eigen::Matrix<double, kRows, 3> ByCameraTurn(const ByLandmark<kRows>& by_landmark,
+                                             const Eigen::Vector3d& offset) {
+  return by_landmark.template middleCols<3>(kByCentre).rowwise().cross(offset) -
+         by_landmark.template middleCols<3>(kByTurn);
+}
+
+// The camera moves against the landmark.
+void AddByPose(const LandmarkDerivatives& by_landmark, const Eigen::Vector3d& offset,
+               Hessian hessian, const TermPlaces& places) {
+  const auto& gradient = by_landmark.gradient;
+  const auto by_centre = by_landmark.hessian.middleCols<3>(kByCentre);
+  Eigen::Matrix<double, kLandmarkDof, 3> by_turn =
+      ByCameraTurn<kLandmarkDof>(by_landmark.hessian, offset);
+  if (hessian == Hessian::kNear) {
+    // What the chain itself bends by: exp(-v) exp(w) is a turn by w - v - v x w / 2, and a step of
+    // the centre turns by -v.
+    by_turn.topRows<3>() -= 0.5 * Skew(gradient.segment<3>(kByTurn));
+    by_turn.middleRows<3>(kByCentre) -= Skew(gradient.segment<3>(kByCentre));
+  }
+  Eigen::Map<PoseGradient> pose_gradient(places.gradient[0]);
+  pose_gradient.head<3>() += ByCameraTurn<1>(gradient.transpose(), offset).transpose();
+  pose_gradient.tail<3>() -= gradient.segment<3>(kByCentre);
+
+  // Turns one after another: the mean of both orders.
+  const Eigen::Matrix3d turn_turn =
+      by_turn.middleRows<3>(kByCentre).colwise().cross(offset) - by_turn.topRows<3>();
+  Eigen::Map<PosePose> square(places.hessian[0][0]);
+  square.topLeftCorner<3, 3>() += 0.5 * (turn_turn + turn_turn.transpose());
+  square.bottomLeftCorner<3, 3>() -= by_turn.middleRows<3>(kByCentre);
+  square.bottomRightCorner<3, 3>() += by_centre.middleRows<3>(kByCentre);
+  if (places.hessian[1][0] == nullptr) return;
+  Eigen::Map<ByPose<kLandmarkDof>> mixed(places.hessian[1][0]);
+  mixed.leftCols<3>() += by_turn;
+  mixed.rightCols<3>() -= by_centre;
+}
+
+void AddBias(BiasRows rows, const Eigen::Matrix3d& world_from_object, const Eigen::Vector3d& offset,
+             const TermPlaces& places) {
+  rows.by_landmark.leftCols<3>() =
+      rows.by_landmark.leftCols<3>().lazyProduct(world_from_object.transpose()).eval();
+  Eigen::Map<Eigen::Vector4d>(places.gradient[2]) += rows.gradient;
+  Eigen::Map<Eigen::Matrix4d>(places.hessian[2][2]).diagonal() += rows.curvatures;
+  if (places.hessian[2][1] != nullptr) {
+    Eigen::Map<ByLandmark<kBiasSize>>(places.hessian[2][1]) += rows.by_landmark;
+  }
+  if (places.hessian[2][0] == nullptr) return;
+  Eigen::Map<ByPose<kBiasSize>> mixed(places.hessian[2][0]);
+  mixed.leftCols<3>() += ByCameraTurn(rows.by_landmark, offset);
+  mixed.rightCols<3>() -= rows.by_landmark.middleCols<3>(kByCentre);
+}
 
 }  // namespace
-
-// What the edges are compared with. All is in the object frame, where derivatives are simplest, and
-// turned into the world at the end.
-class TangencyTerm::View {
- public:
-  View(const Blocks& blocks, double shape_exponent, double least_depth_m)
-      : world_from_object_(Eigen::Quaterniond(blocks.landmark_in_world).toRotationMatrix()),
-        object_from_camera_(world_from_object_.transpose() *
-                            Eigen::Quaterniond(blocks.world_from_camera).toRotationMatrix()),
-        offset_(world_from_object_.transpose() * (Eigen::Vector3d(blocks.landmark_in_world + 4) -
-                                                  Eigen::Vector3d(blocks.world_from_camera + 4))),
-        depth_by_offset_(object_from_camera_.col(2)),
-        depth_(depth_by_offset_.dot(offset_)),
-        half_axes_(Eigen::Vector3d(blocks.landmark_in_world + kPoseSize).array().exp()),
-        shape_exponent_(shape_exponent),
-        bias_px_(blocks.bias_px) {
-    if (depth_ > least_depth_m) return;
-    depth_ = least_depth_m;
-    depth_by_offset_.setZero();
-  }
-
-  // How far the body reaches outside an edge.
-  struct Excess {
-    double value;            // less the bias
-    double without_bias;     // outside the plane, over the centre's depth
-    Eigen::Vector3d normal;  // of the plane behind the edge
-    SupportValue support;
-  };
-  Excess Of(const Edge& edge) const {
-    Excess excess;
-    excess.normal = object_from_camera_ * edge.plane;
-    excess.support = SupportFunction(half_axes_, shape_exponent_, excess.normal);
-    excess.without_bias = (excess.normal.dot(offset_) + excess.support.extent) / depth_;
-    excess.value = excess.without_bias - edge.per_px * bias_px_[edge.side];
-    return excess;
-  }
-  SupportCurvature CurvatureOf(const Excess& excess) const {
-    return CurvatureOfSupport(half_axes_, shape_exponent_, excess.normal, excess.support);
-  }
-
-  const Eigen::Matrix3d& world_from_object() const { return world_from_object_; }
-  const Eigen::Vector3d& offset() const { return offset_; }  // from the camera to the centre
-  double depth() const { return depth_; }                    // of the centre
-  // The camera's optical axis, 0 where the depth is held.
-  const Eigen::Vector3d& depth_by_offset() const { return depth_by_offset_; }
-
- private:
-  Eigen::Matrix3d world_from_object_, object_from_camera_;
-  Eigen::Vector3d offset_;
-  Eigen::Vector3d depth_by_offset_;
-  double depth_;
-  Eigen::Vector3d half_axes_;
-  double shape_exponent_;
-  const double* bias_px_;
-};
-
-// One row per edge: first derivatives of its excess, and what its loss makes of them.
-struct TangencyTerm::Rows {
-  using ByVector = Eigen::Matrix<double, 4, 3>;
-
-  double cost = 0.0;
-  Eigen::Vector4d slopes = Eigen::Vector4d::Zero();
-  Eigen::Vector4d curvatures = Eigen::Vector4d::Zero();
-  ByVector by_turn = ByVector::Zero();    // of the landmark
-  ByVector by_centre = ByVector::Zero();  // and the opposite by the camera's place
-  ByVector by_axes = ByVector::Zero();    // log half axes
-  ByVector by_camera_turn = ByVector::Zero();
-  // Relative change of the centre's depth, which divides them all.
-  Eigen::Vector3d depth_by_centre, depth_by_camera_turn;
-};
-
-// The sum over the edges of slope times second derivatives of the excess r = (n . d + h(n)) / (a .
-// d): n the plane's normal, d the offset, q the point of contact, a the optical axis. Turns w of
-// the landmark and v of the camera turn n, and v turns a. Without what is the product of the
-// gradients of r and a . d.
-class TangencyTerm::SecondDerivatives {
- public:
-  // Where the body turns past an edge or a face that should come nearer, it is held there. Not so
-  // where it should go away from it.
-  void AddKink(const View& view, const View::Excess& excess, double slope) {
-    if (!(slope > 0.0)) return;
-    AddTurn(excess, slope / view.depth() * view.CurvatureOf(excess).by_direction);
-  }
-
-  void AddAll(const View& view, const View::Excess& excess, double slope) {
-    const SupportCurvature curvature = view.CurvatureOf(excess);
-    const double factor = slope / view.depth();
-    const Eigen::Vector3d n = factor * excess.normal;
-    const Eigen::Vector3d n_less_depth = n - factor * excess.without_bias * view.depth_by_offset();
-    const Eigen::Vector3d& q = excess.support.contact;
-    AddTurn(excess, factor * curvature.by_direction);
-    normal_contact_ += n * q.transpose();
-    axes_turn_ += curvature.mixed.rowwise().cross(n);
-    axes_axes_ += factor * curvature.by_log_half_axes;
-    normal_ += n_less_depth;
-  }
-
-  void TurnToWorld(const View& view) {
-    const Eigen::Matrix3d& world_from_object = view.world_from_object();
-    for (Eigen::Matrix3d* both : {&turn_, &normal_contact_}) {
-      *both = (world_from_object * *both * world_from_object.transpose()).eval();
-    }
-    axes_turn_ = (axes_turn_ * world_from_object.transpose()).eval();
-    normal_ = (world_from_object * normal_).eval();
-    offset_ = world_from_object * view.offset();
-  }
-
-  void AddTo(LandmarkLandmark* square) const {
-    square->topLeftCorner<3, 3>() += turn_ + OfTurned(normal_contact_);
-    square->bottomLeftCorner<3, 3>() += axes_turn_;
-    square->bottomRightCorner<3, 3>() += axes_axes_;
-  }
-  void AddTo(PosePose* square) const {
-    square->topLeftCorner<3, 3>() +=
-        turn_ + OfTurned(normal_contact_ + normal_ * offset_.transpose());
-    square->bottomLeftCorner<3, 3>() += Skew(normal_);
-  }
-  void AddTo(LandmarkPose* mixed) const {
-    mixed->topLeftCorner<3, 3>() -= turn_ + normal_contact_;
-    mixed->topLeftCorner<3, 3>().diagonal().array() += normal_contact_.trace();
-    mixed->block<3, 3>(3, 0) -= Skew(normal_);
-    mixed->bottomLeftCorner<3, 3>() -= axes_turn_;
-  }
-
- private:
-  // Of x . exp(w) n by w at zero, from the sum of n x^T.
-  static Eigen::Matrix3d OfTurned(const Eigen::Matrix3d& product) {
-    Eigen::Matrix3d second = 0.5 * (product + product.transpose());
-    second.diagonal().array() -= product.trace();
-    return second;
-  }
-
-  void AddTurn(const View::Excess& excess, const Eigen::Matrix3d& by_direction) {
-    turn_ += by_direction.rowwise().cross(excess.normal).colwise().cross(excess.normal);
-  }
-
-  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Zero();  // w w and v v, the opposite of w v: of h alone
-  Eigen::Matrix3d normal_contact_ = Eigen::Matrix3d::Zero();  // n q^T
-  Eigen::Matrix3d axes_turn_ = Eigen::Matrix3d::Zero();       // log half axes, w; the opposite by v
-  Eigen::Matrix3d axes_axes_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // v and d: v . ((n - r a) x d)
-  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
-};
 
 TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks,
                            const TangentBox& box, double huber_delta, double weight)
     : Term({variables.begin(), variables.end()}),
       blocks_(blocks),
-      box_(box),
+      shape_exponent_(box.shape_exponent),
+      least_depth_m_(box.least_depth_m),
       loss_{huber_delta},
-      weight_(weight) {}
-
-double TangencyTerm::Cost() const {
-  const View view(blocks_, box_.shape_exponent, box_.least_depth_m);
-  double cost = 0.0;
-  for (int i = 0; i < box_.num_edges; ++i) {
-    const Edge& edge = box_.edges[static_cast<size_t>(i)];
-    const double excess = view.Of(edge).value;
-    if (!(edge.is_bound && excess > 0.0)) cost += loss_(std::abs(excess)).cost;
+      edges_{{Four{}, Four{}, Four{} + 1.0}, {}, {}, {}} {  // any planes but zero
+  for (int k = 0; k < box.num_edges; ++k) {
+    const TangentBox::Edge& edge = box.edges[static_cast<size_t>(k)];
+    for (size_t i = 0; i < 3; ++i) edges_.planes[i][edge.side] = edge.plane[static_cast<int>(i)];
+    edges_.per_px[edge.side] = edge.per_px;
+    edges_.weights[edge.side] = weight;
+    edges_.is_bound[edge.side] = edge.is_bound ? 1.0 : 0.0;
   }
-  return std::isfinite(cost) ? weight_ * cost : std::numeric_limits<double>::infinity();
 }
 
 double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const {
-  const View view(blocks_, box_.shape_exponent, box_.least_depth_m);
-  const double inverse_depth = 1.0 / view.depth();
-  Rows rows;
-  rows.depth_by_centre = inverse_depth * view.depth_by_offset();
-  rows.depth_by_camera_turn = inverse_depth * view.depth_by_offset().cross(view.offset());
-  const bool has_kinks = hessian == Hessian::kFar && box_.shape_exponent < kEllipsoidExponent;
-  const bool has_second = hessian == Hessian::kNear || has_kinks;
-  SecondDerivatives second;
-  for (int i = 0; i < box_.num_edges; ++i) {
-    const Edge& edge = box_.edges[static_cast<size_t>(i)];
-    const View::Excess excess = view.Of(edge);
-    if (edge.is_bound && excess.value > 0.0) continue;
-    const HuberLoss::Value loss = loss_(std::abs(excess.value));
-    rows.cost += weight_ * loss.cost;
-    rows.slopes[i] = weight_ * loss.weight * excess.value;
-    rows.curvatures[i] = weight_ * (hessian == Hessian::kNear ? loss.curvature : loss.weight);
-    const Eigen::Vector3d& contact = excess.support.contact;
-    const Eigen::Vector3d normal = inverse_depth * excess.normal;
-    rows.by_turn.row(i) = contact.cross(normal);
-    rows.by_centre.row(i) = normal - excess.without_bias * rows.depth_by_centre;
-    rows.by_axes.row(i) = inverse_depth * excess.support.by_log_half_axes;
-    rows.by_camera_turn.row(i) =
-        normal.cross(view.offset() + contact) - excess.without_bias * rows.depth_by_camera_turn;
-    if (hessian == Hessian::kNear) {
-      second.AddAll(view, excess, rows.slopes[i]);
-    } else if (has_kinks) {
-      second.AddKink(view, excess, rows.slopes[i]);
-    }
-  }
-  if (!std::isfinite(rows.cost)) return std::numeric_limits<double>::infinity();
-  if (has_second) second.TurnToWorld(view);
-  Add(rows, view.world_from_object(), has_second ? &second : nullptr, places);
-  if (hessian == Hessian::kNear) AddDepthProducts(rows, view.world_from_object(), places);
-  return rows.cost;
-}
-
-void TangencyTerm::Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,
-                       const SecondDerivatives* second, const TermPlaces& places) const {
   const auto [of_pose, of_landmark, of_bias] = places.gradient;
-  const Eigen::Matrix3d to_world = world_from_object.transpose();
-  ByLandmark by_landmark;
-  by_landmark.leftCols<3>().noalias() = rows.by_turn.lazyProduct(to_world);
-  by_landmark.middleCols<3>(3).noalias() = rows.by_centre.lazyProduct(to_world);
-  by_landmark.rightCols<3>() = rows.by_axes;
-  const ByLandmark weighted = rows.curvatures.asDiagonal() * by_landmark;
-  if (of_landmark != nullptr) {
-    Eigen::Map<LandmarkGradient>(of_landmark).noalias() +=
-        by_landmark.transpose().lazyProduct(rows.slopes);
-    LandmarkLandmark square(places.hessian[1][1]);
-    square.noalias() += by_landmark.transpose().lazyProduct(weighted);
-    if (second != nullptr) second->AddTo(&square);
-  }
-  ByPose by_pose;
-  if (of_pose != nullptr) {
-    by_pose.leftCols<3>().noalias() = rows.by_camera_turn.lazyProduct(to_world);
-    by_pose.rightCols<3>() = -by_landmark.middleCols<3>(3);
-    Eigen::Map<PoseGradient>(of_pose).noalias() += by_pose.transpose().lazyProduct(rows.slopes);
-    const ByPose weighted_pose = rows.curvatures.asDiagonal() * by_pose;
-    PosePose square(places.hessian[0][0]);
-    square.noalias() += by_pose.transpose().lazyProduct(weighted_pose);
-    if (second != nullptr) second->AddTo(&square);
-    if (of_landmark != nullptr) {
-      LandmarkPose mixed(places.hessian[1][0]);
-      mixed.noalias() += weighted.transpose().lazyProduct(by_pose);
-      if (second != nullptr) second->AddTo(&mixed);
-    }
-  }
-  if (of_bias == nullptr) return;
-  for (int i = 0; i < box_.num_edges; ++i) {
-    const Edge& edge = box_.edges[static_cast<size_t>(i)];
-    of_bias[edge.side] -= edge.per_px * rows.slopes[i];
-    places.hessian[2][2][(kBiasSize + 1) * edge.side] +=
-        edge.per_px * edge.per_px * rows.curvatures[i];
-    if (of_landmark != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, kBiasSize, kLandmarkDof>>(places.hessian[2][1])
-          .row(edge.side) -= edge.per_px * weighted.row(i);
-    }
-    if (of_pose != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, kBiasSize, kPoseDof>>(places.hessian[2][0]).row(edge.side) -=
-          edge.per_px * rows.curvatures[i] * by_pose.row(i);
-    }
-  }
-}
+  const CameraInWorld camera(blocks_.world_from_camera);
+  const BodyInWorld body(blocks_.landmark_in_world, shape_exponent_);
+  LandmarkSums<double> sums;
+  BiasRows bias;
+  AddUpEdges(edges_, camera, least_depth_m_, blocks_.bias_px, body, loss_, hessian, &sums,
+             of_bias != nullptr ? &bias : nullptr);
+  const LandmarkDerivatives found(sums, body.world_from_object);
+  if (!std::isfinite(found.cost)) return found.cost;
 
-// What SecondDerivatives leaves out: less the gradient of the cost times the relative change of the
-// depth, both ways round.
-void TangencyTerm::AddDepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object,
-                                    const TermPlaces& places) const {
-  const Eigen::Vector3d depth_by_centre = world_from_object * rows.depth_by_centre;
-  const Eigen::Vector3d by_centre = world_from_object * (rows.by_centre.transpose() * rows.slopes);
-  LandmarkGradient depth_by_landmark = LandmarkGradient::Zero();
-  depth_by_landmark.segment<3>(3) = depth_by_centre;
-  LandmarkGradient by_landmark;
-  by_landmark << world_from_object * (rows.by_turn.transpose() * rows.slopes), by_centre,
-      rows.by_axes.transpose() * rows.slopes;
-  PoseGradient depth_by_pose, by_pose;
-  depth_by_pose << world_from_object * rows.depth_by_camera_turn, -depth_by_centre;
-  by_pose << world_from_object * (rows.by_camera_turn.transpose() * rows.slopes), -by_centre;
-  const bool with_landmark = places.gradient[1] != nullptr;
-  const bool with_pose = places.gradient[0] != nullptr;
-  if (with_landmark) {
-    LandmarkLandmark(places.hessian[1][1]) -=
-        by_landmark * depth_by_landmark.transpose() + depth_by_landmark * by_landmark.transpose();
-  }
-  if (with_pose) {
-    PosePose(places.hessian[0][0]) -=
-        by_pose * depth_by_pose.transpose() + depth_by_pose * by_pose.transpose();
-  }
-  if (with_landmark && with_pose) {
-    LandmarkPose(places.hessian[1][0]) -=
-        by_landmark * depth_by_pose.transpose() + depth_by_landmark * by_pose.transpose();
-  }
+  const Eigen::Vector3d offset = body.centre - camera.centre;
+  if (of_landmark != nullptr) found.AddTo(of_landmark, places.hessian[1][1]);
+  if (of_pose != nullptr) AddByPose(found, offset, hessian, places);
+  if (of_bias != nullptr) AddBias(bias, body.world_from_object, offset, places);
+  return found.cost;
 }
 
 }  // namespace soslam

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/wide_loops.h"
 #include "mapping/huber.h"
 #include "mapping/tangent_box.h"
 #include "mapping/term.h"
@@ -10,7 +11,8 @@
 namespace soslam {
 
 // The tangencies (tangency.h) of a detection's edges, each less a bias of the detector and under a
-// Huber loss, all multiplied by a weight. Variables: pose, landmark, bias.
+// Huber loss, all multiplied by a weight; side by side in wide registers. Infinite where any edge's
+// excess is not finite, also that of a bound. Variables: pose, landmark, bias.
 class TangencyTerm final : public Term {
  public:
   struct Blocks {
@@ -23,27 +25,23 @@ class TangencyTerm final : public Term {
   TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks, const TangentBox& box,
                double huber_delta, double weight);
 
-  double Cost() const override;
+  double Cost() const override { return Linearise(Hessian::kInformation, {}); }
   double Linearise(Hessian hessian, const TermPlaces& places) const override;
 
+  // By side. Those that are left out have no weight.
+  struct alignas(kFourAlignment) FourEdges {
+    ThreeFours planes;  // TangentBox::Edge
+    Four per_px;
+    Four weights;
+    Four is_bound;  // 1 or 0
+  };
+
  private:
-  using Edge = TangentBox::Edge;
-  class View;
-  struct Rows;
-  class SecondDerivatives;
-
-  // Adds derivatives in the object frame (second ones in the world; null for none) to where they
-  // go.
-  void Add(const Rows& rows, const Eigen::Matrix3d& world_from_object,
-           const SecondDerivatives* second, const TermPlaces& places) const;
-
-  void AddDepthProducts(const Rows& rows, const Eigen::Matrix3d& world_from_object,
-                        const TermPlaces& places) const;
-
   Blocks blocks_;
-  TangentBox box_;
+  double shape_exponent_;
+  double least_depth_m_;
   HuberLoss loss_;
-  double weight_;
+  FourEdges edges_;
 };
 
 }  // namespace soslam

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
 
 #include "constraints/tangent_space.h"
 #include "support/random_scene.h"
@@ -24,10 +26,13 @@ struct ViewOfBox {
       *side += RandomUniform(-8, 8);
     }
     edges = BoxEdges(TestCamera(), box, is_bound, kSigmaFraction);
-    term = std::make_unique<TangencyTerm>(
+    term = TermOf(TangentBox(edges, start), huber_delta);
+  }
+  std::unique_ptr<TangencyTerm> TermOf(const TangentBox& box, double huber_delta) const {
+    return std::make_unique<TangencyTerm>(
         std::array{0, 1, 2},
         TangencyTerm::Blocks{view.camera_block.data(), view.landmark_block.data(), bias.data()},
-        TangentBox(edges, start), huber_delta, kWeight);
+        box, huber_delta, kWeight);
   }
 
   // Where a step of all variables leads.
@@ -42,6 +47,18 @@ struct ViewOfBox {
     const double cost = term->Cost();
     std::tie(view.camera_block, view.landmark_block, bias) = before;
     return cost;
+  }
+  // d^2 cost / (d step_i d step_j), from differences.
+  double Second(int i, int j) {
+    constexpr double kStep = 1e-4;
+    const auto at = [&](double x, double y) {
+      Eigen::Matrix<double, kDof, 1> step = Eigen::Matrix<double, kDof, 1>::Zero();
+      step[i] += x;
+      step[j] += y;
+      return CostAfter(step);
+    };
+    return (at(kStep, kStep) - at(kStep, -kStep) - at(-kStep, kStep) + at(-kStep, -kStep)) /
+           (4.0 * kStep * kStep);
   }
 
   static constexpr double kWeight = 0.7;
@@ -58,8 +75,9 @@ struct Derivatives {
   Eigen::Matrix<double, kDof, kDof> hessian;
 };
 
-// By all variables.
-Derivatives Linearised(const TangencyTerm& term, Hessian kind) {
+// By all variables but those that are held.
+Derivatives Linearised(const TangencyTerm& term, Hessian kind,
+                       const std::array<bool, 3>& is_held = {}) {
   constexpr std::array kSizes = {kPoseDof, kLandmarkDof, kBiasSize};
   constexpr std::array kFirst = {0, kPoseDof, kPoseDof + kLandmarkDof};
   Derivatives derivatives;
@@ -67,10 +85,10 @@ Derivatives Linearised(const TangencyTerm& term, Hessian kind) {
   std::array<std::array<Eigen::MatrixXd, 3>, 3> blocks;
   TermPlaces places;
   for (size_t i = 0; i < 3; ++i) {
-    places.gradient[i] = &derivatives.gradient[kFirst[i]];
+    if (!is_held[i]) places.gradient[i] = &derivatives.gradient[kFirst[i]];
     for (size_t j = 0; j <= i; ++j) {
       blocks[i][j] = Eigen::MatrixXd::Zero(kSizes[i], kSizes[j]);
-      places.hessian[i][j] = blocks[i][j].data();
+      if (!is_held[i] && !is_held[j]) places.hessian[i][j] = blocks[i][j].data();
     }
   }
   derivatives.cost = term.Linearise(kind, places);
@@ -129,16 +147,6 @@ TEST(TangencyTerm, DerivativesAgreeWithNumbers) {
       if (!IsOffKinks(view)) continue;
       ++checked;
       const Derivatives found = Linearised(*view.term, Hessian::kNear);
-      const auto second = [&](int i, int j) {
-        const auto at = [&](double x, double y) {
-          Eigen::Matrix<double, kDof, 1> step = Eigen::Matrix<double, kDof, 1>::Zero();
-          step[i] += x;
-          step[j] += y;
-          return view.CostAfter(step);
-        };
-        return (at(kStep, kStep) - at(kStep, -kStep) - at(-kStep, kStep) + at(-kStep, -kStep)) /
-               (4.0 * kStep * kStep);
-      };
       for (int i = 0; i < kDof; ++i) {
         const auto at = [&](double length) {
           return view.CostAfter(length * Eigen::Matrix<double, kDof, 1>::Unit(i));
@@ -149,7 +157,7 @@ TEST(TangencyTerm, DerivativesAgreeWithNumbers) {
         EXPECT_NEAR(found.gradient[i], slope, 1e-6 * (1.0 + found.gradient.norm()))
             << p << " " << i;
         for (int j = 0; j <= i; ++j) {
-          EXPECT_NEAR(found.hessian(i, j), second(i, j), 2e-4 * (1.0 + found.hessian.norm()))
+          EXPECT_NEAR(found.hessian(i, j), view.Second(i, j), 2e-4 * (1.0 + found.hessian.norm()))
               << p << " " << i << " " << j;
         }
       }
@@ -171,23 +179,95 @@ TEST(TangencyTerm, IsPositiveSemidefiniteWhereAMinimumIsFar) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> more(far.hessian - information.hessian);
       EXPECT_GT(more.eigenvalues()[0], -1e-9 * far.hessian.norm());
       EXPECT_EQ(far.gradient, information.gradient);
+      // What it has more is by turns of the body against the camera alone.
+      Eigen::Matrix<double, kDof, kDof> by_turns = Eigen::Matrix<double, kDof, kDof>::Zero();
+      const Eigen::Matrix3d turn_turn =
+          (far.hessian - information.hessian).block<3, 3>(kPoseDof, kPoseDof);
+      by_turns.block<3, 3>(0, 0) = by_turns.block<3, 3>(kPoseDof, kPoseDof) = turn_turn;
+      by_turns.block<3, 3>(0, kPoseDof) = by_turns.block<3, 3>(kPoseDof, 0) = -turn_turn;
+      if (p == kEllipsoidExponent) {
+        EXPECT_TRUE(turn_turn.isZero(0.0));
+      }
+      EXPECT_LT((far.hessian - information.hessian - by_turns).norm(), 1e-12 * far.hessian.norm());
     }
   }
 }
 
 TEST(TangencyTerm, LeavesOutWhatIsHeld) {
   const ViewOfBox view(1.3, {}, 1.0);
-  const Derivatives all = Linearised(*view.term, Hessian::kNear);
-  Eigen::Matrix<double, kLandmarkDof, 1> gradient = Eigen::Matrix<double, kLandmarkDof, 1>::Zero();
-  Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> hessian;
-  hessian.setZero();
-  TermPlaces places;
-  places.gradient[1] = gradient.data();
-  places.hessian[1][1] = hessian.data();
-  EXPECT_EQ(view.term->Linearise(Hessian::kNear, places), all.cost);
-  EXPECT_EQ(gradient, (all.gradient.segment<kLandmarkDof>(kPoseDof)));
-  const Eigen::MatrixXd of_all = all.hessian.block<kLandmarkDof, kLandmarkDof>(kPoseDof, kPoseDof);
-  EXPECT_TRUE(Eigen::MatrixXd(hessian.selfadjointView<Eigen::Lower>()).isApprox(of_all, 1e-12));
+  for (const Hessian kind : {Hessian::kInformation, Hessian::kFar, Hessian::kNear}) {
+    const Derivatives all = Linearised(*view.term, kind);
+    for (int held = 0; held < 8; ++held) {
+      const std::array<bool, 3> is_held = {(held & 1) != 0, (held & 2) != 0, (held & 4) != 0};
+      Eigen::Matrix<double, kDof, 1> is_free;
+      is_free << Eigen::VectorXd::Constant(kPoseDof, is_held[0] ? 0.0 : 1.0),
+          Eigen::VectorXd::Constant(kLandmarkDof, is_held[1] ? 0.0 : 1.0),
+          Eigen::VectorXd::Constant(kBiasSize, is_held[2] ? 0.0 : 1.0);
+      const Derivatives found = Linearised(*view.term, kind, is_held);
+      EXPECT_EQ(found.cost, all.cost);
+      EXPECT_EQ(found.gradient, all.gradient.cwiseProduct(is_free));
+      EXPECT_EQ(found.hessian, is_free.asDiagonal() * all.hessian * is_free.asDiagonal());
+    }
+  }
+}
+
+// Each edge for itself, bounds that are reached and others, and some left out.
+TEST(TangencyTerm, IsTheSumOfTheEdgesThatThereAre) {
+  int idle = 0, reached = 0;
+  for (const double p : kShapeExponents) {
+    for (int trial = 0; trial < 20; ++trial) {
+      ViewOfBox view(p, {true, trial % 2 == 0, false, true}, 1.0);
+      TangentBox box(view.edges, view.start);
+      std::shift_left(box.edges.begin(), box.edges.end(), trial % 3);
+      box.num_edges -= trial % 3;
+      const auto term = view.TermOf(box, 1.0);
+      for (const Hessian kind : {Hessian::kInformation, Hessian::kFar, Hessian::kNear}) {
+        const Derivatives found = Linearised(*term, kind);
+        Derivatives rest = found;
+        for (int i = 0; i < box.num_edges; ++i) {
+          TangentBox one = box;
+          one.edges[0] = box.edges[static_cast<size_t>(i)];
+          one.num_edges = 1;
+          const Derivatives of_one = Linearised(*view.TermOf(one, 1.0), kind);
+          if (one.edges[0].is_bound) {
+            one.edges[0].is_bound = false;
+            const Derivatives of_edge = Linearised(*view.TermOf(one, 1.0), kind);
+            const bool is_idle = of_one.cost == 0.0;
+            ++(is_idle ? idle : reached);
+            // Less than the box's side, the body costs; its slope by the bias is against it.
+            EXPECT_EQ(is_idle, of_edge.gradient[kPoseDof + kLandmarkDof + one.edges[0].side] < 0.0);
+            EXPECT_EQ(of_one.gradient, (is_idle ? 0.0 : 1.0) * of_edge.gradient);
+            EXPECT_EQ(of_one.hessian, (is_idle ? 0.0 : 1.0) * of_edge.hessian);
+          }
+          rest.cost -= of_one.cost;
+          rest.gradient -= of_one.gradient;
+          rest.hessian -= of_one.hessian;
+        }
+        EXPECT_NEAR(rest.cost, 0.0, 1e-12 * found.cost);
+        EXPECT_LT(rest.gradient.norm(), 1e-12 * (1.0 + found.hessian.norm()));
+        EXPECT_LT(rest.hessian.norm(), 1e-12 * (1.0 + found.hessian.norm()));
+      }
+    }
+  }
+  EXPECT_GT(idle, 10);
+  EXPECT_GT(reached, 10);
+}
+
+TEST(TangencyTerm, IsInfiniteWhereItIsNotDefined) {
+  for (const double p : kShapeExponents) {
+    for (const bool are_bounds : {false, true}) {
+      for (const int num_edges : {0, 2, 4}) {
+        ViewOfBox view(p, {are_bounds, are_bounds, are_bounds, are_bounds}, 1.0);
+        TangentBox box(view.edges, view.start);
+        box.num_edges = std::min(box.num_edges, num_edges);
+        view.view.landmark_block.back() = 1e3;  // of a half axis beyond numbers
+        const Derivatives found = Linearised(*view.TermOf(box, 1.0), Hessian::kNear);
+        EXPECT_EQ(found.cost, std::numeric_limits<double>::infinity());
+        EXPECT_TRUE(found.gradient.isZero(0.0));
+        EXPECT_TRUE(found.hessian.isZero(0.0));
+      }
+    }
+  }
 }
 
 // Nothing says how large the world is, but that the box's errors are the same in any.
@@ -231,6 +311,10 @@ TEST(TangencyTerm, ABodyBehindTheCameraIsComparedAtATenthOfItsDepth) {
       EXPECT_NEAR(found.gradient[i], (at(1e-5) - at(-1e-5)) / 2e-5,
                   1e-4 * (1.0 + found.gradient.norm()))
           << p << " " << i;
+      for (int j = 0; j <= i && IsOffKinks(view); ++j) {
+        EXPECT_NEAR(found.hessian(i, j), view.Second(i, j), 2e-4 * (1.0 + found.hessian.norm()))
+            << p << " " << i << " " << j;
+      }
     }
   }
 }

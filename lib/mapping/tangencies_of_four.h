@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "base/wide_loops.h"
+#include "geometry/mirror_mapping.h"
+#include "geometry/support_of_four.h"
+#include "mapping/huber.h"
+#include "mapping/term.h"
+
+namespace soslam {
+
+// The tangencies of edges to one body, four side by side in wide registers, and the sum of their
+// losses to second order. Which four, those of a box or those of one side in four views, is up to
+// who asks.
+
+struct BodyInWorld {
+  // `landmark_in_world` is a block (parameters.h).
+  BodyInWorld(const double* landmark_in_world, double shape_exponent);
+
+  Eigen::Matrix3d world_from_object;
+  Eigen::Vector3d centre;
+  Eigen::Vector3d half_axes;
+  double shape_exponent;
+};
+
+// Derivatives by the turn of the body in its own frame, its centre in the world and the logarithms
+// of its half axes begin there.
+enum { kByTurn = 0, kByCentre = 3, kByAxes = 6 };
+
+// A cost, its gradient and its Hessian: the block rows from the diagonal on of each of its three
+// block columns, one after the other, column by column. Of blocks on the diagonal, the lower
+// triangle counts.
+template <typename Number>
+struct LandmarkSums {
+  static constexpr size_t kGradient = 1;
+  static constexpr size_t kHessianByTurn = kGradient + kLandmarkDof;
+  static constexpr size_t kHessianByCentre = kHessianByTurn + 9 * 3;
+  static constexpr size_t kHessianByAxes = kHessianByCentre + 6 * 3;
+  static constexpr size_t kCount = kHessianByAxes + 3 * 3;
+
+  SOSLAM_IN_WIDE_LOOPS Number* Gradient() { return &numbers[kGradient]; }
+  // i >= j.
+  SOSLAM_IN_WIDE_LOOPS Number& Hessian(size_t i, size_t j) {
+    if (j < kByCentre) return numbers[kHessianByTurn + 9 * j + i];
+    if (j < kByAxes) return numbers[kHessianByCentre + 6 * (j - kByCentre) + i - kByCentre];
+    return numbers[kHessianByAxes + 3 * (j - kByAxes) + i - kByAxes];
+  }
+
+  alignas(kFourAlignment) std::array<Number, kCount> numbers;  // the cost first
+};
+using SumsOfFour = LandmarkSums<Four>;
+
+SOSLAM_IN_WIDE_LOOPS void AddUp(const SumsOfFour& sums, LandmarkSums<double>* totals) {
+  static_assert(SumsOfFour::kCount % 4 == 0);
+  for (size_t i = 0; i < sums.numbers.size(); i += 4) {
+    Four total;
+    SumEach(&sums.numbers[i], &total);
+    Store(total, &totals->numbers[i]);
+  }
+}
+
+// The same by the landmark's steps (tangent_space.h), all in the world.
+struct LandmarkDerivatives {
+  LandmarkDerivatives(const LandmarkSums<double>& sums, const Eigen::Matrix3d& world_from_object);
+
+  using Gradient = Eigen::Matrix<double, kLandmarkDof, 1>;
+  using Square = Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>;
+
+  // To where a term's go; the cost has to be finite.
+  void AddTo(double* to_gradient, double* to_hessian) const;
+
+  double cost;  // infinite where it is not finite
+  Gradient gradient;
+  Square hessian;  // whole by turn and centre, of the rest the lower triangle
+};
+
+// The body's centre as cameras see it.
+struct DepthsOfFour {
+  ThreeFours offset;  // from the camera
+  Four depth_m;
+  Four inverse;
+  ThreeFours by_centre;  // relative change; 0 where the depth is held
+};
+
+SOSLAM_IN_WIDE_LOOPS void FindDepths(const ThreeFours& camera, const ThreeFours& optical_axis,
+                                     const Four& least_depth_m, const BodyInWorld& body,
+                                     DepthsOfFour* depths) {
+  Four depth{};
+  for (size_t i = 0; i < 3; ++i) {
+    depths->offset[i] = body.centre[static_cast<int>(i)] - camera[i];
+    depth += optical_axis[i] * depths->offset[i];
+  }
+  const FourMask is_free = depth > least_depth_m;
+  depths->depth_m = is_free ? depth : least_depth_m;
+  depths->inverse = 1.0 / depths->depth_m;
+  for (size_t i = 0; i < 3; ++i) {
+    depths->by_centre[i] = is_free ? depths->inverse * optical_axis[i] : Four{};
+  }
+}
+
+// What lies outside the planes behind edges, over the centre's depth.
+struct ExcessOfFour {
+  ThreeFours normal;  // m, of the plane in the object frame
+  SupportOfFour support;
+  Four value;
+  std::array<Four, kLandmarkDof> gradient;
+};
+
+// `plane` is in the world (TangentBox::Edge).
+SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const BodyInWorld& body,
+                                     const DepthsOfFour& depths, ExcessOfFour* excess) {
+  Four outside{};
+  for (int i = 0; i < 3; ++i) {
+    outside += plane[i] * depths.offset[i];
+    excess->normal[i] = body.world_from_object(0, i) * plane[0] +
+                        body.world_from_object(1, i) * plane[1] +
+                        body.world_from_object(2, i) * plane[2];
+  }
+  const ThreeFours& m = excess->normal;
+  SupportOfFour& support = excess->support;
+  FindSupport(body.half_axes, body.shape_exponent, m, &support);
+  excess->value = (outside + support.extent) * depths.inverse;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    const Four by_turn = m[j] * m[k] * (support.shares[j] - support.shares[k]);  // dh / dm x m
+    excess->gradient[kByTurn + i] = depths.inverse * by_turn;
+    excess->gradient[kByCentre + i] =
+        depths.inverse * plane[i] - excess->value * depths.by_centre[i];
+    excess->gradient[kByAxes + i] = depths.inverse * support.by_log_half_axes[i];
+  }
+}
+
+// What the losses make of four excesses.
+struct LossesOfFour {
+  Four cost;
+  Four slope;
+  Four curvature;
+};
+
+// Of a bound that is not reached, nothing. Excesses that are not finite make the cost so, even
+// those without weight: nothing that is made of them is to be added.
+SOSLAM_IN_WIDE_LOOPS void FindLosses(const Four& weights, const Four& is_bound, const Four& excess,
+                                     const HuberLoss& loss, Hessian hessian, LossesOfFour* losses) {
+  const FourMask is_idle = (is_bound > 0.0) & (excess > 0.0);
+  const Four weight = is_idle ? Four{} : weights;
+  const HuberLoss::FourValues values = loss(excess < 0.0 ? -excess : excess);
+  losses->cost = weight * values.cost;
+  losses->slope = weight * values.weight * excess;
+  losses->curvature = weight * (hessian == Hessian::kNear ? values.curvature : values.weight);
+}
+
+// Where the body turns past an edge or a face that should come nearer, it is held there. Not so
+// where it should go away from it.
+SOSLAM_IN_WIDE_LOOPS bool HasKinks(const BodyInWorld& body, Hessian hessian) {
+  return hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
+}
+
+// What multiplies products of the gradient of an excess in the Hessian: d^2 cost / d excess^2, and
+// where h bends, less what it bends by along its own gradient, by turns and half axes.
+struct WeightsOfFour {
+  Four turn_turn;
+  Four centre;  // by all
+  Four axes;    // by turns and axes
+  // By the centre and all, of the gradient times the relative change of the depth, which divides
+  // all.
+  Four depth;
+};
+
+SOSLAM_IN_WIDE_LOOPS void FindWeights(const BodyInWorld& body, const DepthsOfFour& depths,
+                                      const ExcessOfFour& excess, const LossesOfFour& losses,
+                                      Hessian hessian, WeightsOfFour* weights) {
+  const Four less =
+      losses.slope * depths.depth_m * (body.shape_exponent - 1.0) * excess.support.inverse;
+  *weights = {losses.curvature, losses.curvature, losses.curvature, Four{}};
+  if (hessian == Hessian::kNear) {
+    weights->turn_turn -= less;
+    weights->axes -= less;
+    weights->depth = losses.slope;
+  } else if (HasKinks(body, hessian)) {
+    weights->turn_turn -= less > 0.0 ? less : Four{};
+  }
+}
+
+// The products of gradients, of `kSets` times four edges at the same depths.
+template <size_t kSets>
+SOSLAM_IN_WIDE_LOOPS void AddProducts(const std::array<ExcessOfFour, kSets>& excesses,
+                                      const std::array<WeightsOfFour, kSets>& weights,
+                                      const ThreeFours& depth_by_centre, SumsOfFour* sums) {
+  const auto add = [&](size_t i, size_t begin, size_t end,
+                       const std::array<Four, kSets>& weighted) {
+    for (size_t j = begin; j < end; ++j) {
+      Four& sum = sums->Hessian(i, j);
+      for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * excesses[set].gradient[j];
+    }
+  };
+  std::array<Four, kSets> weighted;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t set = 0; set < kSets; ++set) {
+      weighted[set] = weights[set].turn_turn * excesses[set].gradient[kByTurn + i];
+    }
+    add(kByTurn + i, kByTurn, kByTurn + i + 1, weighted);
+    for (size_t set = 0; set < kSets; ++set) {
+      weighted[set] = weights[set].axes * excesses[set].gradient[kByAxes + i];
+    }
+    add(kByAxes + i, kByTurn, kByTurn + 3, weighted);
+    add(kByAxes + i, kByAxes, kByAxes + i + 1, weighted);
+    Four slope{};
+    for (size_t set = 0; set < kSets; ++set) {
+      const Four& by_centre = excesses[set].gradient[kByCentre + i];
+      slope += weights[set].depth * by_centre;
+      weighted[set] = weights[set].centre * by_centre - weights[set].depth * depth_by_centre[i];
+    }
+    add(kByCentre + i, kByTurn, kByTurn + 3, weighted);
+    add(kByCentre + i, kByCentre, kByCentre + i + 1, weighted);
+    for (size_t j = 0; j <= i; ++j) {
+      sums->Hessian(kByCentre + i, kByCentre + j) -= slope * depth_by_centre[j];
+    }
+    for (size_t j = 0; j < 3; ++j) {
+      Four& sum = sums->Hessian(kByAxes + j, kByCentre + i);
+      for (size_t set = 0; set < kSets; ++set) {
+        sum += weighted[set] * excesses[set].gradient[kByAxes + j];
+      }
+    }
+  }
+}
+
+// By turns, what h grows by as the contact moves along the body: its second derivatives by m
+// (CurvatureOfSupport). What those have along m itself is not seen by a turn. Less what
+// FindWeights has of it.
+SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const BodyInWorld& body, const ExcessOfFour& excess,
+                                           const Four& factor, SumsOfFour* sums) {
+  const ThreeFours& m = excess.normal;
+  const SupportOfFour& support = excess.support;
+  const ThreeFours& shares = support.shares;
+  const double p = body.shape_exponent;
+  const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
+  ThreeFours diagonal;
+  for (size_t i = 0; i < 3; ++i) {
+    diagonal[i] = factor * (shares[i] + rounding);
+    if (p == kEllipsoidExponent) continue;
+    diagonal[i] -= factor * (2.0 - p) * shares[i] * m[i] * m[i] / support.squares[i];
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    sums->Hessian(kByTurn + i, kByTurn + i) +=
+        diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j];
+    for (size_t l = 0; l < i; ++l)
+      sums->Hessian(kByTurn + i, kByTurn + l) -= diagonal[3 - i - l] * m[i] * m[l];
+  }
+}
+
+// All others of h: by turns of a contact q that stays, and by the half axes.
+SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const BodyInWorld& body, const ExcessOfFour& excess,
+                                            const Four& factor, SumsOfFour* sums) {
+  const ThreeFours& m = excess.normal;
+  const SupportOfFour& support = excess.support;
+  const double p = body.shape_exponent;
+  const Four factor_of_axes = factor * p;
+  ThreeFours q = support.Contact(p, m);
+  for (size_t i = 0; i < 3; ++i) q[i] *= factor;
+  for (size_t i = 0; i < 3; ++i) {
+    const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    sums->Hessian(kByTurn + i, kByTurn + i) -= m[j] * q[j] + m[k] * q[k];
+    for (size_t l = 0; l < i; ++l)
+      sums->Hessian(kByTurn + i, kByTurn + l) += 0.5 * (m[i] * q[l] + m[l] * q[i]);
+
+    const Four edge = factor_of_axes * support.shares[i] * m[i];
+    sums->Hessian(kByAxes + i, kByTurn + j) -= edge * m[k];
+    sums->Hessian(kByAxes + i, kByTurn + k) += edge * m[j];
+    sums->Hessian(kByAxes + i, kByAxes + i) += factor_of_axes * support.by_log_half_axes[i];
+  }
+}
+
+// The cost and its gradient, and of the Hessian what is not a product of gradients.
+SOSLAM_IN_WIDE_LOOPS void AddAllButProducts(const BodyInWorld& body, const DepthsOfFour& depths,
+                                            const ExcessOfFour& excess, const LossesOfFour& losses,
+                                            Hessian hessian, SumsOfFour* sums) {
+  sums->numbers[0] += losses.cost;
+  for (size_t i = 0; i < kLandmarkDof; ++i) {
+    sums->Gradient()[i] += losses.slope * excess.gradient[i];
+  }
+  const Four factor = losses.slope * depths.inverse;
+  if (hessian == Hessian::kNear) {
+    AddMoveOfContact(body, excess, factor, sums);
+    AddOtherCurvature(body, excess, factor, sums);
+  } else if (HasKinks(body, hessian)) {
+    AddMoveOfContact(body, excess, factor > 0.0 ? factor : Four{}, sums);
+  }
+}
+
+}  // namespace soslam
