@@ -99,64 +99,130 @@ struct UnitBall {
   Eigen::Matrix<float, 3, 4> image_from_ball;
 };
 
-// As BodySurface::Meet and MirrorVisible, in single precision. Rays are followed from the point
-// that is closest to the centre: from the camera, rounding would be larger by the ratio of its
-// distance to the body's size. The normal is p / axes, its product with a direction that of p with
-// the direction in the ball, where p is the point there.
-SOSLAM_WIDE_LOOPS void MirrorVisibleOnEllipsoid(const UnitBall& ball, const PixelRays& rays,
-                                                double min_viewing_cosine,
-                                                std::vector<MirroredBatch>* mirrored) {
-  using ThreeEights = std::array<Eight, 3>;
+// A batch of single precision, eight side by side; and of vectors.
+using Eights = std::array<Eight, kBatchSize / 8>;
+using ThreeEights = std::array<Eights, 3>;
+
+// In the coordinates of the ball.
+struct RaysInBall {
+  ThreeEights direction;
+  Eights squared;           // of the direction
+  Eights by_squared;        // 1 / squared
+  Eights depth_of_closest;  // of the point that is closest to the centre
+  Eights length_in_camera;  // squared, of the direction
+};
+
+SOSLAM_IN_WIDE_LOOPS void TurnToBall(const UnitBall& ball, const double* rays_x,
+                                     const double* rays_y, RaysInBall* rays) {
   using EightDoubles
       [[gnu::vector_size(8 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] =
           double;
-  const auto [turn, camera, squared_axes, matrix] = ball;
-  const Eigen::Vector3f squared_inverse_axes = squared_axes.cwiseInverse();
-  const auto squared_cosine = static_cast<float>(min_viewing_cosine * min_viewing_cosine);
-  const double* rays_x = rays.x.data();
-  const double* rays_y = rays.y.data();
-  for (size_t i = 0; i < rays.x.size(); i += 8) {
+  for (size_t i = 0; i < rays->squared.size(); ++i) {
     const Eight x =
-        __builtin_convertvector(*reinterpret_cast<const EightDoubles*>(rays_x + i), Eight);
+        __builtin_convertvector(*reinterpret_cast<const EightDoubles*>(rays_x + 8 * i), Eight);
     const Eight y =
-        __builtin_convertvector(*reinterpret_cast<const EightDoubles*>(rays_y + i), Eight);
-    ThreeEights ray, closest, point, to_camera;
-    Eight squared_ray{}, along{};
+        __builtin_convertvector(*reinterpret_cast<const EightDoubles*>(rays_y + 8 * i), Eight);
+    Eight squared{}, along{};
     for (int k = 0; k < 3; ++k) {
-      ray[k] = turn(k, 0) * x + turn(k, 1) * y + turn(k, 2);
-      squared_ray += ray[k] * ray[k];
-      along += camera[k] * ray[k];
+      const Eight direction =
+          ball.from_camera(k, 0) * x + ball.from_camera(k, 1) * y + ball.from_camera(k, 2);
+      squared += direction * direction;
+      along += ball.camera_in_ball[k] * direction;
+      rays->direction[k][i] = direction;
     }
-    const Eight by_squared_ray = 1.0F / squared_ray;
-    const Eight depth_of_closest = -along * by_squared_ray;
-    Eight squared_half_chord = Eight{} + 1.0F, half_chord;
+    rays->squared[i] = squared;
+    rays->by_squared[i] = 1.0F / squared;
+    rays->depth_of_closest[i] = -along * rays->by_squared[i];
+    rays->length_in_camera[i] = x * x + y * y + 1.0F;
+  }
+}
+
+struct PointsOnBall {
+  std::array<EightMask, kBatchSize / 8> exist;
+  Eights squared_half_chord;
+  Eights half_chord;  // in lengths of the direction; NaN for a ray that misses
+  ThreeEights mirror_image;
+};
+
+// Rays are followed from the point that is closest to the centre: from the camera, rounding would
+// be larger by the ratio of its distance to the body's size.
+SOSLAM_IN_WIDE_LOOPS void MeetBall(const UnitBall& ball, const RaysInBall& rays,
+                                   PointsOnBall* points) {
+  for (size_t i = 0; i < rays.squared.size(); ++i) {
+    Eight squared_half_chord = Eight{} + 1.0F;
     for (int k = 0; k < 3; ++k) {
-      closest[k] = camera[k] + depth_of_closest * ray[k];
-      squared_half_chord -= closest[k] * closest[k];
+      const Eight closest =
+          ball.camera_in_ball[k] + rays.depth_of_closest[i] * rays.direction[k][i];
+      squared_half_chord -= closest * closest;
+      points->mirror_image[k][i] = closest;
     }
-    SquareRoot(squared_half_chord * by_squared_ray, &half_chord);  // NaN for a ray that misses
-    const EightMask is_on_surface = depth_of_closest > half_chord;
+    points->squared_half_chord[i] = squared_half_chord;
+    SquareRoot(squared_half_chord * rays.by_squared[i], &points->half_chord[i]);
+  }
+  for (size_t i = 0; i < rays.squared.size(); ++i) {
+    points->exist[i] = rays.depth_of_closest[i] > points->half_chord[i];
+    for (int k = 0; k < 3; ++k) {
+      const Eight point = points->mirror_image[k][i] - points->half_chord[i] * rays.direction[k][i];
+      points->mirror_image[k][i] = k == 1 ? -point : point;
+    }
+  }
+}
+
+// The normal is p / axes, its product with a direction that of p with the direction in the ball,
+// where p is the point there.
+SOSLAM_IN_WIDE_LOOPS void FindVisible(const UnitBall& ball, const RaysInBall& rays,
+                                      const PointsOnBall& points, float squared_cosine,
+                                      MirroredBatch* mirrored) {
+  const Eigen::Vector3f squared_inverse_axes = ball.squared_axes.cwiseInverse();
+  for (size_t i = 0; i < rays.squared.size(); ++i) {
     Eight squared_normal{}, squared_to_camera{}, there = Eight{} - 1.0F;
     for (int k = 0; k < 3; ++k) {
-      point[k] = closest[k] - half_chord * ray[k];
-      squared_normal += squared_inverse_axes[k] * (point[k] * point[k]);
-      if (k == 1) point[k] = -point[k];  // from here on the mirror image
-      to_camera[k] = camera[k] - point[k];
-      squared_to_camera += squared_axes[k] * (to_camera[k] * to_camera[k]);
-      there += point[k] * camera[k];
+      const Eight& point = points.mirror_image[k][i];
+      const Eight to_camera = ball.camera_in_ball[k] - point;
+      squared_normal += squared_inverse_axes[k] * (point * point);
+      squared_to_camera += ball.squared_axes[k] * (to_camera * to_camera);
+      there += point * ball.camera_in_ball[k];
     }
     const Eight least = squared_cosine * squared_normal;
-    MirroredBatch& batch = (*mirrored)[i / kBatchSize];
-    const size_t at = i % kBatchSize;
-    StoreOnes(is_on_surface, batch.is_on_surface.data() + at);
-    StoreOnes(is_on_surface & (squared_half_chord * squared_ray >= least * (x * x + y * y + 1.0F)) &
-                  (there >= 0.0F) & (there * there >= least * squared_to_camera),
-              batch.is_visible.data() + at);
+    const EightMask is_seen =
+        points.squared_half_chord[i] * rays.squared[i] >= least * rays.length_in_camera[i];
+    const EightMask is_mirror_image_seen =
+        (there >= 0.0F) & (there * there >= least * squared_to_camera);
+    StoreOnes(points.exist[i], mirrored->is_on_surface.data() + 8 * i);
+    StoreOnes(points.exist[i] & is_seen & is_mirror_image_seen,
+              mirrored->is_visible.data() + 8 * i);
+  }
+}
+
+SOSLAM_IN_WIDE_LOOPS void Project(const Eigen::Matrix<float, 3, 4>& image_from_ball,
+                                  const ThreeEights& points, MirroredBatch* mirrored) {
+  for (size_t i = 0; i < points[0].size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      Store(matrix(k, 0) * point[0] + matrix(k, 1) * point[1] + matrix(k, 2) * point[2] +
-                matrix(k, 3),
-            batch.in_image[k].data() + at);
+      Store(image_from_ball(k, 0) * points[0][i] + image_from_ball(k, 1) * points[1][i] +
+                image_from_ball(k, 2) * points[2][i] + image_from_ball(k, 3),
+            mirrored->in_image[k].data() + 8 * i);
     }
+  }
+}
+
+// As BodySurface::Meet and MirrorVisible, in single precision. Each step is that of a whole batch:
+// the roots and divisions of one ray wait for each other, those of many do not.
+SOSLAM_WIDE_LOOPS void MirrorVisibleOnEllipsoid(const UnitBall& ball, const PixelRays& rays,
+                                                double min_viewing_cosine,
+                                                std::vector<MirroredBatch>* mirrored) {
+  const UnitBall copy = ball;  // what is written may be anything to the compiler
+  const auto squared_cosine = static_cast<float>(min_viewing_cosine * min_viewing_cosine);
+  const double* x = rays.x.data();
+  const double* y = rays.y.data();
+  for (MirroredBatch& batch : *mirrored) {
+    RaysInBall in_ball;
+    PointsOnBall points;
+    TurnToBall(copy, x, y, &in_ball);
+    MeetBall(copy, in_ball, &points);
+    FindVisible(copy, in_ball, points, squared_cosine, &batch);
+    Project(copy.image_from_ball, points.mirror_image, &batch);
+    x += kBatchSize;
+    y += kBatchSize;
   }
 }
 
