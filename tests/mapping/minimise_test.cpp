@@ -4,8 +4,14 @@
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
-#include <deque>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 #include "base/error.h"
 #include "constraints/manifolds.h"
@@ -202,6 +208,104 @@ TEST_F(OffsetTest, WhatIsHeldStays) {
   const Minimisation result = Minimise({term.get()}, {.max_iterations = 10}, &variables_->all());
   EXPECT_EQ(Offset(), 3.0);
   EXPECT_EQ(result.costs.back(), 4.5);
+}
+
+// A cost of an offset x, and what it says of its second derivative.
+struct Curve {
+  double cost, slope, far, near;
+};
+class CurveTerm final : public Term {
+ public:
+  CurveTerm(int offset, const double* x, Curve (*curve)(double x))
+      : Term({offset}), x_(x), curve_(curve) {}
+  double Cost() const override { return curve_(*x_).cost; }
+  double Linearise(Hessian hessian, const TermPlaces& places) const override {
+    const Curve at = curve_(*x_);
+    *places.gradient[0] += at.slope;
+    *places.hessian[0][0] += hessian == Hessian::kNear ? at.near : at.far;
+    return at.cost;
+  }
+
+ private:
+  const double* x_;
+  Curve (*curve_)(double x);
+};
+
+class CurveTest : public OffsetTest {
+ protected:
+  Minimisation MinimiseCurve(double from, const MinimiseOptions& options, Curve (*curve)(double)) {
+    Offset() = from;
+    const CurveTerm term(variables_->Offset(0), &Offset(), curve);
+    return Minimise({&term}, options, &variables_->all());
+  }
+};
+
+// Steps of a quarter of the way, along which an iteration gains less than a hundredth: second
+// derivatives count, and are negative beyond 1.
+TEST_F(CurveTest, WhereItBendsDownwardsNoIterationIsLost) {
+  const Minimisation result = MinimiseCurve(8.0, {.max_iterations = 50}, [](double x) {
+    const double share = 1.0 / (1.0 + x * x);
+    return Curve{100.0 - 0.5 * std::log(share), x * share, 4.0 * share,
+                 (1.0 - x * x) * share * share};
+  });
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(Offset(), 0.0, 1e-2);
+  ASSERT_GT(result.costs.size(), 8U);
+  for (size_t i = 1; i < 8; ++i) EXPECT_LT(result.costs[i], result.costs[i - 1]) << i;
+}
+
+// Second derivatives that are much too small lead too far. The next step does without them.
+TEST_F(CurveTest, AfterANearStepThatIsRefusedAFarOneIsTaken) {
+  const Minimisation result = MinimiseCurve(0.1, {.max_iterations = 50}, [](double x) {
+    return Curve{50.0 + 0.5 * x * x, x, 4.0, 0.01};
+  });
+  EXPECT_TRUE(result.converged);
+  int refused = 0;
+  for (size_t i = 2; i < result.costs.size(); ++i) {
+    refused += result.costs[i] == result.costs[i - 1] ? 1 : 0;
+    EXPECT_LT(result.costs[i], result.costs[i - 2]) << i;
+  }
+  EXPECT_GT(refused, 1);
+}
+
+TEST_F(CurveTest, EndsWithTheFirstIterationOfLessThanTheLeastGain) {
+  constexpr double kLeastGain = 0.1;
+  const Minimisation result =
+      MinimiseCurve(8.0, {.max_iterations = 50, .least_gain = kLeastGain}, [](double x) {
+        return Curve{1.0 + 0.5 * x * x, x, 4.0, 4.0};
+      });
+  EXPECT_TRUE(result.converged);
+  const auto& costs = result.costs;
+  ASSERT_GT(costs.size(), 4U);
+  for (size_t i = 1; i < costs.size(); ++i) {
+    EXPECT_EQ(costs[i - 1] - costs[i] < kLeastGain * costs[i - 1], i + 1 == costs.size()) << i;
+  }
+}
+
+// Expected to gain less than a hundredth of the least gain, or of costs that are all but zero.
+TEST_F(CurveTest, StepsThatAreNotWorthItAreNotTried) {
+  for (const double where : {-1e-5, 1e-10}) {
+    const Minimisation result = MinimiseCurve(where, {.max_iterations = 50}, [](double x) {
+      return Curve{(x < 0.0 ? 100.0 : 0.0) + 0.5 * x * x, x, 1.0, 1.0};
+    });
+    EXPECT_TRUE(result.converged);
+    EXPECT_EQ(result.costs.size(), 2U);
+    EXPECT_EQ(Offset(), where);
+  }
+}
+
+// What is known of the offset is far less than what damping counts it as.
+TEST_F(CurveTest, IsHardlyDampedNearTheMinimumWhereThatIsAskedFor) {
+  const auto distance = [this](bool hardly_damped_near) {
+    MinimiseCurve(
+        1e5, {.max_iterations = 20, .hardly_damped_near = hardly_damped_near, .least_gain = 1e-12},
+        [](double x) {
+          return Curve{0.5e-15 * x * x, 1e-15 * x, 1e-15, 1e-15};
+        });
+    return std::abs(Offset());
+  };
+  EXPECT_GT(distance(false), 1e4);
+  EXPECT_LT(distance(true), 1e2);
 }
 
 TEST(DampingTest, FallsToItsLeastAndNoFurther) {
