@@ -9,7 +9,7 @@ namespace soslam {
 namespace {
 
 // From the pixel centre before `least` to that after `largest`, both in 0 to size - 1; two of them
-// at least. NaN is all there is.
+// at least. Without bounds (NaN, or the largest below the least) all there is.
 std::array<int, 2> Range(float least, float largest, int size) {
   const float last = static_cast<float>(size - 1);
   if (!(least <= largest)) return {0, size - 1};

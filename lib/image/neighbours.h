@@ -24,7 +24,9 @@ struct PixelBounds {
 class Neighbours {
  public:
   // CV_32FC1, of at least 2 x 2 pixels.
-  explicit Neighbours(const cv::Mat& map) : map_(map) {}
+  explicit Neighbours(const cv::Mat& map) : map_(map) {
+    CV_Assert(map.type() == CV_32FC1 && map.cols >= 2 && map.rows >= 2);
+  }
 
   // Before what lies there is looked up.
   void Cover(const PixelBounds& bounds);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/view_weights.h"
 
+#include <algorithm>
 #include <array>
 
 #include "base/exponential_of_four.h"
@@ -53,7 +54,8 @@ SOSLAM_IN_WIDE_LOOPS void FindSimilarities(const FourViews& rows, const FourView
 
 // Each pair once.
 SOSLAM_WIDE_LOOPS void AddSimilarities(double correlation_rad, std::vector<FourViews>* views) {
-  const double factor = -0.5 / (correlation_rad * correlation_rad);
+  constexpr double kLeastSquare = 1e-30;  // rad^2, of rounding: its inverse is finite
+  const double factor = -0.5 / std::max(kLeastSquare, correlation_rad * correlation_rad);
   for (FourViews& rows : *views) {
     Pairs sums{};
     for (FourViews* columns = views->data(); columns <= &rows; ++columns) {

@@ -29,8 +29,9 @@ constexpr double kLandmarkGain = 3e-4;
 constexpr double kLeastLandmarkGain = 1e-8;
 // Where a step is expected to lower the cost by less than this share, the minimum is near.
 constexpr double kNear = 1e-2;
-// Where it has done so and nothing but landmarks varies: each goes back to kFar by itself where
-// kNear leads nowhere, and is spared the steps that halve what is left.
+// Where nothing but landmarks varies, of the share by which the last step has lowered it: each goes
+// back to kFar by itself where kNear leads nowhere, and is spared the steps that halve what is
+// left.
 constexpr double kNearForLandmarks = 0.3;
 // Of steps of all variables. As landmarks look after themselves, what is left to damp is the bend
 // of the drive, which takes many steps to come to rest when damping falls slowly.

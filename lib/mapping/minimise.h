@@ -11,8 +11,9 @@ namespace soslam {
 // How a minimisation went.
 struct Minimisation {
   std::vector<double> costs;  // at the start and after each iteration
-  // The last iteration lowered the cost by less than the least gain, or is expected to by less than
-  // a hundredth of it, or no step lowers it.
+  // The last iteration lowered the cost by less than the least gain, or the next is expected to by
+  // less than a hundredth of it, or no step lowers it. Where nothing but landmarks varies, only
+  // what is expected counts, of each landmark its share.
   bool converged = false;
 };
 

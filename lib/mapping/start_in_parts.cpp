@@ -156,17 +156,17 @@ class PartByPart {
     const Rigid3d carried =
         part.begins_segment ? Rigid3d() : Correction(variables_.Pose(part.begin - 1));
     std::vector<Variable> some = AllHeld();
-    const auto release = [&](int index) {
-      some[static_cast<size_t>(index)].is_held = At(index).is_held;
-    };
+    const auto release = [&](int index) { some[static_cast<size_t>(index)].is_held = false; };
     Terms terms = part.without_landmark;
     for (size_t i = part.begin; i < part.end; ++i) {
       const int pose = variables_.Pose(i);
+      if (At(pose).is_held) continue;
       Set(pose, Pack(carried * UnpackPose(StartOf(pose))));
       release(pose);
     }
     for (const auto& [landmark, of_landmark] : part.landmarks) {
       terms.insert(terms.end(), of_landmark.begin(), of_landmark.end());
+      if (At(landmark).is_held) continue;
       Set(landmark, Pack(Transform(carried, UnpackLandmark(StartOf(landmark)))));
       release(landmark);
     }
@@ -189,6 +189,7 @@ class PartByPart {
     Terms terms;
     std::vector<Variable> some = AllHeld();
     for (const auto& [landmark, of_landmark] : landmarks) {
+      if (At(landmark).is_held) continue;
       terms.insert(terms.end(), of_landmark.begin(), of_landmark.end());
       some[static_cast<size_t>(landmark)].is_held = false;
       before[landmark] = {TotalCost(of_landmark), ValuesOf(landmark)};
@@ -199,9 +200,9 @@ class PartByPart {
         terms,
         {.max_iterations = kIterationsPerLandmark, .threads = threads_, .least_gain = kLeastGain},
         &some);
-    for (const auto& [landmark, of_landmark] : landmarks) {
-      const auto& [cost, values] = before.at(landmark);
-      if (!(TotalCost(of_landmark) < cost)) Set(landmark, values);
+    for (const auto& [landmark, cost_and_values] : before) {
+      const auto& [cost, values] = cost_and_values;
+      if (!(TotalCost(landmarks.at(landmark)) < cost)) Set(landmark, values);
     }
   }
 

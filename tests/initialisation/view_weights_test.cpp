@@ -79,6 +79,11 @@ TEST(ViewWeights, AllCountWithoutCorrelation) {
   EXPECT_EQ(circle.Weights(0.0), std::vector<double>(3, 1.0));
 }
 
+TEST(ViewWeights, OnlyTheSameViewsShareWithHardlyAnyCorrelation) {
+  const Circle circle({1, 2, 3}, {0.7, 0.7, 0.8});
+  EXPECT_EQ(circle.Weights(1e-200), (std::vector<double>{0.5, 0.5, 1.0}));
+}
+
 // More frames along the same way do not say more.
 TEST(ViewWeights, TheSumDoesNotGrowWithTheFrameRate) {
   const auto sum = [](int frames) {

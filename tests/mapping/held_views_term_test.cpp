@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "constraints/tangent_space.h"
 #include "mapping/tangency_term.h"

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "constraints/parameters.h"
 #include "mapping/back_end_problem.h"
@@ -85,6 +87,24 @@ TEST_F(StartInPartsTest, LeavesPlanesAndBiasWhereTheyAre) {
   EXPECT_EQ(Variables().PlaneValue(0).normal, floor.plane_in_world.normal);
   EXPECT_EQ(Variables().PlaneValue(0).offset, floor.plane_in_world.offset);
   EXPECT_EQ(Variables().BiasValues(), (std::array<double, 4>{}));
+}
+
+TEST_F(StartInPartsTest, LeavesWhatIsHeldAsItIs) {
+  MakeProblem();
+  // Not the one that is held anyway, and its rotation not quite a unit quaternion, as files have
+  // it.
+  const auto held = static_cast<size_t>(Variables().Pose(kFramesPerPart + 7));
+  const auto held_landmark = static_cast<size_t>(Variables().Landmark(0));
+  Variable& pose = Variables().all()[held];
+  Variable& landmark = Variables().all()[held_landmark];
+  pose.is_held = landmark.is_held = true;
+  pose.values[0] *= 1.0 + 1e-9;
+  const std::vector<double> before(pose.values, pose.values + kPoseSize);
+  const std::vector<double> landmark_before(landmark.values, landmark.values + kLandmarkSize);
+  Start();
+  EXPECT_TRUE(IsMoved(kFramesPerPart + 8));
+  EXPECT_EQ(std::vector<double>(pose.values, pose.values + kPoseSize), before);
+  EXPECT_EQ(std::vector<double>(landmark.values, landmark.values + kLandmarkSize), landmark_before);
 }
 
 TEST_F(StartInPartsTest, StartsEllipsoidsFromTheirQuadricsAsWell) {
