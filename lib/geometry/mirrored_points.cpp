@@ -263,7 +263,7 @@ void MirroredPoints::Find(const Landmark& landmark_in_camera, const PixelRays& r
 
 void MirroredPoints::Pack(size_t num_rays) {
   // Every ray is written where the next one that counts belongs.
-  ray.resize(num_rays + 1);
+  ray.resize(num_rays);
   for (auto& coordinate : in_image) coordinate.resize(num_rays + kBatchSize);
   // Copies, as what is written may be anything to the compiler.
   const auto [x, y, depth] = std::tuple(in_image[0].data(), in_image[1].data(), in_image[2].data());

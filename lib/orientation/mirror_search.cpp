@@ -231,8 +231,8 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
   if (batches == 0) return std::nullopt;
   const auto [least_place, largest_place] = std::ranges::minmax(places);
   Cover(least_place, largest_place);
-  places_.clear();
-  for (const double place : places) places_.push_back({Shift(place)});
+  places_.assign(places.size(), {});
+  for (size_t i = 0; i < places.size(); ++i) places_[i].shift = Shift(places[i]);
   // The place that was the last landmark's goes first: others need not be looked at to the end,
   // which takes turns, as a processor does not wait then for what each comes to.
   Place& likely = places_[last_least_ < places.size() ? last_least_ : 0];
