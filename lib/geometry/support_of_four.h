@@ -52,11 +52,11 @@ SOSLAM_IN_WIDE_LOOPS void FindRounded(double shape_exponent, const ThreeFours& m
 
 // SupportFunction of a body towards four directions m, not zero, at once.
 struct SupportOfFour {
-  ThreeFours squares;  // of the rounded |m_i|
-  Four extent;         // h
-  Four inverse;        // 1 / h; 0 of a flat body from its side
+  ThreeFours inverse_squares;  // 1 / |m_i|^2, rounded; of an ellipsoid not there
+  Four extent;                 // h
+  Four inverse;                // 1 / h; 0 of a flat body from its side
   ThreeFours by_log_half_axes;
-  ThreeFours shares;  // those over the squares
+  ThreeFours shares;  // those over |m_i|^2
 
   // dh / dm.
   SOSLAM_IN_WIDE_LOOPS ThreeFours Contact(double shape_exponent, const ThreeFours& m) const {
@@ -71,19 +71,23 @@ SOSLAM_IN_WIDE_LOOPS void FindSupport(const Eigen::Vector3d& half_axes, double s
                                       const ThreeFours& m, SupportOfFour* support) {
   const double p = shape_exponent;
   const bool is_ellipsoid = p == kEllipsoidExponent;
-  SquaresOfRounded(p, m, &support->squares);
-  ThreeFours u;
+  ThreeFours squares, u;
+  SquaresOfRounded(p, m, &squares);
   for (size_t i = 0; i < 3; ++i) {
     Four rounded = m[i];
-    if (!is_ellipsoid) SquareRoot(support->squares[i], &rounded);
+    if (!is_ellipsoid) SquareRoot(squares[i], &rounded);
     u[i] = half_axes[static_cast<int>(i)] * rounded;
   }
   NormByLogarithms(p, u, &support->extent, &support->by_log_half_axes);
   support->inverse = support->extent > 0.0 ? 1.0 / support->extent : Four{};
   for (size_t i = 0; i < 3; ++i) {
     const double half_axis = half_axes[static_cast<int>(i)];
-    support->shares[i] = is_ellipsoid ? half_axis * half_axis * support->inverse
-                                      : support->by_log_half_axes[i] / support->squares[i];
+    if (is_ellipsoid) {
+      support->shares[i] = half_axis * half_axis * support->inverse;
+    } else {
+      support->inverse_squares[i] = 1.0 / squares[i];
+      support->shares[i] = support->by_log_half_axes[i] * support->inverse_squares[i];
+    }
   }
 }
 

@@ -18,20 +18,23 @@ struct alignas(kFourAlignment) FourViews {
 // Of four views with four others, row by row.
 using Pairs = std::array<Four, 4>;
 
-// Of directions, by the squares of the chords between them, s = (2 sin(angle / 2))^2. Halving the
-// angle turns s into (s / 2) / (1 + sqrt(1 - s / 4)); of what is left, 45 degrees at most,
+// Of directions, by the squares of the chords between them, s = (2 sin(angle / 2))^2. Of a quarter
+// of the angle that is
+//   (s / 4) / ((1 + c) (1 + sqrt((1 + c) / 2))) with c = cos(angle / 2) = sqrt(1 - s / 4),
+// and of what is left, 45 degrees at most,
 //   angle^2 = sum over n of 2 s^n / (n^2 (2n over n)).
 SOSLAM_IN_WIDE_LOOPS void SquaredAngles(Pairs chords, Pairs* angles) {
-  constexpr int kHalvings = 2;
+  constexpr double kSquaredQuarter = 16.0;  // back to the whole angle
   constexpr auto kFactors = SeriesByRatios<12>(
-      1 << (2 * kHalvings), [](double n) { return n * n / (2.0 * (n + 1.0) * (2.0 * n + 1.0)); });
-  for (int i = 0; i < kHalvings; ++i) {
-    for (Four& chord : chords) {
-      Four cosine = 1.0 - 0.25 * chord;
-      cosine = cosine > 0.0 ? cosine : Four{};
-      SquareRoot(cosine, &cosine);
-      chord = 0.5 * chord / (1.0 + cosine);
-    }
+      kSquaredQuarter, [](double n) { return n * n / (2.0 * (n + 1.0) * (2.0 * n + 1.0)); });
+  for (Four& chord : chords) {
+    const Four quarter = 0.25 * chord;
+    Four cosine = 1.0 - quarter;
+    cosine = cosine > 0.0 ? cosine : Four{};
+    SquareRoot(cosine, &cosine);
+    Four cosine_of_half;
+    SquareRoot(0.5 + 0.5 * cosine, &cosine_of_half);
+    chord = quarter / ((1.0 + cosine) * (1.0 + cosine_of_half));
   }
   SumSeries(kFactors, chords, angles);
   for (size_t i = 0; i < 4; ++i) (*angles)[i] *= chords[i];

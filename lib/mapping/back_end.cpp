@@ -133,6 +133,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   map.solver = problem.summary();
   map.solver.converged = map.solver.converged && settled;
   const BackEndVariables& variables = problem.variables();
+  map.world_from_camera.reserve(input.sequence.frames.size());
   for (size_t i = 0; i < input.sequence.frames.size(); ++i) {
     map.world_from_camera.push_back(variables.PoseValue(i));
   }

@@ -19,18 +19,20 @@ SOSLAM_WIDE_LOOPS void AddUpViews(const std::vector<FourViews>& all, const BodyI
   for (const FourViews& views : all) {
     DepthsOfFour depths;
     FindDepths(views.camera, views.optical_axis, views.least_depth_m, body, &depths);
-    std::array<ExcessOfFour, 4> excesses;
+    std::array<GradientOfFour, 4> gradients;
     std::array<WeightsOfFour, 4> weights;
     for (size_t side = 0; side < 4; ++side) {
-      ExcessOfFour& excess = excesses[side];
-      FindExcess(views.planes[side], body, depths, &excess);
+      ExcessOfFour excess;
+      FindExcess(views.sides[side].planes, body, depths, &excess, &gradients[side]);
       LossesOfFour losses;
-      FindLosses(views.weights[side], views.is_bound[side], excess.value, loss, hessian, &losses);
+      FindLosses(views.sides[side], excess.value, loss, hessian, &losses);
+      sums.numbers[sums.kCost] += losses.cost;
       FindWeights(body, depths, excess, losses, hessian, &weights[side]);
-      AddAllButProducts(body, depths, excess, losses, hessian, &sums);
+      AddCurvature(body, depths, excess, losses, hessian, &sums);
     }
-    AddProducts(excesses, weights, depths.by_centre, &sums);
+    AddGradients(gradients, weights, depths.by_centre, &sums);
   }
+  AddCurvatureByAxes(body, hessian, &sums);
   AddUp(sums, totals);
 }
 
@@ -54,16 +56,11 @@ HeldViewsTerm::HeldViewsTerm(int variable, const double* landmark_in_world,
     set(view.world_from_camera.translation, &four.camera);
     set(world_from_camera.col(2), &four.optical_axis);
     four.least_depth_m[place] = view.box.least_depth_m;
-    for (size_t side = 0; side < 4; ++side) {
-      set(world_from_camera.col(2), &four.planes[side]);  // any but zero
-      four.weights[side][place] = four.is_bound[side][place] = 0.0;
-    }
+    if (i >= views.size()) continue;
     for (int k = 0; k < view.box.num_edges; ++k) {
       const TangentBox::Edge& edge = view.box.edges[static_cast<size_t>(k)];
-      const auto side = static_cast<size_t>(edge.side);
-      set(world_from_camera * edge.plane, &four.planes[side]);
-      four.weights[side][place] = i < views.size() ? view.weight : 0.0;
-      four.is_bound[side][place] = edge.is_bound ? 1.0 : 0.0;
+      four.sides[static_cast<size_t>(edge.side)].Set(place, world_from_camera * edge.plane, edge,
+                                                     view.weight);
     }
   }
 }

@@ -30,14 +30,12 @@ class HeldViewsTerm final : public Term {
   double Cost() const override { return Linearise(Hessian::kInformation, {}); }
   double Linearise(Hessian hessian, const TermPlaces& places) const override;
 
-  // In the world. Edges that are left out, and views that there are not, have no weight.
+  // In the world. Views that there are not look from where the last one does.
   struct alignas(kFourAlignment) FourViews {
     ThreeFours camera;
     ThreeFours optical_axis;
     Four least_depth_m;
-    std::array<ThreeFours, 4> planes;  // TangentBox::Edge, by side
-    std::array<Four, 4> weights;
-    std::array<Four, 4> is_bound;  // 1 or 0
+    std::array<FourEdges, 4> sides;
   };
 
  private:

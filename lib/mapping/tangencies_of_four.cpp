@@ -26,8 +26,8 @@ BodyInWorld::BodyInWorld(const double* landmark_in_world, double p)
 
 LandmarkDerivatives::LandmarkDerivatives(const LandmarkSums<double>& sums,
                                          const Eigen::Matrix3d& world_from_object)
-    : cost(std::isfinite(sums.numbers[0]) ? sums.numbers[0]
-                                          : std::numeric_limits<double>::infinity()),
+    : cost(std::isfinite(sums.numbers[sums.kCost]) ? sums.numbers[sums.kCost]
+                                                   : std::numeric_limits<double>::infinity()),
       gradient(&sums.numbers[sums.kGradient]) {
   const Eigen::Map<const Eigen::Matrix<double, 9, 3>> by_turn(&sums.numbers[sums.kHessianByTurn]);
   const Eigen::Map<const Eigen::Matrix<double, 6, 3>> by_centre(

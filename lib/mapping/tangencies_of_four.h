@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -9,6 +10,7 @@
 #include "geometry/mirror_mapping.h"
 #include "geometry/support_of_four.h"
 #include "mapping/huber.h"
+#include "mapping/tangent_box.h"
 #include "mapping/term.h"
 
 namespace soslam {
@@ -31,11 +33,11 @@ struct BodyInWorld {
 // of its half axes begin there.
 enum { kByTurn = 0, kByCentre = 3, kByAxes = 6 };
 
-// A cost, its gradient and its Hessian: the block rows from the diagonal on of each of its three
-// block columns, one after the other, column by column. Of blocks on the diagonal, the lower
-// triangle counts.
+// A cost, its gradient and, column by column, the Hessian's three block columns from the diagonal
+// on. Of blocks on the diagonal, the lower triangle counts.
 template <typename Number>
 struct LandmarkSums {
+  static constexpr size_t kCost = 0;
   static constexpr size_t kGradient = 1;
   static constexpr size_t kHessianByTurn = kGradient + kLandmarkDof;
   static constexpr size_t kHessianByCentre = kHessianByTurn + 9 * 3;
@@ -50,7 +52,7 @@ struct LandmarkSums {
     return numbers[kHessianByAxes + 3 * (j - kByAxes) + i - kByAxes];
   }
 
-  alignas(kFourAlignment) std::array<Number, kCount> numbers;  // the cost first
+  alignas(kFourAlignment) std::array<Number, kCount> numbers;
 };
 using SumsOfFour = LandmarkSums<Four>;
 
@@ -104,33 +106,36 @@ SOSLAM_IN_WIDE_LOOPS void FindDepths(const ThreeFours& camera, const ThreeFours&
 
 // What lies outside the planes behind edges, over the centre's depth.
 struct ExcessOfFour {
-  ThreeFours normal;  // m, of the plane in the object frame
+  // Of the plane's normal m in the object frame: m_i^2, and m_j m_k of the two others.
+  ThreeFours squares, products;
   SupportOfFour support;
   Four value;
-  std::array<Four, kLandmarkDof> gradient;
 };
+using GradientOfFour = std::array<Four, kLandmarkDof>;
 
 // `plane` is in the world (TangentBox::Edge).
 SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const BodyInWorld& body,
-                                     const DepthsOfFour& depths, ExcessOfFour* excess) {
+                                     const DepthsOfFour& depths, ExcessOfFour* excess,
+                                     GradientOfFour* gradient) {
   Four outside{};
+  ThreeFours m;
   for (int i = 0; i < 3; ++i) {
     outside += plane[i] * depths.offset[i];
-    excess->normal[i] = body.world_from_object(0, i) * plane[0] +
-                        body.world_from_object(1, i) * plane[1] +
-                        body.world_from_object(2, i) * plane[2];
+    m[i] = body.world_from_object(0, i) * plane[0] + body.world_from_object(1, i) * plane[1] +
+           body.world_from_object(2, i) * plane[2];
   }
-  const ThreeFours& m = excess->normal;
   SupportOfFour& support = excess->support;
   FindSupport(body.half_axes, body.shape_exponent, m, &support);
   excess->value = (outside + support.extent) * depths.inverse;
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const Four by_turn = m[j] * m[k] * (support.shares[j] - support.shares[k]);  // dh / dm x m
-    excess->gradient[kByTurn + i] = depths.inverse * by_turn;
-    excess->gradient[kByCentre + i] =
-        depths.inverse * plane[i] - excess->value * depths.by_centre[i];
-    excess->gradient[kByAxes + i] = depths.inverse * support.by_log_half_axes[i];
+    excess->squares[i] = m[i] * m[i];
+    excess->products[i] = m[j] * m[k];
+    const Four by_turn =  // dh / dm x m
+        excess->products[i] * (support.shares[j] - support.shares[k]);
+    (*gradient)[kByTurn + i] = depths.inverse * by_turn;
+    (*gradient)[kByCentre + i] = depths.inverse * plane[i] - excess->value * depths.by_centre[i];
+    (*gradient)[kByAxes + i] = depths.inverse * support.by_log_half_axes[i];
   }
 }
 
@@ -143,10 +148,10 @@ struct LossesOfFour {
 
 // Of a bound that is not reached, nothing. Excesses that are not finite make the cost so, even
 // those without weight: nothing that is made of them is to be added.
-SOSLAM_IN_WIDE_LOOPS void FindLosses(const Four& weights, const Four& is_bound, const Four& excess,
+SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourEdges& edges, const Four& excess,
                                      const HuberLoss& loss, Hessian hessian, LossesOfFour* losses) {
-  const FourMask is_idle = (is_bound > 0.0) & (excess > 0.0);
-  const Four weight = is_idle ? Four{} : weights;
+  const FourMask is_idle = (edges.is_bound > 0.0) & (excess > 0.0);
+  const Four weight = is_idle ? Four{} : edges.weights;
   const HuberLoss::FourValues values = loss(excess < 0.0 ? -excess : excess);
   losses->cost = weight * values.cost;
   losses->slope = weight * values.weight * excess;
@@ -159,9 +164,11 @@ SOSLAM_IN_WIDE_LOOPS bool HasKinks(const BodyInWorld& body, Hessian hessian) {
   return hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
 }
 
-// What multiplies products of the gradient of an excess in the Hessian: d^2 cost / d excess^2, and
-// where h bends, less what it bends by along its own gradient, by turns and half axes.
+// What multiplies the gradient of an excess, and products of it in the Hessian: d^2 cost / d
+// excess^2, and where h bends, less what it bends by along its own gradient, by turns and half
+// axes.
 struct WeightsOfFour {
+  Four slope;
   Four turn_turn;
   Four centre;  // by all
   Four axes;    // by turns and axes
@@ -175,7 +182,7 @@ SOSLAM_IN_WIDE_LOOPS void FindWeights(const BodyInWorld& body, const DepthsOfFou
                                       Hessian hessian, WeightsOfFour* weights) {
   const Four less =
       losses.slope * depths.depth_m * (body.shape_exponent - 1.0) * excess.support.inverse;
-  *weights = {losses.curvature, losses.curvature, losses.curvature, Four{}};
+  *weights = {losses.slope, losses.curvature, losses.curvature, losses.curvature, Four{}};
   if (hessian == Hessian::kNear) {
     weights->turn_turn -= less;
     weights->axes -= less;
@@ -185,32 +192,36 @@ SOSLAM_IN_WIDE_LOOPS void FindWeights(const BodyInWorld& body, const DepthsOfFou
   }
 }
 
-// The products of gradients, of `kSets` times four edges at the same depths.
+// The sum of the gradients of `kSets` times four edges at the same depths, and their products.
 template <size_t kSets>
-SOSLAM_IN_WIDE_LOOPS void AddProducts(const std::array<ExcessOfFour, kSets>& excesses,
-                                      const std::array<WeightsOfFour, kSets>& weights,
-                                      const ThreeFours& depth_by_centre, SumsOfFour* sums) {
+SOSLAM_IN_WIDE_LOOPS void AddGradients(const std::array<GradientOfFour, kSets>& gradients,
+                                       const std::array<WeightsOfFour, kSets>& weights,
+                                       const ThreeFours& depth_by_centre, SumsOfFour* sums) {
+  for (size_t i = 0; i < kLandmarkDof; ++i) {
+    Four& sum = sums->Gradient()[i];
+    for (size_t set = 0; set < kSets; ++set) sum += weights[set].slope * gradients[set][i];
+  }
   const auto add = [&](size_t i, size_t begin, size_t end,
                        const std::array<Four, kSets>& weighted) {
     for (size_t j = begin; j < end; ++j) {
       Four& sum = sums->Hessian(i, j);
-      for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * excesses[set].gradient[j];
+      for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * gradients[set][j];
     }
   };
   std::array<Four, kSets> weighted;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t set = 0; set < kSets; ++set) {
-      weighted[set] = weights[set].turn_turn * excesses[set].gradient[kByTurn + i];
+      weighted[set] = weights[set].turn_turn * gradients[set][kByTurn + i];
     }
     add(kByTurn + i, kByTurn, kByTurn + i + 1, weighted);
     for (size_t set = 0; set < kSets; ++set) {
-      weighted[set] = weights[set].axes * excesses[set].gradient[kByAxes + i];
+      weighted[set] = weights[set].axes * gradients[set][kByAxes + i];
     }
     add(kByAxes + i, kByTurn, kByTurn + 3, weighted);
     add(kByAxes + i, kByAxes, kByAxes + i + 1, weighted);
     Four slope{};
     for (size_t set = 0; set < kSets; ++set) {
-      const Four& by_centre = excesses[set].gradient[kByCentre + i];
+      const Four& by_centre = gradients[set][kByCentre + i];
       slope += weights[set].depth * by_centre;
       weighted[set] = weights[set].centre * by_centre - weights[set].depth * depth_by_centre[i];
     }
@@ -222,73 +233,71 @@ SOSLAM_IN_WIDE_LOOPS void AddProducts(const std::array<ExcessOfFour, kSets>& exc
     for (size_t j = 0; j < 3; ++j) {
       Four& sum = sums->Hessian(kByAxes + j, kByCentre + i);
       for (size_t set = 0; set < kSets; ++set) {
-        sum += weighted[set] * excesses[set].gradient[kByAxes + j];
+        sum += weighted[set] * gradients[set][kByAxes + j];
       }
     }
   }
 }
 
-// By turns, what h grows by as the contact moves along the body: its second derivatives by m
-// (CurvatureOfSupport). What those have along m itself is not seen by a turn. Less what
-// FindWeights has of it.
-SOSLAM_IN_WIDE_LOOPS void AddMoveOfContact(const BodyInWorld& body, const ExcessOfFour& excess,
-                                           const Four& factor, SumsOfFour* sums) {
-  const ThreeFours& m = excess.normal;
+// By turns: what h grows by as the contact moves along the body, its second derivatives by m
+// (CurvatureOfSupport) less what FindWeights has of them; what those have along m itself is not
+// seen by a turn. And where `contact_turns`, what it has of a contact q that stays on the body.
+SOSLAM_IN_WIDE_LOOPS void AddCurvatureByTurns(const BodyInWorld& body, const ExcessOfFour& excess,
+                                              const Four& factor, bool contact_turns,
+                                              SumsOfFour* sums) {
   const SupportOfFour& support = excess.support;
   const ThreeFours& shares = support.shares;
   const double p = body.shape_exponent;
   const Four rounding = SquaredRounding(p) * (shares[0] + shares[1] + shares[2]);
-  ThreeFours diagonal;
+  ThreeFours moving, staying{};  // q_i = staying_i m_i
   for (size_t i = 0; i < 3; ++i) {
-    diagonal[i] = factor * (shares[i] + rounding);
+    moving[i] = factor * (shares[i] + rounding);
+    if (contact_turns) staying[i] = moving[i];
     if (p == kEllipsoidExponent) continue;
-    diagonal[i] -= factor * (2.0 - p) * shares[i] * m[i] * m[i] / support.squares[i];
+    moving[i] -= (2.0 - p) * factor * shares[i] * excess.squares[i] * support.inverse_squares[i];
   }
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
     sums->Hessian(kByTurn + i, kByTurn + i) +=
-        diagonal[j] * m[k] * m[k] + diagonal[k] * m[j] * m[j];
-    for (size_t l = 0; l < i; ++l)
-      sums->Hessian(kByTurn + i, kByTurn + l) -= diagonal[3 - i - l] * m[i] * m[l];
+        (moving[j] - staying[k]) * excess.squares[k] + (moving[k] - staying[j]) * excess.squares[j];
+    sums->Hessian(kByTurn + std::max(j, k), kByTurn + std::min(j, k)) +=
+        (0.5 * (staying[j] + staying[k]) - moving[i]) * excess.products[i];
   }
 }
 
-// All others of h: by turns of a contact q that stays, and by the half axes.
-SOSLAM_IN_WIDE_LOOPS void AddOtherCurvature(const BodyInWorld& body, const ExcessOfFour& excess,
+// By turns and half axes.
+SOSLAM_IN_WIDE_LOOPS void AddMixedCurvature(const BodyInWorld& body, const ExcessOfFour& excess,
                                             const Four& factor, SumsOfFour* sums) {
-  const ThreeFours& m = excess.normal;
   const SupportOfFour& support = excess.support;
-  const double p = body.shape_exponent;
-  const Four factor_of_axes = factor * p;
-  ThreeFours q = support.Contact(p, m);
-  for (size_t i = 0; i < 3; ++i) q[i] *= factor;
+  const Four factor_of_axes = factor * body.shape_exponent;
   for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    sums->Hessian(kByTurn + i, kByTurn + i) -= m[j] * q[j] + m[k] * q[k];
-    for (size_t l = 0; l < i; ++l)
-      sums->Hessian(kByTurn + i, kByTurn + l) += 0.5 * (m[i] * q[l] + m[l] * q[i]);
-
-    const Four edge = factor_of_axes * support.shares[i] * m[i];
-    sums->Hessian(kByAxes + i, kByTurn + j) -= edge * m[k];
-    sums->Hessian(kByAxes + i, kByTurn + k) += edge * m[j];
-    sums->Hessian(kByAxes + i, kByAxes + i) += factor_of_axes * support.by_log_half_axes[i];
+    const Four edge = factor_of_axes * support.shares[i];
+    sums->Hessian(kByAxes + i, kByTurn + j) -= edge * excess.products[j];
+    sums->Hessian(kByAxes + i, kByTurn + k) += edge * excess.products[k];
   }
 }
 
-// The cost and its gradient, and of the Hessian what is not a product of gradients.
-SOSLAM_IN_WIDE_LOOPS void AddAllButProducts(const BodyInWorld& body, const DepthsOfFour& depths,
-                                            const ExcessOfFour& excess, const LossesOfFour& losses,
-                                            Hessian hessian, SumsOfFour* sums) {
-  sums->numbers[0] += losses.cost;
-  for (size_t i = 0; i < kLandmarkDof; ++i) {
-    sums->Gradient()[i] += losses.slope * excess.gradient[i];
-  }
+// Of the Hessian, what is not a product of gradients but that by the half axes.
+SOSLAM_IN_WIDE_LOOPS void AddCurvature(const BodyInWorld& body, const DepthsOfFour& depths,
+                                       const ExcessOfFour& excess, const LossesOfFour& losses,
+                                       Hessian hessian, SumsOfFour* sums) {
   const Four factor = losses.slope * depths.inverse;
   if (hessian == Hessian::kNear) {
-    AddMoveOfContact(body, excess, factor, sums);
-    AddOtherCurvature(body, excess, factor, sums);
+    AddCurvatureByTurns(body, excess, factor, /*contact_turns=*/true, sums);
+    AddMixedCurvature(body, excess, factor, sums);
   } else if (HasKinks(body, hessian)) {
-    AddMoveOfContact(body, excess, factor > 0.0 ? factor : Four{}, sums);
+    const Four held = factor > 0.0 ? factor : Four{};
+    AddCurvatureByTurns(body, excess, held, /*contact_turns=*/false, sums);
+  }
+}
+
+// By the half axes, h has p times its gradient on the diagonal: the sums of all, at the end.
+SOSLAM_IN_WIDE_LOOPS void AddCurvatureByAxes(const BodyInWorld& body, Hessian hessian,
+                                             SumsOfFour* sums) {
+  if (hessian != Hessian::kNear) return;
+  for (size_t i = kByAxes; i < kLandmarkDof; ++i) {
+    sums->Hessian(i, i) += body.shape_exponent * sums->Gradient()[i];
   }
 }
 

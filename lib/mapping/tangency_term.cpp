@@ -10,7 +10,6 @@
 namespace soslam {
 namespace {
 
-using FourEdges = TangencyTerm::FourEdges;
 using PoseGradient = Eigen::Matrix<double, kPoseDof, 1>;
 using PosePose = Eigen::Matrix<double, kPoseDof, kPoseDof>;
 template <int kRows>
@@ -34,9 +33,20 @@ struct alignas(kFourAlignment) BiasRows {
   ByLandmark<kBiasSize> by_landmark;  // second ones; of these, turns are in the object frame
 };
 
-SOSLAM_WIDE_LOOPS void AddUpEdges(const FourEdges& edges, const CameraInWorld& camera,
-                                  double least_depth_m, const double* bias_px,
-                                  const BodyInWorld& body, const HuberLoss& loss, Hessian hessian,
+SOSLAM_IN_WIDE_LOOPS void FindBiasRows(const Four& per_px, const LossesOfFour& losses,
+                                       const GradientOfFour& gradient, BiasRows* rows) {
+  const Four by_excess = -per_px * losses.curvature;
+  Store(-per_px * losses.slope, rows->gradient.data());
+  Store(-per_px * by_excess, rows->curvatures.data());
+  for (int i = 0; i < kLandmarkDof; ++i) {
+    Store(by_excess * gradient[static_cast<size_t>(i)], rows->by_landmark.col(i).data());
+  }
+}
+
+SOSLAM_WIDE_LOOPS void AddUpEdges(const FourEdges& edges, const Four& per_px,
+                                  const CameraInWorld& camera, double least_depth_m,
+                                  const double* bias_px, const BodyInWorld& body,
+                                  const HuberLoss& loss, Hessian hessian,
                                   LandmarkSums<double>* totals, BiasRows* of_bias) {
   ThreeFours centre, optical_axis, planes;
   for (int i = 0; i < 3; ++i) {
@@ -49,27 +59,22 @@ SOSLAM_WIDE_LOOPS void AddUpEdges(const FourEdges& edges, const CameraInWorld& c
   }
   DepthsOfFour depths;
   FindDepths(centre, optical_axis, Four{} + least_depth_m, body, &depths);
-  std::array<ExcessOfFour, 1> excess;
-  FindExcess(planes, body, depths, excess.data());
+  ExcessOfFour excess;
+  std::array<GradientOfFour, 1> gradient;
+  FindExcess(planes, body, depths, &excess, gradient.data());
   Four bias;
   Load(bias_px, &bias);
   LossesOfFour losses;
-  FindLosses(edges.weights, edges.is_bound, excess[0].value - edges.per_px * bias, loss, hessian,
-             &losses);
+  FindLosses(edges, excess.value - per_px * bias, loss, hessian, &losses);
   std::array<WeightsOfFour, 1> weights;
-  FindWeights(body, depths, excess[0], losses, hessian, weights.data());
+  FindWeights(body, depths, excess, losses, hessian, weights.data());
   SumsOfFour sums{};
-  AddAllButProducts(body, depths, excess[0], losses, hessian, &sums);
-  AddProducts(excess, weights, depths.by_centre, &sums);
+  sums.numbers[sums.kCost] = losses.cost;
+  AddCurvature(body, depths, excess, losses, hessian, &sums);
+  AddGradients(gradient, weights, depths.by_centre, &sums);
+  AddCurvatureByAxes(body, hessian, &sums);
   AddUp(sums, totals);
-  if (of_bias == nullptr) return;
-  const Four by_excess = -edges.per_px * losses.curvature;
-  Store(-edges.per_px * losses.slope, of_bias->gradient.data());
-  Store(-edges.per_px * by_excess, of_bias->curvatures.data());
-  for (size_t i = 0; i < kLandmarkDof; ++i) {
-    Store(by_excess * excess[0].gradient[i],
-          of_bias->by_landmark.col(static_cast<Eigen::Index>(i)).data());
-  }
+  if (of_bias != nullptr) FindBiasRows(per_px, losses, gradient[0], of_bias);
 }
 
 // Of derivatives by a landmark, in rows, those by turns v of the camera that sees it: the landmark
@@ -134,14 +139,12 @@ TangencyTerm::TangencyTerm(const std::array<int, 3>& variables, const Blocks& bl
       blocks_(blocks),
       shape_exponent_(box.shape_exponent),
       least_depth_m_(box.least_depth_m),
-      loss_{huber_delta},
-      edges_{{Four{}, Four{}, Four{} + 1.0}, {}, {}, {}} {  // any planes but zero
+      loss_{huber_delta} {
   for (int k = 0; k < box.num_edges; ++k) {
     const TangentBox::Edge& edge = box.edges[static_cast<size_t>(k)];
-    for (size_t i = 0; i < 3; ++i) edges_.planes[i][edge.side] = edge.plane[static_cast<int>(i)];
-    edges_.per_px[edge.side] = edge.per_px;
-    edges_.weights[edge.side] = weight;
-    edges_.is_bound[edge.side] = edge.is_bound ? 1.0 : 0.0;
+    const auto side = static_cast<size_t>(edge.side);
+    edges_.Set(side, edge.plane, edge, weight);
+    per_px_[side] = edge.per_px;
   }
 }
 
@@ -151,7 +154,7 @@ double TangencyTerm::Linearise(Hessian hessian, const TermPlaces& places) const 
   const BodyInWorld body(blocks_.landmark_in_world, shape_exponent_);
   LandmarkSums<double> sums;
   BiasRows bias;
-  AddUpEdges(edges_, camera, least_depth_m_, blocks_.bias_px, body, loss_, hessian, &sums,
+  AddUpEdges(edges_, per_px_, camera, least_depth_m_, blocks_.bias_px, body, loss_, hessian, &sums,
              of_bias != nullptr ? &bias : nullptr);
   const LandmarkDerivatives found(sums, body.world_from_object);
   if (!std::isfinite(found.cost)) return found.cost;

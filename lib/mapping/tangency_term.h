@@ -28,20 +28,13 @@ class TangencyTerm final : public Term {
   double Cost() const override { return Linearise(Hessian::kInformation, {}); }
   double Linearise(Hessian hessian, const TermPlaces& places) const override;
 
-  // By side. Those that are left out have no weight.
-  struct alignas(kFourAlignment) FourEdges {
-    ThreeFours planes;  // TangentBox::Edge
-    Four per_px;
-    Four weights;
-    Four is_bound;  // 1 or 0
-  };
-
  private:
   Blocks blocks_;
   double shape_exponent_;
   double least_depth_m_;
   HuberLoss loss_;
-  FourEdges edges_;
+  FourEdges edges_;  // by side, in the camera frame
+  Four per_px_{};    // 1 / sigma
 };
 
 }  // namespace soslam

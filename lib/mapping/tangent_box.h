@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "base/wide_loops.h"
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 
@@ -30,6 +31,21 @@ struct TangentBox {
   double least_depth_m;  // of the centre
   int num_edges = 0;
   std::array<Edge, 4> edges{};
+};
+
+// Edges side by side. Where there is none, there is no weight.
+struct alignas(kFourAlignment) FourEdges {
+  ThreeFours planes{Four{}, Four{}, Four{} + 1.0};  // any but zero
+  Four weights{};
+  Four is_bound{};  // 1 or 0
+
+  // `plane` may be that of the edge in another frame.
+  void Set(size_t place, const Eigen::Vector3d& plane, const TangentBox::Edge& edge,
+           double weight) {
+    for (size_t i = 0; i < 3; ++i) planes[i][place] = plane[static_cast<int>(i)];
+    weights[place] = weight;
+    is_bound[place] = edge.is_bound ? 1.0 : 0.0;
+  }
 };
 
 }  // namespace soslam
