@@ -117,17 +117,20 @@ SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& map, const Points& poin
   }
 }
 
-// d^2 / (d^2 + squared_scale) of the i-th eight points of the batch; NaN where there is no pair, as
-// d is NaN or infinite.
-SOSLAM_IN_WIDE_LOOPS void FindShares(const Comparison& comparison, const Points& points,
-                                     size_t batch, const CellsOfEight& cells, size_t i,
-                                     Eight* shares) {
+// d^2 of the i-th eight points of the batch; NaN or infinite where there is no pair.
+SOSLAM_IN_WIDE_LOOPS void FindSquares(const Comparison& comparison, const Points& points,
+                                      size_t batch, const CellsOfEight& cells, size_t i,
+                                      Eight* squares) {
   Eight values, mirrored;
   Load(points.values + batch * kBatchSize + 8 * i, &values);
   Interpolate(comparison.map, cells, i, &mirrored);
   const Eight differences = values - mirrored;
-  const Eight squared = differences * differences;
-  *shares = squared / (squared + comparison.squared_scale);
+  *squares = differences * differences;
+}
+
+// d^2 / (d^2 + squared_scale); NaN where there is no pair.
+SOSLAM_IN_WIDE_LOOPS void ToShare(const Comparison& comparison, Eight* square) {
+  *square = *square / (*square + comparison.squared_scale);
 }
 
 // Adds batches to what each place comes to.
@@ -144,12 +147,16 @@ SOSLAM_IN_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points
       CellsOfEight cells;
       Locate<may_be_outside>(copy.map, points, batch, shift, &cells);
       ReadFromMemory(cells);
+      // Divided after all of them are found: none waits then for another's division.
+      std::array<Eight, CellsOfEight::kCount> shares;
+      for (size_t i = 0; i < shares.size(); ++i) {
+        FindSquares(copy, points, batch, cells, i, &shares[i]);
+      }
       Eight sum{};
-      for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
-        Eight shares;
-        FindShares(copy, points, batch, cells, i, &shares);
-        const EightMask known = shares >= 0.0F;
-        sum += known ? shares : Eight{};
+      for (Eight& share : shares) {
+        ToShare(copy, &share);
+        const EightMask known = share >= 0.0F;
+        sum += known ? share : Eight{};
         pairs -= known;
       }
       differences += Sum(sum);
@@ -177,7 +184,8 @@ SOSLAM_WIDE_LOOPS void FindPairs(const Comparison& comparison, const Points& poi
   Locate<true>(comparison.map, points, batch, shift, &cells);
   for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
     Eight shares;
-    FindShares(comparison, points, batch, cells, i, &shares);
+    FindSquares(comparison, points, batch, cells, i, &shares);
+    ToShare(comparison, &shares);
     for (size_t k = 0; k < 8; ++k) (*is_pair)[8 * i + k] = shares[k] >= 0.0F;
   }
 }
