@@ -82,7 +82,7 @@ SOSLAM_IN_WIDE_LOOPS double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
-// Of each of `fours`, which are four.
+// Of four fours: the i-th sum is that of fours[i], added in the order of Sum.
 SOSLAM_IN_WIDE_LOOPS void SumEach(const Four* fours, Four* sums) {
   std::array<Four, 2> pairs;
   for (size_t i = 0; i < 2; ++i) {

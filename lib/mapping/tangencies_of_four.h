@@ -24,8 +24,8 @@ struct BodyInWorld {
   BodyInWorld(const double* landmark_in_world, double shape_exponent);
 
   Eigen::Matrix3d world_from_object;
-  Eigen::Vector3d centre;
-  Eigen::Vector3d half_axes;
+  Eigen::Vector3d centre;     // m
+  Eigen::Vector3d half_axes;  // m
   double shape_exponent;
 };
 
@@ -82,9 +82,9 @@ struct LandmarkDerivatives {
 
 // The body's centre as cameras see it.
 struct DepthsOfFour {
-  ThreeFours offset;  // from the camera
+  ThreeFours offset;  // m in the world, from the camera
   Four depth_m;
-  Four inverse;
+  Four inverse;          // 1 / depth
   ThreeFours by_centre;  // relative change; 0 where the depth is held
 };
 
@@ -109,8 +109,9 @@ struct ExcessOfFour {
   // Of the plane's normal m in the object frame: m_i^2, and m_j m_k of the two others.
   ThreeFours squares, products;
   SupportOfFour support;
-  Four value;
+  Four value;  // in standard deviations of the edge, before a bias of the detector
 };
+// Of an excess, in the order of kByTurn, kByCentre and kByAxes.
 using GradientOfFour = std::array<Four, kLandmarkDof>;
 
 // `plane` is in the world (TangentBox::Edge).
