@@ -45,7 +45,7 @@ std::string Deflate(std::span<std::uint8_t> bytes) {
   }
   const auto deflated = std::make_unique_for_overwrite<std::uint8_t[]>(bound);
   const auto work_space = std::make_unique_for_overwrite<std::uint8_t[]>(ISAL_DEF_LVL1_DEFAULT);
-  isal_zstream stream;
+  isal_zstream stream{};  // the next call leaves hist_bits, how far back a repeat may be
   isal_deflate_stateless_init(&stream);
   stream.level = 1;  // up to 2, all x86-64 processors with SSE 4.2 give the same bytes
   stream.level_buf = work_space.get();

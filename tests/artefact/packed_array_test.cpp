@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <random>
@@ -44,6 +45,23 @@ TEST(PackedArrayTest, WhatCannotBeMadeSmallerUnpacksToTheSame) {
     const std::string packed = Pack(values).bytes;
     EXPECT_GT(packed.size(), 9 * count * sizeof(float) / 10);
     EXPECT_EQ(Unpacked(packed, count), values);
+  }
+}
+
+// Leaves this number, again and again, where the next function has its variables.
+[[gnu::noinline]] void FillUnusedStack(std::uint16_t number) {
+  std::array<std::uint16_t, 1 << 17> numbers;
+  numbers.fill(number);
+  asm volatile("" : : "r"(numbers.data()) : "memory");  // or the compiler would leave it out
+}
+
+TEST(PackedArrayTest, TheBytesDoNotDependOnWhatMemoryHeldBefore) {
+  std::vector<std::int32_t> values(10'000);  // repeats itself at a distance that matters
+  for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<int>(i % 1000 * (i % 1000));
+  const std::string packed = Pack(values).bytes;
+  for (std::uint16_t number = 0; number < 256; ++number) {
+    FillUnusedStack(number);
+    EXPECT_TRUE(Pack(values).bytes == packed) << "where memory held " << number;
   }
 }
 
