@@ -65,6 +65,36 @@ TEST(PackedArrayTest, TheBytesDoNotDependOnWhatMemoryHeldBefore) {
   }
 }
 
+[[gnu::noinline]] std::string PackedFurtherDownTheStack(int depth, const cv::Mat& values) {
+  if (depth == 0) return Pack(values).bytes;
+  std::array<std::byte, 1 << 17> bytes;
+  asm volatile("" : : "r"(bytes.data()) : "memory");  // or the compiler would leave it out
+  return PackedFurtherDownTheStack(depth - 1, values);
+}
+
+TEST(PackedArrayTest, TheBytesDoNotDependOnWhereMemoryIs) {
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    cv::Mat values(1, 8 + trial % 32, CV_32SC1);
+    for (int& value : cv::Mat_<int>(values)) value = static_cast<int>(random() % 2);
+    EXPECT_TRUE(PackedFurtherDownTheStack(trial % 20, values) == Pack(values).bytes)
+        << "trial " << trial;
+  }
+}
+
+TEST(PackedArrayTest, ArraysOfAllSizesUnpackToTheSame) {
+  std::mt19937 random(1);
+  const auto check = [&](size_t count) {
+    std::vector<float> values(count);
+    for (float& value : values) value = static_cast<float>(random() % 100);
+    EXPECT_TRUE(Unpacked(Pack(values).bytes, count) == values) << count << " numbers";
+  };
+  for (size_t count = 1; count < 100; ++count) check(count);
+  for (size_t count = 1 << 7; count < 1 << 18; count *= 2) {
+    for (const int more : {-1, 0, 1, 5}) check(count + static_cast<size_t>(more));
+  }
+}
+
 TEST(PackedArrayTest, AnotherSizeIsRefused) {
   const std::string packed = Pack(std::vector<float>{1.0F, 2.0F}).bytes;
   EXPECT_TRUE(Unpacked(packed, 1).empty());
