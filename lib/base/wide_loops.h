@@ -105,6 +105,16 @@ SOSLAM_IN_WIDE_LOOPS void Load(const float* from, Eight* eight) {
   *eight = *reinterpret_cast<const EightInMemory*>(from);
 }
 
+using EightIntegersInMemory
+    [[gnu::vector_size(8 * sizeof(int)), gnu::aligned(alignof(int)), gnu::may_alias]] = int;
+SOSLAM_IN_WIDE_LOOPS void Load(const int* from, EightIntegers* eight) {
+  *eight = *reinterpret_cast<const EightIntegersInMemory*>(from);
+}
+
+SOSLAM_IN_WIDE_LOOPS void Store(const EightIntegers& eight, int* to) {
+  *reinterpret_cast<EightIntegersInMemory*>(to) = eight;
+}
+
 SOSLAM_IN_WIDE_LOOPS void Store(const Eight& eight, float* to) {
   *reinterpret_cast<EightInMemory*>(to) = eight;
 }

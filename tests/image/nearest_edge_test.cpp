@@ -61,10 +61,23 @@ TEST(NearestEdgeTest, EqualsBruteForce) {
 }
 
 TEST(NearestEdgeTest, EqualsBruteForceOnThinImages) {
-  for (const auto& [width, height] : {std::pair(1, 1), {1, 40}, {40, 1}, {2, 3}}) {
+  for (const auto& [width, height] : {std::pair(1, 1), {1, 40}, {40, 1}, {2, 3}, {8, 9}, {9, 8}}) {
     cv::Mat edges = RandomEdges(width, height, 0.1);
     edges.at<uchar>(height / 2, width / 2) = 255;
     ExpectExact(edges);
+  }
+}
+
+TEST(NearestEdgeTest, OfTheLargestSides) {
+  constexpr int kSide = 32767;
+  cv::Mat row = cv::Mat::zeros(1, kSide, CV_8UC1);
+  row.at<uchar>(0, 0) = row.at<uchar>(0, kSide - 1) = 255;
+  cv::Mat column = row.t();
+  for (const int i : {0, 1, kSide / 2, kSide / 2 + 1, kSide - 1}) {
+    const int nearest = i <= kSide / 2 ? 0 : kSide - 1;
+    EXPECT_EQ(NearestEdgeMap(row).at<cv::Vec2s>(0, i), cv::Vec2s(static_cast<short>(nearest), 0));
+    EXPECT_EQ(NearestEdgeMap(column).at<cv::Vec2s>(i, 0),
+              cv::Vec2s(0, static_cast<short>(nearest)));
   }
 }
 
