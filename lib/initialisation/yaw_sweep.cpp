@@ -25,8 +25,8 @@ constexpr int kRefinementSteps = 10;
 // Of the likelihood between two yaws of the grid.
 constexpr size_t kLikelihoodSteps = 100;
 
-// Of exp(-height^2), between two angles that are no further than pi from 0, where it is linear in
-// the angle: its mass, and its second moment about 0 modulo pi.
+// Of exp(-height^2), between two angles from -pi/2 to pi, where the height is linear in the angle:
+// its mass, and its second moment about 0 modulo pi.
 struct Likelihood {
   double mass = 0.0;
   double squares = 0.0;
@@ -178,16 +178,20 @@ double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
   nodes.emplace_back(nodes.front().first + std::numbers::pi, nodes.front().second);
 
   const double step = std::numbers::pi / static_cast<double>(yaw.size());
+  const auto height = [&](double cost) { return std::sqrt(cost - lowest); };
   Likelihood likelihood;
+  bool is_alone = true;
   for (size_t i = 1; i < nodes.size(); ++i) {
-    const double from = nodes[i - 1].first;
-    const double to = nodes[i].first;
+    const auto& [from, from_cost] = nodes[i - 1];
+    const auto& [to, to_cost] = nodes[i];
     if (to - from > 1.5 * step) continue;  // no landmark in between
-    AddStretch({from, to},
-               {std::sqrt(nodes[i - 1].second - lowest), std::sqrt(nodes[i].second - lowest)},
-               &likelihood);
+    AddStretch({from, to}, {height(from_cost), height(to_cost)}, &likelihood);
+    if (from < to && from <= 0.0 && to >= 0.0) is_alone = false;
   }
-  if (!(likelihood.mass > 0.0)) return 0.5 * step;  // between two yaws without a landmark
+  if (is_alone) {  // it stands for the step around it
+    const double of_first = height(optima.front().cost);
+    AddStretch({-0.5 * step, 0.5 * step}, {of_first, of_first}, &likelihood);
+  }
   return std::sqrt(likelihood.squares / likelihood.mass);
 }
 

@@ -193,6 +193,43 @@ SOSLAM_IN_WIDE_LOOPS void FindWeights(const BodyInWorld& body, const DepthsOfFou
   }
 }
 
+// Of the Hessian, the products of a weighted gradient's i-th component with those from begin to
+// end.
+template <size_t kSets>
+SOSLAM_IN_WIDE_LOOPS void AddProducts(size_t i, size_t begin, size_t end,
+                                      const std::array<Four, kSets>& weighted,
+                                      const std::array<GradientOfFour, kSets>& gradients,
+                                      SumsOfFour* sums) {
+  for (size_t j = begin; j < end; ++j) {
+    Four& sum = sums->Hessian(i, j);
+    for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * gradients[set][j];
+  }
+}
+
+// The products of which one is by the i-th component of the centre, which the depth depends on.
+template <size_t kSets>
+SOSLAM_IN_WIDE_LOOPS void AddProductsByCentre(size_t i,
+                                              const std::array<GradientOfFour, kSets>& gradients,
+                                              const std::array<WeightsOfFour, kSets>& weights,
+                                              const ThreeFours& depth_by_centre, SumsOfFour* sums) {
+  std::array<Four, kSets> weighted;
+  Four slope{};
+  for (size_t set = 0; set < kSets; ++set) {
+    const Four& by_centre = gradients[set][kByCentre + i];
+    slope += weights[set].depth * by_centre;
+    weighted[set] = weights[set].centre * by_centre - weights[set].depth * depth_by_centre[i];
+  }
+  AddProducts(kByCentre + i, kByTurn, kByTurn + 3, weighted, gradients, sums);
+  AddProducts(kByCentre + i, kByCentre, kByCentre + i + 1, weighted, gradients, sums);
+  for (size_t j = 0; j <= i; ++j) {
+    sums->Hessian(kByCentre + i, kByCentre + j) -= slope * depth_by_centre[j];
+  }
+  for (size_t j = 0; j < 3; ++j) {
+    Four& sum = sums->Hessian(kByAxes + j, kByCentre + i);
+    for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * gradients[set][kByAxes + j];
+  }
+}
+
 // The sum of the gradients of `kSets` times four edges at the same depths, and their products.
 template <size_t kSets>
 SOSLAM_IN_WIDE_LOOPS void AddGradients(const std::array<GradientOfFour, kSets>& gradients,
@@ -202,47 +239,27 @@ SOSLAM_IN_WIDE_LOOPS void AddGradients(const std::array<GradientOfFour, kSets>& 
     Four& sum = sums->Gradient()[i];
     for (size_t set = 0; set < kSets; ++set) sum += weights[set].slope * gradients[set][i];
   }
-  const auto add = [&](size_t i, size_t begin, size_t end,
-                       const std::array<Four, kSets>& weighted) {
-    for (size_t j = begin; j < end; ++j) {
-      Four& sum = sums->Hessian(i, j);
-      for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * gradients[set][j];
-    }
-  };
   std::array<Four, kSets> weighted;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t set = 0; set < kSets; ++set) {
       weighted[set] = weights[set].turn_turn * gradients[set][kByTurn + i];
     }
-    add(kByTurn + i, kByTurn, kByTurn + i + 1, weighted);
+    AddProducts(kByTurn + i, kByTurn, kByTurn + i + 1, weighted, gradients, sums);
     for (size_t set = 0; set < kSets; ++set) {
       weighted[set] = weights[set].axes * gradients[set][kByAxes + i];
     }
-    add(kByAxes + i, kByTurn, kByTurn + 3, weighted);
-    add(kByAxes + i, kByAxes, kByAxes + i + 1, weighted);
-    Four slope{};
-    for (size_t set = 0; set < kSets; ++set) {
-      const Four& by_centre = gradients[set][kByCentre + i];
-      slope += weights[set].depth * by_centre;
-      weighted[set] = weights[set].centre * by_centre - weights[set].depth * depth_by_centre[i];
-    }
-    add(kByCentre + i, kByTurn, kByTurn + 3, weighted);
-    add(kByCentre + i, kByCentre, kByCentre + i + 1, weighted);
-    for (size_t j = 0; j <= i; ++j) {
-      sums->Hessian(kByCentre + i, kByCentre + j) -= slope * depth_by_centre[j];
-    }
-    for (size_t j = 0; j < 3; ++j) {
-      Four& sum = sums->Hessian(kByAxes + j, kByCentre + i);
-      for (size_t set = 0; set < kSets; ++set) {
-        sum += weighted[set] * gradients[set][kByAxes + j];
-      }
-    }
+    AddProducts(kByAxes + i, kByTurn, kByTurn + 3, weighted, gradients, sums);
+    AddProducts(kByAxes + i, kByAxes, kByAxes + i + 1, weighted, gradients, sums);
+    AddProductsByCentre(i, gradients, weights, depth_by_centre, sums);
   }
 }
 
-// By turns: what h grows by as the contact moves along the body, its second derivatives by m
-// (CurvatureOfSupport) less what FindWeights has of them; what those have along m itself is not
-// seen by a turn. And where `contact_turns`, what it has of a contact q that stays on the body.
+// By turns: what h grows by as the contact moves along the body, its second derivatives by m. With
+// r_i^2 = m_i^2 + e^2 |m|^2, shares l_i / r_i^2 of l_i = dh / ds_i, g_i = (m_i e_i + e^2 m) / r_i
+// and the contact c = dh / dm they are
+//   sum_i l_i / r_i^2 (e_i e_i^T + e^2 I - (2 - p) g_i g_i^T) - (p - 1) / h c c^T,
+// the last of which FindWeights has; what they have along m itself is not seen by a turn. And where
+// `contact_turns`, what it has of a contact q that stays on the body.
 SOSLAM_IN_WIDE_LOOPS void AddCurvatureByTurns(const BodyInWorld& body, const ExcessOfFour& excess,
                                               const Four& factor, bool contact_turns,
                                               SumsOfFour* sums) {

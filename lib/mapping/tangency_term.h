@@ -25,6 +25,7 @@ class TangencyTerm final : public Term {
   TangencyTerm(const std::array<int, 3>& variables, const Blocks& blocks, const TangentBox& box,
                double huber_delta, double weight);
 
+  // Takes as long as to linearise.
   double Cost() const override { return Linearise(Hessian::kInformation, {}); }
   double Linearise(Hessian hessian, const TermPlaces& places) const override;
 
@@ -33,8 +34,8 @@ class TangencyTerm final : public Term {
   double shape_exponent_;
   double least_depth_m_;
   HuberLoss loss_;
-  FourEdges edges_;  // by side, in the camera frame
-  Four per_px_{};    // 1 / sigma
+  FourEdges edges_;                        // by side, in the camera frame
+  alignas(kFourAlignment) Four per_px_{};  // 1 / sigma
 };
 
 }  // namespace soslam

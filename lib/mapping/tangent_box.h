@@ -33,7 +33,8 @@ struct TangentBox {
   std::array<Edge, 4> edges{};
 };
 
-// Edges side by side. Where there is none, there is no weight.
+// Edges side by side, with planes as in TangentBox::Edge, in a frame that is up to who sets them.
+// Weights multiply losses; where there is no edge, it is 0.
 struct alignas(kFourAlignment) FourEdges {
   ThreeFours planes{Four{}, Four{}, Four{} + 1.0};  // any but zero
   Four weights{};

@@ -99,5 +99,15 @@ TEST(YawSweep, StandardDeviationLeavesOutYawsWithoutALandmark) {
   EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), 20.0 * kDegrees / std::sqrt(12.0), 1e-3);
 }
 
+TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {
+  for (const double others_cost : {100.0, 800.0, 1e5}) {
+    YawSweep sweep = SweepOf([&](double yaw) { return yaw == 0.0 ? 0.0 : others_cost; }, 60);
+    sweep.fits[1].reset();
+    sweep.fits[59].reset();
+    const double step = kPi / 60.0;
+    EXPECT_NEAR(sweep.StandardDeviation({{0.0, 0.0}}), step / std::sqrt(12.0), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace soslam

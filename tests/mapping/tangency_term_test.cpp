@@ -48,6 +48,56 @@ struct ViewOfBox {
     std::tie(view.camera_block, view.landmark_block, bias) = before;
     return cost;
   }
+  // Of an edge, in standard deviations of it.
+  double Excess(size_t edge) const {
+    const std::array<const double*, 2> blocks = {view.camera_block.data(),
+                                                 view.landmark_block.data()};
+    const RelativeObservation observation(blocks.data(), start.shape_exponent);
+    const Landmark& landmark = observation.landmark_in_camera();
+    const double depth_m =
+        TangentDepth(edges[edge], start) * landmark.Centre().z() / start.Centre().z();
+    return Tangency(edges[edge], landmark, depth_m, bias[edge], nullptr);
+  }
+  // d excess / d step of the landmark, from differences.
+  Eigen::Matrix<double, kLandmarkDof, 1> ExcessGradient(size_t edge) {
+    constexpr double kStep = 1e-6;
+    const LandmarkBlock before = view.landmark_block;
+    const auto at = [&](int i, double length) {
+      const Eigen::Matrix<double, kLandmarkDof, 1> step =
+          length * Eigen::Matrix<double, kLandmarkDof, 1>::Unit(i);
+      Move(VariableKind::kLandmark, step.data(), view.landmark_block.data());
+      const double excess = Excess(edge);
+      view.landmark_block = before;
+      return excess;
+    };
+    Eigen::Matrix<double, kLandmarkDof, 1> gradient;
+    for (int i = 0; i < kLandmarkDof; ++i) {
+      gradient[i] = (at(i, kStep) - at(i, -kStep)) / (2.0 * kStep);
+    }
+    return gradient;
+  }
+  // d^2 excess / d turn^2 of what its contact moves by along the body, from differences: the point
+  // of contact is dh / dm, of h at the plane's normal m in the object frame.
+  Eigen::Matrix3d ContactCurvature(size_t edge) const {
+    constexpr double kStep = 1e-6;
+    const TangentBox::Edge& compared = TangentBox(edges, start).edges[edge];
+    const Landmark landmark = view.LandmarkInCamera();
+    const Eigen::Matrix3d world_from_object =
+        (view.world_from_camera.rotation * landmark.frame_from_object.rotation).toRotationMatrix();
+    const Eigen::Vector3d m = landmark.frame_from_object.rotation.conjugate() * compared.plane;
+    Eigen::Matrix3d moves;
+    for (int i = 0; i < 3; ++i) {
+      const auto contact = [&](double length) {
+        return SupportFunction(landmark.half_axes, start.shape_exponent,
+                               m + length * m.norm() * Eigen::Vector3d::Unit(i))
+            .contact;
+      };
+      moves.col(i) = (contact(kStep) - contact(-kStep)) / (2.0 * kStep * m.norm());
+    }
+    const Eigen::Matrix3d m_by_turn = Skew(m) * world_from_object.transpose();
+    return m_by_turn.transpose() * moves * m_by_turn / landmark.Centre().z();
+  }
+
   // d^2 cost / (d step_i d step_j), from differences.
   double Second(int i, int j) {
     constexpr double kStep = 1e-4;
@@ -116,17 +166,9 @@ TEST(TangencyTerm, CostsTheHuberLossOfTheTangencies) {
     Eigen::Matrix<double, kDof, 1> step;
     for (double& value : step) value = RandomUniform(-0.02, 0.02);
     view.MoveBy(step);
-    const RelativeObservation observation(
-        std::array<const double*, 2>{view.view.camera_block.data(), view.view.landmark_block.data()}
-            .data(),
-        p);
     double expected = 0.0;
     for (size_t i = 0; i < 4; ++i) {
-      const Landmark& landmark = observation.landmark_in_camera();
-      const double depth_m =
-          TangentDepth(view.edges[i], view.start) * landmark.Centre().z() / view.start.Centre().z();
-      const double excess =
-          std::abs(Tangency(view.edges[i], landmark, depth_m, view.bias[i], nullptr));
+      const double excess = std::abs(view.Excess(i));
       expected += excess > 0.5 ? 0.5 * (excess - 0.25) : 0.5 * excess * excess;
     }
     EXPECT_NEAR(view.term->Cost(), ViewOfBox::kWeight * expected, 1e-9 * expected);
@@ -164,6 +206,54 @@ TEST(TangencyTerm, DerivativesAgreeWithNumbers) {
     }
   }
   EXPECT_GT(checked, 5);
+}
+
+// By the landmark, within the Huber loss's delta and beyond it. With J the gradients of excesses:
+// J^T W J; where a minimum is far, also what holds the body where its contact moves along it; near
+// it, all there is.
+TEST(TangencyTerm, HessiansAreWhatTheirKindsSay) {
+  constexpr double kDelta = 1.0;
+  using Square = Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>;
+  std::array<int, 2> held{}, beyond{};
+  for (const double p : kShapeExponents) {
+    for (int trial = 0; trial < 40; ++trial) {
+      ViewOfBox view(p, {}, kDelta);
+      if (!IsOffKinks(view)) continue;
+      Square information = Square::Zero(), rounded_up = Square::Zero();
+      Eigen::Matrix3d holds = Eigen::Matrix3d::Zero();
+      for (size_t i = 0; i < 4; ++i) {
+        const double excess = view.Excess(i);
+        const double weight = ViewOfBox::kWeight * std::min(1.0, kDelta / std::abs(excess));
+        const Eigen::Matrix<double, kLandmarkDof, 1> gradient = view.ExcessGradient(i);
+        information += weight * gradient * gradient.transpose();
+        const bool is_beyond = std::abs(excess) > kDelta;
+        const bool is_held = excess > 0.0 && p < kEllipsoidExponent;
+        if (is_beyond) {
+          rounded_up += HuberLoss::kLeastCurvature * weight * gradient * gradient.transpose();
+        }
+        if (is_held) holds += weight * excess * view.ContactCurvature(i);
+        ++beyond[is_beyond];
+        ++held[is_held];
+      }
+      const auto of_landmark = [&](Hessian kind) -> Square {
+        return Linearised(*view.term, kind)
+            .hessian.block<kLandmarkDof, kLandmarkDof>(kPoseDof, kPoseDof);
+      };
+      const double tolerance = 1e-6 * information.norm();
+      EXPECT_LT((of_landmark(Hessian::kInformation) - information).norm(), tolerance) << p;
+      Square far = information;
+      far.topLeftCorner<3, 3>() += holds;
+      EXPECT_LT((of_landmark(Hessian::kFar) - far).norm(), tolerance) << p;
+      const Square near = of_landmark(Hessian::kNear) - rounded_up;
+      for (int i = 0; i < kLandmarkDof; ++i) {
+        for (int j = 0; j <= i; ++j) {
+          EXPECT_NEAR(near(i, j), view.Second(kPoseDof + i, kPoseDof + j), 2e-4 * near.norm())
+              << p << " " << i << " " << j;
+        }
+      }
+    }
+  }
+  for (const int count : {beyond[0], beyond[1], held[0], held[1]}) EXPECT_GT(count, 10);
 }
 
 // What steps are made with far from a minimum: never less than J^T W J, and positive semidefinite.
@@ -234,7 +324,7 @@ TEST(TangencyTerm, IsTheSumOfTheEdgesThatThereAre) {
             const Derivatives of_edge = Linearised(*view.TermOf(one, 1.0), kind);
             const bool is_idle = of_one.cost == 0.0;
             ++(is_idle ? idle : reached);
-            // Less than the box's side, the body costs; its slope by the bias is against it.
+            // A bound is idle where the body reaches beyond it, which a larger bias would lower.
             EXPECT_EQ(is_idle, of_edge.gradient[kPoseDof + kLandmarkDof + one.edges[0].side] < 0.0);
             EXPECT_EQ(of_one.gradient, (is_idle ? 0.0 : 1.0) * of_edge.gradient);
             EXPECT_EQ(of_one.hessian, (is_idle ? 0.0 : 1.0) * of_edge.hessian);
