@@ -21,6 +21,7 @@
 #include "mapping/landmark_fit.h"
 #include "support/cost_function_term.h"
 #include "support/cuboid_map.h"
+#include "support/curve_term.h"
 #include "support/landmark_term_residual.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
@@ -210,34 +211,18 @@ TEST_F(OffsetTest, WhatIsHeldStays) {
   EXPECT_EQ(result.costs.back(), 4.5);
 }
 
-// A cost of an offset x, and what it says of its second derivative.
-struct Curve {
-  double cost, slope, far, near;
-};
-class CurveTerm final : public Term {
- public:
-  CurveTerm(int offset, const double* x, Curve (*curve)(double x))
-      : Term({offset}), x_(x), curve_(curve) {}
-  double Cost() const override { return curve_(*x_).cost; }
-  double Linearise(Hessian hessian, const TermPlaces& places) const override {
-    const Curve at = curve_(*x_);
-    *places.gradient[0] += at.slope;
-    *places.hessian[0][0] += hessian == Hessian::kNear ? at.near : at.far;
-    return at.cost;
-  }
-
- private:
-  const double* x_;
-  Curve (*curve_)(double x);
-};
-
 class CurveTest : public OffsetTest {
  protected:
-  Minimisation MinimiseCurve(double from, const MinimiseOptions& options, Curve (*curve)(double)) {
+  Minimisation MinimiseCurve(double from, const MinimiseOptions& options, const CurveOf& curve) {
     Offset() = from;
-    const CurveTerm term(variables_->Offset(0), &Offset(), curve);
-    return Minimise({&term}, options, &variables_->all());
+    const int offset = variables_->Offset(0);
+    const CurveTerm term({offset}, variables_->all()[static_cast<size_t>(offset)], curve);
+    const Minimisation result = Minimise({&term}, options, &variables_->all());
+    times_linearised_ = term.times_linearised();
+    return result;
   }
+
+  int times_linearised_ = 0;
 };
 
 // Steps of a quarter of the way, along which an iteration gains less than a hundredth: second
@@ -266,6 +251,15 @@ TEST_F(CurveTest, AfterANearStepThatIsRefusedAFarOneIsTaken) {
     EXPECT_LT(result.costs[i], result.costs[i - 2]) << i;
   }
   EXPECT_GT(refused, 1);
+}
+
+// Each leads far beyond the minimum.
+TEST_F(CurveTest, WhileFarStepsAreRefusedTheirEquationsAreKept) {
+  const Minimisation result = MinimiseCurve(0.1, {.max_iterations = 5}, [](double x) {
+    return Curve{100.0 + 0.5 * x * x, x, 0.01, 1.0};
+  });
+  EXPECT_EQ(result.costs, std::vector<double>(6, result.costs.front()));
+  EXPECT_EQ(times_linearised_, 1);
 }
 
 TEST_F(CurveTest, EndsWithTheFirstIterationOfLessThanTheLeastGain) {
@@ -306,6 +300,71 @@ TEST_F(CurveTest, IsHardlyDampedNearTheMinimumWhereThatIsAskedFor) {
   };
   EXPECT_GT(distance(false), 1e4);
   EXPECT_LT(distance(true), 1e2);
+}
+
+// Landmarks, nothing else, each with a cost of its place along the world's x axis.
+class LandmarksTest : public testing::Test {
+ protected:
+  void Add(double x) {
+    values_.push_back(Pack(Landmark{}));
+    values_.back()[4] = x;
+  }
+  Minimisation MinimiseEach(const CurveOf& curve) {
+    std::vector<Variable> variables;
+    for (LandmarkBlock& values : values_) {
+      variables.push_back({VariableKind::kLandmark, values.data()});
+    }
+    std::vector<std::unique_ptr<CurveTerm>> curves;
+    Terms terms;
+    for (size_t i = 0; i < variables.size(); ++i) {
+      curves.push_back(
+          std::make_unique<CurveTerm>(std::vector<int>{static_cast<int>(i)}, variables[i], curve));
+      terms.push_back(curves.back().get());
+    }
+    return Minimise(terms, {.max_iterations = 100}, &variables);
+  }
+  double X(size_t landmark) const { return values_[landmark][4]; }
+
+ private:
+  std::vector<LandmarkBlock> values_;
+};
+
+// Without them, steps are a quarter of the way: some forty of them.
+TEST_F(LandmarksTest, SecondDerivativesCountOnceAStepBringsLittle) {
+  Add(1.0);
+  const Minimisation result = MinimiseEach([](double x) {
+    return Curve{1.0 + 0.5 * x * x, x, 4.0, 1.0};
+  });
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT(result.costs.size(), 10U);
+  EXPECT_NEAR(X(0), 0.0, 1e-4);
+}
+
+// They are much too small: a step that counts them leads too far.
+TEST_F(LandmarksTest, SecondDerivativesDoNotCountWhileStepsBringMuch) {
+  Add(1.0);
+  const Minimisation result = MinimiseEach([](double x) {
+    return Curve{0.5 * x * x, x, 1.25, 0.3};
+  });
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT(result.costs.back(), 1e-15);
+  for (size_t i = 1; i + 1 < result.costs.size(); ++i) {
+    EXPECT_LT(result.costs[i], 0.1 * result.costs[i - 1]) << i;
+  }
+}
+
+// A hundredth of the least gain, of a cost of 100, is 1e-8; of each landmark's share, 1e-10.
+TEST_F(LandmarksTest, EachMovesForItsShareOfTheLeastGain) {
+  const double worth_it = std::sqrt(2e-9), not_worth_it = std::sqrt(2e-11);
+  Add(worth_it);
+  Add(not_worth_it);
+  for (int i = 2; i < 100; ++i) Add(0.0);
+  const Minimisation result = MinimiseEach([](double x) {
+    return Curve{1.0 + 0.5 * x * x, x, 1.0, 1.0};
+  });
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(X(0), 0.0, 1e-3 * worth_it);
+  EXPECT_EQ(X(1), not_worth_it);
 }
 
 TEST(DampingTest, FallsToItsLeastAndNoFurther) {
