@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "constraints/parameters.h"
 #include "mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
+#include "support/curve_term.h"
 #include "support/drive.h"
 #include "support/random.h"
 
@@ -201,6 +204,99 @@ TEST_F(StartInPartsTest, LandmarksFitThePartThatSeesThemMostOften) {
     EXPECT_LT(off_px, 0.2 * (detection.box.Width() + detection.box.Height())) << object;
   }
   EXPECT_GT(in_several, 100);
+}
+
+// Five parts: poses and one landmark, which start at 0 and have costs of their x alone.
+class PartsOfALine : public testing::Test {
+ protected:
+  explicit PartsOfALine(size_t frames_per_part = 1) : frames_per_part_(frames_per_part) {
+    sequence_.frames.resize(5 * frames_per_part);
+    sequence_.objects.emplace_back();
+    variables_.emplace(input_);
+  }
+  // Of a pose.
+  const CurveTerm& Add(size_t frame, const CurveOf& curve) {
+    return AddTerm({variables_->Pose(frame)}, curve);
+  }
+  // Of the landmark, which that frame sees.
+  void AddView(size_t frame, const CurveOf& curve) {
+    AddTerm({variables_->Pose(frame), variables_->Landmark(0)}, curve);
+  }
+  bool Start() {
+    Terms terms;
+    for (const auto& curve : curves_) terms.push_back(curve.get());
+    return StartInParts(sequence_, terms, frames_per_part_, &*variables_);
+  }
+  double Pose(size_t frame) const { return variables_->PoseValue(frame).translation.x(); }
+  double Landmark() const { return variables_->LandmarkValue(0)->Centre().x(); }
+
+ private:
+  const CurveTerm& AddTerm(const std::vector<int>& variables, const CurveOf& curve) {
+    const Variable& last = variables_->all()[static_cast<size_t>(variables.back())];
+    curves_.push_back(std::make_unique<CurveTerm>(variables, last, curve));
+    return *curves_.back();
+  }
+
+  Sequence sequence_;
+  BackEndInput input_{sequence_, {soslam::Landmark{}}, {}, {}, {}};
+  size_t frames_per_part_;
+  std::optional<BackEndVariables> variables_;
+  std::vector<std::unique_ptr<CurveTerm>> curves_;
+};
+
+// Drawn to a place, by steps that lead there at once or a share of the way.
+CurveOf DrawnTo(double place, double share = 1.0) {
+  return [=](double x) {
+    const double off = x - place, curvature = 100.0;
+    return Curve{0.5 * curvature * off * off, curvature * off, curvature / share,
+                 curvature / share};
+  };
+}
+
+// Valleys at all whole numbers, the lowest at `lowest`.
+CurveOf Valleys(double lowest) {
+  return [=](double x) {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    const double off = x - lowest;
+    return Curve{1.0 - std::cos(kTurn * x) + 0.05 * off * off,
+                 kTurn * std::sin(kTurn * x) + 0.1 * off, kTurn * kTurn, kTurn * kTurn};
+  };
+}
+
+// A tenth of the way with each step: after one round, half of the way is left.
+TEST_F(PartsOfALine, APartIsSolvedAgainUntilItSettles) {
+  const CurveTerm& slow = Add(1, DrawnTo(1.0, 0.1));
+  const CurveTerm& fast = Add(3, DrawnTo(2.0));
+  EXPECT_TRUE(Start());
+  EXPECT_NEAR(Pose(1), 1.0, 0.05);
+  EXPECT_NEAR(Pose(3), 2.0, 1e-3);
+  EXPECT_GT(slow.times_linearised(), 20);
+  EXPECT_LT(fast.times_linearised(), 5);
+}
+
+// Where its frames are now, it would end in the valley at 1.
+TEST_F(PartsOfALine, ALandmarkThatIsFittedAnewMustCostLess) {
+  Add(2, DrawnTo(1.0));
+  AddView(2, Valleys(0.0));
+  EXPECT_TRUE(Start());
+  EXPECT_NEAR(Pose(2), 1.0, 1e-3);
+  EXPECT_NEAR(Landmark(), 0.0, 1e-3);
+}
+
+class LongPartsOfALine : public PartsOfALine {
+ protected:
+  LongPartsOfALine() : PartsOfALine(5) {}
+};
+
+// They have moved differently; where the first or the last of them have moved to, it finds other
+// valleys.
+TEST_F(LongPartsOfALine, ALandmarkIsFittedAnewWhereTheMiddleOfItsFramesIs) {
+  for (const size_t view : {1, 2, 3}) {
+    Add(5 + view, DrawnTo(static_cast<double>(view)));
+    AddView(5 + view, Valleys(2.0));
+  }
+  EXPECT_TRUE(Start());
+  EXPECT_NEAR(Landmark(), 2.0, 1e-3);
 }
 
 }  // namespace
