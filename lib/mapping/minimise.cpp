@@ -166,7 +166,6 @@ class Minimiser {
     const Eigen::VectorXd step = -factor_->Solve(equations_->gradient());
     const double predicted =
         0.5 * step.dot(damping_diagonal_.cwiseProduct(step) - equations_->gradient());
-    if (!(predicted >= 0.0)) return RefuseStep();  // nothing but rounding
     if (!(predicted > Tolerance())) return false;
 
     const double before = cost_;
