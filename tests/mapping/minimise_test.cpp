@@ -253,6 +253,17 @@ TEST_F(CurveTest, AfterANearStepThatIsRefusedAFarOneIsTaken) {
   EXPECT_GT(refused, 1);
 }
 
+// They are much too small: a step that counts them leads too far.
+TEST_F(CurveTest, SecondDerivativesDoNotCountWhileStepsBringMuch) {
+  const Minimisation result = MinimiseCurve(1.0, {.max_iterations = 8}, [](double x) {
+    return Curve{0.5 * x * x, x, 1.25, 0.3};
+  });
+  ASSERT_EQ(result.costs.size(), 9U);
+  for (size_t i = 1; i < result.costs.size(); ++i) {
+    EXPECT_LT(result.costs[i], 0.1 * result.costs[i - 1]) << i;
+  }
+}
+
 // Each leads far beyond the minimum.
 TEST_F(CurveTest, WhileFarStepsAreRefusedTheirEquationsAreKept) {
   const Minimisation result = MinimiseCurve(0.1, {.max_iterations = 5}, [](double x) {
@@ -300,6 +311,15 @@ TEST_F(CurveTest, IsHardlyDampedNearTheMinimumWhereThatIsAskedFor) {
   };
   EXPECT_GT(distance(false), 1e4);
   EXPECT_LT(distance(true), 1e2);
+}
+
+// The first step brings 1.2 hundredths, as it is damped. Hardly damped, the second would lead all
+// the way.
+TEST_F(CurveTest, IsDampedAsUsualWhileStepsBringMore) {
+  MinimiseCurve(1.0, {.max_iterations = 2, .hardly_damped_near = true}, [](double x) {
+    return Curve{3e-8 * x * x, 6e-8 * x, 6e-8, 6e-8};
+  });
+  EXPECT_GT(Offset(), 0.5);
 }
 
 // Landmarks, nothing else, each with a cost of its place along the world's x axis.
@@ -351,6 +371,16 @@ TEST_F(LandmarksTest, SecondDerivativesDoNotCountWhileStepsBringMuch) {
   for (size_t i = 1; i + 1 < result.costs.size(); ++i) {
     EXPECT_LT(result.costs[i], 0.1 * result.costs[i - 1]) << i;
   }
+}
+
+// Half of the way with each step.
+TEST_F(LandmarksTest, GoOnWhileAnyOfThemMoves) {
+  for (const double x : {0.0, 1.0, 0.0}) Add(x);
+  const Minimisation result = MinimiseEach([](double x) {
+    return Curve{1.0 + 0.5 * x * x, x, 2.0, 2.0};
+  });
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(X(1), 0.0, 1e-4);
 }
 
 // A hundredth of the least gain, of a cost of 100, is 1e-8; of each landmark's share, 1e-10.

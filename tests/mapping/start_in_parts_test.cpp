@@ -274,6 +274,25 @@ TEST_F(PartsOfALine, APartIsSolvedAgainUntilItSettles) {
   EXPECT_LT(fast.times_linearised(), 5);
 }
 
+// It would take hundreds of steps.
+TEST_F(PartsOfALine, APartThatDoesNotSettleIsLeftAfterSomeRounds) {
+  const CurveTerm& creeping = Add(1, DrawnTo(1.0, 0.02));
+  Start();
+  EXPECT_GT(creeping.times_linearised(), 20);
+  EXPECT_LT(creeping.times_linearised(), 100);
+}
+
+// From 60 to 10: a part may only have taken its own view of something.
+TEST_F(PartsOfALine, NothingIsMovedWhereThatDoesNotCostMuchLess) {
+  Add(1, [](double x) {
+    Curve curve = DrawnTo(1.0)(x);
+    curve.cost += 10.0;
+    return curve;
+  });
+  EXPECT_FALSE(Start());
+  EXPECT_EQ(Pose(1), 0.0);
+}
+
 // Where its frames are now, it would end in the valley at 1.
 TEST_F(PartsOfALine, ALandmarkThatIsFittedAnewMustCostLess) {
   Add(2, DrawnTo(1.0));
