@@ -217,7 +217,7 @@ class CurveTest : public OffsetTest {
     Offset() = from;
     const int offset = variables_->Offset(0);
     const CurveTerm term({offset}, variables_->all()[static_cast<size_t>(offset)], curve);
-    const Minimisation result = Minimise({&term}, options, &variables_->all());
+    Minimisation result = Minimise({&term}, options, &variables_->all());
     times_linearised_ = term.times_linearised();
     return result;
   }
