@@ -25,6 +25,10 @@ namespace {
 
 constexpr std::int16_t kNone = -1;
 
+// Column and row of a pixel, as cv::Vec2s has them in memory.
+static_assert(std::endian::native == std::endian::little);
+SOSLAM_IN_WIDE_LOOPS int PixelInMemory(int column, int row) { return column | row << 16; }
+
 // The row of the nearest edge pixel in the same column, CV_16SC1; kNone in columns without edges.
 // Row by row, so that the compiler takes many columns at once.
 cv::Mat NearestEdgeRowInColumn(const cv::Mat& edges) {
@@ -79,8 +83,8 @@ class RowSearch {
     columns_.resize(count_ + kLanes);
   }
 
-  // Writes the nearest edge pixel of each x, as a cv::Vec2s in memory; of several the one of the
-  // leftmost column.
+  // Writes the nearest edge pixel of each x (PixelInMemory); of several the one of the leftmost
+  // column.
   SOSLAM_WIDE_LOOPS void Find(const std::int16_t* nearest_row_of_columns, int y, int* nearest) {
     const std::int16_t* __restrict row = nearest_row_of_columns;
     int* __restrict constants = constants_.data();
@@ -88,7 +92,7 @@ class RowSearch {
     for (size_t i = 0; i < count_; ++i) {
       const int u = columns_[i];
       constants[i] = u * u + (row[i] - y) * (row[i] - y);
-      edges[i] = u | row[i] << 16;
+      edges[i] = PixelInMemory(u, row[i]);
     }
     FindAtBlocks();
     for (size_t block = 0; block < blocks_; ++block) FindInBlock(block);
