@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -19,6 +20,9 @@ namespace soslam {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
+
+// OpenCV counts pixels, and ISA-L bytes, by numbers of 32 bits.
+constexpr size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
 
 // Bytes as an image of one row, whose pixels are elements, and its channels: the first bytes of all
 // elements, then the second bytes of all, ...
@@ -41,10 +45,6 @@ std::vector<cv::Mat> Channels(std::byte* shuffled, size_t count, size_t element_
 std::string Deflate(std::span<std::uint8_t> bytes) {
   constexpr size_t kFirst = 16;
   const size_t bound = bytes.size() + bytes.size() / 1000 + 100;  // as stored blocks, at most
-  if (bound > std::numeric_limits<std::uint32_t>::max()) {
-    throw std::length_error(fmt::format(
-        "an array of {} bytes cannot be packed; expected less than 4 GiB", bytes.size()));
-  }
   const auto deflated = std::make_unique_for_overwrite<std::uint8_t[]>(bound);
   const auto work_space = std::make_unique_for_overwrite<std::uint8_t[]>(ISAL_DEF_LVL1_DEFAULT);
   isal_zstream stream;
@@ -78,6 +78,10 @@ PackedArray Pack(const ArrayShape& shape, int depth, const void* values) {
       std::accumulate(shape.begin(), shape.end(), element_size, std::multiplies<size_t>());
   PackedArray packed{shape, depth, {}};
   if (bytes == 0) return packed;
+  if (bytes > kMaxBytes) {
+    throw std::length_error(
+        fmt::format("an array of {} bytes cannot be packed; expected less than 2 GiB", bytes));
+  }
   // OpenCV has no type for what is only read.
   auto* elements = const_cast<std::byte*>(static_cast<const std::byte*>(values));
   const auto shuffled = std::make_unique_for_overwrite<std::byte[]>(bytes);
@@ -96,6 +100,7 @@ PackedArray Pack(const cv::Mat& matrix) {
 }
 
 bool Unpack(const std::string& packed, size_t element_size, std::span<std::byte> values) {
+  if (values.size() > kMaxBytes) return false;
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>
       decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw std::bad_alloc();

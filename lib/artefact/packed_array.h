@@ -22,7 +22,7 @@ struct PackedArray {
   std::string bytes;  // none of no elements
 };
 
-// `values` fill the shape, in less than 4 GiB. Throws std::length_error otherwise.
+// `values` fill the shape, in less than 2 GiB. Throws std::length_error otherwise.
 PackedArray Pack(const ArrayShape& shape, int depth, const void* values);
 
 // Rows x columns, or rows x columns x channels where there are several.

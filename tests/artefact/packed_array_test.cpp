@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 
 namespace soslam {
 namespace {
@@ -93,6 +94,11 @@ TEST(PackedArrayTest, ArraysOfAllSizesUnpackToTheSame) {
   for (size_t count = 1 << 7; count < 1 << 18; count *= 2) {
     for (const int more : {-1, 0, 1, 5}) check(count + static_cast<size_t>(more));
   }
+}
+
+TEST(PackedArrayTest, WhatIsTooLargeIsRefusedBeforeItIsRead) {
+  EXPECT_THROW(Pack({1U << 31}, CV_8U, nullptr), std::length_error);
+  EXPECT_THROW(Pack({1U << 29}, CV_32F, nullptr), std::length_error);
 }
 
 TEST(PackedArrayTest, AnotherSizeIsRefused) {
