@@ -184,9 +184,10 @@ double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
   for (size_t i = 1; i < nodes.size(); ++i) {
     const auto& [from, from_cost] = nodes[i - 1];
     const auto& [to, to_cost] = nodes[i];
+    // Neither the yaw of the grid that the first one was refined from, nor beyond a gap.
+    if (std::abs(from) > 0.4 * step && std::abs(from) < 1.5 * step) is_alone = false;
     if (to - from > 1.5 * step) continue;  // no landmark in between
     AddStretch({from, to}, {height(from_cost), height(to_cost)}, &likelihood);
-    if (from < to && from <= 0.0 && to >= 0.0) is_alone = false;
   }
   if (is_alone) {  // it stands for the step around it
     const double of_first = height(optima.front().cost);

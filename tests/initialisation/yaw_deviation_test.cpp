@@ -105,7 +105,9 @@ TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {
     sweep.fits[1].reset();
     sweep.fits[59].reset();
     const double step = kPi / 60.0;
-    EXPECT_NEAR(sweep.StandardDeviation({{0.0, 0.0}}), step / std::sqrt(12.0), 1e-6);
+    for (const double rounding : {0.0, 4e-16, -1e-12}) {
+      EXPECT_NEAR(sweep.StandardDeviation({{rounding, 0.0}}), step / std::sqrt(12.0), 1e-6);
+    }
   }
 }
 
