@@ -105,9 +105,11 @@ bool Unpack(const std::string& packed, size_t element_size, std::span<std::byte>
       decompressor(libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw std::bad_alloc();
   std::vector<std::byte> shuffled(values.size());
-  const auto result = libdeflate_zlib_decompress(  // as many bytes as there are, or an error
-      decompressor.get(), packed.data(), packed.size(), shuffled.data(), shuffled.size(), nullptr);
-  if (result != LIBDEFLATE_SUCCESS) return false;
+  size_t used = 0;
+  const auto result = libdeflate_zlib_decompress_ex(  // as many bytes as there are, or an error
+      decompressor.get(), packed.data(), packed.size(), shuffled.data(), shuffled.size(), &used,
+      nullptr);
+  if (result != LIBDEFLATE_SUCCESS || used != packed.size()) return false;
   const size_t count = values.size() / element_size;
   cv::Mat elements = Elements(values.data(), count, element_size);
   cv::merge(Channels(shuffled.data(), count, element_size), elements);

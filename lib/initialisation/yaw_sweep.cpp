@@ -22,6 +22,8 @@ constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
 constexpr size_t kRefinedMinima = 6;
 // Of the finer grid around a grid point, either way.
 constexpr int kRefinementSteps = 10;
+// Between yaws farther apart than so many steps of the grid there is one without a landmark.
+constexpr double kGap = 1.5;
 // Of the likelihood between two yaws of the grid.
 constexpr size_t kLikelihoodSteps = 100;
 
@@ -168,28 +170,27 @@ double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
   for (const Optimum& optimum : optima) {
     nodes.emplace_back(YawDifferenceModuloPi(optimum.yaw, centre), optimum.cost);
   }
+  const double step = std::numbers::pi / static_cast<double>(yaw.size());
+  int yaws_beside = 0;  // of the grid, with the one that the first optimum was refined from
   for (size_t i = 0; i < yaw.size(); ++i) {
     if (!fits[i]) continue;
     nodes.emplace_back(YawDifferenceModuloPi(yaw[i], centre), fits[i]->cost);
+    if (std::abs(nodes.back().first) < kGap * step) ++yaws_beside;
   }
   std::sort(nodes.begin(), nodes.end());
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& [at, cost] : nodes) lowest = std::min(lowest, cost);
   nodes.emplace_back(nodes.front().first + std::numbers::pi, nodes.front().second);
 
-  const double step = std::numbers::pi / static_cast<double>(yaw.size());
   const auto height = [&](double cost) { return std::sqrt(cost - lowest); };
   Likelihood likelihood;
-  bool is_alone = true;
   for (size_t i = 1; i < nodes.size(); ++i) {
     const auto& [from, from_cost] = nodes[i - 1];
     const auto& [to, to_cost] = nodes[i];
-    // Neither the yaw of the grid that the first one was refined from, nor beyond a gap.
-    if (std::abs(from) > 0.4 * step && std::abs(from) < 1.5 * step) is_alone = false;
-    if (to - from > 1.5 * step) continue;  // no landmark in between
+    if (to - from > kGap * step) continue;
     AddStretch({from, to}, {height(from_cost), height(to_cost)}, &likelihood);
   }
-  if (is_alone) {  // it stands for the step around it
+  if (yaws_beside <= 1) {  // alone, it stands for the step around it
     const double of_first = height(optima.front().cost);
     AddStretch({-0.5 * step, 0.5 * step}, {of_first, of_first}, &likelihood);
   }

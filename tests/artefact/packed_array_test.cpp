@@ -111,6 +111,7 @@ TEST(PackedArrayTest, DamageIsRefusedUnlessItChangesNothing) {
   const std::vector<float> values = {1.0F, 2.0F, 3.0F};
   const std::string packed = Pack(values).bytes;
   EXPECT_TRUE(Unpacked(packed.substr(0, packed.size() - 1), 3).empty());
+  EXPECT_TRUE(Unpacked(packed + "more", 3).empty());
   int refused = 0;
   for (size_t i = 0; i < 8 * packed.size(); ++i) {  // some bits only fill up bytes
     std::string damaged = packed;

@@ -111,5 +111,17 @@ TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {
   }
 }
 
+// From two steps away to a quarter turn, either way, all yaws are as likely; it is less so.
+TEST(YawSweep, StandardDeviationOfAYawAloneCountsTheOthersByTheirCosts) {
+  constexpr double kMore = 3.0;
+  YawSweep sweep = SweepOf([&](double yaw) { return yaw == 0.0 ? kMore : 0.0; }, 60);
+  sweep.fits[1].reset();
+  sweep.fits[59].reset();
+  const double step = kPi / 60.0;
+  const double squares = 2.0 / 3.0 * (std::pow(0.5 * kPi, 3) - std::pow(2.0 * step, 3));
+  const double mass = 56.0 * step + std::exp(-kMore) * step;
+  EXPECT_NEAR(sweep.StandardDeviation({{0.0, kMore}}), std::sqrt(squares / mass), 1e-3);
+}
+
 }  // namespace
 }  // namespace soslam
