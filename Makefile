@@ -38,7 +38,7 @@ SWEEP = $(DATASETS) $(SEEDED)
 
 one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
 $(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
-ifneq ($(filter run ablation export explain,$(MAKECMDGOALS)),)
+ifneq ($(filter run doctor ablation export explain,$(MAKECMDGOALS)),)
 $(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
 endif
 ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
@@ -91,8 +91,11 @@ run-built:
 
 .PHONY: locked-run
 locked-run: locked-plan
-	+@if test -e $(PLAN); then $(MAKE) --keep-going $(SEVERAL_JOBS) -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) all; \
+	+@if test -e $(PLAN); then $(MAKE) --keep-going $(SEVERAL_JOBS) -f $(PLAN) BIN=$(BIN) THREADS=$(THREADS) $(GOAL); \
 	else echo '# then the stages that $(PLAN) lists'; fi
+
+# What of the plan is made: all variants, or `imports`.
+GOAL ?= all
 
 # Killed stages leave temporaries and what says that they began. (Those of exports and pages may be of a run beside
 # this one.) After the clock was set back, files from the future would pass for newer than what changes from now on:
@@ -160,6 +163,14 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	    --trajectory $$to/trajectory.txt --ply $$to/landmarks.ply --gltf $$to/map.glb \
 	    --coco $$to/boxes.json --coco_dataset $$to/images.json --csv $$to/landmarks.csv || status=$$?; \
 	done; exit $$status
+
+# Of what was planned already; the import runs anew where its files have changed, so that it looks at them.
+PLANNED = $(sort $(patsubst $(RESULTS)/$(DATASET)/%/stages.txt,%,$(wildcard $(RESULTS)/$(DATASET)/*/stages.txt)))
+
+.PHONY: doctor
+doctor: build ## Say what import and all stages that ran for DATASET=<name> found: errors, warnings, remedies
+	+@$(MAKE) run-built GOAL=imports VARIANT='$(or $(PLANNED),all)' > /dev/null 2>&1 || true
+	@$(BIN)/soslam-doctor --results $(RESULTS) --name '$(DATASET)'
 
 .PHONY: status
 status: ## Say for each dataset, variant and stage: done, stale, failed, missing, queued or running

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "artefact/atomic_file.h"
+#include "artefact/findings_json.h"
 #include "artefact/schema.h"
 #include "base/error.h"
 #include "base/file_kind.h"
@@ -21,7 +22,7 @@ namespace {
 using nlohmann::json;
 
 // [major, minor] of every kind's schema. A reader reads all versions up to its own.
-const std::vector<int> kSchemaVersion = {1, 5};
+const std::vector<int> kSchemaVersion = {1, 6};
 
 // A parser callback. nlohmann keeps the last of several equal keys without a word, and what walks a
 // document calls itself for each level, so that deep nesting exhausts the stack.
@@ -155,6 +156,7 @@ json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
 void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
                    const ArtefactInfo& info, json body) {
   body["artefact"] = ArtefactHeader(kind, info);
+  if (!info.findings.empty()) body["findings"] = FindingsToJson(info.findings);
   RefuseNonFinite(body, json::json_pointer(), path.string());
   if (const auto violation = SchemaViolation(body, kind)) {
     throw std::logic_error(fmt::format("{}: would break the schema of kind '{}': {}", path.string(),

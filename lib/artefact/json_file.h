@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -22,6 +23,7 @@ nlohmann::json OrNull(const std::optional<Value>& value) {
 struct ArtefactInfo {
   nlohmann::json settings;                    // every option of the stage, resolved
   std::vector<std::filesystem::path> inputs;  // the files that were read
+  std::vector<Finding> findings = {};         // of the stage that writes it
 };
 
 // The document in a JSON file of anybody's. Throws InputError, naming the file and line, when it is
@@ -62,10 +64,10 @@ auto ReadArtefactAs(const std::filesystem::path& path, const std::string& kind,
   }
 }
 
-// Writes {"artefact": header, ...body} atomically; an existing file with the same bytes keeps its
-// modification time. Throws NumericalError, naming the place, for a number that is not finite;
-// SettingsError when the file cannot be written; std::logic_error when the schema does not allow
-// it.
+// Writes {"artefact": header, "findings": if any, ...body} atomically; an existing file with the
+// same bytes keeps its modification time. Throws NumericalError, naming the place, for a number
+// that is not finite; SettingsError when the file cannot be written; std::logic_error when the
+// schema does not allow it.
 void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
                    const ArtefactInfo& info, nlohmann::json body);
 

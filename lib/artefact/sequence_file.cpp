@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "artefact/findings_json.h"
 #include "artefact/ids.h"
 #include "artefact/json_geometry.h"
 #include "base/error.h"
@@ -270,6 +271,7 @@ Sequence SequenceFromJson(const json& json) {
   }
   CheckHeldOut(sequence);
   json.at("rejected_detections").get_to(sequence.rejected_detections);
+  sequence.findings = FindingsFromJson(json);
   return sequence;
 }
 
@@ -310,7 +312,10 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
   for (const HeldOutFrame& held_out : sequence.held_out) {
     body["held_out"].push_back(HeldOutToJson(held_out));
   }
-  WriteArtefact(path, "sequence", info, std::move(body));
+  ArtefactInfo all = info;
+  all.findings.insert(all.findings.begin(), sequence.findings.begin(), sequence.findings.end());
+  all.findings = WorstFirst(std::move(all.findings));
+  WriteArtefact(path, "sequence", all, std::move(body));
 }
 
 }  // namespace soslam

@@ -8,6 +8,7 @@
 #include "dataset/detection_row.h"
 #include "dataset/gate.h"
 #include "geometry/camera.h"
+#include "model/finding.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -29,6 +30,7 @@ struct DatasetContent {
   bool has_object_ids = true;      // otherwise each row is of an object of its own
   std::optional<Distortion> image_distortion = std::nullopt;  // see Sequence
   std::vector<std::filesystem::path> files;                   // that were read
+  std::vector<Finding> findings = {};                         // of the files themselves
 };
 
 }  // namespace soslam

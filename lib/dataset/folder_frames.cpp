@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <variant>
 
 #include "base/error.h"
+#include "dataset/dataset_checks.h"
 #include "dataset/icl_nuim.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_trajectory.h"
@@ -79,8 +81,11 @@ ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size
 }
 
 ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
-                       const std::vector<ListedImage>& images) {
+                       const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
   const std::vector<TimedPose> trajectory = ReadTimedPoses(path, options);
+  std::ranges::move(
+      CheckTimestamps(images, trajectory, path.filename().string(), options.max_time_difference_s),
+      std::back_inserter(*findings));
   ImagePoses poses;
   size_t matched = 0;
   double largest_s = 0.0;
@@ -99,10 +104,10 @@ ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
 }
 
 ImagePoses ReadPoses(const fs::path& path, const ImportOptions& options,
-                     const std::vector<ListedImage>& images) {
+                     const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
   return options.folder.trajectory_format == TrajectoryFormat::kKitti
              ? PosesInOrder(path, options, images.size())
-             : PosesByTime(path, options, images);
+             : PosesByTime(path, options, images, findings);
 }
 
 // Moves all estimates together so that the first one with a true pose is that.
@@ -154,13 +159,14 @@ std::vector<ListedImage> ListImages(const DatasetFiles& files, const ImportOptio
 
 std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetFiles& files,
                                           const ImportOptions& options,
-                                          const std::vector<ListedImage>& images) {
-  ImagePoses estimates = ReadPoses(files.trajectory, options, images);
+                                          const std::vector<ListedImage>& images,
+                                          std::vector<Finding>* findings) {
+  ImagePoses estimates = ReadPoses(files.trajectory, options, images, findings);
   ImagePoses truth(images.size());
   if (files.groundtruth == files.trajectory) {
     truth = estimates;
   } else if (files.groundtruth) {
-    truth = ReadPoses(*files.groundtruth, options, images);
+    truth = ReadPoses(*files.groundtruth, options, images, findings);
   }
   if (options.folder.align_odometry) AlignAtFirst(truth, files.trajectory, &estimates);
   std::vector<ListedFrame> frames;

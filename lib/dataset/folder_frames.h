@@ -18,9 +18,11 @@ std::vector<ListedImage> ListImages(const DatasetFiles& files, const ImportOptio
                                     const std::vector<LabelledBox>& boxes);
 
 // A frame for each image, with the poses that are nearest in time, and says on stdout how many of
-// them have one. Only in format soslam the listed image files have to be there. Throws InputError.
+// them have one. Only in format soslam the listed image files have to be there. What time stamps
+// look wrong is added to `findings`. Throws InputError.
 std::vector<ListedFrame> ReadFolderFrames(const std::filesystem::path& folder,
                                           const DatasetFiles& files, const ImportOptions& options,
-                                          const std::vector<ListedImage>& images);
+                                          const std::vector<ListedImage>& images,
+                                          std::vector<Finding>* findings);
 
 }  // namespace soslam

@@ -2,6 +2,7 @@
 #include "dataset/import.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "dataset/bound_edges.h"
+#include "dataset/dataset_checks.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
 #include "dataset/hold_out.h"
@@ -171,10 +173,22 @@ void DropUndetectedObjects(Sequence* sequence) {
   }
 }
 
+// Refuses what cannot be right: all that was found in one message.
+void RefuseErrors(const std::filesystem::path& folder, const std::vector<Finding>& findings) {
+  std::vector<std::string> errors;
+  for (const Finding& finding : findings) {
+    if (finding.severity == Severity::kError) errors.push_back(InWords(finding));
+  }
+  if (errors.empty()) return;
+  throw InputError(fmt::format("{}: {}", folder.string(), fmt::join(errors, "; also: ")));
+}
+
 void RequireDetections(const std::filesystem::path& folder, const Sequence& sequence) {
   if (!sequence.detections.empty()) return;
-  throw NothingUsableError(fmt::format("{}: no usable detection left; {}", folder.string(),
-                                       DescribeRejections(sequence.rejected_detections)));
+  std::string message = fmt::format("{}: no usable detection left; {}", folder.string(),
+                                    DescribeRejections(sequence.rejected_detections));
+  for (const Finding& finding : sequence.findings) message += "; " + InWords(finding);
+  throw NothingUsableError(message);
 }
 
 }  // namespace
@@ -193,6 +207,8 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.objects = content.objects;
   sequence.rejected_detections = content.rejected;
   Importer(content, options, &sequence).Import();
+  sequence.findings = CheckDataset({folder, options, content, sequence});
+  RefuseErrors(folder, sequence.findings);
   sequence = HoldOutFrames(std::move(sequence), options.held_out);
   RequireDetections(folder, sequence);
   if (!content.has_object_ids) DropUndetectedObjects(&sequence);

@@ -18,8 +18,9 @@ namespace soslam {
 // kitti_object (ReadKittiObject), slam_synthetic (ReadSlamSynthetic).
 //
 // `files_read`, when not null, becomes the list of the files that were read. Throws InputError,
-// naming file and line or field, for whatever is missing, malformed or contradictory; SettingsError
-// for options that cannot be; NothingUsableError when no detection is left.
+// naming file and line or field, for whatever is missing, malformed, contradictory or cannot be
+// right (see CheckDataset); SettingsError for options that cannot be; NothingUsableError when no
+// detection is left.
 Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options,
                        std::vector<std::filesystem::path>* files_read = nullptr);
 

@@ -39,7 +39,7 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   content.camera = camera.camera;
   content.image_distortion = camera.distortion;
   if (files.planes) content.planes = ReadPlanes(*files.planes);
-  content.frames = ReadFolderFrames(folder, files, options, images);
+  content.frames = ReadFolderFrames(folder, files, options, images, &content.findings);
   content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected);
   content.has_object_ids = !boxes.object_ids.empty();
   if (camera.distortion) {

@@ -9,8 +9,10 @@
 #include <functional>
 #include <sstream>
 
+#include "artefact/findings_json.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
+#include "base/one_line.h"
 #include "base/table.h"
 #include "inspection/kinds.h"
 #include "inspection/provenance.h"
@@ -58,6 +60,16 @@ const Kind& FindKind(const std::string& name, const std::string& file) {
                                fmt::join(known, ", ")));
 }
 
+std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
+  std::vector<Fact> facts;
+  if (IsHdf5(file)) return facts;
+  for (const Finding& finding : FindingsFromJson(ParseJsonFile(file))) {
+    facts.push_back(
+        {kSeverityNames[static_cast<size_t>(finding.severity)], OneLine(InWords(finding))});
+  }
+  return facts;
+}
+
 // Broken between words where it is too wide; lines after the first are indented.
 std::string Wrapped(const std::string& text, size_t indent) {
   std::istringstream words(text);
@@ -87,6 +99,7 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   try {
     const std::vector<Fact> provenance = Provenance(header);
     inspection.facts.insert(inspection.facts.begin(), provenance.begin(), provenance.end());
+    std::ranges::move(FindingFacts(file), std::back_inserter(inspection.facts));
   } catch (const nlohmann::json::exception& error) {
     throw InputError(
         fmt::format("{}: the artefact header is not as expected: {}", file.string(), error.what()));

@@ -15,6 +15,7 @@
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -108,6 +109,8 @@ struct Sequence {
   std::vector<Detection> detections;
   std::vector<HeldOutFrame> held_out;              // by frame id; none of them in `frames`
   std::map<std::string, int> rejected_detections;  // reason -> how many
+  // What does not fit what it should be, of the data and of the stages so far.
+  std::vector<Finding> findings = {};
 
   const Frame& FrameOf(const Detection& detection) const {
     return frames[static_cast<size_t>(detection.frame_index)];

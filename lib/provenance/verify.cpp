@@ -43,10 +43,10 @@ class Verifier {
  private:
   void Add(const fs::path& file, const std::string& problem,
            const std::vector<std::string>& variants) {
-    result_.findings.push_back({fmt::format("{}: {}", file.string(), problem), variants});
+    result_.discrepancies.push_back({fmt::format("{}: {}", file.string(), problem), variants});
   }
 
-  // Instead of a finding for each of its files.
+  // Instead of a discrepancy for each of its files.
   void AddDataset() {
     std::vector<std::string> all;
     for (const VariantRuns& variant : dataset_.variants) all.push_back(variant.name);
@@ -71,7 +71,7 @@ class Verifier {
         Add(run.folder, "its last run failed: " + record.error, run.variants);
       }
     } catch (const InputError& error) {
-      result_.findings.push_back({error.what(), run.variants});
+      result_.discrepancies.push_back({error.what(), run.variants});
     }
   }
 
@@ -90,7 +90,7 @@ class Verifier {
   // The folder of a variant shows the artefacts of its runs, of each the last one of that name.
   void CheckVariant(const VariantRuns& variant) {
     if (!variant.problem.empty()) {
-      result_.findings.push_back({variant.problem, {variant.name}});
+      result_.discrepancies.push_back({variant.problem, {variant.name}});
       return;
     }
     std::map<fs::path, std::string> makers;  // run by file name

@@ -23,13 +23,13 @@ class FileDigests {
 };
 
 // Something that does not match its record.
-struct Finding {
+struct Discrepancy {
   std::string text;                   // one line: which file, what of it
   std::vector<std::string> variants;  // whose results it concerns
 };
 
 struct Verification {
-  std::vector<Finding> findings;
+  std::vector<Discrepancy> discrepancies;
   size_t files = 0;  // that were compared
 };
 

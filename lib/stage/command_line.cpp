@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/freed_memory.h"
+#include "base/one_line.h"
 #include "base/progress.h"
 #include "dataset/image_path.h"
 #include "stage/help.h"
@@ -133,35 +134,6 @@ std::vector<SettingsLayer> LayersOf(const ParsedArguments& parsed,
   }
   layers.push_back({"command line", "command line", values});
   return layers;
-}
-
-// Begin and end of a text in UTF-8, which have its place and what was expected.
-std::string WithoutMiddle(const std::string& text) {
-  constexpr size_t kMaxHalf = 1000;
-  if (text.size() <= 2 * kMaxHalf) return text;
-  const auto is_inside_character = [&](size_t i) { return (text[i] & 0xC0) == 0x80; };
-  size_t begin = kMaxHalf;
-  size_t end = text.size() - kMaxHalf;
-  while (begin > 0 && is_inside_character(begin)) --begin;
-  while (end < text.size() && is_inside_character(end)) ++end;
-  return text.substr(0, begin) + " ... " + text.substr(end);
-}
-
-// As one line that a terminal takes for text: messages quote files, which may hold anything.
-std::string OneLine(std::string text) {
-  text.erase(text.find_last_not_of('\n') + 1);
-  std::string line;
-  for (const char character : text) {
-    const bool is_control = static_cast<unsigned char>(character) < 0x20 || character == 0x7F;
-    if (character == '\n') {
-      line += ' ';
-    } else if (is_control) {
-      line += fmt::format("\\x{:02x}", static_cast<unsigned char>(character));
-    } else {
-      line += character;
-    }
-  }
-  return WithoutMiddle(line);
 }
 
 struct Failure {

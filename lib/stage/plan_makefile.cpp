@@ -34,8 +34,9 @@ OUTSIDE_PATHS ?=
 LAUNCH ?=
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: all {variants} FORCE
+.PHONY: all imports {variants} FORCE
 all: {variants}
+imports: {imports}
 FORCE:
 
 dry_run := $(findstring n,$(firstword -$(MAKEFLAGS)))$(findstring q,$(firstword -$(MAKEFLAGS)))
@@ -70,6 +71,7 @@ class Writer {
     std::string text =
         fmt::format(kPreamble, fmt::arg("pipelines", folders_.pipelines.string()),
                     fmt::arg("variants", fmt::join(names, " ")), fmt::arg("dataset", dataset_),
+                    fmt::arg("imports", fmt::join(ImportStamps(), " ")),
                     fmt::arg("results", folders_.results.string()),
                     fmt::arg("dataset_folder", folders_.dataset.string()));
     for (const VariantChain& variant : plan_.variants) text += VariantRules(variant);
@@ -127,6 +129,14 @@ class Writer {
         fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
         fmt::arg("variants", fmt::join(instance.variants, " ")),
         fmt::arg("command", Command(instance)));
+  }
+
+  std::vector<std::string> ImportStamps() const {
+    std::vector<std::string> stamps;
+    for (const StageInstance& instance : plan_.instances) {
+      if (instance.stage == "import") stamps.push_back(Shared(instance.Id(), "done"));
+    }
+    return stamps;
   }
 
   // A goal for each job of a cluster, one for what it needs from the trunk, and which instances it

@@ -6,6 +6,7 @@
 #include "artefact/sequence_file.h"
 #include "dataset/gate.h"
 #include "dataset/import.h"
+#include "stage/report_findings.h"
 
 namespace soslam {
 
@@ -13,6 +14,7 @@ void RunImport(const ImportOptions& options, const StageFiles& files, int /*thre
   const auto& folder = files.at("dataset");
   std::vector<std::filesystem::path> inputs;
   const Sequence sequence = ImportDataset(folder, options, &inputs);
+  ReportFindings("import", sequence.findings);
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
              sequence.frames.size(), sequence.objects.size(), sequence.detections.size(),

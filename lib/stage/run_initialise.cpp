@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <map>
 
 #include "artefact/landmarks_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "evaluation/result_checks.h"
 #include "initialisation/initialise.h"
+#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {
@@ -78,8 +81,11 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
     throw NothingUsableError(fmt::format("{}: no landmark from {} tries:{}",
                                          files.at("sequence").string(), tried, reasons));
   }
+  std::vector<Finding> findings = CheckFailures(estimates);
+  std::ranges::move(CheckSizes(estimates, sequence, table), std::back_inserter(findings));
+  ReportFindings("initialise", findings);
   WriteLandmarks(files.at("output"), estimates, sequence,
-                 {OptionsToJson(options), {files.at("sequence"), files.at("table")}});
+                 {OptionsToJson(options), {files.at("sequence"), files.at("table")}, findings});
   fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one:" : "", reasons);
 }
 

@@ -16,9 +16,11 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "evaluation/result_checks.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
 #include "orientation/texture_asymmetry.h"
+#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {
@@ -96,8 +98,8 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
   CheckImageOptions(options, files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
-  const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
-                                   options.ratio_prior, options.shape);
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
+  const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input{sequence, {}, priors, {}, {}};
   if (options.symmetry || options.edge_alignment) {
@@ -116,6 +118,11 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
     info.inputs.push_back(files.at("edges"));
   }
   const MapEstimate map = OptimiseMap(input, options, threads);
+  info.findings = CheckSizes({{}, map.objects}, sequence, table);
+  if (options.detection_model == DetectionModel::kTangency) {
+    std::ranges::move(CheckCost(map.solver), std::back_inserter(info.findings));
+  }
+  ReportFindings("optimise", info.findings);
   WriteMap(files.at("output"), map, sequence, info);
   fmt::print("{} iterations, cost {:.6g} -> {:.6g}{}\n", map.solver.iterations,
              map.solver.initial_cost, map.solver.final_cost,

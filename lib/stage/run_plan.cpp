@@ -128,6 +128,14 @@ void PrintImpossible(const fs::path& pipelines, const std::string& dataset,
 
 }  // namespace
 
+std::vector<std::string> PlannedVariants(const fs::path& pipelines, const fs::path& results) {
+  std::vector<std::string> variants = VariantNames(pipelines);
+  std::erase_if(variants, [&](const std::string& variant) {
+    return !Exists(results / variant / "stages.txt");
+  });
+  return variants;
+}
+
 std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::string& name,
                                           const fs::path& dataset) {
   std::vector<std::string> variants = VariantNames(pipelines);

@@ -30,6 +30,11 @@ std::vector<std::string> PossibleVariants(const std::filesystem::path& pipelines
                                           const std::string& name,
                                           const std::filesystem::path& dataset);
 
+// Those of the variants in folder `pipelines` that have been planned in folder `results` of a
+// dataset.
+std::vector<std::string> PlannedVariants(const std::filesystem::path& pipelines,
+                                         const std::filesystem::path& results);
+
 // Resolves the variants that folder "pipelines" defines for the dataset in folder "dataset". Under
 // <results>/<name> it writes, each only when its content changes: plan.mk, see PlanMakefile;
 // shared/<stage>-<key>/settings.json; shared/dataset.txt and shared/images.txt, which list the

@@ -11,6 +11,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "evaluation/result_checks.h"
 #include "image/line_segments.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
@@ -18,6 +19,7 @@
 #include "planes/estimate_planes.h"
 #include "planes/level_trajectory.h"
 #include "stage/frame_images.h"
+#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {
@@ -203,6 +205,10 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   }
   ArtefactInfo info = {OptionsToJson(options), {files.at("sequence")}};
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
+  if (options.planes == PlaneSource::kEstimated) {
+    info.findings = CheckPlaneCount(result.estimate.planes.size(), sequence.objects.size());
+  }
+  ReportFindings("planes", info.findings);
   WritePlanes(files.at("report"), result.estimate, sequence, info);
   WriteSequence(files.at("output"), result.sequence, info);
   fmt::print("{}: {} planes of {} objects\n", sequence.name, result.estimate.planes.size(),

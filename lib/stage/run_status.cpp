@@ -38,7 +38,7 @@ class Status {
       : name_(std::move(name)), folders_(ReadPlanFolders(files.at("results") / name_ / "plan.mk")) {
     folders_.results = files.at("results") / name_;
     // So that changed settings and files count; without the dataset the last plan has to do.
-    const std::vector<std::string> planned = PlannedVariants();
+    const std::vector<std::string> planned = PlannedVariants(folders_.pipelines, folders_.results);
     if (IsFolder(folders_.dataset) && !planned.empty()) {
       RunPlan({.name = name_, .variants = fmt::format("{}", fmt::join(planned, " "))},
               {{"dataset", folders_.dataset},
@@ -90,16 +90,8 @@ class Status {
   std::vector<std::string> Variants(const StatusOptions& options) const {
     const std::vector<std::string> variants = SplitAtSpaces(options.variants);
     if (!variants.empty()) return variants;
-    if (!IsFolder(folders_.dataset)) return PlannedVariants();
+    if (!IsFolder(folders_.dataset)) return PlannedVariants(folders_.pipelines, folders_.results);
     return PossibleVariants(folders_.pipelines, name_, folders_.dataset);
-  }
-
-  std::vector<std::string> PlannedVariants() const {
-    std::vector<std::string> variants = VariantNames(folders_.pipelines);
-    std::erase_if(variants, [this](const std::string& variant) {
-      return !Exists(folders_.results / variant / "stages.txt");
-    });
-    return variants;
   }
 
   const InstanceState& StateOf(const StageInstance& instance) const {

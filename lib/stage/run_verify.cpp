@@ -14,8 +14,8 @@ namespace soslam {
 namespace {
 
 void Print(const DatasetRuns& dataset, const Verification& verification) {
-  for (const Finding& finding : verification.findings) {
-    fmt::print("{} ({})\n", finding.text, fmt::join(finding.variants, ", "));
+  for (const Discrepancy& discrepancy : verification.discrepancies) {
+    fmt::print("{} ({})\n", discrepancy.text, fmt::join(discrepancy.variants, ", "));
   }
   for (const std::string& run : dataset.unused) {
     fmt::print("{}: no variant uses it any more; not compared\n", (dataset.results / run).string());
@@ -24,8 +24,8 @@ void Print(const DatasetRuns& dataset, const Verification& verification) {
 
 std::vector<Cell> Row(const DatasetRuns& dataset, const Verification& verification) {
   std::set<std::string> affected;
-  for (const Finding& finding : verification.findings) {
-    affected.insert(finding.variants.begin(), finding.variants.end());
+  for (const Discrepancy& discrepancy : verification.discrepancies) {
+    affected.insert(discrepancy.variants.begin(), discrepancy.variants.end());
   }
   const std::string names =
       affected.empty() ? kNoValue : fmt::format("{}", fmt::join(affected, " "));
@@ -34,7 +34,7 @@ std::vector<Cell> Row(const DatasetRuns& dataset, const Verification& verificati
           fmt::format("{}", dataset.runs.size() + dataset.exports.size()),
           fmt::format("{}", dataset.unused.size()),
           fmt::format("{}", verification.files),
-          fmt::format("{}", verification.findings.size())};
+          fmt::format("{}", verification.discrepancies.size())};
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ int RunVerify(const VerifyOptions& /*options*/, const StageFiles& files, int /*t
     const Verification verification = Verify(dataset);
     Print(dataset, verification);
     table.rows.push_back(Row(dataset, verification));
-    has_findings = has_findings || !verification.findings.empty();
+    has_findings = has_findings || !verification.discrepancies.empty();
   }
   fmt::print("{}", ToMarkdown(table));
   return has_findings ? kFindings : static_cast<int>(ExitCode::kDone);

@@ -81,7 +81,8 @@ TEST_F(FolderFormatsTest, SaysHowManyImagesHaveAPose) {
                              testing::HasSubstr("1 have none within 20 ms"),
                              testing::HasSubstr("3 of 4 image files are not there")));
   options_.max_time_difference_s = 0.003;
-  ExpectError<NothingUsableError>([&] { Import(); }, {"frame_without_pose 4"});
+  ExpectError<InputError>([&] { Import(); },
+                          {"0 of 4 images have a pose of", "max_time_difference_s"});
 }
 
 TEST_F(FolderFormatsTest, FirstFrameAndStrideThinTheList) {

@@ -72,13 +72,13 @@ class VerifyTest : public testing::Test {
   DatasetRuns Runs(const fs::path& data_root = {}) const {
     return FindRuns(folder_ / "results", data_root).at(0);
   }
-  std::vector<Finding> Findings(const fs::path& data_root = {}) const {
-    return Verify(Runs(data_root)).findings;
+  std::vector<Discrepancy> Findings(const fs::path& data_root = {}) const {
+    return Verify(Runs(data_root)).discrepancies;
   }
   static auto Says(const std::string& file, const std::string& what,
                    const std::vector<std::string>& variants) {
-    return AllOf(Field(&Finding::text, AllOf(HasSubstr(file), HasSubstr(what))),
-                 Field(&Finding::variants, variants));
+    return AllOf(Field(&Discrepancy::text, AllOf(HasSubstr(file), HasSubstr(what))),
+                 Field(&Discrepancy::variants, variants));
   }
 
   TemporaryFolder folder_;
@@ -97,7 +97,7 @@ TEST_F(VerifyTest, FindsRunsInTheirOrderWithTheirVariants) {
 
 TEST_F(VerifyTest, AllIsWell) {
   const Verification verification = Verify(Runs());
-  EXPECT_THAT(verification.findings, IsEmpty());
+  EXPECT_THAT(verification.discrepancies, IsEmpty());
   EXPECT_EQ(verification.files, 4u);
 }
 
@@ -132,7 +132,7 @@ TEST_F(VerifyTest, ADatasetThatIsNotThereIsOneFindingAndMayHaveMoved) {
 TEST_F(VerifyTest, MovedResultsAreStillWell) {
   fs::create_directory(folder_ / "elsewhere");
   fs::rename(folder_ / "results", folder_ / "elsewhere/of another name");
-  EXPECT_THAT(Verify(FindRuns(folder_ / "elsewhere/of another name", {}).at(0)).findings,
+  EXPECT_THAT(Verify(FindRuns(folder_ / "elsewhere/of another name", {}).at(0)).discrepancies,
               IsEmpty());
 }
 

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "dataset/dataset_checks.h"
+
+namespace soslam {
+namespace {
+
+// The four numbers of a box as its file has them, and as what they could be meant.
+using FourNumbers = std::array<double, 4>;
+
+Box FromCorners(const FourNumbers& v) { return {v[0], v[1], v[2], v[3]}; }
+Box FromCornerAndSize(const FourNumbers& v) { return {v[0], v[1], v[0] + v[2], v[1] + v[3]}; }
+Box FromCentreAndSize(const FourNumbers& v) {
+  return {v[0] - 0.5 * v[2], v[1] - 0.5 * v[3], v[0] + 0.5 * v[2], v[1] + 0.5 * v[3]};
+}
+
+struct BoxConvention {
+  const char* name;
+  Box (*read)(const FourNumbers&);
+  FourNumbers (*write)(const Box&);
+};
+constexpr std::array kConventions = {
+    BoxConvention{"two corners (x1, y1, x2, y2)", &FromCorners,
+                  [](const Box& b) {
+                    return FourNumbers{b.x_min, b.y_min, b.x_max, b.y_max};
+                  }},
+    BoxConvention{"upper left corner and size (x, y, width, height)", &FromCornerAndSize,
+                  [](const Box& b) {
+                    return FourNumbers{b.x_min, b.y_min, b.Width(), b.Height()};
+                  }},
+    BoxConvention{"centre and size (cx, cy, width, height)", &FromCentreAndSize, [](const Box& b) {
+                    return FourNumbers{b.Centre().x(), b.Centre().y(), b.Width(), b.Height()};
+                  }}};
+
+const BoxConvention& ConventionOf(const ImportOptions& options) {
+  switch (options.folder.detections_format) {
+    case DetectionsFormat::kCoco:
+    case DetectionsFormat::kYoloPixels:
+      return kConventions[1];
+    case DetectionsFormat::kYolo:
+      return kConventions[2];
+    default:
+      return kConventions[0];
+  }
+}
+
+// Has an area, and lies in the image up to a few per cent, which detectors and roundings take.
+bool IsPlausible(const Box& box, const Camera& camera) {
+  constexpr double kMargin = 0.03;
+  const double margin_x = kMargin * camera.width;
+  const double margin_y = kMargin * camera.height;
+  return box.Width() > 0.0 && box.Height() > 0.0 && box.x_min >= -margin_x &&
+         box.y_min >= -margin_y && box.x_max <= camera.width + margin_x &&
+         box.y_max <= camera.height + margin_y;
+}
+
+int CountPlausible(const std::vector<Box>& boxes, const Camera& camera,
+                   const std::function<Box(const Box&)>& reading) {
+  return static_cast<int>(std::ranges::count_if(
+      boxes, [&](const Box& box) { return IsPlausible(reading(box), camera); }));
+}
+
+// The convention with which nearly all boxes lie in the image; null when none has them there.
+const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camera& camera,
+                                      const BoxConvention& assumed) {
+  constexpr double kNearlyAll = 0.98;
+  const BoxConvention* best = nullptr;
+  int most = static_cast<int>(kNearlyAll * static_cast<double>(boxes.size()));
+  for (const BoxConvention& other : kConventions) {
+    if (other.name == assumed.name) continue;
+    const int plausible = CountPlausible(
+        boxes, camera, [&](const Box& box) { return other.read(assumed.write(box)); });
+    if (plausible <= most) continue;
+    best = &other;
+    most = plausible;
+  }
+  return best;
+}
+
+// How far boxes reach to the right and down.
+Eigen::Vector2d Extent(const std::vector<Box>& boxes) {
+  Eigen::Vector2d extent = Eigen::Vector2d::Zero();
+  for (const Box& box : boxes) extent = extent.cwiseMax(Eigen::Vector2d(box.x_max, box.y_max));
+  return extent;
+}
+
+std::vector<Finding> CheckFractions(const std::vector<Box>& boxes, const Camera& camera) {
+  constexpr double kLargestFraction = 1.5;
+  const Eigen::Vector2d extent = Extent(boxes);
+  if (boxes.empty() || extent.maxCoeff() > kLargestFraction) return {};
+  return {
+      {"box_unit", Severity::kError,
+       fmt::format("all numbers of {} boxes are at most {:.3g}", boxes.size(), extent.maxCoeff()),
+       fmt::format("boxes in pixels of an image of {} x {}", camera.width, camera.height),
+       "boxes as fractions of the image",
+       "multiply x by the width and y by the height of the image, or set detections_format to "
+       "yolo where its layout fits"}};
+}
+
+std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera& camera,
+                                     const ImportOptions& options) {
+  constexpr int kFewest = 3;
+  constexpr double kTolerated = 0.03;
+  constexpr double kMostly = 0.75;
+  const auto all = static_cast<double>(boxes.size());
+  const int plausible = CountPlausible(boxes, camera, [](const Box& box) { return box; });
+  const int bad = static_cast<int>(boxes.size()) - plausible;
+  if (bad < kFewest || bad <= kTolerated * all) return {};
+  const BoxConvention& assumed = ConventionOf(options);
+  const bool is_mostly_right = plausible > kMostly * all;
+  const Eigen::Vector2d extent = Extent(boxes);
+  Finding finding{
+      "box_convention",
+      is_mostly_right ? Severity::kWarning : Severity::kError,
+      fmt::format("{} of {} boxes, read as {}, have no area or reach out of the image of "
+                  "{} x {} (up to {:.0f}, {:.0f})",
+                  bad, boxes.size(), assumed.name, camera.width, camera.height, extent.x(),
+                  extent.y()),
+      "boxes in the image",
+      "",
+      ""};
+  if (const BoxConvention* better = BetterConvention(boxes, camera, assumed)) {
+    finding.cause = fmt::format("boxes that are meant as {}", better->name);
+    finding.remedy = fmt::format("write {}, or name the right detections_format", assumed.name);
+    return {finding};
+  }
+  finding.cause = "boxes of images of another size, or of another camera";
+  finding.remedy = fmt::format(
+      "give boxes in pixels of {} x {}, or the camera of the images that "
+      "the detector saw",
+      camera.width, camera.height);
+  return {finding};
+}
+
+// Boxes of images that were made smaller end where those images do.
+std::vector<Finding> CheckUnusedPart(const std::vector<Box>& boxes, const Camera& camera) {
+  constexpr size_t kFewest = 30;
+  constexpr double kLargestPart = 0.7;
+  const Eigen::Vector2d extent = Extent(boxes);
+  const Eigen::Vector2d part = extent.cwiseQuotient(Eigen::Vector2d(camera.width, camera.height));
+  if (boxes.size() < kFewest || part.maxCoeff() > kLargestPart) return {};
+  return {
+      {"box_extent", Severity::kWarning,
+       fmt::format("none of {} boxes reaches farther than {:.0f}, {:.0f} in an image of {} x {}",
+                   boxes.size(), extent.x(), extent.y(), camera.width, camera.height),
+       "boxes all over the image", "boxes of images that were made smaller than the camera's",
+       fmt::format("give boxes and camera of one image size (boxes times {:.3g})",
+                   1.0 / part.maxCoeff())}};
+}
+
+}  // namespace
+
+std::vector<Finding> CheckBoxes(const ImportView& view) {
+  const bool is_folder = view.options.format == DatasetFormat::kSoslam ||
+                         view.options.format == DatasetFormat::kTumRgbd ||
+                         view.options.format == DatasetFormat::kIclNuim;
+  if (!is_folder) return {};  // the others say what their boxes are
+  std::vector<Box> boxes;
+  for (const DetectionRow& row : view.content.rows) {
+    boxes.push_back(row.box_in_image_file.value_or(row.box));
+  }
+  const Camera& camera = view.content.camera;
+  std::vector<Finding> findings = CheckFractions(boxes, camera);
+  if (findings.empty()) findings = CheckConvention(boxes, camera, view.options);
+  if (findings.empty()) findings = CheckUnusedPart(boxes, camera);
+  return findings;
+}
+
+std::vector<Finding> CheckScores(const ImportView& view) {
+  const std::vector<DetectionRow>& rows = view.content.rows;
+  const auto outside = std::ranges::count_if(
+      rows, [](const DetectionRow& row) { return row.score < 0.0 || row.score > 1.0; });
+  if (outside == 0) return {};
+  const auto [lowest, highest] = std::ranges::minmax(rows, {}, &DetectionRow::score);
+  return {{"scores", Severity::kWarning,
+           fmt::format("{} of {} scores are outside 0 to 1 ({:g} to {:g})", outside, rows.size(),
+                       lowest.score, highest.score),
+           "scores from 0 to 1", "per cent, or a network's output before the sigmoid",
+           "give scores as probabilities; min_score counts on them"}};
+}
+
+}  // namespace soslam

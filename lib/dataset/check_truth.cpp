@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "dataset/dataset_checks.h"
+#include "dataset/pose_readings.h"
+#include "evaluation/statistics.h"
+
+namespace soslam {
+namespace {
+
+// An estimated and a true pose of one frame, world_from_camera.
+struct PosePair {
+  Rigid3d estimated;
+  Rigid3d truth;
+};
+
+std::vector<PosePair> Pairs(const ImportView& view) {
+  std::vector<PosePair> pairs;
+  for (const ListedFrame& listed : view.content.frames) {
+    const auto& truth = listed.frame.true_world_from_camera;
+    if (listed.has_pose && truth) pairs.push_back({listed.frame.world_from_camera, *truth});
+  }
+  return pairs;
+}
+
+// How far apart two trajectories are, medians over frames.
+struct Gap {
+  double rotation_deg = 0.0;
+  double translation_m = 0.0;
+};
+
+Gap GapOf(const std::vector<PosePair>& pairs) {
+  std::vector<double> rotations, translations;
+  for (const auto& [estimated, truth] : pairs) {
+    rotations.push_back(estimated.rotation.angularDistance(truth.rotation) * 180.0 /
+                        std::numbers::pi);
+    translations.push_back((estimated.translation - truth.translation).norm());
+  }
+  return {*MedianOf(rotations), *MedianOf(translations)};
+}
+
+std::string InWords(const Gap& gap) {
+  return fmt::format("{:.2f} m and {:.1f} degrees", gap.translation_m, gap.rotation_deg);
+}
+
+// The length of the true path (m), in which drift is measured.
+double PathLength(const std::vector<PosePair>& pairs) {
+  double length = 0.0;
+  for (size_t i = 1; i < pairs.size(); ++i) {
+    length += (pairs[i].truth.translation - pairs[i - 1].truth.translation).norm();
+  }
+  return length;
+}
+
+// Whether the gap is what odometry drifts.
+bool IsDrift(const Gap& gap, double path_length_m) {
+  constexpr double kMostDeg = 20.0;
+  constexpr double kMostShare = 0.2;
+  constexpr double kLeastM = 0.1;
+  return gap.rotation_deg <= kMostDeg &&
+         gap.translation_m <= std::max(kLeastM, kMostShare * path_length_m);
+}
+
+std::vector<PosePair> ReadAs(const PoseReading& reading, std::vector<PosePair> pairs) {
+  for (PosePair& pair : pairs) pair.estimated = reading.Apply(pair.estimated);
+  return pairs;
+}
+
+// With the world of the estimates moved so that the first pose is the true one.
+std::vector<PosePair> AlignedAtFirst(std::vector<PosePair> pairs) {
+  const Rigid3d true_from_estimated = pairs.front().truth * pairs.front().estimated.Inverse();
+  for (PosePair& pair : pairs) pair.estimated = true_from_estimated * pair.estimated;
+  return pairs;
+}
+
+void Explain(const std::vector<PosePair>& pairs, double length_m, Finding* finding) {
+  const auto fits = [&](const std::vector<PosePair>& read) {
+    return IsDrift(GapOf(read), length_m);
+  };
+  for (const PoseReading& reading : PoseReadings()) {
+    const auto read = ReadAs(reading, pairs);
+    if (!fits(read)) continue;
+    finding->cause = fmt::format("{} (the gap is {} if the poses are {})", reading.cause,
+                                 InWords(GapOf(read)), reading.name);
+    finding->remedy = reading.remedy;
+    return;
+  }
+  if (fits(AlignedAtFirst(pairs))) {
+    finding->cause = "odometry in a world of its own, as of SLAM, beside a true one";
+    finding->remedy = "set align_odometry";
+    return;
+  }
+  for (const PoseReading& reading : PoseReadings()) {
+    if (!fits(AlignedAtFirst(ReadAs(reading, pairs)))) continue;
+    finding->cause = fmt::format("{}, in a world of its own", reading.cause);
+    finding->remedy = fmt::format("{}; set align_odometry", reading.remedy);
+    return;
+  }
+  finding->cause =
+      "poses of another recording, of another scale, or with a convention of their own";
+  finding->remedy =
+      "give poses world_from_camera, in metres, quaternion qx qy qz qw, and set "
+      "align_odometry where their world is their own";
+}
+
+}  // namespace
+
+std::vector<Finding> CheckTruth(const ImportView& view) {
+  constexpr size_t kFewest = 3;
+  const std::vector<PosePair> pairs = Pairs(view);
+  if (pairs.size() < kFewest) return {};
+  const Gap gap = GapOf(pairs);
+  const double length_m = PathLength(pairs);
+  if (IsDrift(gap, length_m)) return {};
+  Finding finding{
+      "trajectory_against_truth",
+      Severity::kWarning,
+      fmt::format("estimated and true poses are {} apart (median of {} frames; {} at the "
+                  "first one), on a path of {:.2f} m",
+                  InWords(gap), pairs.size(), InWords(GapOf({pairs.front()})), length_m),
+      "two trajectories of one world, apart by no more than drift",
+      "",
+      ""};
+  Explain(pairs, length_m, &finding);
+  return {finding};
+}
+
+}  // namespace soslam

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dataset/dataset_content.h"
+#include "dataset/import_options.h"
+#include "dataset/tum_list.h"
+#include "model/finding.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// What the checks of a dataset look at: what its reader found, and what the gates left of it.
+struct ImportView {
+  const std::filesystem::path& folder;
+  const ImportOptions& options;
+  const DatasetContent& content;
+  const Sequence& sequence;
+};
+
+// The mistakes that people make with such data, looked for in the data themselves (one file for
+// each of these). All checks return what they find; they throw nothing.
+
+// Intrinsics against themselves: normalised, in millimetres, of another image size.
+std::vector<Finding> CheckCamera(const ImportView& view);
+// The camera's image size against the headers of the image files.
+std::vector<Finding> CheckImages(const ImportView& view);
+// Boxes as another convention or another image size would have them.
+std::vector<Finding> CheckBoxes(const ImportView& view);
+// Scores outside 0 to 1.
+std::vector<Finding> CheckScores(const ImportView& view);
+// Gates that drop more than a third of the detections.
+std::vector<Finding> CheckRejections(const ImportView& view);
+// The trajectory against the true one: inverse, another world, another order of the quaternion.
+std::vector<Finding> CheckTruth(const ImportView& view);
+// The poses against the boxes: the same, and frames counted from 1.
+std::vector<Finding> CheckPoses(const ImportView& view);
+// The support plane of most objects against cameras and objects.
+std::vector<Finding> CheckPlanes(const ImportView& view);
+
+// The time stamps of images against those of a trajectory, which is not empty.
+std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
+                                     const std::vector<TimedPose>& trajectory,
+                                     const std::string& trajectory_file, double max_difference_s);
+
+// All checks of a dataset, errors first, those of its reader among them.
+std::vector<Finding> CheckDataset(const ImportView& view);
+
+}  // namespace soslam

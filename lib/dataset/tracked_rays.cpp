@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/tracked_rays.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "evaluation/statistics.h"
+
+namespace soslam {
+namespace {
+
+constexpr size_t kFewestRays = 3;
+
+bool IsWhole(const Box& box, const Camera& camera) {
+  constexpr double kCutPx = 2.0;
+  return box.Width() > 0.0 && box.Height() > 0.0 &&
+         DistanceToBorder(box, camera.width, camera.height) > kCutPx;
+}
+
+// The labels that no frame has twice.
+std::map<std::string, bool> SingleLabels(const std::vector<DetectionRow>& rows) {
+  std::map<std::pair<std::string, int>, int> counts;
+  for (const DetectionRow& row : rows) ++counts[{row.label, row.frame_id}];
+  std::map<std::string, bool> is_single;
+  for (const auto& [key, count] : counts) {
+    const bool is_first = !is_single.contains(key.first);
+    is_single[key.first] = (is_first || is_single[key.first]) && count == 1;
+  }
+  return is_single;
+}
+
+}  // namespace
+
+std::vector<std::vector<TrackedRay>> TrackedRays(const ImportView& view) {
+  const DatasetContent& content = view.content;
+  std::map<int, size_t> frame_index;
+  for (size_t i = 0; i < content.frames.size(); ++i) frame_index[content.frames[i].frame.id] = i;
+  auto is_single = SingleLabels(content.rows);
+  std::map<std::string, std::vector<TrackedRay>> by_thing;
+  for (const DetectionRow& row : content.rows) {
+    const Box box = row.box_in_image_file.value_or(row.box);
+    if (!IsWhole(box, content.camera)) continue;
+    if (!content.has_object_ids && !is_single[row.label]) continue;
+    const std::string thing = content.has_object_ids ? std::to_string(row.object_id) : row.label;
+    const Eigen::Vector3d ray = content.camera.Ray(row.box.Centre()).normalized();
+    by_thing[thing].push_back({frame_index.at(row.frame_id), ray});
+  }
+  std::vector<std::vector<TrackedRay>> things;
+  for (auto& [thing, rays] : by_thing) {
+    if (rays.size() > kFewestRays) things.push_back(std::move(rays));
+  }
+  return things;
+}
+
+std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>& rays,
+                                                   const PoseOfFrame& world_from_camera) {
+  constexpr double kSmallestEigenvalue = 1e-4;  // rays within half a degree of each other
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  size_t count = 0;
+  for (const TrackedRay& ray : rays) {
+    const auto pose = world_from_camera(ray.frame);
+    if (!pose) continue;
+    const Eigen::Vector3d direction = pose->rotation * ray.ray_in_camera;
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - direction * direction.transpose();
+    sum += across;
+    right += across * pose->translation;
+    ++count;
+  }
+  if (count < kFewestRays) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(sum / static_cast<double>(count));
+  if (eigen.eigenvalues()(0) < kSmallestEigenvalue) return std::nullopt;
+  return sum.ldlt().solve(right);
+}
+
+std::optional<double> MedianRayError(const std::vector<std::vector<TrackedRay>>& things,
+                                     const PoseOfFrame& world_from_camera) {
+  std::vector<double> errors;
+  for (const std::vector<TrackedRay>& rays : things) {
+    const auto point_in_world = NearestPointInWorld(rays, world_from_camera);
+    if (!point_in_world) continue;
+    for (const TrackedRay& ray : rays) {
+      const auto pose = world_from_camera(ray.frame);
+      if (!pose) continue;
+      const Eigen::Vector3d towards = pose->Inverse() * *point_in_world;
+      errors.push_back(
+          std::atan2(ray.ray_in_camera.cross(towards).norm(), ray.ray_in_camera.dot(towards)));
+    }
+  }
+  return MedianOf(errors);
+}
+
+}  // namespace soslam

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/result_checks.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "evaluation/statistics.h"
+
+namespace soslam {
+namespace {
+
+// The heights (m) of each object's landmarks, by index into Sequence::objects.
+std::map<int, std::vector<double>> HeightsByObject(const LandmarkEstimates& estimates,
+                                                   const Sequence& sequence) {
+  std::map<int, std::vector<double>> heights;
+  for (const ObservationEstimate& observation : estimates.observations) {
+    if (observation.hypotheses.empty()) continue;
+    const auto index = static_cast<size_t>(observation.detection_index);
+    heights[sequence.detections[index].object_index].push_back(
+        2.0 * observation.hypotheses.front().landmark_in_camera.half_axes.z());
+  }
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (!object.landmark_in_world) continue;
+    heights[object.object_index] = {2.0 * object.landmark_in_world->half_axes.z()};
+  }
+  return heights;
+}
+
+// How many times as high as its label's median an object is.
+struct RelativeHeight {
+  std::string name;  // of the object
+  double log_ratio = 0.0;
+  double log_sigma = 0.0;  // of its label
+};
+
+std::vector<RelativeHeight> RelativeHeights(const LandmarkEstimates& estimates,
+                                            const Sequence& sequence, const SemanticTable& table) {
+  std::vector<RelativeHeight> relative;
+  for (const auto& [index, heights] : HeightsByObject(estimates, sequence)) {
+    const Object& object = sequence.objects[static_cast<size_t>(index)];
+    const auto prior = table.Find(object.label);
+    if (!prior || !prior->height_m || prior->mount != Mount::kStanding) continue;
+    relative.push_back({fmt::format("{} ({})", object.id, object.label),
+                        std::log(*MedianOf(heights) / prior->height_m->median),
+                        prior->height_m->log_sigma});
+  }
+  return relative;
+}
+
+// The factor that all objects have in common, when their labels' spreads do not explain it.
+std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
+  constexpr size_t kFewest = 3;
+  constexpr double kSmallestFactor = 1.5;
+  constexpr double kSigmas = 3.0;
+  constexpr double kMedianSigma = 1.25;  // of a median of n normal values: 1.25 sigma / sqrt(n)
+  if (relative.size() < kFewest) return {};
+  std::vector<double> log_ratios, log_sigmas;
+  for (const RelativeHeight& object : relative) {
+    log_ratios.push_back(object.log_ratio);
+    log_sigmas.push_back(object.log_sigma);
+  }
+  const double log_factor = *MedianOf(log_ratios);
+  const double sigma =
+      kMedianSigma * *MedianOf(log_sigmas) / std::sqrt(static_cast<double>(relative.size()));
+  const double least = std::max(std::log(kSmallestFactor), kSigmas * sigma);
+  if (std::abs(log_factor) <= least) return {};
+  return {{"scale", Severity::kWarning,
+           fmt::format("{} objects are {:.3g} times as high as their labels' things (median)",
+                       relative.size(), std::exp(log_factor)),
+           fmt::format("a factor of {:.2f} to {:.2f}", std::exp(-least), std::exp(least)),
+           "a trajectory whose unit is not the metre, as of a single camera",
+           fmt::format("multiply the translations of the trajectory by about {:.3g}; all sizes and "
+                       "distances of the map are of the trajectory's unit",
+                       std::exp(-log_factor))}};
+}
+
+std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relative) {
+  constexpr double kMultiple = 3.0;
+  constexpr double kSigmas = 3.0;
+  constexpr size_t kMostNames = 5;
+  std::vector<std::string> odd;
+  for (const RelativeHeight& object : relative) {
+    const double deviation = std::abs(object.log_ratio);
+    if (deviation <= std::max(std::log(kMultiple), kSigmas * object.log_sigma)) continue;
+    odd.push_back(fmt::format("{} {:.3g} times", object.name, std::exp(object.log_ratio)));
+  }
+  if (odd.empty()) return {};
+  const size_t count = odd.size();
+  if (count > kMostNames) odd.resize(kMostNames);
+  return {
+      {"object_size", Severity::kWarning,
+       fmt::format("{} of {} objects are not as high as their label's things: {}{}", count,
+                   relative.size(), fmt::join(odd, ", "), count > kMostNames ? ", ..." : ""),
+       "at most three times as high or low, or three standard deviations of the label",
+       "boxes of several things under one id, a wrong label, a wrong plane, or views that do not "
+       "tell the size",
+       "look at these objects' boxes: soslam-inspect, or the report page"}};
+}
+
+}  // namespace
+
+std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
+  size_t failed = 0;
+  std::map<std::string, int> reasons;
+  const auto count = [&](bool has_failed, const std::string& reason) {
+    if (!has_failed) return;
+    ++failed;
+    ++reasons[reason];
+  };
+  for (const auto& observation : estimates.observations) {
+    count(observation.hypotheses.empty(), observation.failure);
+  }
+  for (const auto& object : estimates.objects) count(!object.landmark_in_world, object.failure);
+  const size_t tries = estimates.observations.size() + estimates.objects.size();
+  if (3 * failed <= tries) return {};
+  std::string words;
+  for (const auto& [reason, number] : reasons) words += fmt::format(" {} {}", reason, number);
+  return {
+      {"failures", Severity::kWarning,
+       fmt::format("{} of {} tries gave no landmark:{}", failed, tries, words),
+       "a landmark from two tries of three at least",
+       "poses the other way round, planes or boxes of another convention, another camera, or too "
+       "few views",
+       "look at the findings of the import, then at boxes and planes in an image: soslam-inspect"}};
+}
+
+std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
+                                const SemanticTable& table) {
+  const auto relative = RelativeHeights(estimates, sequence, table);
+  std::vector<Finding> findings = CheckScale(relative);
+  if (findings.empty()) findings = CheckSingleSizes(relative);
+  return findings;
+}
+
+std::vector<Finding> CheckCost(const SolverSummary& solver) {
+  constexpr double kByChance = 2.0;  // half a square for each of four edges
+  constexpr double kFarAbove = 10.0;
+  const auto boxes = solver.residuals.find("detection");
+  if (boxes == solver.residuals.end() || boxes->second == 0) return {};
+  const double times = solver.final_cost / (kByChance * boxes->second);
+  if (times <= kFarAbove) return {};
+  return {
+      {"cost", Severity::kWarning,
+       fmt::format("the cost left is {:.4g} of {} boxes, {:.3g} times what their noise gives by "
+                   "chance",
+                   solver.final_cost, boxes->second, times),
+       fmt::format("less than {:g} times", kFarAbove),
+       "boxes of several things under one id, poses or planes that contradict the boxes, or "
+       "another camera",
+       "look at the findings of the import and at the boxes of the objects with the largest "
+       "errors: soslam-inspect, or the report page"}};
+}
+
+std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {
+  constexpr size_t kFewest = 3;
+  if (planes < kFewest || 5 * planes < 3 * objects) return {};
+  return {
+      {"plane_count", Severity::kWarning, fmt::format("{} planes of {} objects", planes, objects),
+       "several objects on each plane",
+       "an up direction that is wrong, as of cameras that were rolled, or poses that contradict "
+       "the boxes",
+       "look at up and its standard deviation in planes.json; give planes.json where it is known"}};
+}
+
+}  // namespace soslam

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The usual mistakes, each in a dataset that is right but for it.
+#include "dataset/dataset_checks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/error.h"
+#include "dataset/import.h"
+#include "support/dataset_fixture.h"
+#include "support/plausible_dataset.h"
+
+namespace soslam {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class DatasetChecksTest : public testing::Test {
+ protected:
+  DatasetChecksTest() { options.border_px = 0; }
+
+  // The warnings, each as "check: in words".
+  std::vector<std::string> Warnings() {
+    dataset.Write(folder);
+    std::vector<std::string> warnings;
+    for (const Finding& finding : ImportDataset(folder, options).findings) {
+      warnings.push_back(finding.check + ": " + InWords(finding));
+    }
+    return warnings;
+  }
+
+  // What import says when it refuses the dataset.
+  std::string Refusal() {
+    dataset.Write(folder);
+    try {
+      ImportDataset(folder, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  void WriteImages(int width, int height) {
+    std::filesystem::create_directories(folder / "rgb");
+    const cv::Mat image(height, width, CV_8UC1, cv::Scalar(128));
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      cv::imwrite((folder / fmt::format("rgb/{:06}.png", frame)).string(), image);
+    }
+  }
+
+  // Boxes in a file of COCO's results.
+  void WriteCoco(const std::function<std::array<double, 4>(const Box&)>& numbers) {
+    nlohmann::json results = nlohmann::json::array();
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      for (size_t ball = 0; ball < PlausibleDataset::Labels().size(); ++ball) {
+        results.push_back({{"image_id", frame},
+                           {"category_id", 62},
+                           {"score", 0.9},
+                           {"bbox", numbers(dataset.BoxOf(ball, frame))}});
+      }
+    }
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "boxes.json") << results.dump();
+    options.detections = "boxes.json";
+    options.folder.detections_format = DetectionsFormat::kCoco;
+  }
+
+  PlausibleDataset dataset;
+  ImportOptions options;
+  std::filesystem::path folder = FreshTestFolder() / "small";
+};
+
+TEST_F(DatasetChecksTest, NothingIsFoundWhereNothingIsWrong) {
+  dataset.has_truth = true;
+  WriteImages(640, 480);
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, NothingIsFoundWithoutObjectIds) {
+  dataset.has_object_ids = false;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// Cameras.
+
+TEST_F(DatasetChecksTest, ImagesOfAnotherSize) {
+  WriteImages(320, 240);
+  EXPECT_THAT(Refusal(),
+              AllOf(HasSubstr("24 of 24 images are of 320 x 240"), HasSubstr("640 x 480"),
+                    HasSubstr("smaller or larger"), HasSubstr("times 0.5")));
+}
+
+TEST_F(DatasetChecksTest, ImagesOfSwappedSides) {
+  WriteImages(480, 640);
+  EXPECT_THAT(Refusal(), HasSubstr("width and height swapped"));
+}
+
+TEST_F(DatasetChecksTest, CameraOfSwappedSides) {
+  dataset.written_camera = {480, 640, 500.0, 500.0, 319.5, 239.5};
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("swapped"), HasSubstr("width 640, height 480")));
+}
+
+TEST_F(DatasetChecksTest, IntrinsicsOfLargerImages) {
+  dataset.written_camera = {640, 480, 1000.0, 1000.0, 639.5, 479.5};
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("images 2 times as large"),
+                               HasSubstr("divide fx, fy, cx, cy by 1.99")));
+}
+
+TEST_F(DatasetChecksTest, IntrinsicsAsFractions) {
+  dataset.written_camera = {640, 480, 0.78, 1.04, 0.5, 0.5};
+  EXPECT_THAT(Refusal(), HasSubstr("fractions of the image"));
+}
+
+TEST_F(DatasetChecksTest, FocalLengthInMillimetres) {
+  dataset.written_camera = {640, 480, 4.2, 4.2, 319.5, 239.5};
+  EXPECT_THAT(Refusal(), HasSubstr("millimetres"));
+}
+
+TEST_F(DatasetChecksTest, PrincipalPointOutsideOfTheImage) {
+  dataset.written_camera = {640, 480, 500, 500, 319.5, 700.0};
+  EXPECT_THAT(Refusal(), HasSubstr("another camera"));
+}
+
+// Without images only the boxes tell.
+TEST_F(DatasetChecksTest, CameraOfLargerImagesThanTheBoxes) {
+  dataset.written_camera = {1280, 960, 1000.0, 1000.0, 639.5, 479.5};
+  EXPECT_THAT(Warnings(), testing::Contains(AllOf(HasSubstr("box_extent"), HasSubstr("1280 x 960"),
+                                                  HasSubstr("made smaller"))));
+}
+
+// Boxes.
+
+TEST_F(DatasetChecksTest, SizesWhereCornersBelong) {
+  dataset.box = [](const Box& b) {
+    return std::array<double, 4>{b.x_min, b.y_min, b.Width(), b.Height()};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("meant as upper left corner and size"));
+}
+
+TEST_F(DatasetChecksTest, CornersWhereSizesBelong) {
+  WriteCoco([](const Box& b) { return std::array{b.x_min, b.y_min, b.x_max, b.y_max}; });
+  EXPECT_THAT(Refusal(), HasSubstr("meant as two corners"));
+}
+
+// Boxes on the right of the image reach out of it.
+TEST_F(DatasetChecksTest, CentresWhereCornersBelong) {
+  WriteCoco([](const Box&) { return std::array{500.0, 300.0, 200.0, 150.0}; });
+  EXPECT_THAT(Refusal(), HasSubstr("meant as centre and size"));
+}
+
+TEST_F(DatasetChecksTest, BoxesAsFractions) {
+  dataset.box = [](const Box& b) {
+    return std::array{b.x_min / 640, b.y_min / 480, b.x_max / 640, b.y_max / 480};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("fractions of the image"));
+}
+
+TEST_F(DatasetChecksTest, BoxesOfLargerImages) {
+  dataset.box = [](const Box& b) {
+    return std::array{3 * b.x_min, 3 * b.y_min, 3 * b.x_max, 3 * b.y_max};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("images of another size"));
+}
+
+TEST_F(DatasetChecksTest, ScoresInPerCent) {
+  dataset.score = "87";
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("115 of 115 scores"), HasSubstr("per cent"))));
+}
+
+TEST_F(DatasetChecksTest, BoxesThatTheBorderGateDrops) {
+  options.border_px = 200;
+  options.min_observations = 1;
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("rejected_near_border"), HasSubstr("border_px"))));
+}
+
+// Poses.
+
+struct WrittenPose {
+  std::string name;
+  Rigid3d (*write)(const Rigid3d& world_from_camera);
+  std::string words;
+};
+
+void PrintTo(const WrittenPose& pose, std::ostream* stream) { *stream << pose.name; }
+
+Eigen::Quaterniond WithScalarFirst(const Eigen::Quaterniond& q) {
+  return Eigen::Quaterniond(/*w=*/q.z(), /*x=*/q.w(), /*y=*/q.x(), /*z=*/q.y());
+}
+
+class PoseConventionTest : public DatasetChecksTest,
+                           public testing::WithParamInterface<WrittenPose> {};
+
+TEST_P(PoseConventionTest, IsNamed) {
+  dataset.odometry = GetParam().write;
+  EXPECT_THAT(Refusal(), HasSubstr(GetParam().words));
+}
+
+TEST_P(PoseConventionTest, IsNamedWithoutObjectIds) {
+  dataset.has_object_ids = false;
+  dataset.odometry = GetParam().write;
+  EXPECT_THAT(Refusal(), HasSubstr(GetParam().words));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, PoseConventionTest,
+    testing::Values(
+        WrittenPose{"Inverse", [](const Rigid3d& pose) { return pose.Inverse(); },
+                    "the other way round"},
+        WrittenPose{"ScalarFirst",
+                    [](const Rigid3d& pose) {
+                      return Rigid3d{WithScalarFirst(pose.rotation), pose.translation};
+                    },
+                    "quaternions qw qx qy qz"},
+        WrittenPose{"Colmap",
+                    [](const Rigid3d& pose) {
+                      const Rigid3d inverse = pose.Inverse();
+                      return Rigid3d{WithScalarFirst(inverse.rotation), inverse.translation};
+                    },
+                    "COLMAP's images.txt"},
+        WrittenPose{
+            "OpenGl",
+            [](const Rigid3d& pose) {
+              return Rigid3d{pose.rotation * Eigen::Quaterniond(0, 1, 0, 0), pose.translation};
+            },
+            "OpenGL"}),
+    [](const auto& info) { return info.param.name; });
+
+TEST_F(DatasetChecksTest, FramesFromOne) {
+  dataset.first_row = 1;
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("frame_numbers"), HasSubstr("counted from 1"),
+                                            HasSubstr("subtract 1"))));
+}
+
+TEST_F(DatasetChecksTest, OdometryInItsOwnWorld) {
+  dataset.has_truth = true;
+  const Rigid3d own_from_world = dataset.WorldFromCamera(0).Inverse();
+  dataset.odometry = [=](const Rigid3d& pose) { return own_from_world * pose; };
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("trajectory_against_truth"),
+                                            HasSubstr("align_odometry"))));
+  options.folder.align_odometry = true;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// Planes.
+
+TEST_F(DatasetChecksTest, NormalThatPointsDown) {
+  dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("from below"), HasSubstr("sign of the normal")));
+}
+
+TEST_F(DatasetChecksTest, OffsetOfTheOtherSign) {
+  dataset.height_of_floor = -2.0;
+  dataset.plane = R"([{"id": 0, "normal": [0, 0, 1], "d": -2}])";
+  EXPECT_THAT(Refusal(), HasSubstr("d of the other sign"));
+}
+
+TEST_F(DatasetChecksTest, WallForFloor) {
+  dataset.plane = R"([{"id": 0, "normal": [1, 0, 0], "d": 5}])";
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("plane_attitude"), HasSubstr("a wall"))));
+}
+
+TEST_F(DatasetChecksTest, AFloorSeenByARolledCameraIsNoWall) {
+  dataset.roll_rad = 0.5 * std::numbers::pi;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// Clocks.
+
+TEST_F(DatasetChecksTest, PosesInNanoseconds) {
+  dataset.pose_time = [](double t) { return fmt::format("{:.0f}", 1e9 * t); };
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("0 of 24 images"), HasSubstr("poses in nanoseconds"),
+                               HasSubstr("ratio 1e+09"), HasSubstr("divide")));
+}
+
+TEST_F(DatasetChecksTest, ImagesInMilliseconds) {
+  dataset.image_time = [](double t) { return fmt::format("{:.0f}", 1e3 * t); };
+  EXPECT_THAT(Refusal(), HasSubstr("images in milliseconds"));
+}
+
+TEST_F(DatasetChecksTest, BothInNanoseconds) {
+  dataset.image_time = [](double t) { return fmt::format("{:.0f}", 1e9 * (t + 1.7e9)); };
+  dataset.pose_time = [](double t) { return fmt::format("{:.0f}", 1e9 * (t + 1.7e9) + 3e6); };
+  EXPECT_THAT(Refusal(), HasSubstr("images and poses in nanoseconds"));
+}
+
+TEST_F(DatasetChecksTest, AnotherClock) {
+  dataset.pose_time = [](double t) { return fmt::format("{:.6f}", t + 5000.0); };
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("other clocks"), HasSubstr("5000.000 apart")));
+}
+
+TEST_F(DatasetChecksTest, EqualTimestamps) {
+  dataset.image_time = [](double t) { return fmt::format("{:.0f}", std::floor(t)); };
+  options.max_time_difference_s = 0.6;
+  EXPECT_THAT(Warnings(), testing::Contains(
+                              AllOf(HasSubstr("equal_timestamps"), HasSubstr("12 of 24 images"))));
+}
+
+}  // namespace
+}  // namespace soslam

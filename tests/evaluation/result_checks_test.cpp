@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/result_checks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace soslam {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Objects of label "crate", which are 0.5 m high give or take a fifth.
+class ResultChecksTest : public testing::Test {
+ protected:
+  ResultChecksTest() {
+    ShapePrior crate;
+    crate.height_m = LogNormal{0.5, 0.2};
+    table.priors["crate"] = crate;
+  }
+
+  // One object of each height.
+  std::string SizeFindings(const std::vector<double>& heights) {
+    LandmarkEstimates estimates;
+    Sequence sequence;
+    for (size_t i = 0; i < heights.size(); ++i) {
+      Object crate;
+      crate.id = static_cast<int>(i) + 10;
+      crate.label = "crate";
+      sequence.objects.push_back(crate);
+      ObjectEstimate estimate;
+      estimate.object_index = static_cast<int>(i);
+      estimate.landmark_in_world = Landmark();
+      estimate.landmark_in_world->half_axes = {0.2, 0.2, 0.5 * heights[i]};
+      estimates.objects.push_back(estimate);
+    }
+    std::string words;
+    for (const Finding& finding : CheckSizes(estimates, sequence, table)) {
+      words += finding.check + ": " + InWords(finding);
+    }
+    return words;
+  }
+
+  SemanticTable table;
+};
+
+TEST_F(ResultChecksTest, SizesWithinTheirLabelsSpread) {
+  EXPECT_THAT(SizeFindings({0.4, 0.5, 0.6, 0.45, 0.7}), IsEmpty());
+}
+
+TEST_F(ResultChecksTest, AllObjectsOffByOneFactor) {
+  EXPECT_THAT(SizeFindings({0.14, 0.15, 0.16, 0.15}),
+              AllOf(HasSubstr("scale: 4 objects are 0.3 times as high"), HasSubstr("about 3.3")));
+  EXPECT_THAT(SizeFindings({14, 15, 16, 15}), HasSubstr("30 times as high"));
+}
+
+TEST_F(ResultChecksTest, OneObjectThatIsAMultiple) {
+  EXPECT_THAT(SizeFindings({0.5, 0.5, 0.5, 2.0}),
+              AllOf(HasSubstr("object_size: 1 of 4 objects"), HasSubstr("13 (crate) 4 times")));
+}
+
+TEST_F(ResultChecksTest, LabelsWithoutAHeightSayNothing) {
+  table.priors["crate"].height_m.reset();
+  EXPECT_THAT(SizeFindings({14, 15, 16, 15}), IsEmpty());
+}
+
+TEST(CheckFailuresTest, MoreThanAThirdWithoutALandmark) {
+  LandmarkEstimates estimates;
+  for (int i = 0; i < 3; ++i) estimates.observations.push_back({i, {{Landmark(), 0.0}}, ""});
+  estimates.observations[0] = {0, {}, "no_solution"};
+  EXPECT_THAT(CheckFailures(estimates), IsEmpty());
+  estimates.observations[1] = {1, {}, "no_solution"};
+  ASSERT_EQ(CheckFailures(estimates).size(), 1u);
+  EXPECT_EQ(CheckFailures(estimates)[0].found, "2 of 3 tries gave no landmark: no_solution 2");
+}
+
+// Four edges that are off by one standard deviation each cost 2 a box.
+TEST(CheckCostTest, FarAboveWhatNoiseGives) {
+  SolverSummary solver;
+  solver.residuals["detection"] = 10;
+  solver.final_cost = 199.0;
+  EXPECT_THAT(CheckCost(solver), IsEmpty());
+  solver.final_cost = 210.0;
+  ASSERT_EQ(CheckCost(solver).size(), 1u);
+  EXPECT_THAT(CheckCost(solver)[0].found, HasSubstr("210 of 10 boxes, 10.5 times"));
+}
+
+TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
+  EXPECT_THAT(CheckPlaneCount(2, 2), IsEmpty());
+  EXPECT_THAT(CheckPlaneCount(4, 24), IsEmpty());
+  ASSERT_EQ(CheckPlaneCount(4, 5).size(), 1u);
+  EXPECT_EQ(CheckPlaneCount(4, 5)[0].found, "4 planes of 5 objects");
+}
+
+TEST(WorstFirstTest, ErrorsComeFirstAndNothingComesTwice) {
+  const Finding warning{"a", Severity::kWarning, "found", "expected", "cause", "remedy"};
+  Finding error = warning;
+  error.severity = Severity::kError;
+  EXPECT_EQ(WorstFirst({warning, error, warning}), (std::vector<Finding>{error, warning}));
+}
+
+}  // namespace
+}  // namespace soslam

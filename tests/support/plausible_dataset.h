@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// A dataset without a mistake: a camera on an arc around five balls on a floor (z =
+// height_of_floor), which looks at their middle. A test changes what its files say.
+struct PlausibleDataset {
+  static constexpr int kFrames = 24;
+  static constexpr double kRadius = 0.2;  // of the balls (m)
+
+  Camera camera{640, 480, 500.0, 500.0, 319.5, 239.5};  // that took the images
+  double height_of_floor = 0.0;
+  double roll_rad = 0.0;  // of the camera
+
+  // What the files say.
+  Camera written_camera = camera;
+  std::function<Rigid3d(const Rigid3d&)> odometry = [](const Rigid3d& pose) { return pose; };
+  std::function<std::array<double, 4>(const Box&)> box = [](const Box& b) {
+    return std::array<double, 4>{b.x_min, b.y_min, b.x_max, b.y_max};
+  };
+  bool has_object_ids = true;
+  int first_row = 0;  // the number of the first image
+  std::string score = "0.9";
+  std::string plane = R"([{"id": 0, "normal": [0, 0, 1], "d": 0}])";
+  bool has_truth = false;
+  std::function<std::string(double)> image_time = [](double t) { return fmt::format("{:.6f}", t); };
+  std::function<std::string(double)> pose_time = [](double t) { return fmt::format("{:.6f}", t); };
+
+  Rigid3d WorldFromCamera(int frame) const {
+    const double angle = 0.3 + 1.4 * frame / kFrames;
+    const Eigen::Vector3d centre(3.0 * std::cos(angle), 3.0 * std::sin(angle),
+                                 height_of_floor + 1.4 + 0.1 * std::sin(5.0 * angle));
+    const Eigen::Vector3d forward =
+        (Eigen::Vector3d(0.1, 0.0, height_of_floor + 0.3) - centre).normalized();
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Matrix3d axes;
+    axes << right, forward.cross(right), forward;
+    const Eigen::AngleAxisd roll(roll_rad, Eigen::Vector3d::UnitZ());
+    return {Eigen::Quaterniond(axes) * roll, centre};
+  }
+
+  static std::vector<std::string> Labels() { return {"ball", "cup", "vase", "bowl", "bottle"}; }
+
+  Eigen::Vector3d BallInWorld(size_t ball) const {
+    const double angle = 0.7 + 1.26 * static_cast<double>(ball);
+    return {0.7 * std::cos(angle), 0.7 * std::sin(angle), height_of_floor + kRadius};
+  }
+
+  Box BoxOf(size_t ball, int frame) const {
+    const Eigen::Vector3d point = WorldFromCamera(frame).Inverse() * BallInWorld(ball);
+    const Eigen::Vector2d pixel = *camera.Project(point);
+    const double half = camera.fx * kRadius / point.z();
+    return {pixel.x() - half, pixel.y() - half, pixel.x() + half, pixel.y() + half};
+  }
+
+  void Write(const std::filesystem::path& folder) const {
+    std::filesystem::create_directories(folder);
+    const auto write = [&](const std::string& name, const std::string& text) {
+      std::ofstream(folder / name, std::ios::binary) << text;
+    };
+    const Camera& c = written_camera;
+    write("camera.json",
+          fmt::format(R"({{"width": {}, "height": {}, "fx": {}, "fy": {}, "cx": {}, "cy": {}}})",
+                      c.width, c.height, c.fx, c.fy, c.cx, c.cy));
+    write("planes.json", plane);
+    std::string images, poses, truth;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const double time = 100.0 + 0.5 * frame;
+      images += fmt::format("{} rgb/{:06}.png\n", image_time(time), frame);
+      poses += PoseLine(pose_time(time), odometry(WorldFromCamera(frame)));
+      truth += PoseLine(image_time(time), WorldFromCamera(frame));
+    }
+    write("rgb.txt", images);
+    write("odometry.txt", poses);
+    if (has_truth) write("groundtruth.txt", truth);
+    write("detections.csv", Detections());
+  }
+
+ private:
+  static std::string PoseLine(const std::string& time, const Rigid3d& pose) {
+    const Eigen::Quaterniond& q = pose.rotation;
+    const Eigen::Vector3d& t = pose.translation;
+    return fmt::format("{} {} {} {} {} {} {} {}\n", time, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
+                       q.w());
+  }
+
+  std::string Detections() const {
+    std::string text = has_object_ids ? "frame,object_id,label,score,x1,y1,x2,y2\n"
+                                      : "frame,label,score,x1,y1,x2,y2\n";
+    // One image fewer than there are, so that numbers from 1 stay within the list.
+    for (int frame = 0; frame + 1 < kFrames; ++frame) {
+      for (size_t ball = 0; ball < Labels().size(); ++ball) {
+        const auto [a, b, c, d] = box(BoxOf(ball, frame));
+        const std::string id = has_object_ids ? fmt::format("{},", ball + 1) : "";
+        text += fmt::format("{},{}{},{},{},{},{},{}\n", frame + first_row, id, Labels()[ball],
+                            score, a, b, c, d);
+      }
+    }
+    return text;
+  }
+};
+
+}  // namespace soslam
