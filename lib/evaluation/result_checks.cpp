@@ -105,9 +105,12 @@ std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relativ
 }  // namespace
 
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
-  size_t failed = 0;
+  int tries = 0;
+  int failed = 0;
   std::map<std::string, int> reasons;
   const auto count = [&](bool has_failed, const std::string& reason) {
+    if (has_failed && reason == kMovingObject) return;
+    ++tries;
     if (!has_failed) return;
     ++failed;
     ++reasons[reason];
@@ -116,7 +119,6 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
     count(observation.hypotheses.empty(), observation.failure);
   }
   for (const auto& object : estimates.objects) count(!object.landmark_in_world, object.failure);
-  const size_t tries = estimates.observations.size() + estimates.objects.size();
   if (3 * failed <= tries) return {};
   std::string words;
   for (const auto& [reason, number] : reasons) words += fmt::format(" {} {}", reason, number);
@@ -130,9 +132,10 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
 }
 
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
-                                const SemanticTable& table) {
+                                const SemanticTable& table, SizesFrom sizes_from) {
   const auto relative = RelativeHeights(estimates, sequence, table);
-  std::vector<Finding> findings = CheckScale(relative);
+  std::vector<Finding> findings;
+  if (sizes_from == SizesFrom::kSupport) findings = CheckScale(relative);
   if (findings.empty()) findings = CheckSingleSizes(relative);
   return findings;
 }

@@ -12,13 +12,18 @@ namespace soslam {
 
 // What results say about themselves, without ground truth: whether they are to be trusted.
 
-// Tries that gave no landmark, when they are more than a third.
+// Tries that gave no landmark, when they are more than a third; those of moving objects do not
+// count.
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates);
 
+// Whether support planes and ratios tell sizes, or views alone, which mostly cannot.
+enum class SizesFrom { kSupport, kViews };
+
 // The heights of landmarks against what their labels allow: one factor for all, as a wrong scale
-// gives, or single objects that are a multiple. The table's labels without a height do not count.
+// gives (with kSupport), or single objects that are a multiple. The table's labels without a height
+// do not count.
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
-                                const SemanticTable& table);
+                                const SemanticTable& table, SizesFrom sizes_from);
 
 // The cost that is left of boxes whose edges have a standard deviation, against what such boxes
 // leave by chance.

@@ -13,8 +13,6 @@ namespace soslam {
 namespace {
 
 constexpr size_t kMinViews = 3;
-// The failure of an object whose views show it in different places.
-constexpr const char* kMoving = "moving";
 
 std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
                                         const std::vector<int>& detections) {
@@ -102,7 +100,7 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     ObjectEstimate& object = estimates.objects[static_cast<size_t>(i)];
     const auto index = static_cast<size_t>(object.object_index);
     if (!sequence.objects[index].is_static) {
-      object.failure = kMoving;
+      object.failure = kMovingObject;
       return;
     }
     MultiViewObservation observation = MakeMultiViewObservation(
@@ -127,7 +125,7 @@ LandmarkEstimates InitialiseSvd(const Sequence& sequence) {
     object.object_index = static_cast<int>(i);
     object.observations = static_cast<int>(detections[i].size());
     if (!sequence.objects[i].is_static) {
-      object.failure = kMoving;
+      object.failure = kMovingObject;
     } else if (detections[i].size() < kMinViews) {
       object.failure = "fewer_than_three_views";
     } else if (const auto found =

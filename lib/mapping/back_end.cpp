@@ -68,7 +68,7 @@ void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEst
     object.object_index = static_cast<int>(i);
     object.observations = static_cast<int>(detections[i].size());
     if (!landmarks[i]) {
-      object.failure = input.sequence.objects[i].is_static ? "no_start" : "moving";
+      object.failure = input.sequence.objects[i].is_static ? "no_start" : kMovingObject;
     } else if (HasExtent(*landmarks[i])) {
       object.landmark_in_world = landmarks[i];
     } else {

@@ -30,6 +30,9 @@ struct ObservationEstimate {
   std::string failure;
 };
 
+// The failure of an object that is not known to stand still, which has no place in the map.
+inline constexpr const char* kMovingObject = "moving";
+
 using Covariance9 = Eigen::Matrix<double, 9, 9>;
 
 // What all observations of an object together say about it. Covariance over (rotation vector in the

@@ -38,13 +38,14 @@ class ResultChecksTest : public testing::Test {
       estimates.objects.push_back(estimate);
     }
     std::string words;
-    for (const Finding& finding : CheckSizes(estimates, sequence, table)) {
+    for (const Finding& finding : CheckSizes(estimates, sequence, table, sizes_from)) {
       words += finding.check + ": " + InWords(finding);
     }
     return words;
   }
 
   SemanticTable table;
+  SizesFrom sizes_from = SizesFrom::kSupport;
 };
 
 TEST_F(ResultChecksTest, SizesWithinTheirLabelsSpread) {
@@ -55,6 +56,12 @@ TEST_F(ResultChecksTest, AllObjectsOffByOneFactor) {
   EXPECT_THAT(SizeFindings({0.14, 0.15, 0.16, 0.15}),
               AllOf(HasSubstr("scale: 4 objects are 0.3 times as high"), HasSubstr("about 3.3")));
   EXPECT_THAT(SizeFindings({14, 15, 16, 15}), HasSubstr("30 times as high"));
+}
+
+TEST_F(ResultChecksTest, ViewsAloneSayNothingAboutTheScale) {
+  sizes_from = SizesFrom::kViews;
+  EXPECT_THAT(SizeFindings({1.2, 1.2, 1.2}), IsEmpty());
+  EXPECT_THAT(SizeFindings({14, 15, 16, 15}), HasSubstr("object_size: 4 of 4 objects"));
 }
 
 TEST_F(ResultChecksTest, OneObjectThatIsAMultiple) {
