@@ -69,14 +69,16 @@ std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
       kMedianSigma * *MedianOf(log_sigmas) / std::sqrt(static_cast<double>(relative.size()));
   const double least = std::max(std::log(kSmallestFactor), kSigmas * sigma);
   if (std::abs(log_factor) <= least) return {};
-  return {{"scale", Severity::kWarning,
-           fmt::format("{} objects are {:.3g} times as high as their labels' things (median)",
-                       relative.size(), std::exp(log_factor)),
-           fmt::format("a factor of {:.2f} to {:.2f}", std::exp(-least), std::exp(least)),
-           "a trajectory whose unit is not the metre, as of a single camera",
-           fmt::format("multiply the translations of the trajectory by about {:.3g}; all sizes and "
-                       "distances of the map are of the trajectory's unit",
-                       std::exp(-log_factor))}};
+  return {
+      {"scale", Severity::kWarning,
+       fmt::format("{} objects are {:.3g} times as high as their labels' things (median)",
+                   relative.size(), std::exp(log_factor)),
+       fmt::format("a factor of {:.2f} to {:.2f}", std::exp(-least), std::exp(least)),
+       "a trajectory whose unit is not the metre, as of a single camera, or poses and planes that "
+       "contradict the boxes",
+       fmt::format("multiply the translations of the trajectory by about {:.3g}; all sizes and "
+                   "distances of the map are of the trajectory's unit",
+                   std::exp(-log_factor))}};
 }
 
 std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relative) {
