@@ -76,7 +76,7 @@ std::vector<Body> Furniture(const Scene& scene) {
   std::vector<Body> bodies;
   for (const ScenePlane& plane : scene.planes) {
     if (!plane.table) continue;
-    const Table& table = *plane.table;
+    const TableTop& table = *plane.table;
     const Rigid3d plane_from_table = {
         RotationAboutZ(table.yaw), {table.position_on_plane.x(), table.position_on_plane.y(), 0.0}};
     const Rigid3d world_from_table = WorldFromPlane(plane.plane_in_world) * plane_from_table;

@@ -15,7 +15,7 @@ namespace soslam {
 
 // The top of a table: a rectangular slab under its plane, with four legs. Drawn, and hides what is
 // behind it, but is not an object of the scene.
-struct Table {
+struct TableTop {
   Eigen::Vector2d position_on_plane = Eigen::Vector2d::Zero();  // of the slab's middle, metres
   Eigen::Vector2d half_size = Eigen::Vector2d::Ones();          // metres
   double yaw = 0.0;
@@ -30,7 +30,7 @@ struct ScenePlane {
   int id = 0;
   std::string label;
   Plane plane_in_world;
-  std::optional<Table> table;
+  std::optional<TableTop> table;
 };
 
 // A textured solid standing on a plane.

@@ -43,8 +43,8 @@ Camera ParseCamera(const json& document) {
           document.at("cx").get<double>(), document.at("cy").get<double>()};
 }
 
-Table ParseTable(const json& document) {
-  Table table;
+TableTop ParseTable(const json& document) {
+  TableTop table;
   table.position_on_plane = Vector2(document.at("position"));
   table.half_size = Vector2(document.at("half_size"));
   table.yaw = Radians(document.value("yaw_deg", 0.0));

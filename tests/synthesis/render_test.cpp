@@ -174,7 +174,7 @@ TEST(RenderFrame, NearObjectHidesFarOne) {
 
 TEST(RenderFrame, TableIsDrawnUnderItsObjects) {
   Scene scene = OneObject(Shape::kBox, 0.0);
-  scene.planes.push_back({1, "table", Plane{Eigen::Vector3d::UnitZ(), -0.3}, Table{}});
+  scene.planes.push_back({1, "table", Plane{Eigen::Vector3d::UnitZ(), -0.3}, TableTop{}});
   scene.planes[1].table->position_on_plane = {2.2, 0.0};
   scene.planes[1].table->half_size = {0.5, 0.6};
   scene.planes[1].table->leg_length = 0.26;

@@ -105,7 +105,7 @@ TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
 TEST(Simulate, ObjectBehindATableTopIsNotInSight) {
   Scene scene = Row();
   scene.trajectory.frames = 1;
-  scene.planes.push_back({9, "table", Plane{Eigen::Vector3d::UnitZ(), -0.45}, Table{}});
+  scene.planes.push_back({9, "table", Plane{Eigen::Vector3d::UnitZ(), -0.45}, TableTop{}});
   scene.planes[1].table->position_on_plane = {1.8, 0.0};
   scene.planes[1].table->half_size = {0.6, 2.0};
   EXPECT_TRUE(Simulate(scene, false).exact_boxes.empty());
