@@ -14,10 +14,12 @@
 #include "base/error.h"
 #include "report/page_curves.h"
 #include "report/page_differences.h"
+#include "report/page_findings.h"
 #include "report/page_fit.h"
 #include "report/page_html.h"
 #include "report/page_selection.h"
 #include "report/page_sequence.h"
+#include "report/page_tables.h"
 #include "report/page_variant.h"
 #include "report/variant_state.h"
 
@@ -34,11 +36,12 @@ constexpr double kLeastShareOfImages = 0.125;
 class DatasetPage {
  public:
   DatasetPage(const DatasetResult& dataset, const ImageSourceOf& images) : images_(images) {
-    data_ = {{"dataset", Utf8(dataset.name)}, {"url", UrlOf(dataset.name)},
-             {"images", json::object()},      {"sequences", json::array()},
-             {"symmetries", json::array()},   {"variants", json::array()},
-             {"unfinished", json::array()},   {"notes", json::array()},
-             {"problems", json::array()},     {"differences", PageDifferences(dataset)}};
+    data_ = {{"dataset", Utf8(dataset.name)},    {"url", UrlOf(dataset.name)},
+             {"images", json::object()},         {"sequences", json::array()},
+             {"symmetries", json::array()},      {"variants", json::array()},
+             {"unfinished", json::array()},      {"notes", json::array()},
+             {"problems", json::array()},        {"differences", PageDifferences(dataset)},
+             {"findings", PageFindings(dataset)}};
     for (const VariantResult& variant : dataset.variants) Add(variant);
   }
 
@@ -48,7 +51,8 @@ class DatasetPage {
     const ImageSource source = images_(first.sequence);
     const bool has_images = std::ranges::any_of(first.selection.shown, source.has);
     const auto least = static_cast<size_t>(kLeastShareOfImages * static_cast<double>(max_bytes));
-    FitPageData(max_bytes - (has_images ? least : 0), &data_);
+    FitPageData(max_bytes - (has_images ? least : 0), PageBytes, &data_);
+    data_["detailed"] = DetailedVariants(data_);
     if (!data_["sequences"].front()["frames"].empty()) {
       AddImages(first, source, max_bytes, threads);
     }
@@ -118,7 +122,7 @@ class DatasetPage {
   void AddImages(const LoadedSequence& first, const ImageSource& source, size_t max_bytes,
                  int threads) {
     constexpr size_t kBytesOfNotes = 20'000;
-    const size_t taken = PageText(data_).size() + kBytesOfNotes;
+    const size_t taken = PageBytes(data_) + kBytesOfNotes;
     const EncodedImages encoded = EncodeImages(first.selection.shown, source,
                                                max_bytes - std::min(max_bytes, taken), threads);
     for (const auto& [frame_index, base64] : encoded.images) {
@@ -159,7 +163,7 @@ json OverviewData(const std::vector<json>& pages) {
   json datasets = json::array();
   for (const json& page : pages) {
     json dataset = {{"counts", nullptr}, {"variants", json::array()}};
-    for (const char* key : {"dataset", "url", "unfinished", "notes", "problems"})
+    for (const char* key : {"dataset", "url", "unfinished", "notes", "problems", "findings"})
       dataset[key] = page.at(key);
     for (const json& variant : page.at("variants")) {
       json metrics = variant.at("metrics");

@@ -24,6 +24,7 @@ using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 //     whether there was room for its numbers_only; those with metrics that can be read, in order
 //   unfinished: name, state ("failed: ...", "incomplete: ...") and is_shown of variants that are
 //     not what was planned, or cannot be shown
+//   detailed: see DetailedVariants; findings: see PageFindings
 //   notes: sentences on what was left out for lack of room
 //   problems: sentences on images that cannot be shown
 //   differences: see PageDifferences

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "report/page_html.h"
-
 namespace soslam {
 namespace {
 
@@ -30,14 +28,13 @@ void KeepNumbersOnly(json* variant) {
 }
 
 // Of variants, as far as needed. Returns their names.
-std::vector<std::string> KeepNumbersOnlyOfSome(size_t bytes, size_t max_bytes, json* data) {
+std::vector<std::string> KeepNumbersOnlyOfSome(size_t max_bytes, const BytesOfPage& bytes_of,
+                                               json* data) {
   std::vector<std::string> names;
   for (const char* kind : {"frames", "views", "map"}) {
     for (json& variant : data->at("variants")) {
-      if (bytes <= max_bytes || variant.at("kind") != kind) continue;
-      bytes -= PageText(variant).size();
+      if (variant.at("kind") != kind || bytes_of(*data) <= max_bytes) continue;
       KeepNumbersOnly(&variant);
-      bytes += PageText(variant).size();
       names.push_back(variant.at("name"));
     }
   }
@@ -46,10 +43,10 @@ std::vector<std::string> KeepNumbersOnlyOfSome(size_t bytes, size_t max_bytes, j
 
 }  // namespace
 
-void FitPageData(size_t max_bytes, json* data) {
-  if (PageText(*data).size() <= max_bytes) return;
+void FitPageData(size_t max_bytes, const BytesOfPage& bytes_of, json* data) {
+  if (bytes_of(*data) <= max_bytes) return;
   LeaveOutCurves(data);
-  const auto reduced = KeepNumbersOnlyOfSome(PageText(*data).size(), max_bytes, data);
+  const auto reduced = KeepNumbersOnlyOfSome(max_bytes, bytes_of, data);
   if (reduced.empty()) return;
   data->at("notes").push_back(
       fmt::format("For lack of room only the numbers of {} are shown.", fmt::join(reduced, ", ")));

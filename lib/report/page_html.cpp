@@ -4,17 +4,22 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <stdexcept>
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
 
-void Replace(const std::string& placeholder, std::string_view by, std::string* text) {
-  const size_t at = text->find(placeholder);
-  if (at == std::string::npos) throw std::logic_error("page.html has no " + placeholder);
-  text->replace(at, placeholder.size(), by);
+// The text with the value of each {{name}}, in which nothing is replaced.
+std::string Filled(std::string_view text, const std::map<std::string, std::string>& values) {
+  std::string filled;
+  for (size_t begin = text.find("{{"); begin != std::string_view::npos; begin = text.find("{{")) {
+    const size_t end = text.find("}}", begin);
+    filled += text.substr(0, begin);
+    filled += values.at(std::string(text.substr(begin + 2, end - begin - 2)));
+    text.remove_prefix(end + 2);
+  }
+  return filled += text;
 }
 
 std::string Escaped(const std::string& text, char what, std::string_view by) {
@@ -51,23 +56,45 @@ std::string PageText(const json& data) {
   return Escaped(Dump(data), '<', "\\u003c");  // it would begin or end elements
 }
 
-std::string PageHtml(const std::string& title, const std::string& entry, const json& data) {
-  const auto& files = EmbeddedPageFiles();
-  std::string scripts;
-  // Libraries first; of ours the functions that others use.
-  for (const char* name :
-       {"three.min.js", "OrbitControls.js", "chart.min.js", "elements.js", "overlay.js",
-        "charts.js", "yaw_curves.js", "above.js", "bodies.js", "map.js", "figures.js", "objects.js",
-        "frames.js", "tables.js", "main.js"}) {
-    scripts += fmt::format("<script>\n{}\n</script>\n", files.at(name));
+std::string HtmlText(const std::string& text) {
+  std::string escaped = Escaped(Escaped(Utf8(text), '&', "&amp;"), '<', "&lt;");
+  return Escaped(Escaped(Escaped(escaped, '>', "&gt;"), '"', "&quot;"), '\'', "&#39;");
+}
+
+std::string HtmlTable(const Table& table, const std::vector<size_t>& indices) {
+  std::string html = fmt::format("<div class=\"scroll {}\"><table>\n<thead><tr>", table.name);
+  for (const std::string& name : table.header) html += fmt::format("<th>{}</th>", HtmlText(name));
+  html += "</tr></thead>\n<tbody>\n";
+  for (size_t i = 0; i < table.rows.size(); ++i) {
+    html += indices.empty() ? "<tr>" : fmt::format("<tr data-index=\"{}\">", indices[i]);
+    for (const Cell& cell : table.rows[i]) {
+      html += fmt::format("<td{}>{}</td>", cell.bold ? " class=\"best\"" : "", HtmlText(cell.text));
+    }
+    html += "</tr>\n";
   }
-  std::string html(files.at("page.html"));
-  Replace("{{title}}", Escaped(Escaped(Utf8(title), '&', "&amp;"), '<', "&lt;"), &html);
-  Replace("{{style}}", files.at("page.css"), &html);
-  Replace("{{scripts}}", scripts, &html);
-  Replace("{{entry}}", entry, &html);
-  Replace("{{data}}", PageText(data), &html);
-  return html;
+  return html + "</tbody>\n</table></div>\n";
+}
+
+std::string PageHtml(const std::string& title, const std::string& content, const json& data,
+                     PageScripts scripts) {
+  const auto& files = EmbeddedPageFiles();
+  std::string script_elements, licences;
+  if (scripts == PageScripts::kDataset) {
+    // Libraries first; of ours the functions that others use.
+    for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js", "elements.js",
+                             "overlay.js", "charts.js", "yaw_curves.js", "above.js", "bodies.js",
+                             "map.js", "figures.js", "objects.js", "frames.js", "main.js"}) {
+      script_elements += fmt::format("<script>\n{}\n</script>\n", files.at(name));
+    }
+    licences = Filled(files.at("licences.html"),
+                      {{"third_party", HtmlText(std::string(files.at("THIRD_PARTY.md")))}});
+  }
+  return Filled(files.at("page.html"), {{"title", HtmlText(title)},
+                                        {"style", std::string(files.at("page.css"))},
+                                        {"content", content},
+                                        {"licences", licences},
+                                        {"data", PageText(data)},
+                                        {"scripts", script_elements}});
 }
 
 }  // namespace soslam

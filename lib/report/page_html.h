@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "base/table.h"
 
 namespace soslam {
 
@@ -23,9 +26,17 @@ std::string UrlOf(const std::string& name);
 // A page's data as the page has it. Texts that are not UTF-8 are shown as far as they are.
 std::string PageText(const nlohmann::json& data);
 
-// A page that needs no other file and no network. `entry` is the function of page/*.js that builds
-// it from the data.
-std::string PageHtml(const std::string& title, const std::string& entry,
-                     const nlohmann::json& data);
+// Text as part of HTML, also within quotes.
+std::string HtmlText(const std::string& text);
+
+// A table of class table.name with its header and rows, and the index of each row, if there are
+// any, as its data-index.
+std::string HtmlTable(const Table& table, const std::vector<size_t>& indices = {});
+
+// A page that needs no other file and no network: its content as HTML, and data, for programs and
+// the page's scripts. Pages with scripts carry the licences of those that are other people's.
+enum class PageScripts { kNone, kDataset };
+std::string PageHtml(const std::string& title, const std::string& content,
+                     const nlohmann::json& data, PageScripts scripts);
 
 }  // namespace soslam

@@ -14,6 +14,7 @@
 #include "dataset/image_path.h"
 #include "report/page.h"
 #include "report/page_html.h"
+#include "report/page_tables.h"
 #include "report/results_tree.h"
 #include "stage/frame_images.h"
 
@@ -53,16 +54,17 @@ void PrintProblems(const nlohmann::json& page) {
 
 // The data of the page, which is written unless it has nothing to show.
 nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
-  constexpr const char* kEntry = "showDataset";
-  const size_t max_data_bytes =
-      kMaxPageBytes - PageHtml(result.name, kEntry, nlohmann::json()).size();
+  const auto page_with = [&](const std::string& tables, const nlohmann::json& data) {
+    return PageHtml(result.name, tables, data, PageScripts::kDataset);
+  };
+  const size_t max_data_bytes = kMaxPageBytes - page_with("", {}).size();
   const fs::path dataset = DatasetFolderOf(folder);
   nlohmann::json data = PageData(
       result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, max_data_bytes,
       threads);
   PrintProblems(data);
   if (data["variants"].empty()) return data;
-  const std::string html = PageHtml(result.name, kEntry, data);
+  const std::string html = page_with(DatasetTables(data), data);
   WriteTextFile(folder / "report.html", html);
   fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
              data["variants"].size(), data["images"].size(),
@@ -89,7 +91,9 @@ void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int thre
                              ": no <dataset>/<variant>/ with a metrics.json and what it is of that "
                              "can be read; expected at least one");
   }
-  WriteTextFile(results / "report.html", PageHtml("Results", "showOverview", OverviewData(pages)));
+  const nlohmann::json overview = OverviewData(pages);
+  WriteTextFile(results / "report.html",
+                PageHtml("Results", OverviewTables(overview), overview, PageScripts::kNone));
 }
 
 }  // namespace soslam

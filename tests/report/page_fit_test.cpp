@@ -34,7 +34,8 @@ json Data() {
 
 json Fitted(size_t max_bytes) {
   json data = Data();
-  FitPageData(max_bytes, &data);
+  FitPageData(
+      max_bytes, [](const json& all) { return PageText(all).size(); }, &data);
   EXPECT_LE(PageText(data).size(), max_bytes + 200);  // the notes
   return data;
 }

@@ -35,7 +35,7 @@ function useControls() {
     found.charts = charts().length;
     found.canvases = document.querySelectorAll(".chart canvas").length;
     found.strips = document.querySelectorAll("svg.strips").length;
-    found.rows = document.querySelectorAll("tr[data-object]").length;
+    found.rows = document.querySelectorAll("tr[data-index]").length;
     const canvas = document.getElementById("map-canvas");
     if (canvas) {
       const view = JSON.parse(document.getElementById("data").textContent);

@@ -98,34 +98,40 @@ function namesOf(named) {
 }
 
 function objectsFromAbove(sequence, variant, segment, ground) {
-  const datasets = [], named = [];
-  const add = (label, points, name, more) => datasets.push(curve(label, points, colour(name), more));
+  const datasets = [], named = [], rows = [];
   sequence.objects.forEach((object, i) => {
     if (object.segment !== segment) return;
+    const name = `${object.label} ${object.id}`;
+    const add = (label, points, key, more) => datasets.push(curve(label, points, colour(key), { object: name, ...more }));
+    const place = (body) => {
+      const { x, y } = body ? ground.place(body.pose.slice(0, 3)) : {};
+      return [number(x, 2), number(y, 2)];
+    };
     const estimate = variant.objects[i];
     const landmark = estimate && estimate.landmark;
+    rows.push([name, ...place(landmark), ...place(object.truth)]);
     if (object.truth) {
       const { outline, front } = footprint(object.truth, ground);
       add("ground truth", outline, "truth", { borderWidth: 1.5 });
-      add("", front, "truth", { borderWidth: 1.5 });
-      if (!landmark) named.push({ name: `${object.label} ${object.id}`, outline });
+      add("its true front", front, "truth", { borderWidth: 1.5 });
+      if (!landmark) named.push({ name, outline });
     }
     if (!landmark) return;
     const { outline, front } = footprint(landmark, ground);
-    named.push({ name: `${object.label} ${object.id}`, outline });
+    named.push({ name, outline });
     add("estimate", outline, "estimate");
     add("its front", front, "front", { borderWidth: 3 });
     if (estimate.centre_covariance) {
       add("two standard deviations of its centre", uncertaintyEllipse(estimate, ground), "other", { borderWidth: 1.5 });
     }
   });
-  return { datasets, named };
+  return { datasets, named, numbers: table(["object", "x, m", "y, m", "true x, m", "true y, m"], rows) };
 }
 
 function topDownChart(page, variant, segment) {
   const sequence = page.sequences[variant.sequence];
   const ground = groundAxes(sequence, segment);
-  const { datasets, named } = objectsFromAbove(sequence, variant, segment, ground);
+  const { datasets, named, numbers } = objectsFromAbove(sequence, variant, segment, ground);
   const poses = variant.trajectory || sequence.frames.map(({ pose }) => pose);
   const here = poses.filter((_, i) => sequence.frames[i].segment === segment);
   datasets.push(curve("camera", here.map((pose) => ground.place(pose.slice(0, 3))), colour("detection")));
@@ -141,6 +147,6 @@ function topDownChart(page, variant, segment) {
   return chart("the map from above", size, { type: "scatter", data: { datasets }, plugins: [kEqualScales, namesOf(named)], options: {
     scales: { x: axis("m", { min: x1, max: x2 }), y: axis("m", { min: y1, max: y2 }) },
     plugins: { legend: legend(({ text, datasetIndex }) =>
-      text !== "" && datasets.findIndex(({ label }) => label === text) === datasetIndex),
-      tooltip: { enabled: false } } } });
+      text !== "its true front" && datasets.findIndex(({ label }) => label === text) === datasetIndex),
+      tooltip: { enabled: false } } } }, numbers);
 }

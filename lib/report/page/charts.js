@@ -5,13 +5,46 @@ function chartColours() {
   return ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31", "#7f7f7f"];
 }
 
-function chart(label, size, config) {
-  const canvas = element("canvas", { role: "img", "aria-label": label });
-  const holder = element("div", { class: "chart", style: size }, canvas);
+// The numbers of curves over one axis, for those who do not see them.
+function numbersOfCurves(xTitle, curves) {
+  const short = (value) => String(Number(value.toPrecision(5)));
+  const xs = [...new Set(curves.flatMap(({ data }) => data.map(({ x }) => x)))].sort((one, other) => one - other);
+  const values = curves.map(({ data }) => new Map(data.map(({ x, y }) => [x, short(y)])));
+  return table([xTitle, ...curves.map(({ label }) => label)],
+    xs.map((x) => [short(x), ...values.map((ys) => ys.get(x) || "–")]));
+}
+
+// Arrow keys lead along a curve and to the next one; the point is marked and said.
+function walkByKeys(canvas, said) {
+  const at = { datasetIndex: 0, index: 0 };
+  const wrapped = (i, count) => (i + count) % count;
+  canvas.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowDown: [1, 0], ArrowUp: [-1, 0] }[event.key];
+    const shown = Chart.getChart(canvas);
+    if (!step || !shown) return;
+    event.preventDefault();
+    at.datasetIndex = wrapped(at.datasetIndex + step[0], shown.data.datasets.length);
+    const { label, object, data } = shown.data.datasets[at.datasetIndex];
+    at.index = wrapped(Math.min(at.index, data.length - 1) + step[1], data.length);
+    shown.setActiveElements([at]);
+    shown.tooltip.setActiveElements([at], { x: 0, y: 0 });
+    shown.update("none");
+    said.textContent = `${object ? object + ", " : ""}${label}: ${number(data[at.index].x, 2)}, ${number(data[at.index].y, 2)}`;
+  });
+}
+
+// A chart, what the keyboard leads to in it, and its numbers as a table.
+function chart(label, size, config, numbers) {
+  const canvas = element("canvas", { role: "application", tabindex: 0, "aria-roledescription": "chart",
+    "aria-label": `${label}; arrow keys lead along the curves, the table below has the numbers` });
+  const said = element("output", { class: "faint" });
   config.options = Object.assign({ animation: false, responsive: true, maintainAspectRatio: false }, config.options);
   // A chart takes the size of its holder, which has one once it is in the page.
   requestAnimationFrame(() => { if (canvas.isConnected) new Chart(canvas, config); });
-  return holder;
+  walkByKeys(canvas, said);
+  return element("div", {}, element("div", { class: "chart", style: size }, canvas), said,
+    element("details", {}, element("summary", {}, "the numbers of this chart"),
+      numbers || numbersOfCurves(config.options.scales.x.title.text, config.data.datasets)));
 }
 
 function axis(title, more) {

@@ -87,6 +87,11 @@ function pairFigures(page, ways) {
   });
 }
 
+function bestOf(values, higher) {
+  const known = values.filter((value) => value != null);
+  return known.length === 0 ? null : higher ? Math.max(...known) : Math.min(...known);
+}
+
 function descriptorTable(descriptors) {
   const kStepDeg = 5;
   const rows = Object.entries(descriptors).map(([name, all]) => ({ name, ...all, near: all.within[10 / kStepDeg] }));

@@ -1,11 +1,14 @@
 "use strict";
 // The map in three dimensions, drawn by three.js.
 
+const kMapKeys = "arrow keys turn, + and - zoom, n and p lead to the next and the previous object, 0 shows all";
+
 class MapView {
   constructor(page, onpick) {
     this.page = page;
     this.onpick = onpick;
-    this.canvas = element("canvas", { id: "map-canvas", "aria-label": "map in three dimensions" });
+    this.canvas = element("canvas", { id: "map-canvas", role: "application", tabindex: 0,
+      "aria-roledescription": "map in three dimensions", "aria-label": "map: " + kMapKeys });
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(45, 1, 0.01, 10000);
@@ -19,6 +22,7 @@ class MapView {
     this.pickable = [];
     this.picked = null;
     this.watchPicks();
+    this.watchKeys();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
   }
 
@@ -123,6 +127,7 @@ class MapView {
     this.camera.position.copy(centre).addScaledVector(back, this.distanceToSee(points, centre, back));
     if (this.controls) this.controls.dispose();
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
+    this.controls.enableKeys = false;  // these would be those of the whole page
     this.controls.target.copy(centre);
     this.controls.update();
     this.controls.addEventListener("start", () => { this.isTurned = true; });
@@ -155,6 +160,42 @@ class MapView {
       const hits = ray.intersectObjects(this.pickable);
       this.pick(hits.length > 0 ? hits[0].object.userData.object : null);
     });
+  }
+
+  watchKeys() {
+    const kStep = Math.PI / 36, kZoom = 0.85;
+    const actions = {
+      ArrowLeft: () => this.turn(-kStep, 0), ArrowRight: () => this.turn(kStep, 0),
+      ArrowUp: () => this.turn(0, kStep), ArrowDown: () => this.turn(0, -kStep),
+      "+": () => this.turn(0, 0, kZoom), "=": () => this.turn(0, 0, kZoom), "-": () => this.turn(0, 0, 1 / kZoom),
+      0: () => this.lookAtAll(), n: () => this.pickNext(1), p: () => this.pickNext(-1),
+    };
+    this.canvas.addEventListener("keydown", (event) => {
+      const action = event.ctrlKey || event.metaKey || event.altKey ? null : actions[event.key];
+      if (!action) return;
+      event.preventDefault();
+      action();
+    });
+  }
+
+  // Moves the camera about what it looks at: to the side and upwards, in radians, and nearer.
+  turn(sideways, upwards, nearer = 1) {
+    const { up, position } = this.camera, { target } = this.controls;
+    const from = position.clone().sub(target);
+    const angle = from.angleTo(up) - upwards;
+    if (upwards !== 0 && angle > 0.05 && angle < Math.PI - 0.05) {
+      from.applyAxisAngle(new THREE.Vector3().crossVectors(from, up).normalize(), upwards);
+    }
+    position.copy(target).add(from.applyAxisAngle(up, sideways).multiplyScalar(nearer));
+    this.isTurned = true;
+    this.controls.update();
+  }
+
+  pickNext(step) {
+    const objects = this.pickable.map(({ userData }) => userData.object);
+    const at = objects.indexOf(this.picked);
+    const next = at < 0 ? (step > 0 ? 0 : objects.length - 1) : (at + step + objects.length) % objects.length;
+    if (objects.length > 0) this.pick(objects[next]);
   }
 
   pick(objectIndex) {
@@ -194,9 +235,9 @@ function mapRemarks(sequence) {
 
 // A map, and beside it what it says of the object that is picked; none without WebGL.
 function mapWithPanel(page) {
-  const panel = element("div", { class: "panel", id: "picked" });
+  const panel = element("div", { class: "panel", id: "picked", "aria-live": "polite" });
   const explain = () => panel.replaceChildren(element("p", { class: "faint" },
-    "Drag to turn, scroll to zoom. Click an object for its numbers."));
+    `Drag to turn, scroll to zoom. Click an object for its numbers. By keyboard: ${kMapKeys}.`));
   explain();
   try {
     const view = new MapView(page, (index) => {

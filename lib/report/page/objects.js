@@ -53,48 +53,31 @@ function evidence(page, variant, index) {
   ];
 }
 
-function failureOf(estimate) {
-  return ((estimate && estimate.failure) || "").replaceAll("_", " ");
-}
-
-function objectRow(object, { metrics, estimate }, onchoice) {
-  return [element("button", { class: "link", onclick: onchoice }, `${object.label} ${object.id}`),
-    String(metrics ? metrics.observations : estimate.observations),
-    number(metrics && metrics.iou, 3), number(metrics && metrics.centre_m, 3),
-    number(metrics && metrics.rotation_deg, 2), number(metrics && metrics.yaw_error_deg, 2),
-    number(estimate && estimate.sigma_yaw_deg, 2), failureOf(estimate)];
-}
-
-// Objects that were observed: with the lowest IoU first, without one last.
-function worstFirst(page, variant) {
-  const iou = ({ metrics }) => (metrics && metrics.iou != null ? metrics.iou : 2);
-  return page.sequences[variant.sequence].objects
-    .map((_, i) => ({ i, metrics: metricsOfObject(page, variant, i), estimate: variant.objects[i] }))
-    .filter(({ metrics, estimate }) => (metrics && metrics.observations > 0) || estimate.landmark)
-    .sort((one, other) => iou(one) - iou(other));
-}
-
-function objectsSection(page, variants) {
-  const rowsHolder = element("div"), evidenceHolder = element("div", { id: "evidence" });
+// Of the tables of all variants one is shown at a time; each row leads to the object's observations.
+function showEvidenceInObjects(holder, page, variants) {
+  const tables = [...holder.querySelectorAll("details")].map((details) => {
+    details.remove();
+    return details.querySelector(".scroll");
+  });
+  const shown = element("div", { class: "long", tabindex: 0 }), evidenceHolder = element("div", { id: "evidence" });
   page.showEvidence = (variant, index) => {
     evidenceHolder.replaceChildren(...evidence(page, variant, index));
-    rowsHolder.querySelectorAll("tr[data-object]").forEach((row) =>
-      row.classList.toggle("chosen", Number(row.dataset.object) === index));
+    shown.querySelectorAll("tr[data-index]").forEach((row) =>
+      row.classList.toggle("chosen", Number(row.dataset.index) === index));
   };
-  const draw = (variant) => {
-    const { objects, detections } = page.sequences[variant.sequence];
-    const order = worstFirst(page, variant);
-    const header = ["object", "observations", "IoU", "centre error, m", "Rot, °", "yaw error, °", "yaw sigma, °"];
-    if (order.some(({ estimate }) => failureOf(estimate))) header.push("no landmark");
-    rowsHolder.replaceChildren(table(header,
-      order.map((entry) => objectRow(objects[entry.i], entry, () => page.showEvidence(variant, entry.i)).slice(0, header.length)),
-      (k) => ({ "data-object": order[k].i })));
+  variants.forEach((variant, i) => tables[i].querySelectorAll("tr[data-index]").forEach((row) => {
+    const [name] = row.cells;
+    name.replaceChildren(element("button", { class: "link",
+      onclick: () => page.showEvidence(variant, Number(row.dataset.index)) }, name.textContent));
+  }));
+  const draw = (variant, rows) => {
+    shown.replaceChildren(rows);
     evidenceHolder.replaceChildren();
-    const seen = new Set(detections.map(({ object }) => object));
-    const first = order.find(({ i }) => seen.has(i));
-    if (first) page.showEvidence(variant, first.i);
+    const seen = new Set(page.sequences[variant.sequence].detections.map(({ object }) => object));
+    const first = [...rows.querySelectorAll("tr[data-index]")].find((row) => seen.has(Number(row.dataset.index)));
+    if (first) page.showEvidence(variant, Number(first.dataset.index));
   };
-  const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => draw(variants[i]));
-  return section("objects", "Objects", element("p", {}, "Worst first. Choose one to see what it was estimated from."),
-    element("div", { class: "bar" }, choose), element("div", { class: "long" }, rowsHolder), evidenceHolder);
+  const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => draw(variants[i], tables[i]));
+  holder.append(element("p", {}, "Choose an object to see what it was estimated from."),
+    element("div", { class: "bar" }, choose), shown, evidenceHolder);
 }

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/table.h"
+#include "report/page_findings.h"
+#include "report/page_html.h"
+#include "report/results_tree.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+using Pointer = json::json_pointer;
+
+std::string Number(const json& value, int decimals) {
+  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "–";
+}
+
+std::string Counted(const json& count, const char* what) {
+  return fmt::format("{} {}{}", count.get<size_t>(), what, count == 1 ? "" : "s");
+}
+
+std::string WithBlanks(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+// {"name": count, ...} as "2 name, 1 other name".
+std::string ListOf(const json& counts) {
+  std::vector<std::string> texts;
+  for (const auto& [name, count] : counts.items()) {
+    texts.push_back(fmt::format("{} {}", count.get<size_t>(), WithBlanks(name)));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string Faint(const std::string& text) {
+  return fmt::format("<p class=\"faint\">{}</p>\n", HtmlText(text));
+}
+
+std::string Section(const std::string& id, const std::string& title, const std::string& content) {
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", HtmlText(id),
+                     HtmlText(title), content);
+}
+
+// A column of the numbers of all variants: where in metrics.json they are.
+struct Column {
+  const char* title;
+  const char* pointer;
+  int decimals;
+  bool higher_is_better;
+};
+constexpr std::array<Column, 6> kColumns = {{
+    {"IoU", "/summary/iou_mean", 3, true},
+    {"Rot, °", "/summary/rotation_deg_mean", 2, false},
+    {"yaw error, °", "/summary/yaw_error_deg_mean", 2, false},
+    {"IoU, first view", "/first_observation/iou_mean", 3, true},
+    {"ATE, m", "/trajectory/ate_rmse_m", 4, false},
+    {"held-out IoU", "/held_out/iou_mean", 3, true},
+}};
+
+// Left out where no variant has a value. What reads the same as the best is bold, too.
+void AddColumn(const Column& column, const std::vector<json>& variants, Table* table) {
+  std::vector<json> values;
+  std::optional<double> best;
+  for (const json& variant : variants) {
+    values.push_back(variant.at("metrics").value(Pointer(column.pointer), json()));
+    if (!values.back().is_number()) continue;
+    const auto value = values.back().get<double>();
+    best = !best                     ? value
+           : column.higher_is_better ? std::max(*best, value)
+                                     : std::min(*best, value);
+  }
+  if (!best) return;
+  table->header.emplace_back(column.title);
+  for (size_t i = 0; i < values.size(); ++i) {
+    const std::string text = Number(values[i], column.decimals);
+    table->rows[i].emplace_back(text, text == Number(*best, column.decimals));
+  }
+}
+
+std::string MetricsTable(const std::vector<json>& variants) {
+  Table table;
+  table.name = "metrics";
+  table.header = {"variant", "objects", "observations"};
+  for (const json& variant : variants) {
+    const json& summary = variant.at("metrics").at("summary");
+    table.rows.push_back({variant.at("name").get<std::string>(), summary.at("objects").dump(),
+                          summary.at("observations").dump()});
+  }
+  for (const Column& column : kColumns) AddColumn(column, variants, &table);
+  return HtmlTable(table);
+}
+
+std::string NumbersSection(const json& page) {
+  constexpr std::array<std::array<const char*, 2>, 3> kKinds = {
+      {{"map", "Maps: all frames, landmarks and poses together"},
+       {"views", "One landmark from all frames, poses as given"},
+       {"frames", "Single frames: mean over the observations of each object"}}};
+  std::string tables;
+  for (const auto& [kind, title] : kKinds) {
+    std::vector<json> variants;
+    for (const json& variant : page.at("variants")) {
+      if (variant.at("kind") == kind) variants.push_back(variant);
+    }
+    if (variants.empty()) continue;
+    tables += fmt::format("<h3>{}</h3>\n{}", title, MetricsTable(variants));
+  }
+  return Section("numbers", "Numbers",
+                 Faint("Means over objects, the best in bold. IoU: overlap of the cuboids around "
+                       "estimate and truth. Rot: the smallest turn that brings the axes of one "
+                       "onto any of the other. Yaw error: modulo half a turn. ATE: root mean "
+                       "square error of the camera's positions.") +
+                     tables);
+}
+
+// An object of a variant; its metrics are null where it has none.
+struct ObjectRow {
+  size_t index;
+  json metrics;
+  json estimate;
+
+  double Iou() const {
+    const json iou = metrics.is_null() ? json() : metrics.value("iou", json());
+    return iou.is_number() ? iou.get<double>() : std::numeric_limits<double>::infinity();
+  }
+};
+
+// Objects that were observed: with the lowest IoU first, without one last.
+std::vector<ObjectRow> WorstFirst(const json& objects, const json& variant) {
+  std::map<int, json> metrics_of;
+  for (const json& metrics : variant.at("metrics").at("objects")) {
+    metrics_of[metrics.at("object").get<int>()] = metrics;
+  }
+  std::vector<ObjectRow> rows;
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const json& estimate = variant.at("objects").at(i);
+    const json& metrics = metrics_of[objects[i].at("id").get<int>()];
+    const bool is_seen = !metrics.is_null() && metrics.at("observations") > 0;
+    if (is_seen || !estimate.at("landmark").is_null()) rows.push_back({i, metrics, estimate});
+  }
+  std::ranges::stable_sort(rows, {}, &ObjectRow::Iou);
+  return rows;
+}
+
+std::string ObjectsTable(const json& objects, const json& variant) {
+  const std::vector<ObjectRow> rows = WorstFirst(objects, variant);
+  const auto failure = [](const ObjectRow& row) {
+    return WithBlanks(row.estimate.at("failure").get<std::string>());
+  };
+  Table table;
+  table.header = {"object", "observations", "IoU",         "centre error, m",
+                  "Rot, °", "yaw error, °", "yaw sigma, °"};
+  const bool has_failures =
+      std::ranges::any_of(rows, [&](const ObjectRow& row) { return !failure(row).empty(); });
+  if (has_failures) table.header.emplace_back("no landmark");
+  std::vector<size_t> indices;
+  for (const ObjectRow& row : rows) {
+    const json& object = objects[row.index];
+    const json metrics = row.metrics.is_null() ? json::object() : row.metrics;
+    const auto number = [&](const char* key, int decimals) {
+      return Number(metrics.value(key, json()), decimals);
+    };
+    table.rows.push_back(
+        {fmt::format("{} {}", object.at("label").get<std::string>(), object.at("id").dump()),
+         metrics.value("observations", row.estimate.at("observations")).dump(), number("iou", 3),
+         number("centre_m", 3), number("rotation_deg", 2), number("yaw_error_deg", 2),
+         Number(row.estimate.value("sigma_yaw_deg", json()), 2)});
+    if (has_failures) table.rows.back().emplace_back(failure(row));
+    indices.push_back(row.index);
+  }
+  return HtmlTable(table, indices);
+}
+
+// A table for each variant, of which scripts show one at a time.
+std::string ObjectsSection(const json& page) {
+  std::string tables;
+  for (const size_t index : DetailedVariants(page)) {
+    const json& variant = page.at("variants")[index];
+    const json& sequence = page.at("sequences").at(variant.at("sequence").get<size_t>());
+    tables +=
+        fmt::format("<details{}><summary>{}</summary>\n{}</details>\n",
+                    tables.empty() ? " open" : "", HtmlText(variant.at("name").get<std::string>()),
+                    ObjectsTable(sequence.at("objects"), variant));
+  }
+  return tables.empty() ? "" : Section("objects", "Objects", Faint("Worst first.") + tables);
+}
+
+std::string Signed(const json& value, int decimals) {
+  return value.is_number() ? fmt::format("{:+.{}f}", value.get<double>(), decimals) : "–";
+}
+
+// A mean difference with its interval, bold where that leaves out zero.
+Cell IntervalCell(const json& difference, int decimals) {
+  const std::string mean = Signed(difference.at("mean"), decimals);
+  if (difference.at("low").is_null()) return mean;
+  const auto low = difference.at("low").get<double>(), high = difference.at("high").get<double>();
+  return {fmt::format("{} ({} to {})", mean, Signed(low, decimals), Signed(high, decimals)),
+          low * high > 0.0};
+}
+
+// Ablations: what one more part changes, paired by object.
+std::string AblationSection(const json& page) {
+  Table table;
+  table.header = {"", "objects", "IoU", "Rot, °", "yaw error, °"};
+  for (const json& pair : page.at("differences")) {
+    table.rows.push_back({fmt::format("{} – {}", pair.at("with").get<std::string>(),
+                                      pair.at("without").get<std::string>()),
+                          pair.at("objects").dump(), IntervalCell(pair.at("iou"), 3),
+                          IntervalCell(pair.at("rotation_deg"), 2),
+                          IntervalCell(pair.at("yaw_error_deg"), 2)});
+  }
+  if (table.rows.empty()) return "";
+  return Section("ablation", "What each part is worth",
+                 "<p>Differences between two variants over the same objects: mean and, in "
+                 "brackets, 95 % confidence interval (Student's t). Bold where the interval leaves "
+                 "out zero.</p>\n" +
+                     HtmlTable(table));
+}
+
+std::vector<Cell> StagesRow(const json& variant) {
+  size_t landmarks = 0;
+  std::map<std::string, size_t> failures;
+  for (const json& object : variant.at("objects")) {
+    landmarks += object.at("landmark").is_null() ? 0 : 1;
+    const auto failure = object.at("failure").get<std::string>();
+    if (!failure.empty()) ++failures[failure];
+  }
+  std::vector<Cell> row = {variant.at("name").get<std::string>(), std::to_string(landmarks),
+                           ListOf(json(failures))};
+  const json& solver = variant.at("solver");
+  if (solver.is_null()) {
+    row.resize(7, "");
+    return row;
+  }
+  row.insert(row.end(), {solver.at("iterations").dump(), solver.at("converged") ? "yes" : "no",
+                         ListOf(solver.at("residuals")), ListOf(solver.at("gated"))});
+  return row;
+}
+
+// What came out of the stages of each variant.
+std::string StagesSection(const json& page) {
+  Table table;
+  table.header = {"variant",   "landmarks", "objects without one", "iterations", "converged",
+                  "residuals", "left out"};
+  for (const size_t index : DetailedVariants(page)) {
+    table.rows.push_back(StagesRow(page.at("variants")[index]));
+  }
+  if (table.rows.empty()) return "";
+  return Section("stages", "Stages",
+                 Faint("Landmarks, and what the back end did where there is one: what went into "
+                       "its problem and what was left out. Where texture and edges join in, the "
+                       "cost rises: from there on it is that of a larger problem.") +
+                     HtmlTable(table));
+}
+
+// What was planned and is not there, or is older than the plan: a row for each state.
+std::string UnfinishedTable(const json& unfinished) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> names_by_state;
+  for (const json& variant : unfinished) {
+    const std::string state = variant.at("state").get<std::string>() +
+                              (variant.at("is_shown") ? " (shown: the last complete run)" : "");
+    auto found =
+        std::ranges::find(names_by_state, state, [](const auto& pair) { return pair.first; });
+    if (found == names_by_state.end()) found = names_by_state.insert(found, {state, {}});
+    found->second.push_back(variant.at("name").get<std::string>());
+  }
+  if (names_by_state.empty()) return "";
+  Table table;
+  table.name = "sentences";
+  table.header = {"not complete", "state"};
+  for (const auto& [state, names] : names_by_state) {
+    table.rows.push_back({fmt::format("{}", fmt::join(names, ", ")), state});
+  }
+  return HtmlTable(table);
+}
+
+// What is not to be trusted, what is not on the page, and why.
+std::string Remarks(const json& page) {
+  std::string remarks = FindingsHtml(page.at("findings")) + UnfinishedTable(page.at("unfinished"));
+  for (const char* key : {"problems", "notes"}) {
+    for (const json& text : page.at(key)) remarks += Faint(text.get<std::string>());
+  }
+  return remarks;
+}
+
+std::string CountsText(const json& counts) {
+  return fmt::format("{}, {}, {} used", Counted(counts.at("frames"), "frame"),
+                     Counted(counts.at("objects"), "object"),
+                     Counted(counts.at("detections"), "detection"));
+}
+
+}  // namespace
+
+std::vector<size_t> DetailedVariants(const json& page) {
+  const json& variants = page.at("variants");
+  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
+  names.insert(names.end(), kShapeVariants.begin(), kShapeVariants.end());
+  std::ranges::reverse(names);
+  const std::array<std::string, 3> kinds = {"map", "views", "frames"};
+  const auto place = [](const auto& in, const json& name) {
+    return std::find(in.begin(), in.end(), name.get<std::string>()) - in.begin();
+  };
+  const auto rank = [&](size_t index) {
+    const json& variant = variants[index];
+    return std::pair(place(kinds, variant.at("kind")), place(names, variant.at("name")));
+  };
+  std::vector<size_t> detailed;
+  for (size_t i = 0; i < variants.size(); ++i) {
+    if (!variants[i].at("numbers_only")) detailed.push_back(i);
+  }
+  std::ranges::stable_sort(detailed, {}, rank);
+  return detailed;
+}
+
+std::string DatasetTables(const json& page) {
+  if (page.at("variants").empty()) return "";
+  const json& sequence = page.at("sequences").front();
+  std::string counts = CountsText(sequence.at("counts"));
+  const json& frames = sequence.at("frames");
+  const auto shown = std::ranges::count_if(
+      frames, [](const json& frame) { return frame.at("shown").get<bool>(); });
+  if (shown < sequence.at("counts").at("frames"))
+    counts += fmt::format("; {} frames are shown", shown);
+  if (!sequence.at("rejected").empty()) counts += "; not used: " + ListOf(sequence.at("rejected"));
+  return fmt::format("<h1>{}</h1>\n", HtmlText(page.at("dataset").get<std::string>())) +
+         Faint(counts) + Remarks(page) +
+         "<noscript><p class=\"faint\">Map, frames, charts and figures need JavaScript; all else "
+         "is here.</p></noscript>\n" +
+         NumbersSection(page) + ObjectsSection(page) + AblationSection(page) + StagesSection(page);
+}
+
+size_t PageBytes(const json& page) { return PageText(page).size() + DatasetTables(page).size(); }
+
+std::string OverviewTables(const json& overview) {
+  std::string sections;
+  for (const json& dataset : overview.at("datasets")) {
+    const auto url = dataset.at("url").get<std::string>();
+    std::string content = Faint("Nothing of it can be shown.");
+    if (!dataset.at("counts").is_null()) {
+      content = fmt::format(
+          "<p>{}. <a href=\"./{}/report.html\">Map, frames, objects and figures</a></p>\n",
+          CountsText(dataset.at("counts")), HtmlText(url));
+    }
+    content += Remarks(dataset);
+    if (!dataset.at("variants").empty()) content += MetricsTable(dataset.at("variants"));
+    sections += Section(url, dataset.at("dataset").get<std::string>(), content);
+  }
+  return "<h1>Results</h1>\n" + sections;
+}
+
+}  // namespace soslam

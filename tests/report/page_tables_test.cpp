@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+json Metrics(double iou, const json& ate) {
+  return {{"summary", {{"objects", 2}, {"observations", 9}, {"iou_mean", iou}}},
+          {"first_observation", nullptr},
+          {"trajectory", {{"ate_rmse_m", ate}}},
+          {"objects",
+           {{{"object", 5}, {"observations", 4}, {"iou", 0.75}, {"rotation_deg", nullptr}},
+            {{"object", 6}, {"observations", 5}, {"iou", 0.25}, {"rotation_deg", 3.0}}}}};
+}
+
+json Variant(const std::string& name, const std::string& kind, double iou, const json& ate) {
+  const json objects = {{{"landmark", {1}}, {"failure", ""}, {"observations", 4}},
+                        {{"landmark", nullptr}, {"failure", "too_few_views"}, {"observations", 5}}};
+  return {{"name", name},      {"kind", kind},       {"numbers_only", false},       {"sequence", 0},
+          {"solver", nullptr}, {"objects", objects}, {"metrics", Metrics(iou, ate)}};
+}
+
+json Page() {
+  const json objects = {{{"id", 5}, {"label", "chair"}}, {{"id", 6}, {"label", "<cup>"}}};
+  const json sequence = {{"counts", {{"frames", 2}, {"objects", 2}, {"detections", 1}}},
+                         {"frames", {{{"shown", true}}, {{"shown", false}}}},
+                         {"objects", objects},
+                         {"rejected", {{"near_border", 3}}}};
+  json ours = Variant("OursP", "map", 0.5004, 0.0123);
+  ours["solver"] = {{"iterations", 12},
+                    {"converged", true},
+                    {"residuals", {{"detection", 40}}},
+                    {"gated", {{"behind_camera", 2}}}};
+  return {
+      {"dataset", "a & b"},
+      {"url", "a%20b"},
+      {"findings", json::array()},
+      {"unfinished", {{{"name", "SVD"}, {"state", "failed: <x>"}, {"is_shown", false}}}},
+      {"notes", {"a note"}},
+      {"problems", json::array()},
+      {"differences", json::array()},
+      {"sequences", {sequence}},
+      {"variants",
+       {Variant("InitP", "frames", 0.4, nullptr), ours, Variant("OursS", "map", 0.5, nullptr)}}};
+}
+
+TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
+  const std::string html = DatasetTables(Page());
+  EXPECT_THAT(html, AllOf(HasSubstr("<h1>a &amp; b</h1>"),
+                          HasSubstr("2 frames, 2 objects, 1 detection used; "
+                                    "1 frames are shown; not used: 3 near border")));
+  // Both read the same; of single frames there is no trajectory.
+  EXPECT_THAT(html, HasSubstr("<td>OursP</td><td>2</td><td>9</td><td class=\"best\">0.500</td><td "
+                              "class=\"best\">0.0123</td>"));
+  EXPECT_THAT(
+      html, HasSubstr("<td>OursS</td><td>2</td><td>9</td><td class=\"best\">0.500</td><td>–</td>"));
+  EXPECT_THAT(html,
+              HasSubstr("<td>InitP</td><td>2</td><td>9</td><td class=\"best\">0.400</td></tr>"));
+}
+
+TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
+  const std::string html = DatasetTables(Page());
+  EXPECT_THAT(html, HasSubstr("<details open><summary>OursS</summary>"));
+  EXPECT_THAT(
+      html,
+      HasSubstr("<tr data-index=\"1\"><td>&lt;cup&gt; 6</td><td>5</td><td>0.250</td><td>–</td>"
+                "<td>3.00</td><td>–</td><td>–</td><td>too few views</td></tr>\n"
+                "<tr data-index=\"0\"><td>chair 5</td><td>4</td><td>0.750</td>"));
+  EXPECT_THAT(html, Not(HasSubstr("<cup>")));
+}
+
+TEST(DatasetTables, HaveWhatCameOutOfTheStages) {
+  EXPECT_THAT(
+      DatasetTables(Page()),
+      AllOf(HasSubstr("<td>OursP</td><td>1</td><td>1 too few views</td><td>12</td><td>yes</td>"
+                      "<td>40 detection</td><td>2 behind camera</td>"),
+            HasSubstr("<td>SVD</td><td>failed: &lt;x&gt;</td>"), HasSubstr("a note")));
+}
+
+TEST(DatasetTables, BeginWithFindings) {
+  json page = Page();
+  EXPECT_THAT(DatasetTables(page), Not(HasSubstr("Findings")));
+  page["findings"] = {{{"severity", "warning"},
+                       {"check", "c"},
+                       {"found", "f"},
+                       {"expected", "e"},
+                       {"cause", "u"},
+                       {"remedy", "r"},
+                       {"where", "w"}}};
+  const std::string html = DatasetTables(page);
+  EXPECT_LT(html.find("Findings"), html.find("Numbers"));
+}
+
+TEST(DetailedVariants, AreThoseWithMostToShowFirst) {
+  json page = Page();
+  EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{2, 1, 0}));
+  page["variants"][2]["numbers_only"] = true;
+  EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{1, 0}));
+}
+
+TEST(OverviewTables, LeadToTheDatasets) {
+  json dataset = Page();
+  dataset["counts"] = dataset["sequences"][0]["counts"];
+  json lost = dataset;
+  lost["counts"] = nullptr;
+  lost["variants"] = json::array();
+  EXPECT_THAT(OverviewTables({{"datasets", {dataset, lost}}}),
+              AllOf(HasSubstr("<a href=\"./a%20b/report.html\">"), HasSubstr("<td>OursP</td>"),
+                    HasSubstr("Nothing of it can be shown.")));
+}
+
+}  // namespace
+}  // namespace soslam
