@@ -2,9 +2,11 @@
 #include "exchange/coco_boxes.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "dataset/coco_labels.h"
 #include "dataset/labelled_box.h"
@@ -46,30 +48,55 @@ std::optional<Box> VisibleBox(const WorldFrame& frame, const Landmark& landmark_
   return visible;
 }
 
-}  // namespace
-
-std::string CocoResultsText(const std::vector<World>& worlds) {
+// Boxes of all landmarks with what results and annotations have in common.
+std::vector<std::pair<json, const WorldObject*>> VisibleBoxes(const std::vector<World>& worlds) {
   const std::map<std::string, int> category_ids = CategoryIds(worlds);
-  json results = json::array();
+  std::vector<std::pair<json, const WorldObject*>> boxes;
   for (const World& world : worlds) {
     for (const WorldFrame& frame : world.frames) {
       for (const WorldObject& object : world.objects) {
         if (!object.estimate.landmark_in_world) continue;
         const auto box = VisibleBox(frame, *object.estimate.landmark_in_world);
         if (!box) continue;
-        results.push_back({{"image_id", frame.id},
-                           {"category_id", category_ids.at(object.label)},
-                           {"bbox", {box->x_min, box->y_min, box->Width(), box->Height()}},
-                           {"score", object.score},
-                           {"category_name", object.label},
-                           {"object_id", object.id}});
+        boxes.emplace_back(json{{"image_id", frame.id},
+                                {"category_id", category_ids.at(object.label)},
+                                {"bbox", {box->x_min, box->y_min, box->Width(), box->Height()}},
+                                {"object_id", object.id}},
+                           &object);
       }
     }
+  }
+  return boxes;
+}
+
+// pycocotools takes an id of 0 for no match, and draws the segmentation.
+json Annotations(const std::vector<World>& worlds) {
+  json annotations = json::array();
+  for (auto& [annotation, object] : VisibleBoxes(worlds)) {
+    const auto bbox = annotation.at("bbox").get<std::array<double, 4>>();
+    const double x1 = bbox[0], y1 = bbox[1], x2 = x1 + bbox[2], y2 = y1 + bbox[3];
+    annotation["id"] = annotations.size() + 1;
+    annotation["area"] = bbox[2] * bbox[3];
+    annotation["iscrowd"] = 0;
+    annotation["segmentation"] = {{x1, y1, x1, y2, x2, y2, x2, y1}};
+    annotations.push_back(annotation);
+  }
+  return annotations;
+}
+
+}  // namespace
+
+std::string CocoResultsText(const std::vector<World>& worlds) {
+  json results = json::array();
+  for (auto& [result, object] : VisibleBoxes(worlds)) {
+    result["score"] = object->score;
+    result["category_name"] = object->label;
+    results.push_back(result);
   }
   return results.dump(1) + "\n";
 }
 
-std::string CocoDatasetText(const std::vector<World>& worlds) {
+std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations annotations) {
   json images = json::array();
   for (const World& world : worlds) {
     for (const WorldFrame& frame : world.frames) {
@@ -84,9 +111,16 @@ std::string CocoDatasetText(const std::vector<World>& worlds) {
   std::map<int, std::string> names;
   for (const auto& [label, id] : CategoryIds(worlds)) names.emplace(id, label);
   json categories = json::array();
-  for (const auto& [id, name] : names) categories.push_back({{"id", id}, {"name", name}});
+  for (const auto& [id, name] : names) {
+    categories.push_back({{"id", id}, {"name", name}, {"supercategory", "object"}});
+  }
+  const bool has_boxes = annotations == CocoAnnotations::kVisibleBoxes;
   const json dataset = {
-      {"images", images}, {"categories", categories}, {"annotations", json::array()}};
+      {"info", {{"description", "objects of soslam"}, {"version", SOSLAM_VERSION}}},
+      {"licenses", json::array()},
+      {"images", images},
+      {"categories", categories},
+      {"annotations", has_boxes ? Annotations(worlds) : json::array()}};
   return dataset.dump(1) + "\n";
 }
 

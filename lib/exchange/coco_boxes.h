@@ -18,8 +18,10 @@ inline constexpr int kFirstOtherCategory = 1001;
 // category_id is COCO's own where the label is one of COCO's, whatever case and blanks.
 std::string CocoResultsText(const std::vector<World>& worlds);
 
-// What the ids in these results mean, in COCO's dataset format: "images", "categories", and no
-// "annotations".
-std::string CocoDatasetText(const std::vector<World>& worlds);
+// What the ids in these results mean, in COCO's dataset format: "info", "licenses", "images",
+// "categories", and as "annotations" the same boxes (of ground truth, to compare results with), or
+// none.
+enum class CocoAnnotations { kNone, kVisibleBoxes };
+std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations annotations);
 
 }  // namespace soslam

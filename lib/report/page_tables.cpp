@@ -252,6 +252,7 @@ std::vector<Cell> StagesRow(const json& variant) {
 // What came out of the stages of each variant.
 std::string StagesSection(const json& page) {
   Table table;
+  table.name = "sentences";
   table.header = {"variant",   "landmarks", "objects without one", "iterations", "converged",
                   "residuals", "left out"};
   for (const size_t index : DetailedVariants(page)) {

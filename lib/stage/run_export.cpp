@@ -83,7 +83,8 @@ void CheckWorlds(const std::vector<World>& worlds, const StageFiles& files) {
 }
 
 // All outputs, so that what cannot be made leaves no part of the rest.
-std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const StageFiles& files) {
+std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOptions& options,
+                                const StageFiles& files) {
   std::vector<Output> outputs;
   const auto add = [&](const std::string& name,
                        const std::function<std::string(const std::vector<World>&)>& text) {
@@ -106,7 +107,10 @@ std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const StageFil
                                                   : GltfText(world, colours);
   });
   add("coco", CocoResultsText);
-  add("coco_dataset", CocoDatasetText);
+  add("coco_dataset", [&](const std::vector<World>& all) {
+    return CocoDatasetText(all,
+                           options.truth ? CocoAnnotations::kVisibleBoxes : CocoAnnotations::kNone);
+  });
   add("csv", LandmarksCsvText);
   return outputs;
 }
@@ -117,7 +121,7 @@ void RunExport(const ExportOptions& options, const StageFiles& files, int /*thre
   CheckFiles(options, files);
   const std::vector<World> worlds = ReadWorlds(options, files);
   CheckWorlds(worlds, files);
-  for (const Output& output : MakeOutputs(worlds, files)) {
+  for (const Output& output : MakeOutputs(worlds, options, files)) {
     WriteTextFile(output.path, output.bytes);
     fmt::print("{}\n", output.path.string());
   }

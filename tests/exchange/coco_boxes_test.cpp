@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "dataset/coco_results.h"
 #include "support/exported_world.h"
@@ -21,7 +22,7 @@ class CocoBoxesTest : public testing::Test {
   std::vector<LabelledBox> ReadBack(bool with_dataset) const {
     const TemporaryFolder folder;
     WriteBytes(folder / "results.json", CocoResultsText({world_}));
-    WriteBytes(folder / "dataset.json", CocoDatasetText({world_}));
+    WriteBytes(folder / "dataset.json", CocoDatasetText({world_}, CocoAnnotations::kNone));
     return with_dataset ? ReadCocoResults(folder / "results.json", folder / "dataset.json")
                         : ReadCocoResults(folder / "results.json");
   }
@@ -89,13 +90,62 @@ TEST_F(CocoBoxesTest, LabelsOfOneCategoryOfCocoAreOne) {
 
 TEST_F(CocoBoxesTest, OtherCategoriesAreNumberedInAlphabeticalOrder) {
   world_.objects[3].label = "zither";
-  const json dataset = json::parse(CocoDatasetText({world_}));
-  EXPECT_EQ(dataset.at("categories"), json::parse(R"([{"id": 47, "name": "cup"},
-      {"id": 67, "name": "Dining_Table"}, {"id": 1001, "name": "a \"b\", c"},
-      {"id": 1002, "name": "zither"}])"));
+  const json dataset = json::parse(CocoDatasetText({world_}, CocoAnnotations::kNone));
+  EXPECT_EQ(dataset.at("categories"),
+            json::parse(R"([{"id": 47, "name": "cup", "supercategory": "object"},
+      {"id": 67, "name": "Dining_Table", "supercategory": "object"},
+      {"id": 1001, "name": "a \"b\", c", "supercategory": "object"},
+      {"id": 1002, "name": "zither", "supercategory": "object"}])"));
   EXPECT_EQ(dataset.at("images").at(1),
             json::parse(R"({"id": 15, "file_name": "rgb/b.png", "width": 640, "height": 480})"));
   EXPECT_EQ(dataset["images"].at(2).at("file_name"), "20");
+}
+
+// All keys that coco.py and cocoeval.py of pycocotools 2.0.11 and before look up: COCO, its queries
+// and loadRes, then COCOeval of boxes; what they demand of the values besides.
+TEST_F(CocoBoxesTest, HaveTheKeysThatPycocotoolsLooksUp) {
+  const json results = json::parse(CocoResultsText({world_}));
+  const json dataset = json::parse(CocoDatasetText({world_}, CocoAnnotations::kVisibleBoxes));
+  EXPECT_TRUE(dataset.at("info").is_object());
+  EXPECT_TRUE(dataset.at("licenses").is_array());
+  std::set<int> images, categories, ids;
+  for (const json& image : dataset.at("images")) {
+    EXPECT_TRUE(images.insert(image.at("id").get<int>()).second);
+    EXPECT_GT(image.at("width"), 0);
+    EXPECT_GT(image.at("height"), 0);
+    EXPECT_TRUE(image.at("file_name").is_string());
+  }
+  for (const json& category : dataset.at("categories")) {
+    EXPECT_TRUE(categories.insert(category.at("id").get<int>()).second);
+    EXPECT_TRUE(category.at("name").is_string() && category.at("supercategory").is_string());
+  }
+  ASSERT_GT(results.size(), 0u);  // loadRes looks at the first
+  ASSERT_EQ(dataset.at("annotations").size(), results.size());
+  for (size_t i = 0; i < results.size(); ++i) {
+    const json& annotation = dataset["annotations"][i];
+    EXPECT_TRUE(ids.insert(annotation.at("id").get<int>()).second);
+    EXPECT_GT(annotation["id"], 0);  // 0 is "not matched" in COCOeval
+    EXPECT_EQ(annotation.at("iscrowd"), 0);
+    const auto bbox = annotation.at("bbox").get<std::vector<double>>();
+    ASSERT_EQ(bbox.size(), 4u);
+    EXPECT_EQ(annotation.at("area"), bbox[2] * bbox[3]);
+    EXPECT_EQ(annotation.at("segmentation").at(0).size(), 8u);
+    EXPECT_TRUE(results[i].at("score").is_number());
+    EXPECT_EQ(results[i].at("bbox"), annotation["bbox"]);
+    for (const json& box : {annotation, results[i]}) {
+      EXPECT_TRUE(images.contains(box.at("image_id").get<int>()));
+      EXPECT_TRUE(categories.contains(box.at("category_id").get<int>()));
+    }
+    // loadRes takes results with one of these for another task.
+    for (const char* key : {"caption", "keypoints", "segmentation"}) {
+      EXPECT_FALSE(results[i].contains(key));
+    }
+  }
+}
+
+TEST_F(CocoBoxesTest, WhatIsNoTruthHasNoAnnotations) {
+  const json dataset = json::parse(CocoDatasetText({world_}, CocoAnnotations::kNone));
+  EXPECT_EQ(dataset.at("annotations"), json::array());
 }
 
 }  // namespace

@@ -53,6 +53,28 @@ TEST_F(PagesTest, ADatasetIsShownWithoutErrors) {
                              testing::HasSubstr("sigma of yaw"), testing::HasSubstr("IoU")));
 }
 
+TEST_F(PagesTest, MapAndChartsAreUsedByKeyboard) {
+  if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";
+  const nlohmann::json found = CheckPage(Results() / "small/report.html");
+  ASSERT_FALSE(found.is_null());
+  const nlohmann::json& keys = found.at("keys");
+  EXPECT_EQ(keys.at("changed"), nlohmann::json({"ArrowLeft", "ArrowUp", "+", "-", "0"}));
+  EXPECT_NE(keys.at("names")[0], keys.at("names")[1]);
+  EXPECT_EQ(keys.at("names")[0], keys.at("names")[2]);
+  EXPECT_EQ(keys.at("focusable"), true);
+  EXPECT_THAT(keys.at("said").get<std::string>(), testing::StartsWith("OursPT: 2.00, "));
+}
+
+// Also to browsers that run no scripts.
+TEST_F(PagesTest, TablesAreInTheMarkup) {
+  const std::string page = FileBytes(Results() / "small/report.html");
+  const std::string tables = page.substr(0, page.find("<script"));
+  for (const char* words : {"<td>OursPT</td>", "<summary>InitPT</summary>", "<td>stool 2</td>",
+                            " detection, ", "Copyright (c) 2014-2022 Chart.js Contributors"}) {
+    EXPECT_THAT(tables, testing::HasSubstr(words));
+  }
+}
+
 TEST_F(PagesTest, TheOverviewLeadsToTheDataset) {
   const std::string page = FileBytes(Results() / "report.html");
   EXPECT_THAT(page, testing::HasSubstr("\"dataset\":\"small\""));

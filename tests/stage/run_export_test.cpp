@@ -93,6 +93,14 @@ TEST_F(RunExportTest, WritesWhatIsAskedFor) {
   EXPECT_EQ(nlohmann::json::parse(FileBytes(File("m.gltf"))).at("nodes"), scene.json["nodes"]);
 }
 
+TEST_F(RunExportTest, OnlyTruthIsAnnotated) {
+  Run({"map"}, {{"coco_dataset", "map.json"}});
+  options_.truth = true;
+  Run({}, {{"coco_dataset", "truth.json"}});
+  EXPECT_TRUE(nlohmann::json::parse(FileBytes(File("map.json"))).at("annotations").empty());
+  EXPECT_FALSE(nlohmann::json::parse(FileBytes(File("truth.json"))).at("annotations").empty());
+}
+
 // Detections are exact boxes of the landmarks, seen from the odometry, which is exact, too.
 TEST_F(RunExportTest, CocoBoxesAreThoseOfTheDetections) {
   for (Rigid3d& pose : map_.world_from_camera) pose.translation.x() -= 0.125;

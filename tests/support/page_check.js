@@ -2,7 +2,7 @@
 // element "check".
 // Those that are alive, on the page or not.
 function charts() {
-  return Object.values(Chart.instances);
+  return typeof Chart === "undefined" ? [] : Object.values(Chart.instances);
 }
 
 // Every choice, every slider to its end, every object.
@@ -19,6 +19,28 @@ function useControls() {
   }
   for (const box of document.querySelectorAll("input[type=checkbox]")) box.click();
   for (const button of document.querySelectorAll("button")) button.click();
+}
+
+function press(target, ...keys) {
+  for (const key of keys) target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+}
+
+// What each key changes on the map, the object that it leads to, and what a chart says of its points.
+function useKeys(canvas) {
+  const kKeys = ["ArrowLeft", "ArrowUp", "+", "-", "0"];
+  const changed = kKeys.filter((key) => {
+    const before = canvas.toDataURL();
+    press(canvas, key);
+    return canvas.toDataURL() !== before;
+  });
+  const names = ["n", "n", "p"].map((key) => {
+    press(canvas, key);
+    return document.querySelector("#picked strong").textContent;
+  });
+  const chart = document.querySelector("#stages canvas");
+  press(chart, "ArrowRight", "ArrowRight");
+  const focusable = [canvas, ...document.querySelectorAll(".chart canvas")].every(({ tabIndex }) => tabIndex === 0);
+  return { changed, names, focusable, said: chart.closest("section").querySelector("output").textContent };
 }
 
 (async () => {
@@ -57,6 +79,7 @@ function useControls() {
         canvas.dispatchEvent(new PointerEvent("pointerup", at));
       }
       found.picked = picked.textContent;
+      found.keys = useKeys(canvas);
       useControls();
       await new Promise((done) => setTimeout(done, 500));  // charts are drawn with the next frames
       found.charts_after_use = charts().length;
