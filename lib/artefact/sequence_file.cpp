@@ -312,10 +312,9 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
   for (const HeldOutFrame& held_out : sequence.held_out) {
     body["held_out"].push_back(HeldOutToJson(held_out));
   }
-  ArtefactInfo all = info;
-  all.findings.insert(all.findings.begin(), sequence.findings.begin(), sequence.findings.end());
-  all.findings = WorstFirst(std::move(all.findings));
-  WriteArtefact(path, "sequence", all, std::move(body));
+  ArtefactInfo with_findings = info;
+  with_findings.findings = sequence.findings;
+  WriteArtefact(path, "sequence", with_findings, std::move(body));
 }
 
 }  // namespace soslam

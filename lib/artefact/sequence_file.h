@@ -15,7 +15,7 @@ enum class PlaneNeed { kNeeded, kNotNeeded };
 // Throws InputError for a file that is missing, of another kind, newer or not valid, and for one
 // without the planes that are needed.
 Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need = PlaneNeed::kNeeded);
-// The sequence's findings come before those of the stage. Errors as WriteArtefact.
+// The findings are the sequence's own. Errors as WriteArtefact.
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info);
 
