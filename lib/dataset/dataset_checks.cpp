@@ -18,8 +18,11 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   std::vector<Finding> findings;
   for (const Check check : {&CheckCamera, &CheckImages, &CheckBoxes})
     Append(check, view, &findings);
-  // Boxes through a wrong camera, and wrong boxes, contradict the best poses.
-  if (findings.empty()) Append(&CheckPoses, view, &findings);
+  // Boxes through a wrong camera, and wrong boxes, contradict the best poses, and those all
+  // objects.
+  for (const Check check : {&CheckPoses, &CheckObjects}) {
+    if (findings.empty()) Append(check, view, &findings);
+  }
   for (const Check check : {&CheckTruth, &CheckPlanes, &CheckScores, &CheckRejections}) {
     Append(check, view, &findings);
   }

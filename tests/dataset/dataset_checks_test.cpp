@@ -250,6 +250,25 @@ TEST_F(DatasetChecksTest, OdometryInItsOwnWorld) {
   EXPECT_THAT(Warnings(), IsEmpty());
 }
 
+// Objects.
+
+TEST_F(DatasetChecksTest, TrueObjectsWhereTheyAreSeen) {
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, IdsFromZeroInOneFile) {
+  dataset.label = [](size_t) { return "ball"; };
+  dataset.objects = dataset.TrueObjects(/*first_id=*/0, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("objects_against_boxes"),
+                                            HasSubstr("subtract 1 from the object_id"))));
+}
+
+TEST_F(DatasetChecksTest, TrueObjectsInMillimetres) {
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1e-3);
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("another world, unit or order of axes")));
+}
+
 // Planes.
 
 TEST_F(DatasetChecksTest, NormalThatPointsDown) {

@@ -39,6 +39,7 @@ struct PlausibleDataset {
   std::string score = "0.9";
   std::string plane = R"([{"id": 0, "normal": [0, 0, 1], "d": 0}])";
   bool has_truth = false;
+  std::string objects;  // objects.json; empty: none
   std::function<std::string(double)> image_time = [](double t) { return fmt::format("{:.6f}", t); };
   std::function<std::string(double)> pose_time = [](double t) { return fmt::format("{:.6f}", t); };
 
@@ -56,10 +57,27 @@ struct PlausibleDataset {
   }
 
   static std::vector<std::string> Labels() { return {"ball", "cup", "vase", "bowl", "bottle"}; }
+  std::function<std::string(size_t)> label = [](size_t ball) { return Labels()[ball]; };
 
   Eigen::Vector3d BallInWorld(size_t ball) const {
     const double angle = 0.7 + 1.26 * static_cast<double>(ball);
     return {0.7 * std::cos(angle), 0.7 * std::sin(angle), height_of_floor + kRadius};
+  }
+
+  // objects.json with the true balls, whose ids begin with `first_id` and whose numbers are in
+  // units of `unit_m`.
+  std::string TrueObjects(int first_id, double unit_m) const {
+    std::string text;
+    for (size_t ball = 0; ball < Labels().size(); ++ball) {
+      const Eigen::Vector3d p = BallInWorld(ball) / unit_m;
+      const double r = kRadius / unit_m;
+      text += fmt::format(
+          R"({}{{"id": {}, "label": "{}", "center": [{}, {}, {}], "quaternion_xyzw": [0, 0, 0, 1],
+              "half_axes": [{}, {}, {}]}})",
+          text.empty() ? "[" : ",", first_id + static_cast<int>(ball), label(ball), p.x(), p.y(),
+          p.z(), r, r, r);
+    }
+    return text + "]";
   }
 
   Box BoxOf(size_t ball, int frame) const {
@@ -87,6 +105,7 @@ struct PlausibleDataset {
       truth += PoseLine(image_time(time), WorldFromCamera(frame));
     }
     write("rgb.txt", images);
+    if (!objects.empty()) write("objects.json", objects);
     write("odometry.txt", poses);
     if (has_truth) write("groundtruth.txt", truth);
     write("detections.csv", Detections());
@@ -108,8 +127,8 @@ struct PlausibleDataset {
       for (size_t ball = 0; ball < Labels().size(); ++ball) {
         const auto [a, b, c, d] = box(BoxOf(ball, frame));
         const std::string id = has_object_ids ? fmt::format("{},", ball + 1) : "";
-        text += fmt::format("{},{}{},{},{},{},{},{}\n", frame + first_row, id, Labels()[ball],
-                            score, a, b, c, d);
+        text += fmt::format("{},{}{},{},{},{},{},{}\n", frame + first_row, id, label(ball), score,
+                            a, b, c, d);
       }
     }
     return text;
