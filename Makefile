@@ -22,7 +22,25 @@ MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 
+# Make splits names at spaces, and it, the shell and the plan of a run give other characters a meaning, so whatever has
+# one of them is refused, before anything expands it: hence $(value ...). CMAKE_ARGS, LAUNCH and SBATCH are shell text.
+comma := ,
+hash := \#
+opening := (
+closing := )
+SPECIAL := ! " $(hash) $$ % & ' $(opening) $(closing) * $(comma) : ; < = > ? [ \ ] ^ ` { | }
+special-in = $(strip $(foreach character,$(SPECIAL),$(findstring $(character),$(value $(1)))))
+refuse-special = $(if $(call special-in,$(1)),$(error $(1)='$(value $(1))': expected no $(call special-in,$(1)) in it))
+refuse-options = $(if $(filter -%,$(value $(1))),$(error $(1)='$(value $(1))': expected no name that begins with -))
+one-word = $(if $(filter-out 1,$(words $(value $(1)))),$(error $(1)='$(value $(1))': expected $(2)))
+ONE_FOLDER = one folder without spaces in its path (a symbolic link to it will do)
+NAMES := DATASET VARIANT STAGE DATA_ROOT RESULTS PIPELINES THREADS BUILD DATASETS SCENES SEEDS
+$(foreach name,$(NAMES),$(call refuse-special,$(name))$(call refuse-options,$(name)))
+$(foreach name,DATA_ROOT RESULTS PIPELINES BUILD,$(call one-word,$(name),$(ONE_FOLDER)))
+$(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_PATHS: expected --allow_outside_paths))
+
 BIN := $(BUILD)/bin
+$(call refuse-special,BIN)$(call one-word,BIN,$(ONE_FOLDER))
 STAGES := $(patsubst stages/%.cpp,soslam-%,$(wildcard stages/*.cpp))
 SOURCES = $(shell find lib stages tests -name '*.h' -o -name '*.cpp')
 PLAN = $(RESULTS)/$(DATASET)/plan.mk
@@ -36,17 +54,22 @@ scene-name = $(basename $(notdir $(1)))
 SEEDED = $(foreach scene,$(SCENES),$(SEEDS:%=$(call scene-name,$(scene))-seed%))
 SWEEP = $(DATASETS) $(SEEDED)
 
-one-word = $(if $(filter-out 1,$(words $($(1)))),$(error $(1)='$($(1))': $(2)))
-$(foreach name,DATA_ROOT RESULTS BUILD,$(call one-word,$(name),expected one folder without spaces in its name))
+# A dataset may also be named by its path in DATA_ROOT, as shells complete it.
+dataset-name = $(call checked-name,$(1),$(if $(findstring /,$(1:/=)),$(call name-in-data-root,$(1)),$(1:/=)))
+name-in-data-root = $(if $(filter $(abspath $(DATA_ROOT))/,$(dir $(abspath $(1)))),$(notdir $(abspath $(1))))
+checked-name = $(if $(filter-out .%,$(2)),$(2),$(error dataset '$(1)': expected the name of one folder in \
+  DATA_ROOT = $(DATA_ROOT)$(if $(findstring /,$(1:/=)), (or DATASET=$(notdir $(1:/=)) DATA_ROOT=$(dir $(1:/=))))))
 ifneq ($(filter run doctor ablation export explain,$(MAKECMDGOALS)),)
-$(call one-word,DATASET,expected the name of one folder in DATA_ROOT = $(DATA_ROOT))
+$(call one-word,DATASET,the name of one folder in DATA_ROOT = $(DATA_ROOT))
 endif
+override DATASET := $(foreach name,$(DATASET),$(call dataset-name,$(name)))
+override DATASETS := $(foreach name,$(DATASETS),$(call dataset-name,$(name)))
 ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
 $(if $(DATASETS)$(SCENES),,$(error expected DATASETS='<name> ...', SCENES='<file> ...' or both))
 $(if $(filter-out $(words $(sort $(SEEDED))),$(words $(SEEDED))),$(error SCENES or SEEDS='$(SEEDS)' has a name twice))
 endif
 ifneq ($(filter explain,$(MAKECMDGOALS)),)
-$(call one-word,STAGE,expected the name of one stage)
+$(call one-word,STAGE,the name of one stage)
 endif
 ifneq ($(filter status explain,$(MAKECMDGOALS)),)
 $(if $(wildcard $(BIN)/soslam-status),,$(error $(BIN)/soslam-status is not there yet: make build))
@@ -62,7 +85,7 @@ help: ## List the targets
 	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
-	@echo 'Variants: $(sort $(basename $(notdir $(wildcard $(PIPELINES)/variants/*.json))))'
+	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
 
 .PHONY: demo
 demo: ## Run all variants on the sequence that comes with the project, and print the table
@@ -84,7 +107,8 @@ run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of
 
 .PHONY: run-built
 run-built:
-	@mkdir -p $(RESULTS)
+	@mkdir -p $(RESULTS) && touch $(LOCK) || { \
+	  echo 'run: expected RESULTS=<a folder that you may write to>' >&2; exit 2; }
 	@flock --nonblock --conflict-exit-code 75 $(LOCK) true || test $$? -ne 75 || \
 	  echo 'run: waiting for another run of $(DATASET) in $(RESULTS)'
 	+@if test -e $(LOCK); then flock $(LOCK) $(MAKE) locked-run; else $(MAKE) locked-run; fi
@@ -120,10 +144,6 @@ $(foreach name,$(SEEDED),$(eval swept/$(name): $(DATA_ROOT)/$(name)/run.json))
 .PHONY: scenes
 scenes: $(SEEDED:%=$(DATA_ROOT)/%/run.json)
 
-ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
-$(if $(findstring /,$(DATASETS)),$(error DATASETS='$(DATASETS)': expected names of folders in DATA_ROOT = $(DATA_ROOT), without /))
-endif
-
 .PHONY: sweep
 sweep: build ## Run DATASETS and SCENES with SEEDS through VARIANT=<name>|all; with -j, side by side
 	+@$(MAKE) --keep-going $(SEVERAL_JOBS) $(SWEEP:%=swept/%)
@@ -152,17 +172,21 @@ report: build ## Make pages to look at: RESULTS/report.html, and one in the fold
 	@$(BIN)/soslam-pages --results $(RESULTS) $(OUTSIDE_PATHS)
 	@$(MAKE) tables
 
-MAPS = $(wildcard $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT))))
+# The shell finds them: folders in results of others may have any name.
+MAPS = $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT)))
 
 .PHONY: export
 export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats of other programs
-	$(if $(MAPS),,$(error no map.json of VARIANT='$(VARIANT)' in $(RESULTS)/$(DATASET); make run writes it))
-	@status=0; for map in $(MAPS); do \
-	  from=$${map%/map.json}; to=$$from/export; mkdir -p $$to; \
-	  $(BIN)/soslam-export --sequence $$from/sequence.json --map $$map \
-	    --trajectory $$to/trajectory.txt --ply $$to/landmarks.ply --gltf $$to/map.glb \
-	    --coco $$to/boxes.json --coco_dataset $$to/images.json --csv $$to/landmarks.csv || status=$$?; \
-	done; exit $$status
+	@status=0; found=; for map in $(MAPS); do \
+	  test -e "$$map" || continue; \
+	  found=yes; from=$${map%/map.json}; to=$$from/export; mkdir -p "$$to"; \
+	  $(BIN)/soslam-export --sequence "$$from/sequence.json" --map "$$map" \
+	    --trajectory "$$to/trajectory.txt" --ply "$$to/landmarks.ply" --gltf "$$to/map.glb" \
+	    --coco "$$to/boxes.json" --coco_dataset "$$to/images.json" --csv "$$to/landmarks.csv" || status=$$?; \
+	done; \
+	test "$$found" || { status=2; \
+	  echo 'export: no map.json of VARIANT="$(VARIANT)" in $(RESULTS)/$(DATASET); make run writes it' >&2; }; \
+	exit $$status
 
 # Of what was planned already; the import runs anew where its files have changed, so that it looks at them.
 PLANNED = $(sort $(patsubst $(RESULTS)/$(DATASET)/%/stages.txt,%,$(wildcard $(RESULTS)/$(DATASET)/*/stages.txt)))
@@ -198,21 +222,23 @@ setup: ## Install the packages that are missing (apt, as root or through sudo)
 
 .PHONY: build
 build: $(BUILD)/build.ninja ## Build the executables of the stages
-	@flock $(BUILD) cmake --build $(BUILD) --target $(STAGES)
+	@pipelines/build.sh $(BUILD) $(STAGES)
 
 $(BUILD)/build.ninja: | setup
+	@mkdir -p $(BUILD) && test -w $(BUILD) || { \
+	  echo 'build: $(BUILD) cannot be written to; expected BUILD=<a folder of your own>' >&2; exit 2; }
 	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 
 .PHONY: test
 test: $(BUILD)/build.ninja ## Build everything and run all tests
 	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
-	@flock $(BUILD) cmake --build $(BUILD)
+	@pipelines/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2
 
 .PHONY: test-slurm
 test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of two nodes on this machine
 	@pipelines/install-packages.sh pipelines/slurm-packages.txt
-	@flock $(BUILD) cmake --build $(BUILD) --target slurm_test
+	@pipelines/build.sh $(BUILD) slurm_test
 	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm\.'
 
 # Five repetitions, each of a tenth of a second or more: the table has their medians. The largest worlds take minutes
@@ -220,7 +246,8 @@ test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of 
 .PHONY: bench
 bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's method: RESULTS/bench.md, bench.json
 	@pipelines/install-packages.sh pipelines/bench-packages.txt
-	@flock $(BUILD) sh -c 'cmake $(BUILD) > /dev/null && cmake --build $(BUILD) --target soslam-bench soslam-bench-table'
+	@flock $(BUILD) cmake $(BUILD) > /dev/null
+	@pipelines/build.sh $(BUILD) soslam-bench soslam-bench-table
 	@mkdir -p $(RESULTS)
 	@$(BIN)/soslam-bench --benchmark_filter='-^large/' --benchmark_repetitions=5 --benchmark_min_time=0.1 \
 	  --benchmark_report_aggregates_only=true --benchmark_out_format=json --benchmark_out=$(RESULTS)/.bench.json.tmp
@@ -229,17 +256,22 @@ bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's 
 	@mv $(RESULTS)/.bench.md.tmp $(RESULTS)/bench.md
 	@cat $(RESULTS)/bench.md
 
+.PHONY: formatter
+formatter:
+	@pipelines/install-packages.sh pipelines/format-packages.txt
+
 .PHONY: format
-format: ## Format the sources
+format: formatter ## Format the sources
 	@clang-format-14 -i $(SOURCES)
 
 .PHONY: format-check
-format-check: | setup ## Fail when a source is not formatted
+format-check: formatter ## Fail when a source is not formatted
 	@clang-format-14 --dry-run -Werror $(SOURCES)
 
 .PHONY: clean
 clean: ## Delete what runs wrote to RESULTS
-	@rm -rf $(dir $(wildcard $(RESULTS)/*/plan.mk)) $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html bench.json bench.md) $(wildcard $(RESULTS)/.*.lock)
+	@for plan in $(RESULTS)/*/plan.mk; do test ! -e "$$plan" || rm -rf "$${plan%/plan.mk}"; done
+	@rm -rf $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html bench.json bench.md .*.lock)
 
 .PHONY: distclean
 distclean: clean ## Delete the build as well

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # install-packages.sh LIST: installs what is missing of the packages in the file LIST through apt, as
-# root or through sudo. Says nothing when nothing is missing.
+# root or through sudo. Says nothing when nothing is missing. Exit code 3: this system has no such package.
 set -euo pipefail
 
 list=$1
@@ -29,4 +29,7 @@ fi
 
 echo "setup: installing with ${as_root[*]:+sudo }apt-get: ${missing[*]}"
 "${as_root[@]}" apt-get update -qq
+for package in "${missing[@]}"; do
+  apt-cache show "$package" &> /dev/null || { echo "setup: this system has no package $package" >&2; exit 3; }
+done
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes -qq --no-install-recommends "${missing[@]}"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <functional>
 #include <sstream>
+#include <string_view>
 
 #include "artefact/findings_json.h"
 #include "artefact/hdf5_artefact.h"
@@ -51,13 +52,13 @@ const std::vector<Kind>& Kinds() {
   return kinds;
 }
 
-const Kind& FindKind(const std::string& name, const std::string& file) {
+const Kind& FindKind(std::string_view name, const std::filesystem::path& file) {
   const auto found = std::ranges::find(Kinds(), name, &Kind::name);
   if (found != Kinds().end()) return *found;
   std::vector<std::string> known;
   for (const Kind& kind : Kinds()) known.emplace_back(kind.name);
-  throw InputError(fmt::format("{}: artefact kind is \"{}\"; expected one of {}", file, name,
-                               fmt::join(known, ", ")));
+  throw InputError(fmt::format("{}: artefact kind is \"{}\"; expected one of {}", file.string(),
+                               name, fmt::join(known, ", ")));
 }
 
 std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
@@ -92,7 +93,7 @@ std::string Wrapped(const std::string& text, size_t indent) {
 
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence) {
   const nlohmann::json header = ReadArtefactHeader(file);
-  const Kind& kind = FindKind(header.at("kind").get<std::string>(), file.string());
+  const Kind& kind = FindKind(header.at("kind").get_ref<const std::string&>(), file);
   CheckArtefactHeader(header, kind.name, file.string());
   Inspection inspection = kind.read(file, sequence);
   inspection.title = fmt::format("{}: {} ({})", file.string(), kind.name, kind.title);

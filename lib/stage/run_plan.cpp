@@ -26,14 +26,15 @@ namespace fs = std::filesystem;
 // Make splits lists at spaces and gives several characters a meaning, with no way to quote them
 // all.
 void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
-  const bool fit = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) || c >= 0x80 ||
-           std::string("_-./+@").find(static_cast<char>(c)) != std::string::npos;
-  });
+  const bool fit = !text.empty() && text.front() != '-' &&
+                   std::all_of(text.begin(), text.end(), [](unsigned char c) {
+                     return std::isalnum(c) || c >= 0x80 ||
+                            std::string("_-./+@").find(static_cast<char>(c)) != std::string::npos;
+                   });
   if (!fit) {
-    throw SettingsError(
-        fmt::format("{} '{}': expected a name of letters, digits and _ - . / + @ only (no spaces)",
-                    what, text));
+    throw SettingsError(fmt::format(
+        "{} '{}': expected a name of letters, digits and _ - . / + @ only (no spaces, no - first)",
+        what, text));
   }
 }
 

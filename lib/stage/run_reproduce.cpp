@@ -54,7 +54,8 @@ void Print(const Outcome& outcome) {
 std::set<std::string> WrittenArgumentsOf(const std::string& executable) {
   constexpr std::string_view kPrefix = "soslam-";
   std::set<std::string> arguments;
-  for (const StageOutput& output : OutputsOfStage(executable.substr(kPrefix.size()))) {
+  const std::string stage = executable.substr(kPrefix.size());
+  for (const StageOutput& output : OutputsOfStage(stage)) {
     arguments.insert(output.argument);
   }
   return arguments;
