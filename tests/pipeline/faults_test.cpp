@@ -37,24 +37,10 @@ class FaultsTest : public testing::Test {
   }
 
   std::vector<std::string> Words() const {
-    return {"env",
-            "-u",
-            "MAKEFLAGS",
-            "-u",
-            "MFLAGS",
-            "-u",
-            "MAKELEVEL",
-            "make",
-            "-j2",
-            "-C",
-            SOSLAM_SOURCE_DIR,
-            "run",
-            "DATASET=small",
-            "VARIANT=OursST-unannotated InitS",
-            "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string(),
-            "DATA_ROOT=" + pipeline_.Dataset().parent_path().string(),
-            "RESULTS=" + pipeline_.Results().parent_path().string(),
-            "PIPELINES=" + (pipeline_.Pipelines() / "unannotated").string()};
+    std::vector<std::string> words = pipeline_.MakeWords("run");
+    words.push_back("VARIANT=OursST-unannotated InitS");
+    words.push_back("PIPELINES=" + (pipeline_.Pipelines() / "unannotated").string());
+    return words;
   }
   CommandResult Run() const { return RunCommand(Words()); }
 
@@ -194,6 +180,7 @@ TEST_F(FaultyDiskTest, ReadOnlyDisk) {
   const CommandResult run = Run();
   EXPECT_NE(run.exit_code, 0);
   EXPECT_THAT(run.output + run.errors, HasSubstr("Read-only file system"));
+  EXPECT_THAT(run.output + run.errors, HasSubstr("expected RESULTS="));
   EXPECT_EQ(Artefacts(), before);
 }
 

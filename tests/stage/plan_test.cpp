@@ -384,6 +384,8 @@ TEST_F(RunPlanTest, RefusesWhatMakeCannotHandle) {
   EXPECT_THROW(Run("my room", ""), SettingsError);
   EXPECT_THROW(Run("$(shell ls)", ""), SettingsError);
   EXPECT_THROW(Run("../room", ""), SettingsError);
+  EXPECT_THROW(Run("-n", ""), SettingsError);
+  EXPECT_THROW(Run("", "-n"), SettingsError);
   EXPECT_THROW(Run("", "../variants/Plain"), SettingsError);
   EXPECT_THROW(RunIn("room", "my results", "", ""), SettingsError);
   EXPECT_THROW(RunIn("no_room", "results", "", ""), InputError);

@@ -95,6 +95,27 @@ class SmallPipeline {
     return RunMake(words);
   }
 
+  // The words that call a goal of the project's own Makefile for this dataset.
+  std::vector<std::string> MakeWords(const std::string& goal) const {
+    return {"env",
+            "-u",
+            "MAKEFLAGS",
+            "-u",
+            "MFLAGS",
+            "-u",
+            "MAKELEVEL",
+            "make",
+            "-j2",
+            "-C",
+            SOSLAM_SOURCE_DIR,
+            goal,
+            "DATASET=small",
+            "BUILD=" + std::filesystem::path(SOSLAM_BINARY_DIR).parent_path().string(),
+            "DATA_ROOT=" + Dataset().parent_path().string(),
+            "RESULTS=" + Results().parent_path().string(),
+            "PIPELINES=" + Pipelines().string()};
+  }
+
   // The bytes of all artefacts (JSON, HDF5) below a folder, by path, links as well; without the
   // records of runs, which hold times.
   static std::map<std::string, std::string> Artefacts(const std::filesystem::path& folder) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names that mean something to make or the shell: refused from the caller, harmless in files of
+// others.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/background_command.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+// A small pipeline, and the project's Makefile with what the caller sets for it.
+class NamesTest : public testing::Test {
+ protected:
+  CommandResult Make(const std::string& goal, const std::vector<std::string>& settings) const {
+    std::vector<std::string> words = pipeline_.MakeWords(goal);
+    words.insert(words.end(), settings.begin(), settings.end());
+    return BackgroundCommand(words).Wait();
+  }
+  void ExpectRefused(const std::string& goal, const std::string& setting,
+                     const std::string& expected) const {
+    SCOPED_TRACE(goal + " " + setting);
+    const CommandResult made = Make(goal, {setting});
+    EXPECT_EQ(made.exit_code, 2);
+    EXPECT_THAT(made.errors, HasSubstr(expected));
+    EXPECT_EQ(std::ranges::count(made.errors, '\n'), 1) << made.errors;
+    EXPECT_FALSE(fs::exists(Marker()));
+    EXPECT_FALSE(fs::exists(pipeline_.Results()));
+  }
+  // What a name that is carried out would make.
+  fs::path Marker() const { return pipeline_.Folder() / "marker"; }
+
+  SmallPipeline pipeline_{3};
+};
+
+TEST_F(NamesTest, OfTheCallerAreNeverCarriedOut) {
+  const std::string touch = "touch " + Marker().string();
+  for (const std::string name : {"DATASET", "VARIANT", "DATA_ROOT", "RESULTS", "PIPELINES", "BUILD",
+                                 "BIN", "THREADS", "STAGE", "DATASETS", "SCENES"}) {
+    ExpectRefused("run-built", name + "=a;" + touch, "expected no ;");
+    ExpectRefused("run-built", name + "=$(shell " + touch + ")", "expected no $");
+    ExpectRefused("run-built", name + "=a`" + touch + "`", "expected no `");
+    ExpectRefused("run-built", name + "=a';" + touch + ";'", "expected no '");
+  }
+  ExpectRefused("run-built", "OUTSIDE_PATHS=;" + touch, "expected --allow_outside_paths");
+  EXPECT_EQ(Make("run-built", {"VARIANT=SVD\n\t" + touch}).exit_code, 2);
+  EXPECT_FALSE(fs::exists(Marker()));
+}
+
+TEST_F(NamesTest, OfTheCallerAreNeitherSplitNorOptions) {
+  for (const std::string name : {"DATA_ROOT", "RESULTS", "PIPELINES", "BUILD"}) {
+    ExpectRefused("run-built", name + "=a b", "expected one folder without spaces");
+    ExpectRefused("run-built", name + "=-n", "begins with -");
+  }
+  ExpectRefused("run", "DATASET=a b", "expected the name of one folder in DATA_ROOT");
+  ExpectRefused("run", "DATASET=-n", "begins with -");
+  ExpectRefused("run", "VARIANT=InitP --help", "begins with -");
+  for (const std::string name : {".", "..", "../data/..", "/"}) {
+    ExpectRefused("run-built", "DATASET=" + name, "expected the name of one folder in DATA_ROOT");
+  }
+}
+
+TEST_F(NamesTest, ADatasetMayBeNamedByItsPath) {
+  const std::string path = pipeline_.Dataset().string();
+  for (const std::string& name : {path, path + "/", std::string("small/")}) {
+    const CommandResult made = Make("run-built", {"DATASET=" + name, "VARIANT=SVD"});
+    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_TRUE(fs::exists(pipeline_.Results() / "SVD/metrics.json"));
+  }
+  fs::remove_all(pipeline_.Results());
+  ExpectRefused("run-built", "DATASET=/elsewhere/room/", "(or DATASET=room DATA_ROOT=/elsewhere/)");
+}
+
+TEST_F(NamesTest, OfImagesMayBeAnything) {
+  const std::vector<std::string> names = {"$(touch marker).png", "-n a'b\";touch marker.png",
+                                          "%41`touch marker`\\.png"};
+  std::ofstream list(pipeline_.Dataset() / "rgb.txt");
+  for (size_t i = 0; i < names.size(); ++i) {
+    fs::rename(pipeline_.Dataset() / ("rgb/00000" + std::to_string(i) + ".png"),
+               pipeline_.Dataset() / names[i]);
+    list << 0.1 * static_cast<double>(i) << " " << names[i] << "\n";
+  }
+  list.close();
+  const CommandResult made = Make("run-built", {"VARIANT=OursPT"});
+  EXPECT_EQ(made.exit_code, 0) << made.output << made.errors;
+  EXPECT_TRUE(fs::exists(pipeline_.Results() / "OursPT/metrics.json"));
+  EXPECT_FALSE(fs::exists(SOSLAM_SOURCE_DIR "/marker"));
+  EXPECT_EQ(BackgroundCommand(
+                {StageProgram("pages"), "--results", pipeline_.Results().parent_path().string()})
+                .Wait()
+                .exit_code,
+            0);
+}
+
+// Folders in results that came from others.
+TEST_F(NamesTest, OfResultsMayBeAnything) {
+  const fs::path results = pipeline_.Results().parent_path();
+  fs::create_directories(pipeline_.Results() / "$(touch marker);touch marker");
+  fs::create_directories(results / "kept");
+  WriteBytes(pipeline_.Results() / "plan.mk", "");
+  WriteBytes(pipeline_.Results() / "$(touch marker);touch marker/map.json", "{}");
+  const CommandResult refused = Make("export", {"BIN=" SOSLAM_BINARY_DIR});
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_THAT(refused.errors, HasSubstr("$(touch marker);touch marker"));
+
+  const fs::path two_words = results / "a kept";
+  fs::create_directories(two_words);
+  WriteBytes(two_words / "plan.mk", "");
+  EXPECT_EQ(Make("clean", {}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(SOSLAM_SOURCE_DIR "/marker"));
+  EXPECT_FALSE(fs::exists(two_words));
+  EXPECT_FALSE(fs::exists(pipeline_.Results()));
+  EXPECT_TRUE(fs::exists(results / "kept"));
+}
+
+// A folder with a build of its own, in which `target` is made from `source`, as one may only read
+// it.
+class ForeignBuildTest : public testing::Test {
+ protected:
+  ForeignBuildTest() {
+    WriteBytes(folder_ / "build.ninja",
+               "rule copy\n  command = cp $in $out\nbuild target: copy source\n"
+               "build build.ninja: phony always\nbuild always: phony\n");
+    WriteBytes(folder_ / "source", "1");
+  }
+  CommandResult Build() const {
+    return BackgroundCommand({"unshare", "--mount", "sh", "-c",
+                              "mount --bind -o ro \"$1\" \"$1\" && exec \"$0\" \"$1\" target",
+                              SOSLAM_SOURCE_DIR "/pipelines/build.sh", folder_.path().string()})
+        .Wait();
+  }
+  bool CanMount() const {
+    return BackgroundCommand({"unshare", "--mount", "mount", "--bind", folder_.path().string(),
+                              folder_.path().string()})
+               .Wait()
+               .exit_code == 0;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ForeignBuildTest, HasToBeUpToDate) {
+  if (!CanMount()) GTEST_SKIP() << "needs root, to mount a folder";
+  const CommandResult stale = Build();
+  EXPECT_EQ(stale.exit_code, 2);
+  EXPECT_THAT(stale.errors, HasSubstr("not up to date"));
+  EXPECT_THAT(stale.errors, HasSubstr("BUILD="));
+  EXPECT_FALSE(fs::exists(folder_ / "target"));
+
+  EXPECT_EQ(RunCommand({"ninja", "-C", folder_.path().string(), "target"}).exit_code, 0);
+  const CommandResult current = Build();
+  EXPECT_EQ(current.exit_code, 0) << current.errors;
+  EXPECT_EQ(current.errors, "");
+}
+
+}  // namespace
+}  // namespace soslam
