@@ -188,7 +188,7 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	  echo 'export: no map.json of VARIANT="$(VARIANT)" in $(RESULTS)/$(DATASET); make run writes it' >&2; }; \
 	exit $$status
 
-# Of what was planned already; the import runs anew where its files have changed, so that it looks at them.
+# Variants that were planned already; the import runs anew where its files have changed, so that it looks at them.
 PLANNED = $(sort $(patsubst $(RESULTS)/$(DATASET)/%/stages.txt,%,$(wildcard $(RESULTS)/$(DATASET)/*/stages.txt)))
 
 .PHONY: doctor
