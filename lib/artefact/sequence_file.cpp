@@ -236,6 +236,13 @@ void CheckPlanes(const json& json) {
   }
 }
 
+// Before version 1.6 images were read as they are stored.
+ImageOrientation OrientationFromJson(const json& json) {
+  const std::string name = json.value("image_orientation", "stored");
+  const auto found = std::ranges::find(kImageOrientationNames, name);
+  return static_cast<ImageOrientation>(found - std::begin(kImageOrientationNames));
+}
+
 Sequence SequenceFromJson(const json& json) {
   Sequence sequence;
   json.at("name").get_to(sequence.name);
@@ -243,6 +250,7 @@ Sequence SequenceFromJson(const json& json) {
   if (json.contains("image_distortion")) {  // since version 1.3
     sequence.image_distortion = DistortionFromJson(json["image_distortion"]);
   }
+  sequence.image_orientation = OrientationFromJson(json);
   CheckPlanes(json);
   for (const auto& frame : json.at("frames")) sequence.frames.push_back(FrameFromJson(frame));
   CheckSegments(sequence.frames);
@@ -292,6 +300,8 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info) {
   json body = {{"name", sequence.name},
                {"camera", sequence.camera},
+               {"image_orientation",
+                kImageOrientationNames[static_cast<size_t>(sequence.image_orientation)]},
                {"frames", json::array()},
                {"planes", json::array()},
                {"objects", json::array()},

@@ -203,6 +203,7 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.name = std::filesystem::canonical(folder).filename().string();
   sequence.camera = content.camera;
   sequence.image_distortion = content.image_distortion;
+  sequence.image_orientation = options.image_orientation;
   sequence.planes = content.planes;
   sequence.objects = content.objects;
   sequence.rejected_detections = content.rejected;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/options.h"
+#include "model/image_orientation.h"
 
 namespace soslam {
 
@@ -125,6 +126,7 @@ struct ImportOptions {
   TrajectorySource trajectory = TrajectorySource::kOdometry;
   PlanePoses camera_planes = PlanePoses::kGroundTruth;
   std::string detections;
+  ImageOrientation image_orientation = ImageOrientation::kUpright;
   int first_frame = 0;
   int frame_stride = 1;
   HeldOutFrames held_out = HeldOutFrames::kNone;
@@ -154,6 +156,9 @@ struct ImportOptions {
                "the file or folder with the boxes; empty: detections.csv, of kitti_tracking the "
                "boxes of its labels (\"labels\"). For kitti_tracking the folder of a detector, "
                "whose boxes take the objects of the labels that they match");
+    visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
+                 "where EXIF turns images: camera and boxes refer to the image as viewers show it, "
+                 "or to the pixels as the file stores them");
     visit.Real("max_time_difference_s", &max_time_difference_s, {0, 1e6},
                "an image takes the pose nearest in time, at most this far away");
     visit.Group("Frames");

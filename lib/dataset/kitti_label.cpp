@@ -140,9 +140,10 @@ fs::path RequiredFile(const fs::path& path) {
 }
 
 Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
-                     const RecordingValues& image_size, int recording) {
+                     ImageOrientation orientation, const RecordingValues& image_size,
+                     int recording) {
   if (image) {
-    const cv::Mat pixels = ReadGreyImage(*image);
+    const cv::Mat pixels = ReadGreyImage(*image, orientation);
     camera.width = pixels.cols;
     camera.height = pixels.rows;
     return camera;

@@ -10,6 +10,7 @@
 #include "dataset/detection_row.h"
 #include "dataset/recordings.h"
 #include "geometry/camera.h"
+#include "model/image_orientation.h"
 
 namespace soslam {
 
@@ -59,7 +60,8 @@ std::filesystem::path RequiredFile(const std::filesystem::path& path);
 
 // The camera with the size (px) of an image, or without one with the size that the setting gives.
 Camera WithImageSize(Camera camera, const std::optional<std::filesystem::path>& image,
-                     const RecordingValues& image_size, int recording);
+                     ImageOrientation orientation, const RecordingValues& image_size,
+                     int recording);
 
 // In lower case: KITTI's Car is the label car.
 std::string LabelOfType(const std::string& type);

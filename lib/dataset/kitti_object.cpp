@@ -44,7 +44,7 @@ void AddObject(const KittiLabel& label, const DetectionRow& row, DatasetContent*
   content->objects.push_back(object);
 }
 
-void AddFrame(const fs::path& folder, const NumberedPath& label_file,
+void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrientation orientation,
               const RecordingValues& image_size, DatasetContent* content) {
   const fs::path calibration_file = RequiredFile(folder / "calib" / label_file.path.filename());
   content->files.insert(content->files.end(), {label_file.path, calibration_file});
@@ -56,7 +56,7 @@ void AddFrame(const fs::path& folder, const NumberedPath& label_file,
   }
   Frame frame = ReadFrame(folder, label_file);
   const auto image = frame.image.empty() ? std::nullopt : std::optional(folder / frame.image);
-  const Camera camera = WithImageSize(calibration.camera, image, image_size, frame.id);
+  const Camera camera = WithImageSize(calibration.camera, image, orientation, image_size, frame.id);
   if (content->frames.empty()) content->camera = camera;
   if (camera != content->camera) frame.camera = camera;
   for (const KittiLabel& label : labels) {
@@ -75,7 +75,7 @@ DatasetContent ReadKittiObject(const fs::path& folder, const ImportOptions& opti
   const RecordingValues image_size("image_size", options.kitti.image_size);
   DatasetContent content;
   for (const NumberedPath& labels : NumberedFiles(folder / "label_2", ".txt")) {
-    AddFrame(folder, labels, image_size, &content);
+    AddFrame(folder, labels, options.image_orientation, image_size, &content);
   }
   return content;
 }

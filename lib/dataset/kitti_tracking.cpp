@@ -60,6 +60,7 @@ class Recording {
         file_(labels.path.filename()),
         options_(options.kitti),
         detections_(options.detections),
+        image_orientation_(options.image_orientation),
         content_(content) {
     calibration_ = ReadKittiCalibration(Read(folder / "calib" / file_));
     labels_ = ReadKittiTrackingLabels(Read(labels.path));
@@ -122,7 +123,7 @@ class Recording {
       frame.image = image.string();
       if (!any_image) any_image = path;
     }
-    camera_ = WithImageSize(calibration_.camera, any_image,
+    camera_ = WithImageSize(calibration_.camera, any_image, image_orientation_,
                             RecordingValues("image_size", options_.image_size), number_);
     if (content_->frames.empty()) content_->camera = camera_;
     for (Frame& frame : frames) {
@@ -215,6 +216,7 @@ class Recording {
   fs::path file_;  // SSSS.txt
   const KittiOptions& options_;
   std::string detections_;  // empty: those of the labels
+  ImageOrientation image_orientation_;
   DatasetContent* content_;
   KittiCalibration calibration_;
   Camera camera_;

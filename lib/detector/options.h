@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/options.h"
+#include "model/image_orientation.h"
 
 namespace soslam {
 
@@ -25,6 +26,7 @@ struct DetectorOptions {
   PixelValues pixel_values = PixelValues::kRgbUnit;
   int input_width = 640;
   int input_height = 640;
+  ImageOrientation image_orientation = ImageOrientation::kUpright;
   double min_score = 0.25;
   double max_overlap = 0.45;
 
@@ -38,6 +40,10 @@ struct DetectorOptions {
                   "width of the network's input, as it was exported");
     visit.Integer("input_height_px", &input_height, {1, 8192},
                   "height of the network's input, as it was exported");
+    visit.Group("Images");
+    visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
+                 "where EXIF turns images: what is detected, and what boxes refer to, is the image "
+                 "as viewers show it, or the pixels as the file stores them");
     visit.Group("Detections that are kept");
     visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
     visit.Real("max_overlap", &max_overlap, {0, 1},

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
-#include <string_view>
+
+#include "model/image_orientation.h"
 
 namespace soslam {
 
@@ -12,8 +14,21 @@ struct ImageSize {
   std::int64_t height = 0;
 };
 
-// The size that an image file claims to have; none for what is neither PNG nor JPEG, or cut short
-// before it. Other decoders of OpenCV allocate whatever a few bytes ask for.
-std::optional<ImageSize> SizeInHeader(std::string_view bytes);
+// What an image file claims to hold, before any pixel is decoded.
+struct ImageHeader {
+  ImageSize stored;     // of the pixels that the file stores
+  int orientation = 1;  // EXIF's, 1 to 8: 1 upright, 3 upside down, 5 to 8 turned by a quarter
+
+  bool IsTurnedByAQuarter() const { return orientation >= 5; }
+  // Of the image that is read with this setting.
+  ImageSize Size(ImageOrientation read_as) const {
+    const bool swaps = read_as == ImageOrientation::kUpright && IsTurnedByAQuarter();
+    return swaps ? ImageSize{stored.height, stored.width} : stored;
+  }
+};
+
+// Reads no more of the file than that takes, usually a few hundred bytes. None for what cannot be
+// opened, is no image of the formats of image_format.h, or is cut short before its size.
+std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <vector>
@@ -12,12 +13,11 @@
 #include "base/error.h"
 #include "base/run_log.h"
 #include "geometry/image_size.h"
-#include "image/image_header.h"
+#include "image/image_format.h"
+#include "image/turn_upright.h"
 
 namespace soslam {
 namespace {
-
-using namespace std::string_view_literals;
 
 std::vector<char> ReadBytes(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -26,7 +26,13 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
   }
   NoteInput(path);
   std::ifstream stream(path, std::ios::binary | std::ios::ate);  // whose place is its size
-  std::vector<char> bytes(static_cast<size_t>(std::max<std::streamoff>(0, stream.tellg())));
+  const std::streamoff size = std::max<std::streamoff>(0, stream.tellg());
+  constexpr std::streamoff kMaxSize = std::numeric_limits<int>::max();  // what OpenCV decodes
+  if (size > kMaxSize) {
+    throw InputError(fmt::format("{}: has {} bytes; expected an image of at most {}", path.string(),
+                                 size, kMaxSize));
+  }
+  std::vector<char> bytes(static_cast<size_t>(size));
   stream.seekg(0).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
   if (bytes.empty()) {
@@ -35,78 +41,104 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-// libjpeg fills what is missing with grey and libpng may do the same, both without an error. Some
-// writers pad with zeros after the end, so those do not count.
-void CheckComplete(std::string_view bytes, const std::filesystem::path& path) {
-  const size_t last = bytes.find_last_not_of('\0');
-  const std::string_view unpadded = bytes.substr(0, last == bytes.npos ? 0 : last + 1);
-  if (bytes.starts_with("\xff\xd8\xff"sv) && !unpadded.ends_with("\xff\xd9"sv)) {
-    throw InputError(
-        fmt::format("{}: is cut short after {} bytes; expected a JPEG image that ends "
-                    "with the marker EOI",
-                    path.string(), bytes.size()));
+// HEIF and what is made after it (ISO/IEC 14496-12), as newer phones write.
+bool IsHeif(std::string_view file) { return file.size() > 8 && file.substr(4, 4) == "ftyp"; }
+
+constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
+
+// The format and header of an image that can be decoded, whose `bytes` end with it from here on.
+struct CheckedFile {
+  const ImageFormat* format;
+  ImageHeader header;
+};
+
+// Before anything of its size is allocated.
+CheckedFile Check(const std::filesystem::path& path, std::vector<char>* bytes) {
+  const std::string_view file(bytes->data(), bytes->size());
+  const ImageFormat* format = FindImageFormat(file.substr(0, kSignatureSize));
+  if (format == nullptr) {
+    throw InputError(fmt::format("{}: cannot be decoded; expected a {} image{}", path.string(),
+                                 kFormats, IsHeif(file) ? ", not HEIF (HEIC, AVIF)" : ""));
   }
-  if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv) && !unpadded.ends_with("IEND\xae\x42\x60\x82"sv)) {
-    throw InputError(
-        fmt::format("{}: is cut short after {} bytes; expected a PNG image that ends "
-                    "with the chunk IEND",
-                    path.string(), bytes.size()));
+  const auto header = format->header(ImageBytes(file));
+  if (header && !IsImageSize(header->stored.width, header->stored.height)) {
+    throw InputError(fmt::format("{}: is {} x {} pixels; expected at most {} in all", path.string(),
+                                 header->stored.width, header->stored.height, kMaxPixels));
   }
+  const auto length = format->length(file);
+  if (!length) {
+    throw InputError(fmt::format("{}: is cut short after {} bytes; expected a {} image {}",
+                                 path.string(), file.size(), format->name, format->whole));
+  }
+  if (!header) {
+    throw InputError(fmt::format("{}: cannot be decoded; expected a {} image of a usual kind",
+                                 path.string(), format->name));
+  }
+  bytes->resize(*length);
+  return {format, *header};
 }
 
-// Before anything of that size is allocated.
-void CheckSize(std::string_view bytes, const std::filesystem::path& path) {
-  const auto size = SizeInHeader(bytes);
-  if (!size) {
-    throw InputError(path.string() + ": cannot be decoded; expected a PNG or JPEG image");
-  }
-  if (!IsImageSize(size->width, size->height)) {
-    throw InputError(fmt::format("{}: is {} x {} pixels; expected at most {} in all", path.string(),
-                                 size->width, size->height, kMaxPixels));
-  }
-}
+struct Image {
+  cv::Mat pixels;
+  ImageHeader header;
+  ImageOrientation read_as;
+};
 
 // `mode` is OpenCV's IMREAD_GRAYSCALE or IMREAD_COLOR.
-cv::Mat ReadImage(const std::filesystem::path& path, int mode) {
-  const std::vector<char> bytes = ReadBytes(path);
-  CheckSize({bytes.data(), bytes.size()}, path);
-  CheckComplete({bytes.data(), bytes.size()}, path);
-  cv::Mat image;
+Image ReadImage(const std::filesystem::path& path, int mode, ImageOrientation orientation) {
+  std::vector<char> bytes = ReadBytes(path);
+  const auto [format, header] = Check(path, &bytes);
+  if (format->clear_orientation != nullptr) format->clear_orientation(bytes);
+  // OpenCV 4.6 decodes WebP from unsigned bytes only.
+  const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data());
+  cv::Mat stored;
   try {
-    image = cv::imdecode(bytes, mode | cv::IMREAD_IGNORE_ORIENTATION);
+    stored = cv::imdecode(encoded, mode | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw InputError(fmt::format("{}: cannot be decoded: {}", path.string(), error.err));
   }
-  if (image.empty()) {
-    throw InputError(fmt::format("{}: cannot be decoded; expected an image", path.string()));
+  if (stored.cols != header.stored.width || stored.rows != header.stored.height) {
+    throw InputError(fmt::format("{}: cannot be decoded; expected an intact {} image",
+                                 path.string(), format->name));
   }
-  return image;
+  const bool is_upright = orientation == ImageOrientation::kUpright;
+  return {is_upright ? TurnUpright(stored, header.orientation) : stored, header, orientation};
 }
 
-cv::Mat OfSize(const cv::Mat& image, int width, int height, const std::filesystem::path& path) {
-  if (image.cols != width || image.rows != height) {
-    throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}",
-                                 path.string(), image.cols, image.rows, width, height));
+cv::Mat OfSize(const Image& image, int width, int height, const std::filesystem::path& path) {
+  const auto [columns, rows] = image.pixels.size();
+  if (columns == width && rows == height) return image.pixels;
+  std::string hint;
+  if (image.header.IsTurnedByAQuarter() && columns == height && rows == width) {
+    const bool is_upright = image.read_as == ImageOrientation::kUpright;
+    hint = fmt::format(
+        ": does the camera refer to the {}? EXIF says orientation {}; image_orientation of "
+        "soslam-import is {}",
+        is_upright ? "stored pixels" : "upright image", image.header.orientation,
+        kImageOrientationNames[static_cast<size_t>(image.read_as)]);
   }
-  return image;
+  throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}{}",
+                               path.string(), columns, rows, width, height, hint));
 }
 
 }  // namespace
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path) {
-  return ReadImage(path, cv::IMREAD_GRAYSCALE);
+cv::Mat ReadGreyImage(const std::filesystem::path& path, ImageOrientation orientation) {
+  return ReadImage(path, cv::IMREAD_GRAYSCALE, orientation).pixels;
 }
 
-cv::Mat ReadColourImage(const std::filesystem::path& path) {
-  return ReadImage(path, cv::IMREAD_COLOR);
+cv::Mat ReadColourImage(const std::filesystem::path& path, ImageOrientation orientation) {
+  return ReadImage(path, cv::IMREAD_COLOR, orientation).pixels;
 }
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height) {
-  return OfSize(ReadGreyImage(path), width, height, path);
+cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height,
+                      ImageOrientation orientation) {
+  return OfSize(ReadImage(path, cv::IMREAD_GRAYSCALE, orientation), width, height, path);
 }
 
-cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height) {
-  return OfSize(ReadColourImage(path), width, height, path);
+cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,
+                        ImageOrientation orientation) {
+  return OfSize(ReadImage(path, cv::IMREAD_COLOR, orientation), width, height, path);
 }
 
 }  // namespace soslam

@@ -4,18 +4,24 @@
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 
+#include "model/image_orientation.h"
+
 namespace soslam {
 
-// An image as grey values, CV_8UC1, in the orientation its pixels are stored in: a camera's
-// intrinsics know nothing of EXIF rotations. PNG or JPEG. Throws InputError when the file is
-// missing, empty, cut short, not such an image, or larger than can be processed.
-cv::Mat ReadGreyImage(const std::filesystem::path& path);
+// An image as grey values, CV_8UC1. JPEG, PNG, WebP, BMP or TIFF, of the latter the first page;
+// bytes after the image do not count. Throws InputError when the file is missing, empty, cut short,
+// not such an image, or larger than can be processed.
+cv::Mat ReadGreyImage(const std::filesystem::path& path,
+                      ImageOrientation orientation = ImageOrientation::kUpright);
 
 // The same; also throws InputError when the image is not width x height pixels.
-cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height);
+cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height,
+                      ImageOrientation orientation = ImageOrientation::kUpright);
 
 // An image in colour, CV_8UC3: blue, green, red. Otherwise as ReadGreyImage.
-cv::Mat ReadColourImage(const std::filesystem::path& path);
-cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height);
+cv::Mat ReadColourImage(const std::filesystem::path& path,
+                        ImageOrientation orientation = ImageOrientation::kUpright);
+cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,
+                        ImageOrientation orientation = ImageOrientation::kUpright);
 
 }  // namespace soslam

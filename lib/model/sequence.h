@@ -16,6 +16,7 @@
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
 #include "model/finding.h"
+#include "model/image_orientation.h"
 
 namespace soslam {
 
@@ -103,6 +104,7 @@ struct Sequence {
   // Of the image files, whose frames have no cameras of their own; boxes are those of a camera
   // without it. None: the images are, too.
   std::optional<Distortion> image_distortion = std::nullopt;
+  ImageOrientation image_orientation = ImageOrientation::kUpright;  // of cameras and boxes
   std::vector<Frame> frames;
   std::vector<SupportPlane> planes;  // empty: not known, nor is any detection's plane
   std::vector<Object> objects;

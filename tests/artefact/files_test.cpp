@@ -81,6 +81,14 @@ TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
   EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
 }
 
+TEST_F(ArtefactFilesTest, OrientationOfImagesComesBack) {
+  for (const auto orientation : {ImageOrientation::kUpright, ImageOrientation::kStored}) {
+    sequence.image_orientation = orientation;
+    WriteSequence(file, sequence, {});
+    EXPECT_EQ(ReadSequence(file).image_orientation, orientation);
+  }
+}
+
 TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
   HeldOutFrame held_out{sequence.frames.back(), {{"cup", 0.7, {10.5, 20.0, 30.0, 40.25}}}};
   held_out.frame.id = sequence.frames.back().id + 1;

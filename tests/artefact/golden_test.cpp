@@ -22,6 +22,7 @@ TEST(GoldenTest, Sequence10) {
   EXPECT_EQ(sequence.detections.size(), 10u);
   EXPECT_EQ(sequence.rejected_detections.at("near_border"), 17);
   // What this version did not have yet.
+  EXPECT_EQ(sequence.image_orientation, ImageOrientation::kStored);
   EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponent, 2.0);
   for (const Detection& detection : sequence.detections) {
     EXPECT_EQ(detection.is_bound, (std::array<bool, 4>{}));

@@ -47,6 +47,12 @@ TEST_F(ImportTest, ReadsEverything) {
   EXPECT_TRUE(sequence.rejected_detections.empty());
 }
 
+TEST_F(ImportTest, ImagesAreUprightUnlessASettingSaysOtherwise) {
+  EXPECT_EQ(Import().image_orientation, ImageOrientation::kUpright);
+  options.image_orientation = ImageOrientation::kStored;
+  EXPECT_EQ(Import().image_orientation, ImageOrientation::kStored);
+}
+
 TEST_F(ImportTest, EveryOtherFrameIsHeldOut) {
   options.held_out = HeldOutFrames::kOdd;
   options.min_observations = 1;

@@ -135,11 +135,14 @@ TEST_F(KittiLabelTest, FilesAreNumbered) {
 TEST_F(KittiLabelTest, BadImageSizesAreRefused) {
   for (const char* size : {"1242", "1242x", "x375", "0x375", "1242x-5", "widexhigh"}) {
     ExpectError<SettingsError>(
-        [&] { WithImageSize({}, std::nullopt, RecordingValues("image_size", size), 0); },
+        [&] {
+          WithImageSize({}, std::nullopt, ImageOrientation::kUpright,
+                        RecordingValues("image_size", size), 0);
+        },
         {"image_size", size});
   }
-  const Camera camera =
-      WithImageSize({}, std::nullopt, RecordingValues("image_size", "1242x375"), 0);
+  const Camera camera = WithImageSize({}, std::nullopt, ImageOrientation::kUpright,
+                                      RecordingValues("image_size", "1242x375"), 0);
   EXPECT_EQ(camera.width, 1242);
   EXPECT_EQ(camera.height, 375);
 }

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/image_files.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -23,10 +22,24 @@ cv::Mat TestImage() {
   return image;
 }
 
-std::string Encode(const std::string& extension, const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(extension, image, bytes);
-  return {bytes.begin(), bytes.end()};
+// Where pixel (x, y) of an image that viewers show is stored, as EXIF 2.32 defines orientations.
+cv::Point StoredPixel(const cv::Size& stored, int orientation, int x, int y) {
+  const int right = stored.width - 1, bottom = stored.height - 1;
+  const cv::Point pixels[] = {{x, y}, {right - x, y},  {right - x, bottom - y}, {x, bottom - y},
+                              {y, x}, {y, bottom - x}, {right - y, bottom - x}, {right - y, x}};
+  return pixels[orientation - 1];
+}
+
+void ExpectTurned(const cv::Mat& upright, const cv::Mat& stored, int orientation) {
+  const cv::Size size = orientation < 5 ? stored.size() : cv::Size(stored.rows, stored.cols);
+  ASSERT_EQ(upright.size(), size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      ASSERT_EQ(upright.at<uchar>(y, x),
+                stored.at<uchar>(StoredPixel(stored.size(), orientation, x, y)))
+          << x << ", " << y;
+    }
+  }
 }
 
 class ReadImageTest : public testing::Test {
@@ -39,14 +52,14 @@ class ReadImageTest : public testing::Test {
 };
 
 TEST_F(ReadImageTest, PngComesBackExactly) {
-  const cv::Mat read = ReadGreyImage(Write("a.png", Encode(".png", TestImage())), 60, 40);
+  const cv::Mat read = ReadGreyImage(Write("a.png", EncodedImage(".png", TestImage())), 60, 40);
   ASSERT_EQ(read.type(), CV_8UC1);
   EXPECT_EQ(cv::norm(read, TestImage(), cv::NORM_INF), 0.0);
 }
 
 TEST_F(ReadImageTest, ColourBecomesGrey) {
   const cv::Mat colour(8, 9, CV_8UC3, cv::Scalar(10, 20, 200));
-  const cv::Mat read = ReadGreyImage(Write("a.png", Encode(".png", colour)));
+  const cv::Mat read = ReadGreyImage(Write("a.png", EncodedImage(".png", colour)));
   ASSERT_EQ(read.type(), CV_8UC1);
   // 0.299 red + 0.587 green + 0.114 blue = 72.7; 1 for the rounding of integer weights.
   EXPECT_NEAR(read.at<uchar>(4, 4), 72.7, 1.0);
@@ -54,48 +67,133 @@ TEST_F(ReadImageTest, ColourBecomesGrey) {
 
 TEST_F(ReadImageTest, ColourComesBackBlueGreenRed) {
   const cv::Mat colour(8, 9, CV_8UC3, cv::Scalar(10, 20, 200));
-  const cv::Mat read = ReadColourImage(Write("a.png", Encode(".png", colour)));
+  const cv::Mat read = ReadColourImage(Write("a.png", EncodedImage(".png", colour)));
   ASSERT_EQ(read.type(), CV_8UC3);
   EXPECT_EQ(read.at<cv::Vec3b>(4, 4), cv::Vec3b(10, 20, 200));
-  const cv::Mat grey = ReadColourImage(Write("b.png", Encode(".png", TestImage())));
+  const cv::Mat grey = ReadColourImage(Write("b.png", EncodedImage(".png", TestImage())));
   EXPECT_EQ(grey.at<cv::Vec3b>(3, 5), cv::Vec3b::all(TestImage().at<uchar>(3, 5)));
 }
 
 TEST_F(ReadImageTest, OnePixelIsAnImage) {
   const cv::Mat pixel(1, 1, CV_8UC1, cv::Scalar(77));
-  EXPECT_EQ(ReadGreyImage(Write("a.png", Encode(".png", pixel)), 1, 1).at<uchar>(0, 0), 77);
+  EXPECT_EQ(ReadGreyImage(Write("a.png", EncodedImage(".png", pixel)), 1, 1).at<uchar>(0, 0), 77);
 }
 
-TEST_F(ReadImageTest, ExifOrientationIsIgnored) {
-  std::string jpeg = Encode(".jpg", TestImage());
-  // The marker APP1 with 34 bytes of EXIF: big endian, one entry, orientation 6 (turn by 90
-  // degrees).
-  constexpr char kExif[] =
-      "\xff\xe1\0\x22"
-      "Exif\0\0"
-      "MM\0*\0\0\0\x08"
-      "\0\x01"
-      "\x01\x12\0\x03\0\0\0\x01\0\x06\0\0"
-      "\0\0\0";
-  jpeg.insert(2, kExif, sizeof(kExif));  // with its final zero
-  const auto path = Write("a.jpg", jpeg);
-  ASSERT_EQ(cv::imread(path.string(), cv::IMREAD_GRAYSCALE).cols, 40) << "the EXIF block is wrong";
-  EXPECT_EQ(ReadGreyImage(path).cols, 60);
+// The image with a note of its orientation in each format that has one.
+std::vector<std::string> WithOrientation(const cv::Mat& image, int orientation, ByteOrder order) {
+  const std::string exif = ExifOf(orientation, order);
+  const std::string png = EncodedImage(".png", image);
+  return {JpegWithExif(EncodedImage(".jpg", image), exif), PngWithExif(png, exif, false),
+          PngWithExif(png, exif, true),
+          WebpWithExif(EncodedImage(".webp", image), image.size(), exif),
+          GreyTiff(image, orientation, order)};
 }
 
-TEST_F(ReadImageTest, ZerosAfterTheEndAreAllowed) {
-  for (const char* extension : {".jpg", ".png"}) {
-    const auto path = Write(std::string("a") + extension,
-                            Encode(extension, TestImage()) + std::string(100, '\0'));
-    EXPECT_EQ(ReadGreyImage(path).cols, 60);
+TEST_F(ReadImageTest, EveryOrientationIsTurnedUpright) {
+  for (const ByteOrder order : {ByteOrder::kLittleEndian, ByteOrder::kBigEndian}) {
+    const auto plain = WithOrientation(TestImage(), 1, order);
+    for (int orientation = 1; orientation <= 8; ++orientation) {
+      const auto files = WithOrientation(TestImage(), orientation, order);
+      for (size_t i = 0; i < files.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "orientation " << orientation << ", file " << i);
+        const cv::Mat stored = ReadGreyImage(Write("plain", plain[i]));
+        const auto path = Write("turned", files[i]);
+        ExpectTurned(ReadGreyImage(path), stored, orientation);
+        ExpectTurned(ReadGreyImage(path, ImageOrientation::kStored), stored, 1);
+        EXPECT_EQ(ReadColourImage(path).size(), ReadGreyImage(path).size());
+      }
+    }
   }
+}
+
+TEST_F(ReadImageTest, JpegsAreTurnedAsOpenCvTurnsThem) {
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    const auto path =
+        Write("a.jpg", JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(orientation)));
+    const cv::Mat expected = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
+    const cv::Mat read = ReadGreyImage(path);
+    ASSERT_EQ(read.size(), expected.size());
+    EXPECT_EQ(cv::norm(read, expected, cv::NORM_INF), 0.0) << orientation;
+  }
+}
+
+TEST_F(ReadImageTest, SizesThatExifSwapsAreExplained) {
+  const auto path = Write("a.jpg", JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(6)));
+  EXPECT_EQ(ReadGreyImage(path, 40, 60).cols, 40);
+  EXPECT_EQ(ReadColourImage(path, 60, 40, ImageOrientation::kStored).cols, 60);
+  ExpectError<InputError>([&] { ReadGreyImage(path, 60, 40); },
+                          {"a.jpg", "40 x 60", "60 x 40", "orientation 6", "image_orientation"});
+  ExpectError<InputError>([&] { ReadGreyImage(path, 40, 60, ImageOrientation::kStored); },
+                          {"60 x 40", "upright image", "is stored"});
+}
+
+constexpr const char* kExtensions[] = {".jpg", ".png", ".webp", ".bmp", ".tiff"};
+
+TEST_F(ReadImageTest, BytesAfterTheEndAreNotRead) {
+  const std::string other = EncodedImage(".jpg", cv::Mat(8, 8, CV_8UC1, cv::Scalar(3)));
+  for (const char* extension : kExtensions) {
+    const std::string image = EncodedImage(extension, TestImage());
+    const cv::Mat expected = ReadGreyImage(Write("plain", image));
+    for (const std::string& tail :
+         {std::string(100, '\0'), std::string("\n"), std::string("\xff"), other,
+          std::string("\0\0\x01\x0bMotionPhoto_Data\0\0\0\x18"
+                      "ftypmp42SEFT",
+                      36)}) {
+      const cv::Mat read = ReadGreyImage(Write("tail", image + tail));
+      EXPECT_EQ(cv::norm(read, expected, cv::NORM_INF), 0.0) << extension;
+    }
+  }
+}
+
+TEST_F(ReadImageTest, OtherKindsOfJpegAreRead) {
+  for (const std::vector<int>& parameters :
+       {std::vector<int>{cv::IMWRITE_JPEG_PROGRESSIVE, 1},
+        std::vector<int>{cv::IMWRITE_JPEG_RST_INTERVAL, 2},
+        std::vector<int>{cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_RST_INTERVAL, 1}}) {
+    const std::string jpeg = EncodedImage(".jpg", TestImage(), parameters);
+    const cv::Mat expected = cv::imdecode(std::vector<char>(jpeg.begin(), jpeg.end()), 0);
+    EXPECT_EQ(cv::norm(ReadGreyImage(Write("a.jpg", jpeg + "\n")), expected, cv::NORM_INF), 0.0);
+    for (size_t size = 0; size < jpeg.size(); size += 7) {
+      const auto path = Write("cut.jpg", jpeg.substr(0, size));
+      ExpectError<InputError>([&] { ReadGreyImage(path); }, {path.string()});
+    }
+  }
+}
+
+// The ends of other images do not end the image.
+TEST_F(ReadImageTest, CutShortBeforeAnotherImageIsRefused) {
+  const std::string thumbnail = EncodedImage(".jpg", cv::Mat(8, 8, CV_8UC1, cv::Scalar(3)));
+  const std::string jpeg =
+      JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(1, ByteOrder::kBigEndian, thumbnail));
+  EXPECT_NO_THROW(ReadGreyImage(Write("whole.jpg", jpeg)));
+  for (const size_t missing : {2, 10, 100}) {
+    const std::string cut = jpeg.substr(0, jpeg.size() - missing);
+    for (const std::string& tail : {std::string(), thumbnail, std::string("\xff\xc0\xff\xd9")}) {
+      const auto path = Write("cut.jpg", cut + tail);
+      ExpectError<InputError>([&] { ReadGreyImage(path); }, {"cut.jpg", "cut short", "EOI"});
+    }
+  }
+  const std::string png = EncodedImage(".png", TestImage());
+  const auto path = Write("cut.png", png.substr(0, png.size() - 30) + png.substr(png.size() - 12));
+  ExpectError<InputError>([&] { ReadGreyImage(path); }, {"cut.png", "cut short", "IEND"});
 }
 
 TEST_F(ReadImageTest, CutShortAtAnyByteIsRefused) {
   for (const char* extension : {".jpg", ".png"}) {
-    const std::string whole = Encode(extension, TestImage());
+    const std::string whole = EncodedImage(extension, TestImage());
     for (size_t size = 0; size < whole.size(); ++size) {
       const auto path = Write(std::string("cut") + extension, whole.substr(0, size));
+      ExpectError<InputError>([&] { ReadGreyImage(path); }, {path.string()});
+    }
+  }
+}
+
+TEST_F(ReadImageTest, CutShortIsRefusedInOtherFormats) {
+  for (const std::string& whole :
+       {EncodedImage(".webp", TestImage()), EncodedImage(".bmp", TestImage()),
+        GreyTiff(TestImage(), 1, ByteOrder::kBigEndian)}) {
+    for (size_t missing = 1; missing <= whole.size(); missing += 1 + missing / 20) {
+      const auto path = Write("cut", whole.substr(0, whole.size() - missing));
       ExpectError<InputError>([&] { ReadGreyImage(path); }, {path.string()});
     }
   }
@@ -107,21 +205,21 @@ TEST_F(ReadImageTest, BadFilesAreNamed) {
   ExpectError<InputError>([&] { read(folder_.path()); }, {folder_.path().string()});
   ExpectError<InputError>([&] { read(Write("empty.png", "")); }, {"empty.png", "is empty"});
   ExpectError<InputError>([&] { read(Write("text.png", "hello")); },
-                          {"text.png", "decoded", "PNG or JPEG"});
-  const std::string jpeg = Encode(".jpg", TestImage());
+                          {"text.png", "decoded", "JPEG, PNG"});
+  const std::string jpeg = EncodedImage(".jpg", TestImage());
   ExpectError<InputError>([&] { read(Write("cut.jpg", jpeg.substr(0, jpeg.size() / 2))); },
                           {"cut.jpg", "cut short", "EOI"});
-  const std::string png = Encode(".png", TestImage());
+  const std::string png = EncodedImage(".png", TestImage());
   ExpectError<InputError>([&] { read(Write("cut.png", png.substr(0, png.size() - 12))); },
                           {"cut.png", "cut short", "IEND"});
 }
 
 TEST_F(ReadImageTest, SizesBeyondMemoryAreRefusedUnread) {
-  std::string png = Encode(".png", TestImage());
+  std::string png = EncodedImage(".png", TestImage());
   png.replace(16, 8, std::string("\0\0\x7f\xff\0\0\x7f\xff", 8));  // width and height in IHDR
   ExpectError<InputError>([&] { ReadColourImage(Write("a.png", png)); },
                           {"a.png", "32767 x 32767", "at most"});
-  std::string jpeg = Encode(".jpg", TestImage());
+  std::string jpeg = EncodedImage(".jpg", TestImage());
   const size_t frame = jpeg.find("\xff\xc0");  // marker, length, bits, height, width
   jpeg.replace(frame + 5, 4, "\xff\xfe\xff\xff");
   ExpectError<InputError>([&] { ReadColourImage(Write("a.jpg", jpeg)); },
@@ -130,24 +228,62 @@ TEST_F(ReadImageTest, SizesBeyondMemoryAreRefusedUnread) {
 
 // Decoders read past what may not be there.
 TEST_F(ReadImageTest, SizesWhereOnlyDecodersLookAreRefused) {
-  std::string png = Encode(".png", TestImage());
+  std::string png = EncodedImage(".png", TestImage());
   const std::string chunk("\0\0\0\x08teXt\0\0\0\x10\0\0\0\x10\xa5\x72\x8b\x4d", 20);
   png.insert(8, chunk);
   ExpectError<InputError>([&] { ReadColourImage(Write("a.png", png)); }, {"a.png"});
-  std::string jpeg = Encode(".jpg", TestImage());
+  std::string jpeg = EncodedImage(".jpg", TestImage());
   jpeg.insert(2, std::string("\xff\xd0", 2));
   ExpectError<InputError>([&] { ReadColourImage(Write("a.jpg", jpeg)); }, {"a.jpg"});
 }
 
-TEST_F(ReadImageTest, OtherFormatsAreRefused) {
-  for (const char* extension : {".bmp", ".pgm", ".tiff", ".webp"}) {
-    const auto path = Write(std::string("a") + extension, Encode(extension, TestImage()));
-    ExpectError<InputError>([&] { ReadGreyImage(path); }, {path.string(), "PNG or JPEG"});
+TEST_F(ReadImageTest, FormatsWithoutLossComeBackExactly) {
+  cv::Mat colour(40, 60, CV_8UC3);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 60; ++x)
+      colour.at<cv::Vec3b>(y, x) = {static_cast<uchar>(4 * x), static_cast<uchar>(6 * y),
+                                    static_cast<uchar>(x * y)};
+  }
+  for (const char* extension : {".png", ".webp", ".bmp", ".tiff"}) {
+    const auto path = Write("a", EncodedImage(extension, colour));
+    EXPECT_EQ(cv::norm(ReadColourImage(path), colour, cv::NORM_INF), 0.0) << extension;
   }
 }
 
+TEST_F(ReadImageTest, OtherFormatsAreRefused) {
+  const auto pgm = Write("a.pgm", EncodedImage(".pgm", TestImage()));
+  ExpectError<InputError>([&] { ReadGreyImage(pgm); },
+                          {pgm.string(), "JPEG, PNG, WebP, BMP or TIFF"});
+  const auto heif = Write("a.heic", std::string("\0\0\0\x18"
+                                                "ftypheic\0\0\0\0mif1heic",
+                                                24));
+  ExpectError<InputError>([&] { ReadGreyImage(heif); }, {"a.heic", "not HEIF"});
+  std::string packed = EncodedImage(".bmp", TestImage());
+  packed[30] = 1;  // compression: by runs
+  ExpectError<InputError>([&] { ReadGreyImage(Write("a.bmp", packed)); }, {"a.bmp", "BMP"});
+  const auto reals = Write("a.tiff", EncodedImage(".tiff", cv::Mat(8, 8, CV_32FC1, 0.5)));
+  ExpectError<InputError>([&] { ReadGreyImage(reals); }, {"a.tiff", "TIFF"});
+}
+
+TEST_F(ReadImageTest, SizesBeyondMemoryAreRefusedInEveryFormat) {
+  std::string bmp = EncodedImage(".bmp", TestImage());
+  bmp.replace(18, 8, std::string("\xff\xff\0\0\xff\xff\0\0", 8));
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.bmp", bmp)); }, {"65535", "at most"});
+  std::string tiff = GreyTiff(TestImage(), 1, ByteOrder::kBigEndian);
+  for (const size_t entry : {0u, 1u}) tiff.replace(8 + 2 + 12 * entry + 8, 2, "\xff\xff");
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.tiff", tiff)); }, {"65535", "at most"});
+  const std::string webp = WebpWithExif(EncodedImage(".webp", TestImage()), {1 << 20, 1 << 20}, "");
+  ExpectError<InputError>([&] { ReadColourImage(Write("a.webp", webp)); }, {"1048576", "at most"});
+}
+
+TEST_F(ReadImageTest, FilesThatCannotBeDecodedAtOnceAreRefusedUnread) {
+  const auto path = Write("a.png", EncodedImage(".png", TestImage()));
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 31);  // takes no room on the disk
+  ExpectError<InputError>([&] { ReadGreyImage(path); }, {"a.png", "2147483648 bytes"});
+}
+
 TEST_F(ReadImageTest, WrongSizeIsNamed) {
-  const auto path = Write("a.png", Encode(".png", TestImage()));
+  const auto path = Write("a.png", EncodedImage(".png", TestImage()));
   ExpectError<InputError>([&] { ReadGreyImage(path, 40, 60); }, {"a.png", "60 x 40", "40 x 60"});
   ExpectError<InputError>([&] { ReadColourImage(path, 40, 60); }, {"a.png", "60 x 40", "40 x 60"});
 }

@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
                                  "edges",
                                  Content("rgb/000001.png", "hello"),
                                  kInput,
-                                 {"rgb/000001.png", "PNG or JPEG"}},
+                                 {"rgb/000001.png", "JPEG, PNG"}},
                     RefusedInput{"IsAFolder",
                                  "edges",
                                  [](const StageChain& chain) {

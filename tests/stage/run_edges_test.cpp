@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "image/read_image.h"
 #include "support/expect_error.h"
+#include "support/image_files.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"
 
@@ -79,6 +80,21 @@ TEST_F(RunEdgesTest, UndistortsTheImages) {
     while (grey.at<std::uint8_t>(row, bright) > 125) ++bright;
     EXPECT_NEAR(bright, kLine, 1.0) << row;
   }
+}
+
+// Edges are those of the images that cameras and boxes refer to.
+TEST_F(RunEdgesTest, ExifTurnsTheImagesUnlessTheyAreReadAsStored) {
+  const cv::Mat image = cv::imread((folder_ / "rgb/3.png").string(), cv::IMREAD_GRAYSCALE);
+  const std::string upside_down = JpegWithExif(EncodedImage(".jpg", image), ExifOf(3));
+  for (const Frame& frame : sequence_.frames) WriteBytes(folder_ / frame.image, upside_down);
+  RunEdges({}, Files("upright.h5"), 2);
+  sequence_.image_orientation = ImageOrientation::kStored;
+  RunEdges({}, Files("stored.h5"), 2);
+  const cv::Mat upright = EdgesReader(folder_ / "upright.h5").Read(15).grey;
+  cv::Mat stored = EdgesReader(folder_ / "stored.h5").Read(15).grey;
+  EXPECT_GT(cv::norm(upright, stored, cv::NORM_INF), 100.0);
+  cv::flip(stored, stored, -1);
+  EXPECT_EQ(cv::norm(upright, stored, cv::NORM_INF), 0.0);
 }
 
 TEST_F(RunEdgesTest, WritesTheMapsOfEveryFrame) {

@@ -1,14 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <stdexcept>
+
 #include "fuzz/fuzz_target.h"
+#include "image/image_header.h"
 #include "image/read_image.h"
 
 namespace soslam {
 namespace {
 
+// What is read has the size that the header says.
+void CheckHeader(const std::filesystem::path& file) {
+  const auto header = ReadImageHeader(file);
+  const cv::Mat image = ReadGreyImage(file);
+  const ImageSize size = header ? header->Size(ImageOrientation::kUpright) : ImageSize{};
+  if (size.width == image.cols && size.height == image.rows) return;
+  throw std::logic_error("the header says another size: " + file.string());
+}
+
 const FuzzTarget kImage("image", [](const HostileInput& input) {
   const auto file = input.AsFile("image.png");
   IsAccepted(file, [&] { ReadGreyImage(file, 60, 40); });
-  IsAccepted(file, [&] { ReadColourImage(file); });
+  IsAccepted(file, [&] { ReadColourImage(file, ImageOrientation::kStored); });
+  if (IsAccepted(file, [&] { ReadGreyImage(file); })) CheckHeader(file);
 });
 
 }  // namespace

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <initializer_list>
+
+#include "geometry/image_size.h"
+#include "image/image_format.h"
+#include "image/tiff_directory.h"
+
+namespace soslam {
+namespace {
+
+using namespace std::string_view_literals;
+
+// TIFF 6.0, section 8 and "Tiled images".
+constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258, kCompression = 259;
+constexpr std::uint64_t kSamplesPerPixel = 277;
+constexpr std::uint64_t kStripOffsets = 273, kStripByteCounts = 279;
+constexpr std::uint64_t kTileWidth = 322, kTileHeight = 323, kTileOffsets = 324;
+constexpr std::uint64_t kTileByteCounts = 325;
+
+bool IsTiff(std::string_view first_bytes) {
+  return first_bytes.starts_with("II*\0"sv) || first_bytes.starts_with("MM\0*"sv);
+}
+
+bool IsOneOf(std::uint64_t number, std::initializer_list<std::uint64_t> numbers) {
+  return std::ranges::find(numbers, number) != numbers.end();
+}
+
+// Whether pixels are stored in a way that is read: 1, 8 or 16 bits, up to four of them each;
+// plain, or packed by LZW, JPEG, deflate or runs; in strips, or in tiles that are not absurd.
+bool IsReadable(const TiffDirectory& directory, const ImageBytes& file) {
+  constexpr std::uint64_t kMaxTileSide = 1 << 13;
+  const auto number = [&](std::uint64_t tag, std::uint64_t otherwise) {
+    return directory.Count(tag) > 0 ? directory.Number(tag, file).value_or(0) : otherwise;
+  };
+  return IsOneOf(number(kBitsPerSample, 1), {1, 8, 16}) &&
+         IsOneOf(number(kSamplesPerPixel, 1), {1, 2, 3, 4}) &&
+         IsOneOf(number(kCompression, 1), {1, 5, 7, 8, 32773, 32946}) &&
+         number(kTileWidth, 0) <= kMaxTileSide && number(kTileHeight, 0) <= kMaxTileSide;
+}
+
+// Whether decoders cannot take another number than the first.
+bool IsUnambiguous(const TiffDirectory& directory) {
+  return std::ranges::all_of(
+      std::initializer_list<std::uint64_t>{kWidth, kHeight, kBitsPerSample, kCompression,
+                                           kSamplesPerPixel, kStripOffsets, kStripByteCounts,
+                                           kTileWidth, kTileHeight, kTileOffsets, kTileByteCounts},
+      [&](std::uint64_t tag) { return directory.Count(tag) <= 1; });
+}
+
+// Of the first page.
+std::optional<ImageHeader> Header(const ImageBytes& file) {
+  const auto directory = TiffDirectory::Read(file);
+  if (!directory || !IsUnambiguous(*directory) || !IsReadable(*directory, file)) {
+    return std::nullopt;
+  }
+  const auto width = directory->Number(kWidth, file);
+  const auto height = directory->Number(kHeight, file);
+  if (!width || !height) return std::nullopt;
+  return ImageHeader{{static_cast<std::int64_t>(*width), static_cast<std::int64_t>(*height)},
+                     ExifOrientation(*directory, file).value_or(1)};
+}
+
+// Whether all numbers of two entries are in the file, and so is what they say: places and lengths.
+bool AreInFile(const TiffEntry& places, const TiffEntry& lengths, ByteOrder order,
+               std::string_view file) {
+  const auto number = [&](const TiffEntry& entry, std::uint64_t i) {
+    return ImageBytes(file).NumberAt(entry.begin + i * entry.bytes_each, entry.bytes_each, order);
+  };
+  if (places.count != lengths.count) return false;
+  for (std::uint64_t i = 0; i < places.count; ++i) {
+    const auto begin = number(places, i);
+    const auto length = number(lengths, i);
+    if (!begin || !length || *begin + *length > file.size()) return false;
+  }
+  return true;
+}
+
+// Pages lie in any order: all of the file.
+std::optional<size_t> Length(std::string_view file) {
+  const auto directory = TiffDirectory::Read(ImageBytes(file));
+  if (!directory) return std::nullopt;
+  const bool is_tiled = directory->Count(kTileOffsets) > 0;
+  const auto places = directory->Find(is_tiled ? kTileOffsets : kStripOffsets);
+  const auto lengths = directory->Find(is_tiled ? kTileByteCounts : kStripByteCounts);
+  const bool is_whole = places && lengths && AreInFile(*places, *lengths, directory->order(), file);
+  return is_whole ? std::optional(file.size()) : std::nullopt;
+}
+
+void ClearOrientation(std::span<char> file) {
+  const ImageBytes bytes({file.data(), file.size()});
+  const auto directory = TiffDirectory::Read(bytes);
+  const auto entry = directory ? directory->Find(kTiffOrientation) : std::nullopt;
+  if (!entry || !ExifOrientation(*directory, bytes)) return;
+  const auto number = file.subspan(entry->begin, entry->bytes_each);
+  std::ranges::fill(number, '\0');
+  (directory->order() == ByteOrder::kBigEndian ? number.back() : number.front()) = 1;
+}
+
+}  // namespace
+
+constexpr ImageFormat kTiffFormat = {
+    "TIFF", &IsTiff, &Header, &Length, "with all of its strips or tiles", &ClearOrientation};
+
+}  // namespace soslam

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/image_header.h"
+
+#include <gtest/gtest.h>
+
+#include "image/image_format.h"
+#include "support/image_files.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+const cv::Mat kImage(40, 60, CV_8UC1, cv::Scalar(90));
+
+class ImageHeaderTest : public testing::Test {
+ protected:
+  std::optional<ImageHeader> Read(const std::string& bytes) {
+    WriteBytes(folder_ / "image", bytes);
+    return ReadImageHeader(folder_ / "image");
+  }
+  void ExpectHeader(const std::string& bytes, int orientation) {
+    const auto header = Read(bytes);
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->stored.width, 60);
+    EXPECT_EQ(header->stored.height, 40);
+    EXPECT_EQ(header->orientation, orientation);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(ImageHeaderTest, SizesOfAllFormats) {
+  for (const char* extension : {".jpg", ".png", ".webp", ".bmp", ".tiff"}) {
+    SCOPED_TRACE(extension);
+    ExpectHeader(EncodedImage(extension, kImage), 1);
+  }
+  ExpectHeader(EncodedImage(".webp", kImage, {cv::IMWRITE_WEBP_QUALITY, 50}), 1);  // with loss
+}
+
+TEST_F(ImageHeaderTest, OrientationInBothByteOrders) {
+  for (const ByteOrder order : {ByteOrder::kLittleEndian, ByteOrder::kBigEndian}) {
+    for (int orientation = 1; orientation <= 8; ++orientation) {
+      const std::string exif = ExifOf(orientation, order);
+      ExpectHeader(JpegWithExif(EncodedImage(".jpg", kImage), exif), orientation);
+      ExpectHeader(PngWithExif(EncodedImage(".png", kImage), exif, false), orientation);
+      ExpectHeader(PngWithExif(EncodedImage(".png", kImage), exif, true), orientation);
+      ExpectHeader(WebpWithExif(EncodedImage(".webp", kImage), kImage.size(), exif), orientation);
+      ExpectHeader(GreyTiff(kImage, orientation, order), orientation);
+    }
+  }
+}
+
+TEST_F(ImageHeaderTest, ExifMayComeAfterOtherSegments) {
+  const std::string jpeg = JpegWithExif(EncodedImage(".jpg", kImage), ExifOf(6));
+  const std::string xmp = JpegSegment('\xe1', std::string("http://ns.adobe.com/xap/1.0/\0", 29));
+  ExpectHeader(std::string(jpeg).insert(2, xmp + "\xff\xff"), 6);
+}
+
+TEST_F(ImageHeaderTest, OrientationsThatMeanNothingAreUpright) {
+  const std::string jpeg = EncodedImage(".jpg", kImage);
+  for (const int orientation : {0, 9, 300}) {
+    ExpectHeader(JpegWithExif(jpeg, ExifOf(orientation)), 1);
+  }
+  ExpectHeader(JpegWithExif(jpeg, ""), 1);
+  ExpectHeader(JpegWithExif(jpeg, ExifOf(6).substr(0, 12)), 1);
+  ExpectHeader(JpegWithExif(jpeg, Tiff(ByteOrder::kBigEndian, {{274, 6, 10}})), 1);  // no integer
+}
+
+TEST_F(ImageHeaderTest, SizeAsItIsRead) {
+  const auto turned = Read(JpegWithExif(EncodedImage(".jpg", kImage), ExifOf(8)));
+  ASSERT_TRUE(turned);
+  EXPECT_EQ(turned->Size(ImageOrientation::kUpright).width, 40);
+  EXPECT_EQ(turned->Size(ImageOrientation::kUpright).height, 60);
+  EXPECT_EQ(turned->Size(ImageOrientation::kStored).width, 60);
+  const auto upside_down = Read(JpegWithExif(EncodedImage(".jpg", kImage), ExifOf(3)));
+  ASSERT_TRUE(upside_down);
+  EXPECT_EQ(upside_down->Size(ImageOrientation::kUpright).width, 60);
+}
+
+TEST_F(ImageHeaderTest, NoHeaderWhereThereIsNone) {
+  EXPECT_FALSE(ReadImageHeader(folder_ / "none"));
+  EXPECT_FALSE(ReadImageHeader(folder_.path()));
+  for (const char* bytes : {"", "hello", "BM", "\xff\xd8\xff", "RIFF", "P5 2 2 255 "}) {
+    EXPECT_FALSE(Read(bytes)) << bytes;
+  }
+  for (const char* extension : {".jpg", ".png", ".webp", ".bmp"}) {
+    EXPECT_FALSE(Read(EncodedImage(extension, kImage).substr(0, 20))) << extension;
+  }
+}
+
+// Whatever a file has before and after what is asked for.
+TEST_F(ImageHeaderTest, ReadsFewBytes) {
+  const cv::Mat image = cv::Mat::zeros(500, 500, CV_8UC1);
+  const std::string profile = JpegSegment('\xe2', std::string(60'000, 'x'));
+  std::string jpeg = EncodedImage(".jpg", image).insert(2, profile + profile + profile);
+  for (const std::string& bytes :
+       {JpegWithExif(jpeg, ExifOf(6)), PngWithExif(EncodedImage(".png", image), ExifOf(6), true),
+        GreyTiff(image, 6, ByteOrder::kLittleEndian)}) {
+    size_t read = 0;
+    const ImageBytes file([&](std::uint64_t begin, size_t count) {
+      const std::string part = begin < bytes.size() ? bytes.substr(begin, count) : "";
+      read += part.size();
+      return part;
+    });
+    const auto header = FindImageFormat(bytes.substr(0, kSignatureSize))->header(file);
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->orientation, 6);
+    EXPECT_LT(read, 500u);
+  }
+}
+
+TEST_F(ImageHeaderTest, AmbiguousTiffsAreRefused) {
+  const std::string tiff = GreyTiff(kImage, 1, ByteOrder::kLittleEndian);
+  std::string twice = tiff;  // the tag of the height becomes another width
+  twice.replace(8 + 2 + 12, 2, NumberBytes(256, 2, ByteOrder::kLittleEndian));
+  EXPECT_FALSE(Read(twice));
+  std::string wide = tiff;  // 32 bits a pixel
+  wide.replace(8 + 2 + 2 * 12 + 8, 2, NumberBytes(32, 2, ByteOrder::kLittleEndian));
+  EXPECT_FALSE(Read(wide));
+}
+
+}  // namespace
+}  // namespace soslam
