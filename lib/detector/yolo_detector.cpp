@@ -10,34 +10,45 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "base/own_process.h"
 #include "base/run_log.h"
 #include "detector/letterbox.h"
+#include "detector/onnx_check.h"
 
 namespace soslam {
 namespace {
 
 // What OpenCV has to say, in one line.
-std::string Reason(const cv::Exception& error) {
-  std::string text = error.err;
+std::string Reason(const std::exception& error) {
+  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
+  std::string text = of_opencv != nullptr ? of_opencv->err : error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
   const size_t begin = text.find_first_not_of("> ");
   const size_t end = text.find_last_not_of("> ");
   return begin == text.npos ? "no reason given" : text.substr(begin, end - begin + 1);
 }
 
-cv::dnn::Net LoadNetwork(const std::filesystem::path& path) {
-  if (!IsFile(path) || !std::ifstream(path)) {
+std::string ReadNetwork(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!IsFile(path) || !stream) {
     throw InputError(path.string() + ": cannot be read; expected an ONNX file");
   }
   NoteInput(path);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  CheckOnnx(bytes, path.string());
+  return bytes;
+}
+
+cv::dnn::Net LoadNetwork(const std::filesystem::path& path) {
+  const std::string bytes = ReadNetwork(path);
   // OpenCV prints what it also throws.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   try {
-    cv::dnn::Net network = cv::dnn::readNetFromONNX(path.string());
+    cv::dnn::Net network = cv::dnn::readNetFromONNX(bytes.data(), bytes.size());
     network.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     network.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     return network;
-  } catch (const cv::Exception& error) {
+  } catch (const std::exception& error) {  // of OpenCV, or of what it is built on
     throw InputError(fmt::format("{}: is not an ONNX network that OpenCV {} can load: {}",
                                  path.string(), CV_VERSION, Reason(error)));
   }
@@ -75,7 +86,7 @@ cv::Mat YoloDetector::Forward(const cv::Mat& input) {
   try {
     network_.setInput(blob);
     network_.forward(outputs, network_.getUnconnectedOutLayersNames());
-  } catch (const cv::Exception& error) {
+  } catch (const std::exception& error) {  // of OpenCV, or of what it is built on
     throw InputError(fmt::format("{}: cannot be run on an input of {} x {} pixels: {}", name_,
                                  input.cols, input.rows, Reason(error)));
   }
@@ -83,6 +94,18 @@ cv::Mat YoloDetector::Forward(const cv::Mat& input) {
     throw InputError(fmt::format("{}: has {} outputs; expected 1", name_, outputs.size()));
   }
   return outputs.front();
+}
+
+void CheckNetworkRuns(const std::filesystem::path& network, int classes,
+                      const DetectorOptions& options) {
+  const auto crash = CrashInOwnProcess([&] {
+    const cv::Mat image(options.input_height, options.input_width, CV_8UC3, cv::Scalar::all(0));
+    YoloDetector(network, classes, options).Detect(image);
+  });
+  if (!crash) return;
+  throw InputError(fmt::format(
+      "{}: OpenCV {} ends with {} when it loads or runs this network; expected an intact ONNX file",
+      network.string(), CV_VERSION, *crash));
 }
 
 }  // namespace soslam

@@ -32,4 +32,10 @@ class YoloDetector {
   cv::dnn::Net network_;
 };
 
+// Loads a network and runs it on an even image in a process of its own. Throws InputError when
+// OpenCV crashes: it trusts what networks say about their layers. Not while other threads are
+// running.
+void CheckNetworkRuns(const std::filesystem::path& network, int classes,
+                      const DetectorOptions& options);
+
 }  // namespace soslam

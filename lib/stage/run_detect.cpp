@@ -48,7 +48,8 @@ std::vector<std::vector<YoloDetection>> DetectAll(const std::vector<fs::path>& i
     YoloDetector detector(network, classes, options);
     for (int i = worker; i < count; i += workers) {
       const auto frame = static_cast<size_t>(i);
-      detections[frame] = detector.Detect(ReadColourImage(images[frame]));
+      detections[frame] =
+          detector.Detect(ReadColourImage(images[frame], options.image_orientation));
       progress.Step();
     }
   });
@@ -86,6 +87,7 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const bool has_labels = files.count("labels") > 0;
   const auto labels = has_labels ? ReadLabelFile(files.at("labels")) : CocoLabels();
   const std::vector<fs::path> images = ImagePaths(dataset);
+  CheckNetworkRuns(network, static_cast<int>(labels.size()), options);
   const auto boxes = WithLabels(
       DetectAll(images, network, static_cast<int>(labels.size()), options, threads), labels);
   if (boxes.empty()) {

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "dataset/detections_csv.h"
 #include "support/expect_error.h"
+#include "support/image_files.h"
 #include "support/labelled_boxes.h"
 #include "support/onnx_network.h"
 #include "support/temporary_folder.h"
@@ -125,6 +126,30 @@ TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
   ExpectRefused(Files(), {"rgb.txt", "../elsewhere.png"});
   std::filesystem::remove(folder_ / "rgb.txt");
   ExpectRefused(Files(), {"rgb.txt"});
+}
+
+// OpenCV 4.6 crashes when it loads this one.
+TEST_F(RunDetectTest, ACrashOfOpenCvIsAnError) {
+  MeanNetwork network = {{1, 1, 7}, {32, 32, 20, 30, 1, 0, 0}, {}};
+  network.weights_of_conv = "nothing";
+  WriteBytes(folder_ / "net.onnx", network.Onnx());
+  ExpectRefused(Files(), {"net.onnx", "OpenCV"});
+}
+
+// Boxes are those of the image as viewers show it, or as it is stored.
+TEST_F(RunDetectTest, ExifTurnsImages) {
+  const cv::Mat image(32, 64, CV_8UC3, cv::Scalar(0, 0, 255));
+  const std::string jpeg = EncodedImage(".jpg", image);
+  WriteBytes(folder_ / "rgb/a.jpg", JpegWithExif(jpeg, ExifOf(6)));
+  WriteBytes(folder_ / "rgb.txt", "0 rgb/a.jpg\n");
+  options_.min_score = 0.3;  // half of the input is the image
+  Run(Files());
+  // (22, 17) to (42, 47) of the input, whose columns 16 to 48 are the upright image of 32 x 64.
+  ExpectBox(ReadLabelledBoxes(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
+  options_.image_orientation = ImageOrientation::kStored;
+  Run(Files());
+  // Rows 16 to 48 are the stored image of 64 x 32.
+  ExpectBox(ReadLabelledBoxes(folder_ / "detections.csv").at(0).box, {21.5, 0.5, 41.5, 30.5});
 }
 
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {

@@ -43,6 +43,7 @@ struct MeanNetwork {
   std::vector<std::array<float, 3>> weights;  // likewise; none for no dependence on the input
   int input_width = 64;
   int input_height = 64;
+  std::string weights_of_conv = "weights";  // the name of another tensor makes it invalid
 
   // As an ONNX file (field numbers of onnx.proto, opset 12):
   // GlobalAveragePool -> [1, 3, 1, 1] -> 1 x 1 Conv -> [1, numbers, 1, 1] -> Reshape.
@@ -53,7 +54,7 @@ struct MeanNetwork {
     const ProtoMessage graph =
         ProtoMessage()
             .Message(1, Node("GlobalAveragePool", {"images"}, "means"))
-            .Message(1, Node("Conv", {"means", "weights", "constants"}, "numbers"))
+            .Message(1, Node("Conv", {"means", weights_of_conv, "constants"}, "numbers"))
             .Message(1, Node("Reshape", {"numbers", "shape"}, "output"))
             .Text(2, "means")
             .Message(5, Tensor("weights", kFloat, {numbers, 3, 1, 1}, Raw(all_weights)))

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace soslam {
+
+// Checks that an ONNX file is whole, and that each tensor in it has as many numbers as its shape
+// needs: OpenCV takes their number from the shape. Throws InputError, naming the file `name` and
+// the tensor.
+void CheckOnnx(std::string_view bytes, const std::string& name);
+
+}  // namespace soslam
