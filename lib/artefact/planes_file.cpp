@@ -20,11 +20,26 @@ json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) 
           {"offset_m", error->offset}};
 }
 
-json PlaneToJson(const EstimatedPlane& plane) {
+json HoldingToJson(const PlanesEstimate& estimate) {
+  json tried = json::array();
+  for (const TriedHolding& one : estimate.holdings) {
+    tried.push_back({{"held", NameOf(one.holding)},
+                     {"cost", one.cost},
+                     {"probability", one.probability},
+                     {"planes", OrNull(one.planes)}});
+  }
+  return {{"held", NameOf(estimate.holding)},
+          {"is_clear", estimate.holding_tilt_variance == 0.0},
+          {"tried", tried}};
+}
+
+// `tilt_variance`: beside the covariance (rad^2).
+json PlaneToJson(const EstimatedPlane& plane, double tilt_variance) {
   json covariance, tilt_sigma, height_sigma;
   if (plane.covariance) {
     covariance = MatrixToJson(*plane.covariance);
-    tilt_sigma = kDegPerRad * std::sqrt((*plane.covariance)(0, 0) + (*plane.covariance)(1, 1));
+    tilt_sigma = kDegPerRad *
+                 std::sqrt((*plane.covariance)(0, 0) + (*plane.covariance)(1, 1) + tilt_variance);
     height_sigma = std::sqrt((*plane.covariance)(2, 2));
   }
   return {{"plane_in_world", plane.plane_in_world},
@@ -56,9 +71,10 @@ void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estima
                {"cost", OrNull(estimate.cost)},
                {"rounds", estimate.rounds},
                {"settled", estimate.settled}};
+  if (!estimate.holdings.empty()) body["camera_holding"] = HoldingToJson(estimate);
   for (size_t i = 0; i < estimate.planes.size(); ++i) {
     const int index = static_cast<int>(i);
-    json plane = PlaneToJson(estimate.planes[i]);
+    json plane = PlaneToJson(estimate.planes[i], estimate.holding_tilt_variance);
     plane["plane"] = index;
     plane["error"] = ErrorToJson(CompareWithGiven(given, estimate, index), given);
     body["planes"].push_back(std::move(plane));

@@ -14,17 +14,6 @@ std::set<std::string> LabelsOf(const Sequence& sequence) {
   return labels;
 }
 
-// Of things whose label has no height: to a factor of e.
-constexpr double kUnknownHeightLogSigma = 1.0;
-
-// Of a label that the table knows nothing about: as long and wide as high, give or take a factor of
-// e, and a cuboid.
-ShapePrior UnknownShape() {
-  ShapePrior prior;
-  prior.shape_exponent = kCuboidExponent;
-  return prior;
-}
-
 }  // namespace
 
 AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable& table,
@@ -32,14 +21,13 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
     : sequence_(sequence),
       table_(table),
       options_(options),
-      up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, options)
+      up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, table, options)
                                               : std::map<int, UpEstimate>()),
       boxes_(sequence, options),
       labels_(LabelsOf(sequence), options.label_confusion, options.interchangeable_labels) {}
 
 void AssociationModel::Fit(Track* track) const {
-  ShapePrior prior = table_.Find(WinningLabel(track->votes)).value_or(UnknownShape());
-  if (!prior.height_m) prior.height_m = {options_.unknown_height_m, kUnknownHeightLogSigma};
+  ShapePrior prior = PriorOfLabel(table_, WinningLabel(track->votes), options_);
   if (track->plane_index != kNoPlane) prior = TurnedToSupport(prior);
   const auto up = up_of_segments_.find(SegmentOf(*track));
   const auto fit =

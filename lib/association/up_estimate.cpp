@@ -2,21 +2,96 @@
 #include "association/up_estimate.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "geometry/rigid3.h"
+#include "initialisation/multi_view.h"
 #include "planes/camera_attitude.h"
+#include "planes/choose_holding.h"
+#include "planes/search_up.h"
 
 namespace soslam {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-UpEstimate UpOf(const std::vector<Rigid3d>& world_from_camera, const AssociateOptions& options) {
-  const CameraAttitude attitude = AttitudeOf(
-      world_from_camera, options.camera_roll_sigma_deg * kRadians,
-      options.camera_pitch_sigma_deg * kRadians, options.view_correlation_deg * kRadians);
+// Of each label, evenly over all: as many boxes are looked at.
+constexpr size_t kBoxesOfLabel = 48;
+// What is usual is not doubted: without boxes that say otherwise cameras are held level.
+constexpr double kClear = 0.1;
+// Those that lead to different axes: which end of it is up does not matter to bodies.
+constexpr std::array kHoldings = {CameraHolding::kLevel, CameraHolding::kRolled90,
+                                  CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90};
+
+// Of things whose label has no height: to a factor of e.
+constexpr double kUnknownHeightLogSigma = 1.0;
+
+// Of a label that the table knows nothing about: as long and wide as high, give or take a factor of
+// e, and a cuboid.
+ShapePrior UnknownShape() {
+  ShapePrior prior;
+  prior.shape_exponent = kCuboidExponent;
+  return prior;
+}
+
+// What is seen in one world.
+struct Segment {
+  std::vector<Rigid3d> world_from_camera;
+  std::map<std::string, std::vector<int>> detections;  // by label
+};
+
+std::map<int, Segment> SegmentsOf(const Sequence& sequence) {
+  std::map<int, Segment> segments;
+  for (const Frame& frame : sequence.frames) {
+    segments[frame.segment].world_from_camera.push_back(frame.world_from_camera);
+  }
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[i];
+    segments[sequence.FrameOf(detection).segment]
+        .detections[sequence.ObjectOf(detection).label]
+        .push_back(static_cast<int>(i));
+  }
+  return segments;
+}
+
+// By label: each box alone, of an upright body at any height.
+using BoxesOfLabels = std::vector<std::vector<MultiViewObservation>>;
+
+BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
+                            const SemanticTable& table, const AssociateOptions& options) {
+  BoxesOfLabels boxes;
+  for (const auto& [label, detections] : segment.detections) {
+    const ShapePrior prior = PriorOfLabel(table, label, options);
+    if (prior.mount == Mount::kOnWall) continue;
+    boxes.emplace_back();
+    for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
+      boxes.back().push_back(MakeMultiViewObservation(
+          sequence, {detection}, prior, options.box_sigma_fraction,
+          /*view_correlation_rad=*/0.0, /*height_is_free=*/true, /*size_is_known=*/true));
+    }
+  }
+  return boxes;
+}
+
+// The mean over a label's boxes: those of one object all say the same.
+std::optional<double> MeanCost(const std::vector<MultiViewObservation>& boxes,
+                               const Eigen::Vector3d& up) {
+  double sum = 0.0;
+  int count = 0;
+  for (const MultiViewObservation& box : boxes) {
+    const auto cost = CostOfUprightBody(up, box);
+    if (!cost) continue;
+    sum += *cost;
+    ++count;
+  }
+  return count == 0 ? std::nullopt : std::optional(sum / count);
+}
+
+UpEstimate UpOf(const CameraAttitude& attitude, double tilt_variance) {
   const Eigen::Vector3d& up = attitude.up_in_world;
   // Turns about these two move up by their cross products with it.
   Eigen::Matrix<double, 3, 2> axes;
@@ -24,19 +99,52 @@ UpEstimate UpOf(const std::vector<Rigid3d>& world_from_camera, const AssociateOp
   axes.col(1) = up.cross(axes.col(0));
   const Eigen::Matrix<double, 3, 2> by_turns = -Skew(up) * axes;
   const Eigen::Matrix2d information = by_turns.transpose() * attitude.information * by_turns;
-  return {up, axes * information.inverse() * axes.transpose()};
+  Eigen::Matrix2d covariance = information.inverse();
+  covariance.diagonal().array() += 0.5 * tilt_variance;
+  return {up, axes * covariance * axes.transpose()};
+}
+
+UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
+                const AssociateOptions& options) {
+  std::vector<CameraAttitude> attitudes;
+  std::vector<HoldingEvidence> evidence;
+  for (const CameraHolding holding : kHoldings) {
+    const CameraAttitude attitude =
+        AttitudeOf(segment.world_from_camera, options.camera_roll_sigma_deg * kRadians,
+                   options.camera_pitch_sigma_deg * kRadians,
+                   options.view_correlation_deg * kRadians, holding);
+    const bool is_known = std::ranges::any_of(attitudes, [&](const CameraAttitude& other) {
+      return IsSameUp(other.up_in_world, attitude.up_in_world);
+    });
+    if (is_known) continue;
+    attitudes.push_back(attitude);
+    HoldingEvidence one;
+    one.holding = holding;
+    one.up_in_world = attitude.up_in_world;
+    for (const auto& of_label : boxes) {
+      one.object_costs.push_back(MeanCost(of_label, one.up_in_world));
+    }
+    evidence.push_back(std::move(one));
+  }
+  const double expected_cost = 0.5 * static_cast<double>(boxes.size());
+  const HoldingChoice choice = ChooseHolding(evidence, expected_cost, kClear);
+  return UpOf(attitudes[choice.best], choice.tilt_variance);
 }
 
 }  // namespace
 
-std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const AssociateOptions& options) {
-  std::map<int, std::vector<Rigid3d>> poses;
-  for (const Frame& frame : sequence.frames) {
-    poses[frame.segment].push_back(frame.world_from_camera);
-  }
+ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
+                        const AssociateOptions& options) {
+  ShapePrior prior = table.Find(label).value_or(UnknownShape());
+  if (!prior.height_m) prior.height_m = {options.unknown_height_m, kUnknownHeightLogSigma};
+  return prior;
+}
+
+std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticTable& table,
+                                       const AssociateOptions& options) {
   std::map<int, UpEstimate> up;
-  for (const auto& [segment, world_from_camera] : poses) {
-    up[segment] = UpOf(world_from_camera, options);
+  for (const auto& [id, segment] : SegmentsOf(sequence)) {
+    up[id] = UpOf(segment, ObserveLabels(sequence, segment, table, options), options);
   }
   return up;
 }

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <string>
 
 #include "association/options.h"
+#include "initialisation/semantic_table.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -17,7 +19,13 @@ struct UpEstimate {
   Eigen::Matrix3d covariance;
 };
 
-// By segment, each with a world of its own.
-std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const AssociateOptions& options);
+// Of a label's objects, with a height also where the table has none.
+ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
+                        const AssociateOptions& options);
+
+// By segment, each with a world of its own. How the cameras are held, single boxes say: what it
+// costs to take each for that of an upright body of its label.
+std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticTable& table,
+                                       const AssociateOptions& options);
 
 }  // namespace soslam

@@ -36,16 +36,18 @@ std::vector<double> ShareOfCameras(const std::vector<Rigid3d>& world_from_camera
 }
 
 CameraAttitude AttitudeOf(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                          double pitch_sigma, double correlation_rad) {
+                          double pitch_sigma, double correlation_rad, CameraHolding holding) {
+  const HeldAxes held = AxesOf(holding);
   CameraAttitude attitude;
   Eigen::Vector3d above = Eigen::Vector3d::Zero();
   const std::vector<double> shares = ShareOfCameras(world_from_camera, correlation_rad);
   for (size_t i = 0; i < shares.size(); ++i) {
-    const Eigen::Matrix3d axes = world_from_camera[i].rotation.toRotationMatrix();
-    attitude.information +=
-        shares[i] * (axes.col(0) * axes.col(0).transpose() / (roll_sigma * roll_sigma) +
-                     axes.col(2) * axes.col(2).transpose() / (pitch_sigma * pitch_sigma));
-    above -= axes.col(1);
+    const Eigen::Matrix3d rotation = world_from_camera[i].rotation.toRotationMatrix();
+    const Eigen::Vector3d level = rotation * held.level;
+    const Eigen::Vector3d third = rotation * held.up.cross(held.level);
+    attitude.information += shares[i] * (level * level.transpose() / (roll_sigma * roll_sigma) +
+                                         third * third.transpose() / (pitch_sigma * pitch_sigma));
+    above += rotation * held.up;
   }
   attitude.up_in_world = LowestCostUp(attitude.information, above);
   return attitude;

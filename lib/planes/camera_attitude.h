@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/rigid3.h"
+#include "planes/camera_holding.h"
 
 namespace soslam {
 
@@ -23,9 +24,11 @@ Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Ve
 std::vector<double> ShareOfCameras(const std::vector<Rigid3d>& world_from_camera,
                                    double correlation_rad);
 
-// What the way in which people and vehicles hold cameras says: x axes are nearly level, optical
-// axes less so. From at least one pose; sigmas in radians. Up is where most cameras have it.
+// What the way in which people and vehicles hold cameras says: held level, x axes are nearly level,
+// optical axes less so; held otherwise, other axes are. From at least one pose; sigmas in radians.
+// Up is where most cameras have it.
 CameraAttitude AttitudeOf(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                          double pitch_sigma, double correlation_rad);
+                          double pitch_sigma, double correlation_rad,
+                          CameraHolding holding = CameraHolding::kLevel);
 
 }  // namespace soslam

@@ -31,6 +31,15 @@ constexpr double kMaxTilt = 8.0 * kRadians;
 // An object whose height is known no better than to this share of its size does not decide.
 constexpr double kMaxHeightSigmaBySize = 1.0;
 
+// Of an object's boxes where nothing but their noise is in them: half of what four edges and two
+// ratios say more than it takes to determine a body.
+double ExpectedCost(const MultiViewObservation& observation) {
+  constexpr double kParameters = 7.0, kRatios = 2.0;
+  double edges = 0.0;
+  for (const BoxView& view : observation.views) edges += 4.0 * view.weight;
+  return 0.5 * std::max(1.0, edges + kRatios - kParameters);
+}
+
 // The planes of the objects that are mounted in one way, on bodies whose z axes are up as the
 // attitude has it.
 class Estimator {
@@ -48,6 +57,16 @@ class Estimator {
       if (!takes_part) detections_[i].clear();
       observations_.push_back(Observe(detections_[i], priors[i]));
       sparse_.push_back(Observe(SpreadOver(detections_[i], kViewsOfSearch), priors[i]));
+    }
+  }
+
+  // Of the objects that are mounted so.
+  void AddCostsOfUprightBodies(BodyCosts* costs) const {
+    const Eigen::Vector3d up = SearchUp(attitude_, sparse_, threads_).front();
+    for (size_t i = 0; i < sparse_.size(); ++i) {
+      if (!sparse_[i]) continue;
+      costs->of_objects[i] = CostOfUprightBody(up, *sparse_[i]);
+      costs->expected += ExpectedCost(*sparse_[i]);
     }
   }
 
@@ -202,6 +221,9 @@ class Estimator {
     estimate->cost = 0.0;
     estimate->attitude_information = attitude_.information;
     for (const RefinedPlanes& refined : refined_) *estimate->cost += refined.cost;
+    for (const auto& observation : observations_) {
+      if (observation) estimate->expected_cost += ExpectedCost(*observation);
+    }
     for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
     estimate->objects.resize(sequence_.objects.size());
     ParallelFor("objects", static_cast<int>(estimate->objects.size()), threads_, [&](int i) {
@@ -293,21 +315,27 @@ class Estimator {
 
 }  // namespace
 
-PlanesEstimate EstimatePlanes(const Sequence& sequence,
-                              const std::vector<std::optional<ShapePrior>>& priors,
-                              const CameraAttitude& attitude, const PlanesOptions& options,
-                              int threads) {
+BodyCosts CostsOfUprightBodies(const Sequence& sequence,
+                               const std::vector<std::optional<ShapePrior>>& priors,
+                               const CameraAttitude& attitude, const PlanesOptions& options,
+                               int threads) {
+  BodyCosts costs{std::vector<std::optional<double>>(sequence.objects.size())};
+  for (const Mount mount : {Mount::kStanding, Mount::kHanging}) {
+    Estimator(sequence, priors, mount, attitude, options, threads).AddCostsOfUprightBodies(&costs);
+  }
+  return costs;
+}
+
+std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
+                                         const std::vector<std::optional<ShapePrior>>& priors,
+                                         const CameraAttitude& attitude,
+                                         const PlanesOptions& options, int threads) {
   const auto planes_of = [&](Mount mount, const CameraAttitude& up) {
     return Estimator(sequence, priors, mount, up, options, threads).Estimate();
   };
   const auto floors = planes_of(Mount::kStanding, attitude);
   const auto ceilings = planes_of(Mount::kHanging, DownOf(attitude, floors));
-  if (!floors && !ceilings) {
-    throw NothingUsableError(fmt::format(
-        "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
-        "expected an object seen from several places, or planes = given",
-        sequence.name));
-  }
+  if (!floors && !ceilings) return std::nullopt;
   PlanesEstimate estimate = !ceilings ? *floors
                             : !floors ? *ceilings
                                       : JoinedPlanes(*floors, *ceilings, options.parallel, priors);
@@ -321,6 +349,22 @@ PlanesEstimate EstimatePlanes(const Sequence& sequence,
     if (!has_planes) estimate.objects[i].reason = SupportReason::kNone;
   }
   return estimate;
+}
+
+PlanesEstimate EstimatePlanes(const Sequence& sequence,
+                              const std::vector<std::optional<ShapePrior>>& priors,
+                              const CameraAttitude& attitude, const PlanesOptions& options,
+                              int threads) {
+  auto estimate = FindPlanes(sequence, priors, attitude, options, threads);
+  if (!estimate) ThrowNoPlanes(sequence);
+  return std::move(*estimate);
+}
+
+void ThrowNoPlanes(const Sequence& sequence) {
+  throw NothingUsableError(fmt::format(
+      "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
+      "expected an object seen from several places, or planes = given",
+      sequence.name));
 }
 
 }  // namespace soslam

@@ -76,8 +76,8 @@ std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
 LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions& options) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const CameraAttitude held =
-      AttitudeOf(poses, options.roll_sigma, options.pitch_sigma, options.correlation_rad);
+  const CameraAttitude held = AttitudeOf(poses, options.roll_sigma, options.pitch_sigma,
+                                         options.correlation_rad, options.holding);
   const CameraAttitude mean =
       WithVerticals(held, views, options.vertical_sigma, options.correlation_rad, kMaxTilt);
   if (!(options.odometry_sigma > 0.0)) return {poses, mean};
@@ -93,7 +93,8 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions&
     for (size_t i = 0; i < views.size(); ++i) {
       const Eigen::Matrix3d all =
           shares[i] *
-          (AttitudeOf({poses[i]}, options.roll_sigma, options.pitch_sigma, 0.0).information +
+          (AttitudeOf({poses[i]}, options.roll_sigma, options.pitch_sigma, 0.0, options.holding)
+               .information +
            InformationOfVerticals(views[i], options.vertical_sigma, ups[i]));
       information.push_back(level.transpose() * all * level);
       right_side.push_back(-level.transpose() * all * mean.up_in_world);

@@ -22,6 +22,7 @@ struct LevelOptions {
   double vertical_sigma = 0.0;   // see WithVerticals (rad)
   double odometry_sigma = 0.0;   // of the turn between two frames about one axis (rad); 0: exact
   double correlation_rad = 0.0;  // see ShareOfCameras
+  CameraHolding holding = CameraHolding::kLevel;
 };
 
 // Odometry drifts: up is not the same direction of its world in every frame, but where how cameras

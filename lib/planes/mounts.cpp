@@ -46,6 +46,7 @@ PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& 
     joined.objects[i].plane_index += static_cast<int>(floors.planes.size());
   }
   joined.cost = *floors.cost + *ceilings.cost;
+  joined.expected_cost += ceilings.expected_cost;
   joined.rounds = std::max(floors.rounds, ceilings.rounds);
   joined.settled = floors.settled && ceilings.settled;
   return joined;

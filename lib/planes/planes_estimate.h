@@ -8,6 +8,7 @@
 
 #include "geometry/plane.h"
 #include "model/sequence.h"
+#include "planes/camera_holding.h"
 
 namespace soslam {
 
@@ -43,6 +44,14 @@ struct ObjectSupport {
   std::optional<double> cost;  // of its boxes, on its plane
 };
 
+// One way in which the cameras may be held, and what came of it.
+struct TriedHolding {
+  CameraHolding holding = CameraHolding::kLevel;
+  double cost = 0.0;  // over the lowest of all (negative logarithms of likelihoods)
+  double probability = 0.0;
+  std::optional<int> planes;  // how many; none when it was given up before
+};
+
 struct PlanesEstimate {
   std::vector<EstimatedPlane> planes;
   std::vector<ObjectSupport> objects;  // of the sequence's
@@ -50,7 +59,14 @@ struct PlanesEstimate {
   // u^T information u, the cost of a unit vector u (1 / rad^2).
   Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
   std::optional<Eigen::Matrix3d> attitude_information;
+  // Empty where the cameras' attitude was given; otherwise in the order of kCameraHoldings, and the
+  // one that is taken.
+  std::vector<TriedHolding> holdings;
+  CameraHolding holding = CameraHolding::kLevel;
+  // Of the normals, as the cameras may be held otherwise (rad^2); zero where that is clear.
+  double holding_tilt_variance = 0.0;
   std::optional<double> cost;  // of all boxes, ratios and camera attitudes
+  double expected_cost = 0.0;  // of the boxes' noise alone
   int rounds = 0;              // of deciding who stands where
   bool settled = false;        // the last round decided as the one before
 };

@@ -44,16 +44,20 @@ std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
 double CostOf(const Eigen::Vector3d& up, const CameraAttitude& attitude,
               const std::vector<std::optional<MultiViewObservation>>& observations) {
   double cost = 0.5 * up.dot(attitude.information * up);
-  for (auto observation : observations) {
-    if (!observation) continue;
-    observation->plane_in_world = {up, 0.0};
-    const auto optima = SweepViews(*observation, kYawStepOfSearch);
-    cost += optima.empty() ? kCostWithoutBody : optima.front().cost;
+  for (const auto& observation : observations) {
+    if (observation) cost += CostOfUprightBody(up, *observation).value_or(kCostWithoutBody);
   }
   return cost;
 }
 
 }  // namespace
+
+std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
+                                        MultiViewObservation observation) {
+  observation.plane_in_world = {up_in_world, 0.0};
+  const auto optima = SweepViews(observation, kYawStepOfSearch);
+  return optima.empty() ? std::nullopt : std::optional(optima.front().cost);
+}
 
 std::vector<Eigen::Vector3d> SearchUp(
     const CameraAttitude& attitude,

@@ -13,6 +13,10 @@ namespace soslam {
 // A direction of up in which an object has no body is worse than any in which it has one.
 inline constexpr double kCostWithoutBody = 1e4;
 
+// Of an object's boxes, with the best upright body of any height; none when there is none.
+std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
+                                        MultiViewObservation observation);
+
 // Of the directions that the cameras leave open, those in which upright bodies of any height
 // explain the boxes best, lowest cost first: where bodies turn over to another of their axes the
 // cost has several minima. Observations by object; none of those that do not take part.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "artefact/planes_file.h"
 #include "artefact/semantic_table_file.h"
@@ -16,20 +15,21 @@
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
 #include "planes/camera_height.h"
-#include "planes/estimate_planes.h"
-#include "planes/level_trajectory.h"
+#include "planes/held_planes.h"
 #include "stage/frame_images.h"
 #include "stage/report_findings.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
-
-// Of the dataset's images, in the frames' order; the images are added to `inputs`.
+// Of the dataset's images, in the frames' order, where verticals are looked for and there are any;
+// the images are added to `inputs`.
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesOptions& options,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs) {
+  const bool has_images =
+      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
+  if (!options.verticals || !has_images) return {};
   if (files.count("dataset") == 0) {
     throw SettingsError(
         "verticals is true; expected --dataset with the images, or verticals = false");
@@ -47,26 +47,6 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
     view.segments = FindLineSegments(reader.ReadGrey(image), options.vertical_min_length_px);
   });
   return views;
-}
-
-// What is known about up, and the sequence's poses with the same up in all frames.
-LevelTrajectory LevelFrames(const Sequence& sequence, const PlanesOptions& options,
-                            const StageFiles& files, int threads,
-                            std::vector<std::filesystem::path>* inputs) {
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  LevelOptions level;
-  level.roll_sigma = options.camera_roll_sigma_deg * kRadians;
-  level.pitch_sigma = options.camera_pitch_sigma_deg * kRadians;
-  level.vertical_sigma = options.vertical_sigma_deg * kRadians;
-  level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadians;
-  level.correlation_rad = options.view_correlation_deg * kRadians;
-  const bool has_images =
-      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
-  if (!options.verticals || !has_images) {
-    return {poses, AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad)};
-  }
-  return Level(ViewsOfSegments(sequence, options, files, threads, inputs), level);
 }
 
 // Every segment has a world, and so an up and planes, of its own.
@@ -151,15 +131,14 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   Result result;
   result.inputs = {files.at("table")};
   const SemanticTable table = ReadSemanticTable(files.at("table"));
-  const LevelTrajectory trajectory = LevelFrames(sequence, options, files, threads, &result.inputs);
-  Sequence level = sequence;
-  for (size_t i = 0; i < level.frames.size(); ++i) {
-    level.frames[i].world_from_camera = trajectory.world_from_camera[i];
-  }
+  const auto views = ViewsOfSegments(sequence, options, files, threads, &result.inputs);
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
-  result.estimate = EstimatePlanes(level, priors, trajectory.attitude, options, threads);
-  if (options.refine_poses) RefineWithPoses(priors, options, threads, &result.estimate, &level);
-  result.sequence = WithPlanes(std::move(level), result.estimate);
+  HeldPlanes held = EstimateHeldPlanes(sequence, views, priors, options, threads);
+  if (options.refine_poses) {
+    RefineWithPoses(priors, options, threads, &held.estimate, &held.level);
+  }
+  result.estimate = std::move(held.estimate);
+  result.sequence = WithPlanes(std::move(held.level), result.estimate);
   result.sequence.frames = sequence.frames;  // odometry stays what was measured
   return result;
 }

@@ -121,7 +121,7 @@ TEST(FitObjectWithoutPlanesTest, OneBoxGivesABodyOfThePriorsHeight) {
   const AssociateOptions options = EstimatedAssociation();
   const Sequence sequence =
       WithoutPlanes(SyntheticSequence(LabelledScene(3, 1, 30, {"box"}), false));
-  const UpEstimate up = UpOfSegments(sequence, options).at(0);
+  const UpEstimate up = UpOfSegments(sequence, SemanticTable(), options).at(0);
   for (const double height_m : {0.2, 2.0}) {
     ShapePrior prior = *UnknowingTable().default_prior;
     prior.height_m = LogNormal{height_m, 0.3};

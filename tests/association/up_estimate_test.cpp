@@ -8,6 +8,9 @@
 #include <random>
 
 #include "support/random.h"
+#include "support/rolled.h"
+#include "synthesis/random_scene.h"
+#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {
@@ -39,7 +42,7 @@ TEST(UpEstimateTest, OneCameraIsAsUncertainAsItIsHeld) {
   AssociateOptions options;
   options.camera_roll_sigma_deg = 4.0;
   options.camera_pitch_sigma_deg = 20.0;
-  const UpEstimate up = UpOfSegments(SequenceOf({LevelCamera()}), options).at(0);
+  const UpEstimate up = UpOfSegments(SequenceOf({LevelCamera()}), SemanticTable(), options).at(0);
   EXPECT_NEAR((up.up_in_world - Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-12);
   const Eigen::Vector3d variances = Eigen::Vector3d(4.0, 20.0, 0.0).array().square();
   const Eigen::Matrix3d expected = (kRadians * kRadians * variances).asDiagonal();
@@ -50,7 +53,7 @@ TEST(UpEstimateTest, EachSegmentHasItsOwn) {
   const Eigen::Quaterniond turn = RandomRotation();
   Sequence sequence = SequenceOf({LevelCamera(), turn * LevelCamera()});
   sequence.frames[1].segment = 1;
-  const auto up = UpOfSegments(sequence, AssociateOptions());
+  const auto up = UpOfSegments(sequence, SemanticTable(), AssociateOptions());
   ASSERT_EQ(up.size(), 2u);
   EXPECT_LT((up.at(1).up_in_world - turn * up.at(0).up_in_world).norm(), 1e-9);
 }
@@ -69,7 +72,7 @@ TEST(UpEstimateTest, ErrorsAreAsLargeAsTheCovarianceSays) {
                                    Eigen::Vector3d::UnitZ());
       rotations.push_back(heading * LevelCamera() * pitch * roll);
     }
-    const UpEstimate up = UpOfSegments(SequenceOf(rotations), options).at(0);
+    const UpEstimate up = UpOfSegments(SequenceOf(rotations), SemanticTable(), options).at(0);
     const Eigen::Vector3d error = up.up_in_world.cross(Eigen::Vector3d::UnitZ());
     const Eigen::Matrix3d about_up = up.up_in_world * up.up_in_world.transpose();
     sum += error.dot((up.covariance + about_up).inverse() * error);
@@ -78,6 +81,54 @@ TEST(UpEstimateTest, ErrorsAreAsLargeAsTheCovarianceSays) {
   // Attitudes that are exact in pitch add information that is not used.
   EXPECT_GT(sum / kTrials, 0.5);
   EXPECT_LT(sum / kTrials, 2.5);
+}
+
+// Posts and mats, each label twice, whose boxes are no objects' yet.
+Sequence PostsAndMats() {
+  Scene scene = RandomScene(2, 4, 20, {Shape::kBox});
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    scene.objects[i].label = i % 2 == 0 ? "post" : "mat";
+    scene.objects[i].half_axes =
+        i % 2 == 0 ? Eigen::Vector3d(0.1, 0.1, 0.5) : Eigen::Vector3d(0.5, 0.5, 0.1);
+  }
+  Sequence sequence = SyntheticSequence(scene, false);
+  sequence.planes.clear();
+  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
+  return sequence;
+}
+
+SemanticTable TableOfPostsAndMats() {
+  const auto prior = [](double ratio, double height_m) {
+    ShapePrior prior{Eigen::Vector2d::Constant(ratio), Eigen::Vector2d::Constant(0.3),
+                     kCuboidExponent};
+    prior.height_m = LogNormal{height_m, 0.3};
+    return prior;
+  };
+  SemanticTable table;
+  table.priors = {{"post", prior(0.2, 1.0)}, {"mat", prior(5.0, 0.2)}};
+  return table;
+}
+
+// Which end is up does not matter.
+TEST(UpEstimateTest, SingleBoxesSayHowCamerasAreRolled) {
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    const UpEstimate up =
+        UpOfSegments(Rolled(PostsAndMats(), quarters), TableOfPostsAndMats(), AssociateOptions())
+            .at(0);
+    EXPECT_GT(std::abs(up.up_in_world.z()), std::cos(25.0 * kRadians)) << quarters;
+    EXPECT_LT(up.covariance.norm(), 0.3) << quarters;
+  }
+}
+
+// A table that says nothing leaves cameras level, and no less sure of it.
+TEST(UpEstimateTest, BoxesThatSayNothingChangeNothing) {
+  const Sequence sequence = PostsAndMats();
+  Sequence without = sequence;
+  without.detections.clear();
+  const auto with_boxes = UpOfSegments(sequence, SemanticTable(), AssociateOptions()).at(0);
+  const auto alone = UpOfSegments(without, SemanticTable(), AssociateOptions()).at(0);
+  EXPECT_EQ(with_boxes.up_in_world, alone.up_in_world);
+  EXPECT_EQ(with_boxes.covariance, alone.covariance);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "support/random.h"
@@ -54,6 +56,33 @@ TEST(AttitudeOf, ManyCamerasInOneDirectionCountAsOne) {
   };
   EXPECT_LT((information(7, kCorrelation) - information(1, kCorrelation)).norm(), 1e-9);
   EXPECT_LT((information(7, 0.0) - 7.0 * information(1, 0.0)).norm(), 1e-9);
+}
+
+// Turned about their optical axes, cameras that are held so have the up that they had before.
+TEST(AttitudeOf, RolledCamerasHaveTheUpOfLevelOnes) {
+  constexpr std::array kRolls = {CameraHolding::kLevel, CameraHolding::kRolled90,
+                                 CameraHolding::kRolled180, CameraHolding::kRolled270};
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    const Eigen::Quaterniond roll(
+        Eigen::AngleAxisd(quarters * 90.0 * kDegrees, Eigen::Vector3d::UnitZ()));
+    std::vector<Rigid3d> poses;
+    for (int i = 0; i < 5; ++i) {
+      const Rigid3d level = LevelCamera(i * 30.0 * kDegrees, 20.0 * kDegrees);
+      poses.push_back({level.rotation * roll, level.translation});
+    }
+    const auto up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation,
+                               kRolls.at(static_cast<size_t>(quarters)))
+                        .up_in_world;
+    EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kDegrees) << quarters;
+  }
+}
+
+TEST(AttitudeOf, CamerasThatLookDownHaveUpBehindThem) {
+  const std::vector<Rigid3d> poses = {LevelCamera(0.3, 80.0 * kDegrees)};
+  for (const auto holding : {CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90}) {
+    const auto up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation, holding).up_in_world;
+    EXPECT_NEAR(std::acos(up.z()), 10.0 * kDegrees, 1e-9);
+  }
 }
 
 TEST(AttitudeOf, TurnsWithTheWorld) {

@@ -12,6 +12,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/rolled.h"
 #include "support/standing_scene.h"
 #include "support/temporary_folder.h"
 
@@ -119,6 +120,21 @@ TEST_F(RunPlanesTest, ReportSaysWhyAndHowSure) {
   ASSERT_EQ(report.at("objects").size(), sequence_.objects.size());
   EXPECT_EQ(report.at("objects")[0].at("reason"), "own_height");
   EXPECT_EQ(report.at("artefact").at("inputs").size(), 2u);
+}
+
+TEST_F(RunPlanesTest, ReportSaysHowCamerasAreHeld) {
+  sequence_ = Rolled(sequence_, 1);
+  WriteSequence(File("sequence"), sequence_, {});
+  Run();
+  const json report = ReadArtefact(File("report"), "planes");
+  EXPECT_EQ(report.at("camera_holding").at("held"), "rolled_90");
+  EXPECT_EQ(report.at("camera_holding").at("is_clear"), true);
+  for (const json& plane : report.at("planes")) {
+    EXPECT_LT(plane.at("error").at("angle_deg").get<double>(), 3.0);
+  }
+  const json& tried = report.at("camera_holding").at("tried");
+  EXPECT_EQ(tried.at(0).at("held"), "level");
+  EXPECT_GT(tried.at(0).at("cost").get<double>(), 5.0);
 }
 
 TEST_F(RunPlanesTest, SameBytesWithAnyNumberOfThreads) {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/choose_holding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+namespace soslam {
+namespace {
+
+// Negative logarithms of probabilities: of a holding other than level, of things that are all seen
+// from below, and of an object whose boxes are wrong.
+const double kNotLevel = std::log(100.0);
+const double kFromBelow = std::log(1000.0);
+const double kWrongObject = std::log(1e4);
+
+constexpr double kSameUp = 5.0 * std::numbers::pi / 180.0;
+
+using Costs = std::vector<double>;
+
+// By object, over all evidence; infinite for an object that has no body anywhere.
+Costs LowestCosts(const std::vector<HoldingEvidence>& evidence) {
+  Costs lowest(evidence.front().object_costs.size(), std::numeric_limits<double>::infinity());
+  for (const HoldingEvidence& one : evidence) {
+    for (size_t i = 0; i < lowest.size(); ++i) {
+      if (one.object_costs[i]) lowest[i] = std::min(lowest[i], *one.object_costs[i]);
+    }
+  }
+  return lowest;
+}
+
+// How many times as much as their noise allows boxes cost at least.
+double Misfit(const Costs& lowest, double expected_cost) {
+  double sum = 0.0;
+  for (const double cost : lowest) sum += std::isfinite(cost) ? cost : 0.0;
+  return expected_cost > 0.0 ? std::max(1.0, sum / expected_cost) : 1.0;
+}
+
+double CostOf(const HoldingEvidence& evidence, const Costs& lowest, double misfit) {
+  double cost = evidence.other_cost / misfit + kFromBelow * evidence.share_from_below;
+  if (evidence.holding != CameraHolding::kLevel) cost += kNotLevel;
+  for (size_t i = 0; i < lowest.size(); ++i) {
+    if (!std::isfinite(lowest[i])) continue;
+    const auto& own = evidence.object_costs[i];
+    cost += own ? std::min(kWrongObject, (*own - lowest[i]) / misfit) : kWrongObject;
+  }
+  return cost;
+}
+
+size_t BestOf(const std::vector<HoldingEvidence>& evidence, const Costs& costs) {
+  size_t best = 0;
+  for (size_t i = 1; i < costs.size(); ++i) {
+    if (!evidence[i].can_be_chosen) continue;
+    if (!evidence[best].can_be_chosen || costs[i] < costs[best]) best = i;
+  }
+  return best;
+}
+
+double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  return std::atan2(one.cross(other).norm(), one.dot(other));
+}
+
+}  // namespace
+
+bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  return AngleBetween(one, other) < kSameUp;
+}
+
+HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double expected_cost,
+                            double clear) {
+  const Costs lowest = LowestCosts(evidence);
+  const double misfit = Misfit(lowest, expected_cost);
+  HoldingChoice choice;
+  for (const HoldingEvidence& one : evidence) {
+    choice.costs.push_back(CostOf(one, lowest, misfit));
+  }
+  choice.best = BestOf(evidence, choice.costs);
+  const double lowest_cost = choice.costs[choice.best];
+  double sum = 0.0;
+  for (double& cost : choice.costs) {
+    cost -= lowest_cost;
+    sum += std::exp(-cost);
+  }
+  double variance = 0.0;
+  double others = 0.0;
+  for (size_t i = 0; i < evidence.size(); ++i) {
+    choice.probabilities.push_back(std::exp(-choice.costs[i]) / sum);
+    const double angle = AngleBetween(evidence[i].up_in_world, evidence[choice.best].up_in_world);
+    variance += choice.probabilities[i] * angle * angle;
+    if (!IsSameUp(evidence[i].up_in_world, evidence[choice.best].up_in_world))
+      others += choice.probabilities[i];
+  }
+  if (others >= clear) choice.tilt_variance = variance;
+  return choice;
+}
+
+}  // namespace soslam

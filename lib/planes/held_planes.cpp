@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/held_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/error.h"
+#include "planes/choose_holding.h"
+#include "planes/estimate_planes.h"
+#include "planes/level_trajectory.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+constexpr double kSameAxis = 1e-9;  // one minus a cosine
+// Negative logarithm of how improbable a holding is that is not followed to its planes.
+const double kHopeless = std::log(1e6);
+
+struct Hypothesis {
+  HoldingEvidence evidence;
+  double expected_cost = 0.0;
+  LevelTrajectory trajectory;
+  std::optional<HeldPlanes> planes;
+};
+
+LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
+                            const PlanesOptions& options, CameraHolding holding) {
+  LevelOptions level;
+  level.roll_sigma = options.camera_roll_sigma_deg * kRadians;
+  level.pitch_sigma = options.camera_pitch_sigma_deg * kRadians;
+  level.vertical_sigma = options.vertical_sigma_deg * kRadians;
+  level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadians;
+  level.correlation_rad = options.view_correlation_deg * kRadians;
+  level.holding = holding;
+  if (!views.empty()) return Level(views, level);
+  std::vector<Rigid3d> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  return {poses,
+          AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad, holding)};
+}
+
+Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    sequence.frames[i].world_from_camera = world_from_camera[i];
+  }
+  return sequence;
+}
+
+double ShareFromBelow(const HeldPlanes& held) {
+  int below = 0, seen = 0;
+  for (const Detection& detection : held.level.detections) {
+    const ObjectSupport& support =
+        held.estimate.objects[static_cast<size_t>(detection.object_index)];
+    if (support.reason == SupportReason::kNone) continue;
+    const Plane& plane =
+        held.estimate.planes[static_cast<size_t>(support.plane_index)].plane_in_world;
+    const Rigid3d& camera = held.level.FrameOf(detection).world_from_camera;
+    if (plane.SignedDistance(camera.translation) < 0.0) ++below;
+    ++seen;
+  }
+  return seen == 0 ? 0.0 : static_cast<double>(below) / seen;
+}
+
+// `of_bodies`: that of bodies of any height. An object may have one that is not found again on its
+// plane.
+HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const HeldPlanes& held,
+                           const PlanesOptions& options) {
+  HoldingEvidence evidence = of_bodies;
+  evidence.up_in_world = held.estimate.planes.front().plane_in_world.normal;
+  for (size_t i = 0; i < evidence.object_costs.size(); ++i) {
+    const ObjectSupport& support = held.estimate.objects[i];
+    if (support.cost || support.reason != SupportReason::kOwnHeight) {
+      evidence.object_costs[i] = support.cost;
+    }
+  }
+  evidence.other_cost = static_cast<double>(held.estimate.planes.size()) * options.new_plane_cost;
+  evidence.share_from_below = ShareFromBelow(held);
+  evidence.can_be_chosen = true;
+  return evidence;
+}
+
+// Upright bodies are the same in the opposite direction.
+bool TakeOppositeCosts(const std::vector<Hypothesis>& known, Hypothesis* hypothesis) {
+  const Eigen::Vector3d down = -hypothesis->evidence.up_in_world;
+  for (const Hypothesis& other : known) {
+    if (other.evidence.up_in_world.dot(down) < 1.0 - kSameAxis) continue;
+    hypothesis->evidence.object_costs = other.evidence.object_costs;
+    hypothesis->expected_cost = other.expected_cost;
+    return true;
+  }
+  return false;
+}
+
+// Those whose up directions differ, with what upright bodies anywhere say about them.
+std::vector<Hypothesis> Hypotheses(const Sequence& sequence, const std::vector<SegmentView>& views,
+                                   const std::vector<std::optional<ShapePrior>>& priors,
+                                   const PlanesOptions& options, int threads) {
+  std::vector<Hypothesis> hypotheses;
+  for (const CameraHolding holding : kCameraHoldings) {
+    Hypothesis hypothesis;
+    hypothesis.trajectory = LevelFrames(sequence, views, options, holding);
+    const CameraAttitude& attitude = hypothesis.trajectory.attitude;
+    const bool is_known = std::ranges::any_of(hypotheses, [&](const Hypothesis& other) {
+      return IsSameUp(other.evidence.up_in_world, attitude.up_in_world);
+    });
+    if (is_known) continue;
+    hypothesis.evidence.holding = holding;
+    hypothesis.evidence.up_in_world = attitude.up_in_world;
+    if (!TakeOppositeCosts(hypotheses, &hypothesis)) {
+      const BodyCosts costs =
+          CostsOfUprightBodies(WithPoses(sequence, hypothesis.trajectory.world_from_camera), priors,
+                               attitude, options, threads);
+      hypothesis.evidence.object_costs = costs.of_objects;
+      hypothesis.expected_cost = costs.expected;
+    }
+    hypotheses.push_back(std::move(hypothesis));
+  }
+  return hypotheses;
+}
+
+HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
+  std::vector<HoldingEvidence> evidence;
+  for (const Hypothesis& hypothesis : hypotheses) evidence.push_back(hypothesis.evidence);
+  double expected_cost = 0.0;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    expected_cost = std::max(expected_cost, hypothesis.expected_cost);
+  }
+  return ChooseHolding(evidence, expected_cost);
+}
+
+// Where no object's views determine the height of its foot, it is of one plane, and cannot be
+// chosen.
+void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
+                    const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
+  HeldPlanes held;
+  held.level = WithPoses(sequence, hypothesis->trajectory.world_from_camera);
+  auto estimate = FindPlanes(held.level, priors, hypothesis->trajectory.attitude, options, threads);
+  if (!estimate) {
+    hypothesis->evidence.other_cost = options.new_plane_cost;
+    hypothesis->evidence.can_be_chosen = false;
+    return;
+  }
+  held.estimate = std::move(*estimate);
+  hypothesis->evidence = EvidenceOf(hypothesis->evidence, held, options);
+  hypothesis->expected_cost = held.estimate.expected_cost;
+  hypothesis->planes = std::move(held);
+}
+
+// `tried`: also those that were given up for what their bodies cost, and are not among `followed`.
+HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, std::vector<Hypothesis> followed) {
+  const HoldingChoice choice = Choose(followed);
+  HeldPlanes best = *followed[choice.best].planes;
+  best.estimate.holdings = tried;
+  best.estimate.holding = followed[choice.best].evidence.holding;
+  best.estimate.holding_tilt_variance = choice.tilt_variance;
+  for (TriedHolding& one : best.estimate.holdings) {
+    for (size_t i = 0; i < followed.size(); ++i) {
+      if (followed[i].evidence.holding != one.holding) continue;
+      one.cost = choice.costs[i];
+      one.probability = choice.probabilities[i];
+      if (followed[i].planes) {
+        one.planes = static_cast<int>(followed[i].planes->estimate.planes.size());
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<SegmentView>& views,
+                              const std::vector<std::optional<ShapePrior>>& priors,
+                              const PlanesOptions& options, int threads) {
+  std::vector<Hypothesis> hypotheses = Hypotheses(sequence, views, priors, options, threads);
+  const HoldingChoice by_bodies = Choose(hypotheses);
+  std::vector<TriedHolding> tried;
+  std::vector<Hypothesis> followed;
+  for (size_t i = 0; i < hypotheses.size(); ++i) {
+    tried.push_back({hypotheses[i].evidence.holding, by_bodies.costs[i], 0.0, std::nullopt});
+    if (by_bodies.costs[i] > kHopeless) continue;
+    FollowToPlanes(sequence, priors, options, threads, &hypotheses[i]);
+    followed.push_back(std::move(hypotheses[i]));
+  }
+  const bool has_planes = std::ranges::any_of(
+      followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
+  if (!has_planes) ThrowNoPlanes(sequence);
+  return MostProbable(tried, std::move(followed));
+}
+
+}  // namespace soslam

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planes/held_planes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "planes/estimate_planes.h"
+#include "support/expect_error.h"
+#include "support/rolled.h"
+#include "support/standing_scene.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegrees = std::numbers::pi / 180.0;
+constexpr double kLogSigma = 0.1;
+
+PlanesOptions ModelOptions() {
+  PlanesOptions options;
+  options.planes = PlaneSource::kEstimated;
+  options.view_correlation_deg = 10.0;
+  return options;
+}
+
+Sequence NoisySequence(int seed, int objects) {
+  Scene scene = RandomScene(seed, objects, 20, {Shape::kBox});
+  scene.noise.box_edge_sigma = 0.01;
+  return SyntheticSequence(scene, true);
+}
+
+HeldPlanes Estimate(const Sequence& sequence) {
+  return EstimateHeldPlanes(sequence, {}, TrueCuboidPriors(sequence, kLogSigma), ModelOptions(), 2);
+}
+
+const TriedHolding* Tried(const HeldPlanes& held, CameraHolding holding) {
+  const auto at = std::ranges::find(held.estimate.holdings, holding, &TriedHolding::holding);
+  return at == held.estimate.holdings.end() ? nullptr : &*at;
+}
+
+TEST(EstimateHeldPlanes, FindsUpForEachRoll) {
+  constexpr std::array kRolls = {CameraHolding::kLevel, CameraHolding::kRolled90,
+                                 CameraHolding::kRolled180, CameraHolding::kRolled270};
+  for (int seed = 0; seed < 3; ++seed) {
+    const Sequence level = NoisySequence(seed, 5);
+    for (int quarters = 0; quarters < 4; ++quarters) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << quarters << " quarters");
+      const Sequence sequence = Rolled(level, quarters);
+      const HeldPlanes held = Estimate(sequence);
+      EXPECT_EQ(held.estimate.holding, kRolls.at(static_cast<size_t>(quarters)));
+      EXPECT_EQ(held.estimate.holding_tilt_variance, 0.0);
+      ASSERT_EQ(held.estimate.planes.size(), 1u);
+      const auto error = CompareWithGiven(sequence, held.estimate, 0);
+      ASSERT_TRUE(error);
+      EXPECT_LT(error->angle, 3.0 * kDegrees);
+      EXPECT_LT(std::abs(error->offset), 0.05);
+    }
+  }
+}
+
+// To the last digit.
+TEST(EstimateHeldPlanes, LevelCamerasHaveThePlanesOfTheirAttitude) {
+  const Sequence sequence = NoisySequence(4, 4);
+  std::vector<Rigid3d> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  const PlanesOptions options = ModelOptions();
+  const CameraAttitude attitude = AttitudeOf(poses, options.camera_roll_sigma_deg * kDegrees,
+                                             options.camera_pitch_sigma_deg * kDegrees,
+                                             options.view_correlation_deg * kDegrees);
+  const PlanesEstimate expected =
+      EstimatePlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), attitude, options, 2);
+  const PlanesEstimate found = Estimate(sequence).estimate;
+  EXPECT_EQ(found.holding, CameraHolding::kLevel);
+  ASSERT_EQ(found.planes.size(), expected.planes.size());
+  EXPECT_EQ(found.planes[0].plane_in_world.normal, expected.planes[0].plane_in_world.normal);
+  EXPECT_EQ(found.planes[0].plane_in_world.offset, expected.planes[0].plane_in_world.offset);
+  EXPECT_EQ(*found.planes[0].covariance, *expected.planes[0].covariance);
+  EXPECT_EQ(found.cost, expected.cost);
+}
+
+// What lies on its side costs too much for planes to be looked for.
+TEST(EstimateHeldPlanes, SaysWhatWasTried) {
+  const HeldPlanes held = Estimate(Rolled(NoisySequence(1, 6), 1));
+  const TriedHolding* best = Tried(held, CameraHolding::kRolled90);
+  ASSERT_TRUE(best);
+  EXPECT_EQ(best->cost, 0.0);
+  EXPECT_GT(best->probability, 0.99);
+  EXPECT_EQ(best->planes, 1);
+  const TriedHolding* level = Tried(held, CameraHolding::kLevel);
+  ASSERT_TRUE(level);
+  EXPECT_GT(level->cost, 10.0);
+}
+
+// As long and wide as high: it may lie on any side, but its camera is not below what it stands on.
+TEST(EstimateHeldPlanes, ACubeLeavesItOpen) {
+  Scene scene = RandomScene(3, 1, 20, {Shape::kBox});
+  scene.objects[0].half_axes.setConstant(0.3);
+  const Sequence cube = SyntheticSequence(scene, false);
+  const HeldPlanes level = Estimate(cube);
+  EXPECT_EQ(level.estimate.holding, CameraHolding::kLevel);
+  const HeldPlanes rolled = Estimate(Rolled(cube, 1));
+  const bool is_found = rolled.estimate.holding == CameraHolding::kRolled90;
+  EXPECT_TRUE(is_found || rolled.estimate.holding_tilt_variance > 0.0);
+}
+
+TEST(EstimateHeldPlanes, RefusesWhatOneViewCannotTell) {
+  Sequence sequence = NoisySequence(1, 3);
+  std::erase_if(sequence.detections, [&](const Detection& detection) {
+    return detection.frame_index != sequence.detections.front().frame_index;
+  });
+  ExpectError<NothingUsableError>([&] { Estimate(sequence); }, {"several places"});
+}
+
+}  // namespace
+}  // namespace soslam
