@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "dataset/dataset_checks.h"
@@ -13,16 +11,6 @@
 
 namespace soslam {
 namespace {
-
-// What the header of an image file says; none where there is no such image.
-std::optional<ImageSize> SizeOf(const std::filesystem::path& path) {
-  constexpr size_t kMaxHeader = size_t{1} << 18;
-  std::string bytes(kMaxHeader, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<size_t>(stream.gcount()));
-  return SizeInHeader(bytes);
-}
 
 // One size that images have where the camera has another one.
 struct Mismatch {
@@ -59,22 +47,43 @@ Finding Explained(const Mismatch& mismatch, size_t all) {
   return finding;
 }
 
+// Turned images of which no size tells whether camera and boxes refer to them as they are shown.
+std::vector<Finding> CheckTurned(size_t turned, size_t all, ImageOrientation read_as) {
+  if (turned == 0 || read_as == ImageOrientation::kStored) return {};
+  return {
+      {"image_orientation", Severity::kWarning,
+       fmt::format("{} of {} images have a note of EXIF that turns them, and are read as viewers "
+                   "show them",
+                   turned, all),
+       "camera and boxes of the images as they are shown, which no size tells here",
+       "a camera that was held upside down, or a program that set the note",
+       "nothing where boxes fit the images on the report page; otherwise image_orientation "
+       "stored"}};
+}
+
 }  // namespace
 
 std::vector<Finding> CheckImages(const ImportView& view) {
+  const ImageOrientation read_as = view.options.image_orientation;
   std::map<std::pair<std::int64_t, std::int64_t>, Mismatch> mismatches;
   size_t all = 0;
+  size_t turned = 0;
   for (const Frame& frame : view.sequence.frames) {
     if (frame.image.empty()) continue;
-    const auto size = SizeOf(ImagePath(view.folder, frame.image, view.folder.string()));
-    if (!size) continue;
+    const auto header = ReadImageHeader(ImagePath(view.folder, frame.image, view.folder.string()));
+    if (!header) continue;
     ++all;
     const Camera& camera = view.sequence.CameraOf(frame);
-    if (size->width == camera.width && size->height == camera.height) continue;
-    Mismatch& mismatch = mismatches[{size->width, size->height}];
-    if (mismatch.images++ == 0) mismatch = {camera, *size, frame.image, 1};
+    const ImageSize size = header->Size(read_as);
+    if (size.width == camera.width && size.height == camera.height) {
+      const bool size_tells = header->IsTurnedByAQuarter() && size.width != size.height;
+      if (header->orientation != 1 && !size_tells) ++turned;
+      continue;
+    }
+    Mismatch& mismatch = mismatches[{size.width, size.height}];
+    if (mismatch.images++ == 0) mismatch = {camera, size, frame.image, 1};
   }
-  std::vector<Finding> findings;
+  std::vector<Finding> findings = CheckTurned(turned, all, read_as);
   for (const auto& [size, mismatch] : mismatches) findings.push_back(Explained(mismatch, all));
   return findings;
 }

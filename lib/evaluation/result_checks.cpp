@@ -161,6 +161,21 @@ std::vector<Finding> CheckCost(const SolverSummary& solver) {
        "errors: soslam-inspect, or the report page"}};
 }
 
+std::vector<Finding> CheckUp(const PlanesEstimate& estimate) {
+  if (estimate.holding_tilt_variance == 0.0) return {};
+  std::vector<std::string> ways;
+  for (const TriedHolding& tried : estimate.holdings) {
+    ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.holding), tried.probability));
+  }
+  return {{"up_direction", Severity::kWarning,
+           fmt::format("cameras are taken to be held {}; probabilities: {}",
+                       NameOf(estimate.holding), fmt::join(ways, ", ")),
+           "one way to hold them that explains the boxes much better than others",
+           "few objects, or cameras that were rolled or look down; tilt_sigma_deg in planes.json "
+           "has what that leaves open",
+           "give planes.json where up is known, or images that show vertical edges"}};
+}
+
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {
   constexpr size_t kFewest = 3;
   if (planes < kFewest || 5 * planes < 3 * objects) return {};

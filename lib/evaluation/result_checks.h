@@ -7,6 +7,7 @@
 #include "model/estimates.h"
 #include "model/finding.h"
 #include "model/sequence.h"
+#include "planes/planes_estimate.h"
 
 namespace soslam {
 
@@ -31,5 +32,8 @@ std::vector<Finding> CheckCost(const SolverSummary& solver);
 
 // Estimated planes, when they are nearly as many as the objects on them.
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects);
+
+// How cameras are held, and so what is up, where other ways are about as probable.
+std::vector<Finding> CheckUp(const PlanesEstimate& estimate);
 
 }  // namespace soslam

@@ -102,6 +102,18 @@ TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
   EXPECT_EQ(CheckPlaneCount(4, 5)[0].found, "4 planes of 5 objects");
 }
 
+TEST(CheckUpTest, OtherWaysToHoldTheCameraThatAreAboutAsProbable) {
+  PlanesEstimate estimate;
+  estimate.holding = CameraHolding::kRolled90;
+  estimate.holdings = {{CameraHolding::kLevel, 1.0, 0.25, 2},
+                       {CameraHolding::kRolled90, 0.0, 0.75, 1}};
+  EXPECT_THAT(CheckUp(estimate), IsEmpty());
+  estimate.holding_tilt_variance = 0.5;
+  ASSERT_EQ(CheckUp(estimate).size(), 1u);
+  EXPECT_EQ(CheckUp(estimate)[0].found,
+            "cameras are taken to be held rolled_90; probabilities: level 0.25, rolled_90 0.75");
+}
+
 TEST(WorstFirstTest, ErrorsComeFirstAndNothingComesTwice) {
   const Finding warning{"a", Severity::kWarning, "found", "expected", "cause", "remedy"};
   Finding error = warning;
