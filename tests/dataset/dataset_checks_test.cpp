@@ -6,12 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
 #include "dataset/import.h"
 #include "support/dataset_fixture.h"
+#include "support/image_files.h"
 #include "support/plausible_dataset.h"
 
 namespace soslam {
@@ -47,11 +46,14 @@ class DatasetChecksTest : public testing::Test {
     return "";
   }
 
-  void WriteImages(int width, int height) {
+  // Images that store width x height pixels.
+  void WriteImages(int width, int height, int exif_orientation = 1) {
     std::filesystem::create_directories(folder / "rgb");
     const cv::Mat image(height, width, CV_8UC1, cv::Scalar(128));
+    const std::string bytes = PngWithExif(EncodedImage(".png", image), ExifOf(exif_orientation),
+                                          /*is_after_pixels=*/false);
     for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-      cv::imwrite((folder / fmt::format("rgb/{:06}.png", frame)).string(), image);
+      std::ofstream(folder / fmt::format("rgb/{:06}.png", frame), std::ios::binary) << bytes;
     }
   }
 
@@ -100,6 +102,21 @@ TEST_F(DatasetChecksTest, ImagesOfAnotherSize) {
 TEST_F(DatasetChecksTest, ImagesOfSwappedSides) {
   WriteImages(480, 640);
   EXPECT_THAT(Refusal(), HasSubstr("width and height swapped"));
+}
+
+TEST_F(DatasetChecksTest, ImagesThatAreTurnedByAQuarterAreOfTheSizeThatIsShown) {
+  WriteImages(480, 640, /*exif_orientation=*/6);
+  EXPECT_THAT(Warnings(), IsEmpty());
+  options.image_orientation = ImageOrientation::kStored;
+  EXPECT_THAT(Refusal(), HasSubstr("480 x 640"));
+}
+
+TEST_F(DatasetChecksTest, ImagesThatAreTurnedUpsideDown) {
+  WriteImages(640, 480, /*exif_orientation=*/3);
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("24 of 24 images"),
+                                            HasSubstr("image_orientation stored"))));
+  options.image_orientation = ImageOrientation::kStored;
+  EXPECT_THAT(Warnings(), IsEmpty());
 }
 
 TEST_F(DatasetChecksTest, CameraOfSwappedSides) {
