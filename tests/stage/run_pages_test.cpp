@@ -283,6 +283,33 @@ TEST_F(RunPagesTest, NamesNeedNotBeUtf8) {
   EXPECT_TRUE(fs::exists(results_.path() / "caf\xe9/report.html"));
 }
 
+TEST_F(RunPagesTest, NamesAreTextWhateverTheyHold) {
+  const std::string hostile = "\"'><img src=x onerror=alert(1)>{{scripts}}";
+  sequence_.objects[0].label = "</script>" + hostile;
+  WriteMultiView(hostile);
+  fs::rename(results_.path() / "room", results_.path() / hostile);
+  Run();
+  for (const fs::path& page :
+       {results_.path() / hostile / "report.html", results_.path() / "report.html"}) {
+    const std::string html = FileBytes(page);
+    EXPECT_THAT(html, HasSubstr("&quot;&#39;&gt;&lt;img src=x onerror=alert(1)&gt;{{scripts}}"));
+    EXPECT_THAT(html, HasSubstr("\\u003cimg src=x"));
+    EXPECT_THAT(html, testing::Not(HasSubstr("<img")));
+  }
+}
+
+TEST_F(RunPagesTest, FindingsAreAtTheTopOfPageAndOverview) {
+  WriteMultiView("MultiView");
+  const json finding = {{"check", "up"}, {"severity", "error"}, {"found", "looks <down>"}};
+  WriteBytes(Folder("MultiView") / "planes.json",
+             json{{"findings", json::array({finding})}}.dump());
+  Run();
+  for (const fs::path& page : {Page(), results_.path() / "report.html"}) {
+    const std::string html = FileBytes(page);
+    EXPECT_LT(html.find("looks &lt;down&gt;"), html.find("<td>MultiView</td>"));
+  }
+}
+
 TEST_F(RunPagesTest, ADatasetWithNothingToShowIsNamedBesideOthers) {
   WriteMultiView("MultiView");
   results_.WriteStages("desk", "SVD", {"import-12"});
