@@ -193,7 +193,8 @@ PLANNED = $(sort $(patsubst $(RESULTS)/$(DATASET)/%/stages.txt,%,$(wildcard $(RE
 
 .PHONY: doctor
 doctor: build ## Say what import and all stages that ran for DATASET=<name> found: errors, warnings, remedies
-	+@$(MAKE) run-built GOAL=imports VARIANT='$(or $(PLANNED),all)' > /dev/null 2>&1 || true
+	+@said=$$($(MAKE) run-built GOAL=imports VARIANT='$(or $(PLANNED),all)' 2>&1 > /dev/null) || \
+	  test -e $(PLAN) || { echo "$$said" >&2; exit 3; }
 	@$(BIN)/soslam-doctor --results $(RESULTS) --name '$(DATASET)'
 
 .PHONY: status

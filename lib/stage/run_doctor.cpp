@@ -38,13 +38,13 @@ std::vector<Finding> FindingsInFile(const fs::path& path) {
   }
 }
 
+// The message says all there is to say.
 Finding FailureOf(const RunRecord& run) {
-  return {"failed",
-          Severity::kError,
-          run.error,
-          "a stage that ends with exit code 0",
-          "what the message says",
-          fmt::format("see docs/reliability.md; exit code {}", run.exit_code)};
+  Finding failure;
+  failure.check = "failed";
+  failure.severity = Severity::kError;
+  failure.found = run.error;
+  return failure;
 }
 
 // The findings in the artefacts of a run, or how it failed; none where it has not run.
@@ -82,6 +82,7 @@ void Print(const Diagnosis& diagnosis) {
   const Finding& finding = diagnosis.finding;
   fmt::print("{}: {} ({}): {}\n", kSeverityNames[static_cast<size_t>(finding.severity)],
              diagnosis.stage, fmt::join(diagnosis.variants, " "), OneLine(finding.found));
+  if (finding.expected.empty()) return;
   fmt::print("  expected      {}\n  likely cause  {}\n  remedy        {}\n",
              OneLine(finding.expected), OneLine(finding.cause), OneLine(finding.remedy));
 }
