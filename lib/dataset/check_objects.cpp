@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -11,50 +12,55 @@
 namespace soslam {
 namespace {
 
-using CentresById = std::map<int, Eigen::Vector3d>;
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr size_t kFewest = 10;  // boxes that say something
 
-// The true centres of objects, in the world.
-CentresById TrueCentres(const ImportView& view) {
-  CentresById centres;
+// A box, and the true landmark that an id stands for, seen from the same camera.
+struct BoxAndTruth {
+  Box box;
+  Camera camera;
+  Landmark landmark_in_camera;
+};
+
+// The boxes of static objects beside the true landmarks of the objects with their id plus `shift`.
+std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
+  std::map<int, const Landmark*> landmarks;
   for (const Object& object : view.content.objects) {
     if (!object.ground_truth || !object.is_static) continue;
-    centres[object.id] = object.ground_truth->landmark_in_world.frame_from_object.translation;
+    landmarks[object.id] = &object.ground_truth->landmark_in_world;
   }
-  return centres;
-}
-
-// How far (deg, median) boxes are from the true centre of the object with their id plus `shift`.
-// None when there are too few.
-std::optional<double> MedianAngleDeg(const ImportView& view, const CentresById& centres,
-                                     int shift) {
-  constexpr size_t kFewest = 10;
   std::map<int, const Frame*> frames;
   for (const ListedFrame& listed : view.content.frames) {
     if (listed.has_pose) frames[listed.frame.id] = &listed.frame;
   }
-  std::vector<double> angles;
+  std::vector<BoxAndTruth> pairs;
   for (const DetectionRow& row : view.content.rows) {
-    const auto centre = centres.find(row.object_id + shift);
+    const auto landmark = landmarks.find(row.object_id + shift);
     const auto frame = frames.find(row.frame_id);
-    if (centre == centres.end() || frame == frames.end()) continue;
+    if (landmark == landmarks.end() || frame == frames.end()) continue;
     const Rigid3d world_from_camera =
         frame->second->true_world_from_camera.value_or(frame->second->world_from_camera);
-    const Eigen::Vector3d towards = world_from_camera.Inverse() * centre->second;
-    const Eigen::Vector3d ray = view.content.camera.Ray(row.box.Centre());
-    angles.push_back(std::atan2(ray.cross(towards).norm(), ray.dot(towards)) * 180.0 /
-                     std::numbers::pi);
+    pairs.push_back({row.box, frame->second->camera.value_or(view.content.camera),
+                     Transform(world_from_camera.Inverse(), *landmark->second)});
+  }
+  return pairs;
+}
+
+// How far (deg, median) boxes are from the centres; none when there are too few.
+std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
+  std::vector<double> angles;
+  for (const auto& [box, camera, landmark] : pairs) {
+    const Eigen::Vector3d ray = camera.Ray(box.Centre());
+    const Eigen::Vector3d& centre = landmark.frame_from_object.translation;
+    angles.push_back(kDegPerRad * std::atan2(ray.cross(centre).norm(), ray.dot(centre)));
   }
   return angles.size() < kFewest ? std::nullopt : MedianOf(angles);
 }
 
-}  // namespace
-
-std::vector<Finding> CheckObjects(const ImportView& view) {
+std::vector<Finding> CheckCentres(const ImportView& view) {
   constexpr double kFarOffDeg = 10.0;
   constexpr double kMuchBetter = 0.25;
-  if (!view.content.has_object_ids) return {};
-  const CentresById centres = TrueCentres(view);
-  const auto as_read = MedianAngleDeg(view, centres, 0);
+  const auto as_read = MedianAngleDeg(BoxesAndTruth(view, 0));
   if (!as_read || *as_read <= kFarOffDeg) return {};
   Finding finding{
       "objects_against_boxes",
@@ -62,12 +68,12 @@ std::vector<Finding> CheckObjects(const ImportView& view) {
       fmt::format("boxes are {:.1f} degrees from the true centre of their object (median)",
                   *as_read),
       "true objects where their boxes see them",
-      "true objects in another world, unit or order of axes than the poses, or ids that "
-      "are not the detections'",
-      "give objects.json in the world of the true poses, in metres, with the detections' "
-      "ids"};
+      "true objects in another world, unit or order of axes than the poses, or ids that are not "
+      "the "
+      "detections'",
+      "give objects.json in the world of the true poses, in metres, with the detections' ids"};
   for (const int shift : {-1, 1}) {
-    const auto shifted = MedianAngleDeg(view, centres, shift);
+    const auto shifted = MedianAngleDeg(BoxesAndTruth(view, shift));
     if (!shifted || *shifted >= kMuchBetter * *as_read) continue;
     finding.found += fmt::format(", but {:.1f} from that of the object with the id {}", *shifted,
                                  shift < 0 ? "before" : "after");
@@ -76,6 +82,61 @@ std::vector<Finding> CheckObjects(const ImportView& view) {
                                  shift < 0 ? "subtract" : "add", shift < 0 ? "from" : "to");
   }
   return {finding};
+}
+
+// Heights of outlines against those of the boxes.
+std::vector<Finding> CheckTrueSizes(const ImportView& view) {
+  constexpr double kLargestFactor = 1.6;
+  std::vector<double> log_factors;
+  for (const auto& [box, camera, landmark] : BoxesAndTruth(view, 0)) {
+    const auto outline = OutlineBox(camera, landmark);
+    if (outline && box.Height() > 0.0) {
+      log_factors.push_back(std::log(outline->Height() / box.Height()));
+    }
+  }
+  if (log_factors.size() < kFewest) return {};
+  const double factor = std::exp(*MedianOf(log_factors));
+  if (factor < kLargestFactor && factor > 1.0 / kLargestFactor) return {};
+  return {{"object_half_axes", Severity::kWarning,
+           fmt::format("true objects look {:.2g} times as high as their boxes (median)", factor),
+           "true objects as large as their boxes",
+           "full sizes in place of half_axes, or the reverse",
+           "give half of the object's depth, width and height as half_axes"}};
+}
+
+// The z axes of upright objects against the normals of their planes.
+std::vector<Finding> CheckTrueAxes(const ImportView& view) {
+  constexpr double kSteepestDeg = 30.0;
+  constexpr size_t kFewestObjects = 2;
+  std::vector<double> angles;
+  for (const Object& object : view.content.objects) {
+    if (!object.ground_truth || object.plane_index == kNoPlane) continue;
+    const auto plane = static_cast<size_t>(object.plane_index);
+    const Eigen::Vector3d z = object.ground_truth->landmark_in_world.frame_from_object.rotation *
+                              Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d& normal = view.content.planes.at(plane).plane_in_world.normal;
+    angles.push_back(kDegPerRad * std::atan2(z.cross(normal).norm(), z.dot(normal)));
+  }
+  if (angles.size() < kFewestObjects || *MedianOf(angles) <= kSteepestDeg) return {};
+  return {{"object_axes", Severity::kWarning,
+           fmt::format("the z axes of true objects are {:.0f} degrees from the normals of their "
+                       "planes (median)",
+                       *MedianOf(angles)),
+           "z away from the support plane",
+           "quaternions with qw first, object_from_world in place of world_from_object, or another "
+           "axis of the object up",
+           "give quaternion_xyzw of world from object, z away from the support plane"}};
+}
+
+}  // namespace
+
+std::vector<Finding> CheckObjects(const ImportView& view) {
+  std::vector<Finding> findings;
+  if (view.content.has_object_ids) findings = CheckCentres(view);
+  if (view.content.has_object_ids && findings.empty()) findings = CheckTrueSizes(view);
+  const std::vector<Finding> of_axes = CheckTrueAxes(view);
+  findings.insert(findings.end(), of_axes.begin(), of_axes.end());
+  return findings;
 }
 
 }  // namespace soslam

@@ -38,7 +38,8 @@ std::vector<Finding> CheckRejections(const ImportView& view);
 std::vector<Finding> CheckTruth(const ImportView& view);
 // The poses against the boxes: the same, and frames counted from 1.
 std::vector<Finding> CheckPoses(const ImportView& view);
-// True objects against the boxes with their ids: another world, ids counted from 1.
+// True objects against the boxes with their ids, and against their planes: another world, ids
+// counted from 1, full sizes for half axes, quaternions with qw first.
 std::vector<Finding> CheckObjects(const ImportView& view);
 // The support plane of most objects against cameras and objects.
 std::vector<Finding> CheckPlanes(const ImportView& view);

@@ -281,6 +281,20 @@ TEST_F(DatasetChecksTest, IdsFromZeroInOneFile) {
                                             HasSubstr("subtract 1 from the object_id"))));
 }
 
+TEST_F(DatasetChecksTest, FullSizesForHalfAxes) {
+  dataset.true_radius *= 2.0;
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("full sizes"))));
+}
+
+// The rotation by 40 degrees about z with qw first.
+TEST_F(DatasetChecksTest, TrueQuaternionsWithScalarFirst) {
+  dataset.true_quaternion = "0.94, 0, 0, 0.342";
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("object_axes"), HasSubstr("qw first"))));
+}
+
 TEST_F(DatasetChecksTest, TrueObjectsInMillimetres) {
   dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1e-3);
   EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("another world, unit or order of axes")));

@@ -40,6 +40,8 @@ struct PlausibleDataset {
   std::string plane = R"([{"id": 0, "normal": [0, 0, 1], "d": 0}])";
   bool has_truth = false;
   std::string objects;  // objects.json; empty: none
+  double true_radius = kRadius;
+  std::string true_quaternion = "0, 0, 0, 1";
   std::function<std::string(double)> image_time = [](double t) { return fmt::format("{:.6f}", t); };
   std::function<std::string(double)> pose_time = [](double t) { return fmt::format("{:.6f}", t); };
 
@@ -70,12 +72,12 @@ struct PlausibleDataset {
     std::string text;
     for (size_t ball = 0; ball < Labels().size(); ++ball) {
       const Eigen::Vector3d p = BallInWorld(ball) / unit_m;
-      const double r = kRadius / unit_m;
+      const double r = true_radius / unit_m;
       text += fmt::format(
-          R"({}{{"id": {}, "label": "{}", "center": [{}, {}, {}], "quaternion_xyzw": [0, 0, 0, 1],
+          R"({}{{"id": {}, "label": "{}", "center": [{}, {}, {}], "quaternion_xyzw": [{}],
               "half_axes": [{}, {}, {}]}})",
           text.empty() ? "[" : ",", first_id + static_cast<int>(ball), label(ball), p.x(), p.y(),
-          p.z(), r, r, r);
+          p.z(), true_quaternion, r, r, r);
     }
     return text + "]";
   }
