@@ -20,7 +20,7 @@ struct ImageHeader {
   int orientation = 1;  // EXIF's, 1 to 8: 1 upright, 3 upside down, 5 to 8 turned by a quarter
 
   bool IsTurnedByAQuarter() const { return orientation >= 5; }
-  // Of the image that is read with this setting.
+  // The size of the image that is read with this setting.
   ImageSize Size(ImageOrientation read_as) const {
     const bool swaps = read_as == ImageOrientation::kUpright && IsTurnedByAQuarter();
     return swaps ? ImageSize{stored.height, stored.width} : stored;

@@ -16,7 +16,7 @@ std::optional<ByteOrder> OrderOf(std::string_view head) {
   return std::nullopt;
 }
 
-// Of the types BYTE, SHORT and LONG; 0 of others.
+// The bytes of a BYTE, SHORT or LONG; 0 for other types.
 size_t BytesEach(std::uint64_t type) {
   constexpr size_t kBytes[] = {0, 1, 0, 2, 4};
   return type < std::size(kBytes) ? kBytes[type] : 0;

@@ -44,11 +44,12 @@ bool IsUnambiguous(const TiffDirectory& directory) {
   return std::ranges::all_of(
       std::initializer_list<std::uint64_t>{kWidth, kHeight, kBitsPerSample, kCompression,
                                            kSamplesPerPixel, kStripOffsets, kStripByteCounts,
-                                           kTileWidth, kTileHeight, kTileOffsets, kTileByteCounts},
+                                           kTileWidth, kTileHeight, kTileOffsets, kTileByteCounts,
+                                           kTiffOrientation},
       [&](std::uint64_t tag) { return directory.Count(tag) <= 1; });
 }
 
-// Of the first page.
+// What the first page claims.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto directory = TiffDirectory::Read(file);
   if (!directory || !IsUnambiguous(*directory) || !IsReadable(*directory, file)) {
@@ -91,7 +92,7 @@ void ClearOrientation(std::span<char> file) {
   const ImageBytes bytes({file.data(), file.size()});
   const auto directory = TiffDirectory::Read(bytes);
   const auto entry = directory ? directory->Find(kTiffOrientation) : std::nullopt;
-  if (!entry || !ExifOrientation(*directory, bytes)) return;
+  if (!entry || !directory->Number(kTiffOrientation, bytes)) return;  // not in the file
   const auto number = file.subspan(entry->begin, entry->bytes_each);
   std::ranges::fill(number, '\0');
   (directory->order() == ByteOrder::kBigEndian ? number.back() : number.front()) = 1;

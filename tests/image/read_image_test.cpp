@@ -106,6 +106,17 @@ TEST_F(ReadImageTest, EveryOrientationIsTurnedUpright) {
   }
 }
 
+TEST_F(ReadImageTest, OrientationsThatMeanNothingTurnNothing) {
+  for (const int orientation : {0, 9, 300}) {
+    for (const std::string& file :
+         WithOrientation(TestImage(), orientation, ByteOrder::kLittleEndian)) {
+      EXPECT_EQ(ReadGreyImage(Write("a", file)).size(), TestImage().size()) << orientation;
+    }
+    const auto tiff = Write("a.tiff", GreyTiff(TestImage(), orientation, ByteOrder::kBigEndian));
+    EXPECT_EQ(cv::norm(ReadGreyImage(tiff), TestImage(), cv::NORM_INF), 0.0) << orientation;
+  }
+}
+
 TEST_F(ReadImageTest, JpegsAreTurnedAsOpenCvTurnsThem) {
   for (int orientation = 1; orientation <= 8; ++orientation) {
     const auto path =
