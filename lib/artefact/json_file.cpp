@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/run_log.h"
+#include "base/text_encoding.h"
 
 namespace soslam {
 namespace {
@@ -85,6 +86,7 @@ json ParseJsonText(std::istream& text, const std::string& name) {
   if (text.peek() == std::istream::traits_type::eof()) {
     throw InputError(name + ": is empty; expected JSON");
   }
+  CheckIsNotUtf16(text.peek(), name);
   try {
     return json::parse(text, StructureCheck(name));
   } catch (const json::exception& error) {

@@ -104,13 +104,15 @@ json BoundsToJson(const std::array<bool, 4>& is_bound) {
   return names;
 }
 
-json DistortionToJson(const Distortion& lens) {
-  return {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
-}
-
+// Five, as in all versions; 8, 12 or 14 since version 1.6.
 Distortion DistortionFromJson(const json& json) {
-  const auto k = json.get<std::array<double, 5>>();
-  return {k[0], k[1], k[2], k[3], k[4]};
+  const auto coefficients = json.get<std::vector<double>>();
+  const auto distortion = DistortionOfCoefficients(coefficients);
+  if (!distortion) {
+    throw InputError(fmt::format("image_distortion has {} numbers; expected 5, 8, 12 or 14",
+                                 coefficients.size()));
+  }
+  return *distortion;
 }
 
 std::array<bool, 4> BoundsFromJson(const json& names) {
@@ -308,7 +310,7 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                {"detections", json::array()},
                {"rejected_detections", sequence.rejected_detections}};
   if (sequence.image_distortion)
-    body["image_distortion"] = DistortionToJson(*sequence.image_distortion);
+    body["image_distortion"] = DistortionCoefficients(*sequence.image_distortion);
   for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
   for (const SupportPlane& plane : sequence.planes) {
     body["planes"].push_back(SupportPlaneToJson(plane));

@@ -36,8 +36,7 @@ std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list
   return names;
 }
 
-CocoNames ReadDataset(const fs::path& path) {
-  const json document = ParseJsonFile(path);
+CocoNames NamesOf(const json& document, const fs::path& path) {
   const JsonEntry entry(document, path.string());
   return {ReadNames(entry, "images", "file_name"), ReadNames(entry, "categories", "name")};
 }
@@ -50,8 +49,8 @@ const std::string& NameOf(const std::map<int, std::string>& names, const JsonEnt
 }
 
 FrameKey ParseFrame(const JsonEntry& entry, const std::optional<CocoNames>& names) {
-  if (names) return NameOf(names->images, entry, "image_id");
   if (entry.Field("image_id").is_string()) return entry.Text("image_id");
+  if (names) return NameOf(names->images, entry, "image_id");
   return entry.Integer("image_id");
 }
 
@@ -68,20 +67,46 @@ Box ParseBox(const JsonEntry& entry) {
   return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
 }
 
+// As CVAT writes it for tracks; none without one.
+std::optional<int> ParseTrack(const JsonEntry& entry) {
+  if (entry.Has("track_id")) return entry.Integer("track_id");
+  if (!entry.Has("attributes") || !entry.Field("attributes").is_object()) return std::nullopt;
+  const JsonEntry attributes(entry.Field("attributes"), entry.place() + "/attributes");
+  return attributes.Has("track_id") ? std::optional(attributes.Integer("track_id")) : std::nullopt;
+}
+
+// Whether it is around a crowd of objects, which are not one.
+bool IsCrowd(const JsonEntry& entry) { return entry.Has("iscrowd") && entry.Field("iscrowd") == 1; }
+
+std::vector<LabelledBox> ParseBoxes(const json& list, const std::string& place,
+                                    const std::optional<CocoNames>& names) {
+  std::vector<LabelledBox> boxes;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const JsonEntry entry(list[i], fmt::format("{}/{}", place, i));
+    if (IsCrowd(entry)) continue;
+    boxes.push_back({entry.place(), ParseFrame(entry, names), ParseLabel(entry, names),
+                     entry.Has("score") ? entry.Real("score") : 1.0, ParseBox(entry),
+                     ParseTrack(entry)});
+  }
+  return boxes;
+}
+
 }  // namespace
 
 std::vector<LabelledBox> ReadCocoResults(const fs::path& results,
                                          const std::optional<fs::path>& dataset) {
-  const json list = ParseJsonFile(results);
-  if (!list.is_array()) throw InputError(results.string() + ": is not a list of results");
-  const auto names = dataset ? std::optional(ReadDataset(*dataset)) : std::nullopt;
-  std::vector<LabelledBox> boxes;
-  for (size_t i = 0; i < list.size(); ++i) {
-    const JsonEntry entry(list[i], fmt::format("{}#/{}", results.string(), i));
-    boxes.push_back({entry.place(), ParseFrame(entry, names), ParseLabel(entry, names),
-                     entry.Real("score"), ParseBox(entry)});
+  const json document = ParseJsonFile(results);
+  const auto names =
+      dataset ? std::optional(NamesOf(ParseJsonFile(*dataset), *dataset)) : std::nullopt;
+  if (document.is_array()) return ParseBoxes(document, results.string() + "#", names);
+  if (!document.is_object() || !document.contains("annotations")) {
+    throw InputError(results.string() +
+                     ": is not a list of results, nor a data set with \"images\", "
+                     "\"annotations\" and \"categories\"");
   }
-  return boxes;
+  const JsonEntry entry(document, results.string());
+  return ParseBoxes(entry.List("annotations"), results.string() + "#/annotations",
+                    names ? names : NamesOf(document, results));
 }
 
 }  // namespace soslam

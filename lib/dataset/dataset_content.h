@@ -26,8 +26,9 @@ struct DatasetContent {
   std::vector<Object> objects;
   std::vector<DetectionRow> rows;  // of these frames and objects
   RejectionCounts rejected;        // detections of which there is no row
-  bool has_true_poses = false;     // of some frames at least
-  bool has_object_ids = true;      // otherwise each row is of an object of its own
+  RejectionCounts mended;  // those that are used otherwise than as they stand, by what was done
+  bool has_true_poses = false;  // of some frames at least
+  bool has_object_ids = true;   // otherwise each row is of an object of its own
   std::optional<Distortion> image_distortion = std::nullopt;  // see Sequence
   std::vector<std::filesystem::path> files;                   // that were read
   std::vector<Finding> findings = {};                         // of the files themselves

@@ -54,7 +54,9 @@ std::vector<fs::path> FilesIn(const fs::path& path) {
   if (!IsFolder(path)) return {path};
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    if (IsFile(entry.path()) && entry.path().extension() == ".txt") files.push_back(entry);
+    const fs::path name = entry.path().filename();
+    const bool is_hidden = name.string().starts_with('.');  // of macOS
+    if (IsFile(entry.path()) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -67,7 +69,7 @@ std::vector<fs::path> DatasetFiles::All() const {
   files.push_back(trajectory);
   if (groundtruth && *groundtruth != trajectory) files.push_back(*groundtruth);
   for (const auto& file : {images, camera, planes, class_names, objects}) {
-    if (file) files.push_back(*file);
+    if (file && std::ranges::find(files, *file) == files.end()) files.push_back(*file);
   }
   return files;
 }
@@ -81,7 +83,9 @@ DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& optio
   Finder find(folder);
   DatasetFiles files;
   files.images = find.RequiredIfNamed(names.images);
-  if (names.camera.empty()) files.camera = find.Required("camera.json");
+  if (names.camera.empty()) {
+    files.camera = find.Required(names.camera_file.empty() ? "camera.json" : names.camera_file);
+  }
   files.planes = find.IfPresent("planes.json");
   files.detections =
       find.Required(options.detections.empty() ? "detections.csv" : options.detections);

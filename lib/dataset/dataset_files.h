@@ -12,7 +12,7 @@ namespace soslam {
 // The text files of a folder of images that an import with certain options reads.
 struct DatasetFiles {
   std::optional<std::filesystem::path> images;  // the list; none: detections name their images
-  std::optional<std::filesystem::path> camera;  // camera.json; none: the options say it
+  std::optional<std::filesystem::path> camera;  // none: the options say it
   std::optional<std::filesystem::path> planes;  // planes.json
   std::filesystem::path detections;             // a file or a folder
   std::optional<std::filesystem::path> class_names;

@@ -7,6 +7,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "dataset/dataset_keys.h"
 #include "dataset/icl_nuim.h"
 #include "dataset/json_entry.h"
 #include "dataset/unit_quaternion.h"
@@ -37,6 +38,7 @@ std::vector<Item> ReadList(const std::filesystem::path& path, Item (*parse)(cons
 }
 
 SupportPlane ParsePlane(const Entry& entry) {
+  entry.RefuseUnknownKeys(PlaneKeys());
   constexpr double kShortest = 1e-6;
   const Eigen::Vector3d normal = entry.Vector<3>("normal");
   const double length = normal.norm();
@@ -55,6 +57,7 @@ GroundTruth ParseGroundTruth(const Entry& entry) {
 }
 
 ListedObject ParseObject(const Entry& entry) {
+  entry.RefuseUnknownKeys(ObjectKeys());
   ListedObject object;
   object.id = entry.Integer("id");
   object.label = entry.Text("label");
@@ -65,12 +68,18 @@ ListedObject ParseObject(const Entry& entry) {
   return object;
 }
 
+std::optional<Distortion> LensOf(const Entry& entry) {
+  std::vector<double> coefficients;
+  if (entry.Has("distortion")) coefficients = entry.Reals("distortion");
+  for (const char* name : {"model", "camera_model", "distortion_model"}) {
+    if (entry.Has(name)) ParseLens(entry.Text(name), coefficients, entry.place());
+  }
+  return ParseLens("pinhole", coefficients, entry.place());
+}
+
 }  // namespace
 
 Camera ParseCamera(const Entry& entry) {
-  if (entry.Has("model") && entry.Text("model") != "pinhole") {
-    entry.Refuse("model", "\"pinhole\": undistort the images first");
-  }
   Camera camera{entry.Integer("width"), entry.Integer("height"), entry.Positive("fx"),
                 entry.Real("fy"),       entry.Real("cx"),        entry.Real("cy")};
   if (camera.width <= 0) entry.Refuse("width", "pixels above 0");
@@ -81,27 +90,20 @@ Camera ParseCamera(const Entry& entry) {
   return camera;
 }
 
-Camera ReadCamera(const std::filesystem::path& path) {
+LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
   const json fields = ParseJsonFile(path);
   const Entry entry(fields, path.string());
-  entry.Positive("fy");
-  return ParseCamera(entry);
-}
-
-Camera ReadCameraWithYUp(const std::filesystem::path& path) {
-  const json fields = ParseJsonFile(path);
-  const Entry entry(fields, path.string());
-  if (!(entry.Real("fy") < 0.0))
+  entry.RefuseUnknownKeys(CameraKeys());
+  LensCamera read{ParseCamera(entry), LensOf(entry)};
+  if (y_axis == CameraYAxis::kDown) {
+    entry.Positive("fy");
+    return read;
+  }
+  if (!(read.camera.fy < 0.0)) {
     entry.Refuse("fy", "that of a camera with y up, which is negative");
-  return WithYDown(ParseCamera(entry));
-}
-
-std::optional<Distortion> ReadDistortion(const std::filesystem::path& path) {
-  const json fields = ParseJsonFile(path);
-  const Entry entry(fields, path.string());
-  if (!entry.Has("distortion")) return std::nullopt;
-  const auto k = entry.Vector<5>("distortion");
-  return Distortion{k[0], k[1], k[2], k[3], k[4]};
+  }
+  read.camera = WithYDown(read.camera);
+  return read;
 }
 
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path) {

@@ -7,36 +7,36 @@
 #include <vector>
 
 #include "dataset/json_entry.h"
-#include "geometry/camera.h"
-#include "geometry/distortion.h"
+#include "dataset/lens_camera.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
-// The JSON files of a dataset folder. Fields that are not named here are ignored. All throw
+// The JSON files of a dataset folder. Keys that are not named here are refused. All throw
 // InputError naming the file, entry and field.
 
-// The fields of a camera as below; fy may be negative.
+// "width", "height", "fx", "fy", "cx", "cy" of an object that may have others; fy may be negative.
 Camera ParseCamera(const JsonEntry& entry);
 
-// {"model": "pinhole" (optional), "width", "height", "fx", "fy", "cx", "cy"}, pixels.
-Camera ReadCamera(const std::filesystem::path& path);
+enum class CameraYAxis {
+  kDown,
+  kUp,  // fy is negative: read as the camera with y down that gives the same images
+};
 
-// The same file of a camera with y up, whose fy is negative: as the camera with y down that gives
-// the same images.
-Camera ReadCameraWithYUp(const std::filesystem::path& path);
-
-// The "distortion" of the same file, [k1, k2, p1, p2, k3]; none when it is absent: the images are
-// those of a pinhole camera.
-std::optional<Distortion> ReadDistortion(const std::filesystem::path& path);
+// {"width", "height", "fx", "fy", "cx", "cy"}, pixels, with optional "distortion" (ParseLens), the
+// names of its model as "model", "camera_model" or "distortion_model", and, for people only,
+// "name", "description", "comment", "source", "fps", "depth_scale".
+LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis = CameraYAxis::kDown);
 
 // [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal pointing
-// away from the support, of any length. Sorted by id; at least one.
+// away from the support, of any length. For people only: "label", "name", "description", "comment".
+// Sorted by id; at least one.
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path);
 
 // [{"id", "label", "support_plane" (may be absent), and, all or none: "center", "quaternion_xyzw"
 // (world from object), "half_axes"}], with optional "mirror_symmetric" (default true),
-// "mirror_symmetric_yz" and "rotationally_symmetric" (default false).
+// "mirror_symmetric_yz" and "rotationally_symmetric" (default false). For people only: "model",
+// "name", "description", "comment", "source".
 struct ListedObject {
   int id = 0;
   std::string label;

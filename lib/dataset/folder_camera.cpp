@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/error.h"
+#include "dataset/camera_file.h"
 #include "dataset/dataset_json.h"
 #include "dataset/icl_nuim.h"
 #include "dataset/text_file.h"
@@ -15,24 +16,19 @@
 namespace soslam {
 namespace {
 
-// The numbers of a setting with this many of them.
-template <size_t kSize>
-std::array<double, kSize> ParseSetting(const char* setting, const std::string& text,
-                                       const char* expected) {
-  const auto words = SplitWords(text);
-  std::array<double, kSize> numbers;
-  bool is_valid = words.size() == kSize;
+// The numbers of a setting; none when a word of it is not one.
+std::optional<std::vector<double>> ParseNumbers(const std::string& text) {
+  std::vector<double> numbers;
   try {
-    for (size_t i = 0; is_valid && i < kSize; ++i) {
-      numbers[i] = ParseReal(words[i], setting, "number");
-    }
+    for (const auto word : SplitWords(text)) numbers.push_back(ParseReal(word, "", "number"));
   } catch (const InputError&) {
-    is_valid = false;
-  }
-  if (!is_valid) {
-    throw SettingsError(fmt::format("{}: found '{}'; expected {}", setting, text, expected));
+    return std::nullopt;
   }
   return numbers;
+}
+
+[[noreturn]] void Refuse(const char* setting, const std::string& text, const char* expected) {
+  throw SettingsError(fmt::format("{}: found '{}'; expected {}", setting, text, expected));
 }
 
 bool IsSizeInPixels(double width, double height) {
@@ -46,7 +42,10 @@ bool IsSizeInPixels(double width, double height) {
 Camera CameraOfSetting(const ImportOptions& options) {
   constexpr const char* kExpected = "\"width height fx fy cx cy\", pixels";
   const std::string& text = options.folder.camera;
-  const auto [width, height, fx, fy, cx, cy] = ParseSetting<6>("camera", text, kExpected);
+  const auto numbers = ParseNumbers(text);
+  if (!numbers || numbers->size() != 6) Refuse("camera", text, kExpected);
+  const double width = (*numbers)[0], height = (*numbers)[1];
+  const double fx = (*numbers)[2], fy = (*numbers)[3], cx = (*numbers)[4], cy = (*numbers)[5];
   const bool y_is_up = options.format == DatasetFormat::kIclNuim;
   if (!IsSizeInPixels(width, height) || !(fx > 0.0) || !(y_is_up ? fy < 0.0 : fy > 0.0)) {
     throw SettingsError(fmt::format("camera: found '{}'; expected {}, fy {} 0", text, kExpected,
@@ -56,29 +55,36 @@ Camera CameraOfSetting(const ImportOptions& options) {
   return y_is_up ? WithYDown(camera) : camera;
 }
 
-std::optional<Distortion> DistortionOfSetting(const std::string& text) {
-  const auto [k1, k2, p1, p2, k3] =
-      ParseSetting<5>("distortion", text, "\"k1 k2 p1 p2 k3\" as OpenCV has them");
-  return Distortion{k1, k2, p1, p2, k3};
+Distortion DistortionOfSetting(const std::string& text) {
+  const auto numbers = ParseNumbers(text);
+  const auto distortion = numbers ? DistortionOfCoefficients(*numbers) : std::nullopt;
+  if (distortion) return *distortion;
+  Refuse("distortion", text,
+         "\"k1 k2 p1 p2 k3\" as OpenCV has them, or 4, 8, 12 or 14 of its numbers");
 }
 
 }  // namespace
 
-FolderCamera ReadFolderCamera(const std::optional<std::filesystem::path>& camera_json,
-                              const ImportOptions& options) {
+Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_file,
+                             const ImportOptions& options) {
   const bool y_is_up = options.format == DatasetFormat::kIclNuim;
-  FolderCamera read;
-  if (camera_json) {
-    read.camera = y_is_up ? ReadCameraWithYUp(*camera_json) : ReadCamera(*camera_json);
-    read.distortion = ReadDistortion(*camera_json);
+  if (!options.folder.camera.empty() && !options.folder.camera_file.empty()) {
+    throw SettingsError("camera, camera_file: found both; expected one of them");
+  }
+  Calibration read;
+  if (!camera_file) {
+    read.camera.camera = CameraOfSetting(options);
+  } else if (y_is_up) {
+    read.camera = ReadCamera(*camera_file, CameraYAxis::kUp);
   } else {
-    read.camera = CameraOfSetting(options);
+    read = ReadCameraFile(*camera_file);
   }
+  std::optional<Distortion>& distortion = read.camera.distortion;
   if (!options.folder.distortion.empty()) {
-    read.distortion = DistortionOfSetting(options.folder.distortion);
+    distortion = DistortionOfSetting(options.folder.distortion);
   }
-  if (read.distortion == Distortion()) read.distortion.reset();
-  if (read.distortion && y_is_up) {
+  if (distortion == Distortion()) distortion.reset();
+  if (distortion && y_is_up) {
     throw SettingsError(
         "distortion: found one for format icl_nuim; expected none, as its images "
         "are renders of a pinhole camera");

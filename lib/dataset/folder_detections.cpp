@@ -2,10 +2,12 @@
 #include "dataset/folder_detections.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -19,21 +21,12 @@
 #include "dataset/label_file.h"
 #include "dataset/oa_slam_boxes.h"
 #include "dataset/yolo_boxes.h"
+#include "dataset/yolo_texts.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-
-FolderBoxes ReadTable(const fs::path& path) {
-  if (!HasObjectIds(path)) return {ReadLabelledBoxes(path), {}};
-  FolderBoxes read;
-  for (const DetectionRow& row : ReadDetections(path)) {
-    read.boxes.push_back({row.place, row.frame_id, row.label, row.score, row.box});
-    read.object_ids.push_back(row.object_id);
-  }
-  return read;
-}
 
 std::vector<fs::path> Sorted(const fs::path& folder) {
   std::vector<fs::path> entries;
@@ -59,17 +52,21 @@ std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   return boxes;
 }
 
-std::vector<LabelledBox> ReadBoxesWithoutIds(const DatasetFiles& files, DetectionsFormat format,
-                                             const Camera& camera) {
-  const fs::path& path = files.detections;
-  if (format == DetectionsFormat::kCoco) return ReadCocoResults(path, files.class_names);
-  if (format == DetectionsFormat::kKitti) return ReadKittiClasses(path);
-  const auto labels = files.class_names ? ReadLabelFile(*files.class_names) : CocoLabels();
-  if (format == DetectionsFormat::kYolo) {
-    return ReadNormalisedYoloBoxes(path, labels, camera.width, camera.height);
+// The class names that the options name, or else those that lie among the labels or beside them, or
+// else COCO's.
+std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& folder,
+                                    DatasetFiles* files) {
+  if (files->class_names) return ReadLabelFile(*files->class_names);
+  std::string place = texts.names_place;
+  std::vector<std::string> names = texts.names.value_or(CocoLabels());
+  if (!texts.names) {
+    files->class_names = FindLabelFile(files->detections, folder);
+    if (!files->class_names) return names;
+    place = files->class_names->string();
+    names = ReadLabelFile(*files->class_names);
   }
-  if (format == DetectionsFormat::kYoloPixels) return ReadPixelYoloBoxes(path, labels);
-  return ReadOaSlamBoxes(path, labels);
+  fmt::print("{}: names of {} classes, {}\n", place, names.size(), fmt::join(names, ", "));
+  return names;
 }
 
 [[noreturn]] void RefuseRow(const LabelledBox& box, const DatasetFiles& files, size_t images) {
@@ -80,44 +77,64 @@ std::vector<LabelledBox> ReadBoxesWithoutIds(const DatasetFiles& files, Detectio
 
 }  // namespace
 
-FolderBoxes ReadFolderBoxes(const DatasetFiles& files, const ImportOptions& options,
-                            const Camera& camera) {
-  const DetectionsFormat format = options.folder.detections_format;
-  if (format == DetectionsFormat::kCsv) return ReadTable(files.detections);
-  return {ReadBoxesWithoutIds(files, format, camera), {}};
+std::vector<LabelledBox> ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
+                                         const Camera& camera, DatasetFiles* files,
+                                         RejectionCounts* mended) {
+  const fs::path& path = files->detections;
+  switch (options.folder.detections_format) {
+    case DetectionsFormat::kCsv:
+      return ReadDetectionsCsv(path);
+    case DetectionsFormat::kCoco:
+      return ReadCocoResults(path, files->class_names);
+    case DetectionsFormat::kKitti:
+      return ReadKittiClasses(path);
+    case DetectionsFormat::kOaSlam:
+      return ReadOaSlamBoxes(
+          path, files->class_names ? ReadLabelFile(*files->class_names) : CocoLabels());
+    case DetectionsFormat::kYolo: {
+      const YoloTexts texts = ReadYoloTexts(path);
+      return ReadNormalisedYoloBoxes(texts, YoloLabels(texts, folder, files), camera.width,
+                                     camera.height, mended);
+    }
+    case DetectionsFormat::kYoloPixels: {
+      const YoloTexts texts = ReadYoloTexts(path);
+      return ReadPixelYoloBoxes(texts, YoloLabels(texts, folder, files));
+    }
+  }
+  throw std::logic_error("format without a reader");
 }
 
-std::vector<DetectionRow> RowsOfBoxes(const FolderBoxes& boxes, const DatasetFiles& files,
+std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
+                                      const DatasetFiles& files,
                                       const std::vector<ListedImage>& images, int first_free_id,
                                       RejectionCounts* rejected) {
   const FrameLookup lookup(images);
   const int max_boxes = std::numeric_limits<int>::max() - std::max(first_free_id, 0);
-  if (boxes.boxes.size() > static_cast<size_t>(max_boxes)) {
+  if (boxes.size() > static_cast<size_t>(max_boxes)) {
     throw InputError(fmt::format("{}: has {} boxes; expected at most {}", files.detections.string(),
-                                 boxes.boxes.size(), max_boxes));
+                                 boxes.size(), max_boxes));
   }
   std::vector<DetectionRow> rows;
-  for (size_t i = 0; i < boxes.boxes.size(); ++i) {
-    const LabelledBox& box = boxes.boxes[i];
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const LabelledBox& box = boxes[i];
     const auto frame = lookup.Find(box.frame, box.place);
     if (!frame && std::holds_alternative<int>(box.frame)) RefuseRow(box, files, images.size());
     if (!frame) continue;
-    const int object_id =
-        boxes.object_ids.empty() ? first_free_id + static_cast<int>(i) : boxes.object_ids[i];
+    const int object_id = box.object_id.value_or(first_free_id + static_cast<int>(i));
     rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
   }
-  const size_t unlisted = boxes.boxes.size() - rows.size();
+  const size_t unlisted = boxes.size() - rows.size();
   if (unlisted == 0) return rows;
   if (rows.empty()) {
     throw InputError(
         fmt::format("{}: image '{}' is not listed, nor that of any other box; "
                     "expected images of {}",
-                    boxes.boxes.front().place, std::get<std::string>(boxes.boxes.front().frame),
+                    boxes.front().place, std::get<std::string>(boxes.front().frame),
                     files.images.value_or(files.detections).filename().string()));
   }
   (*rejected)[RejectReasonName(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
   fmt::print("{}: {} of {} detections are of listed images\n", files.detections.filename().string(),
-             rows.size(), boxes.boxes.size());
+             rows.size(), boxes.size());
   return rows;
 }
 

@@ -13,21 +13,19 @@
 
 namespace soslam {
 
-// The boxes of a folder of images.
-struct FolderBoxes {
-  std::vector<LabelledBox> boxes;
-  std::vector<int> object_ids;  // of each box; empty: nobody has said which object it is of
-};
-
-// In any of the formats of `detections_format`. Throws InputError.
-FolderBoxes ReadFolderBoxes(const DatasetFiles& files, const ImportOptions& options,
-                            const Camera& camera);
+// The boxes of a folder of images, in any of the formats of `detections_format`. The class names of
+// YOLO's labels may lie with them: `files` then gets to know where, and it is said on stdout. Boxes
+// that are not as they stand in the file are counted in `mended`. Throws InputError.
+std::vector<LabelledBox> ReadFolderBoxes(const std::filesystem::path& folder,
+                                         const ImportOptions& options, const Camera& camera,
+                                         DatasetFiles* files, RejectionCounts* mended);
 
 // The boxes as rows of these images. Boxes without object ids are of an object each, with ids from
 // `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and how many
 // these are is said on stdout. Throws InputError for a row number beyond the list, and when no box
 // is of a listed image.
-std::vector<DetectionRow> RowsOfBoxes(const FolderBoxes& boxes, const DatasetFiles& files,
+std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
+                                      const DatasetFiles& files,
                                       const std::vector<ListedImage>& images, int first_free_id,
                                       RejectionCounts* rejected);
 

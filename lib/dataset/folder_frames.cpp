@@ -11,10 +11,14 @@
 #include <variant>
 
 #include "base/error.h"
+#include "dataset/colmap_model.h"
 #include "dataset/dataset_checks.h"
+#include "dataset/euroc_trajectory.h"
+#include "dataset/frame_lookup.h"
 #include "dataset/icl_nuim.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_trajectory.h"
+#include "dataset/nerfstudio.h"
 #include "dataset/text_file.h"
 
 namespace soslam {
@@ -60,7 +64,27 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
   return listed;
 }
 
-std::vector<TimedPose> ReadTimedPoses(const fs::path& path, const ImportOptions& options) {
+std::vector<TimedPose> ReadCameraOfEuroc(const fs::path& path,
+                                         const std::optional<Rigid3d>& body_from_camera) {
+  std::vector<TimedPose> trajectory = ReadEurocTrajectory(path);
+  if (!body_from_camera) {
+    fmt::print(
+        "{}: taken as the poses of the camera; where they are of another body (an IMU), give the "
+        "camera's sensor.yaml, with T_BS, as camera_file\n",
+        path.filename().string());
+    return trajectory;
+  }
+  for (TimedPose& pose : trajectory) {
+    pose.world_from_camera = pose.world_from_camera * *body_from_camera;
+  }
+  return trajectory;
+}
+
+std::vector<TimedPose> ReadTimedPoses(const fs::path& path, const ImportOptions& options,
+                                      const std::optional<Rigid3d>& body_from_camera) {
+  if (options.folder.trajectory_format == TrajectoryFormat::kEuroc) {
+    return ReadCameraOfEuroc(path, body_from_camera);
+  }
   std::vector<TimedPose> trajectory = ReadTrajectory(path);
   if (options.format != DatasetFormat::kIclNuim) return trajectory;
   for (const TimedPose& pose : trajectory) CheckFrameNumber(pose.timestamp, path.string());
@@ -81,8 +105,9 @@ ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size
 }
 
 ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
-                       const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
-  const std::vector<TimedPose> trajectory = ReadTimedPoses(path, options);
+                       const std::vector<ListedImage>& images, const std::optional<Rigid3d>& body_from_camera,
+                       std::vector<Finding>* findings) {
+  const std::vector<TimedPose> trajectory = ReadTimedPoses(path, options, body_from_camera);
   std::ranges::move(
       CheckTimestamps(images, trajectory, path.filename().string(), options.max_time_difference_s),
       std::back_inserter(*findings));
@@ -103,11 +128,52 @@ ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
   return poses;
 }
 
+ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named,
+                       const std::vector<ListedImage>& images) {
+  const FrameLookup lookup(images);
+  ImagePoses poses(images.size());
+  size_t matched = 0;
+  for (const NamedPose& pose : named) {
+    const auto row = lookup.Find(pose.image, pose.place);
+    if (!row) continue;
+    auto& found = poses[static_cast<size_t>(*row)];
+    if (found) {
+      throw InputError(fmt::format("{}: is the second pose of image '{}'; expected one", pose.place,
+                                   pose.image));
+    }
+    found = pose.world_from_camera;
+    ++matched;
+  }
+  if (matched == 0) {
+    throw InputError(
+        fmt::format("{}: image '{}' is not listed, nor that of any other pose; expected names of "
+                    "the listed images",
+                    named.front().place, named.front().image));
+  }
+  fmt::print("{}: {} of {} images have a pose; {} poses are of images that are not listed\n",
+             path.filename().string(), matched, images.size(), named.size() - matched);
+  return poses;
+}
+
 ImagePoses ReadPoses(const fs::path& path, const ImportOptions& options,
-                     const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
-  return options.folder.trajectory_format == TrajectoryFormat::kKitti
-             ? PosesInOrder(path, options, images.size())
-             : PosesByTime(path, options, images, findings);
+                     const std::vector<ListedImage>& images,
+                     const std::optional<Rigid3d>& body_from_camera,
+                     std::vector<Finding>* findings) {
+  const TrajectoryFormat format = options.folder.trajectory_format;
+  const bool is_mirrored = options.format == DatasetFormat::kIclNuim;
+  if (is_mirrored && format != TrajectoryFormat::kTum && format != TrajectoryFormat::kKitti) {
+    throw SettingsError("trajectory_format: expected tum or kitti for format icl_nuim");
+  }
+  switch (format) {
+    case TrajectoryFormat::kKitti:
+      return PosesInOrder(path, options, images.size());
+    case TrajectoryFormat::kColmap:
+      return PosesByName(path, ReadColmapPoses(path), images);
+    case TrajectoryFormat::kNerfstudio:
+      return PosesByName(path, ReadNerfstudioPoses(path), images);
+    default:
+      return PosesByTime(path, options, images, body_from_camera, findings);
+  }
 }
 
 // Moves all estimates together so that the first one with a true pose is that.
@@ -137,18 +203,22 @@ std::string ImageOfFrame(const fs::path& folder, const DatasetFiles& files,
 
 }  // namespace
 
-std::vector<ListedImage> ListImages(const DatasetFiles& files, const ImportOptions& options,
+std::vector<ListedImage> ListImages(const fs::path& folder, const DatasetFiles& files,
+                                    const ImportOptions& options,
                                     const std::vector<LabelledBox>& boxes) {
   const bool is_icl_nuim = options.format == DatasetFormat::kIclNuim;
   std::vector<ListedImage> images;
   if (!files.images) {
     images = ImagesOfBoxes(boxes);
+  } else if (files.images->extension() == ".json") {
+    images = ReadNerfstudioImages(*files.images);
   } else if (options.format == DatasetFormat::kSoslam) {
     images = ReadImageList(*files.images);
   } else {
     images = ReadPairedImageList(*files.images,
                                  is_icl_nuim ? PairOrder::kImageSecond : PairOrder::kImageFirst);
   }
+  for (ListedImage& image : images) image.image = NameInDataset(folder, image.image);
   if (!is_icl_nuim) return images;
   for (ListedImage& image : images) {
     CheckFrameNumber(image.timestamp, files.images.value_or(files.detections).string());
@@ -160,13 +230,14 @@ std::vector<ListedImage> ListImages(const DatasetFiles& files, const ImportOptio
 std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetFiles& files,
                                           const ImportOptions& options,
                                           const std::vector<ListedImage>& images,
+                                          const std::optional<Rigid3d>& body_from_camera,
                                           std::vector<Finding>* findings) {
-  ImagePoses estimates = ReadPoses(files.trajectory, options, images, findings);
+  ImagePoses estimates = ReadPoses(files.trajectory, options, images, body_from_camera, findings);
   ImagePoses truth(images.size());
   if (files.groundtruth == files.trajectory) {
     truth = estimates;
   } else if (files.groundtruth) {
-    truth = ReadPoses(*files.groundtruth, options, images, findings);
+    truth = ReadPoses(*files.groundtruth, options, images, body_from_camera, findings);
   }
   if (options.folder.align_odometry) AlignAtFirst(truth, files.trajectory, &estimates);
   std::vector<ListedFrame> frames;

@@ -29,6 +29,7 @@ enum class RejectReason {
   kNearBorder,          // an edge is closer to the image border than border_px, or beyond it
   kDuplicate,           // another box of the object in the frame has a higher score
   kTooFewObservations,  // the object has fewer than min_observations usable detections
+  kWithoutObjectId,     // of no track, in a table that says of which object others are
   kMatchesNoLabel,      // no labelled box of its kind is where a detector found this one
 };
 const char* RejectReasonName(RejectReason reason);

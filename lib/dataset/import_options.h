@@ -31,8 +31,9 @@ enum class HeldOutFrames {
 };
 inline constexpr const char* kHeldOutFramesNames[] = {"none", "odd"};
 
-enum class TrajectoryFormat { kTum, kKitti };
-inline constexpr const char* kTrajectoryFormatNames[] = {"tum", "kitti"};
+enum class TrajectoryFormat { kTum, kKitti, kEuroc, kColmap, kNerfstudio };
+inline constexpr const char* kTrajectoryFormatNames[] = {"tum", "kitti", "euroc", "colmap",
+                                                         "nerfstudio"};
 
 enum class DetectionsFormat { kCsv, kYolo, kYoloPixels, kCoco, kOaSlam, kKitti };
 inline constexpr const char* kDetectionsFormatNames[] = {"csv",  "yolo",    "yolo_pixels",
@@ -47,30 +48,37 @@ struct FolderOptions {
   TrajectoryFormat trajectory_format = TrajectoryFormat::kTum;
   bool align_odometry = false;
   std::string camera;
+  std::string camera_file;
   std::string distortion;
   DetectionsFormat detections_format = DetectionsFormat::kCsv;
   std::string class_names;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Files of a folder of images (format = soslam, tum_rgbd, icl_nuim)");
-    visit.Text("images", &images,
-               "the list of images, lines \"timestamp filename\"; of "
-               "the latter two also pairs of colour and depth images; empty: the images are those "
-               "that the detections name by their timestamps");
+    visit.Text(
+        "images", &images,
+        "the list of images, lines \"timestamp filename\"; of "
+        "the latter two also pairs of colour and depth images; a *.json: nerfstudio's frames; "
+        "empty: the images are those that the detections name by their timestamps");
     visit.Text("odometry", &odometry, "the file with the pose estimates");
     visit.Text("groundtruth", &groundtruth, "the file with the true poses");
     visit.Choice("trajectory_format", &trajectory_format, kTrajectoryFormatNames,
-                 "how both files say poses: timestamp tx ty tz qx qy qz "
-                 "qw (tum), or 12 numbers, one line for each listed image (kitti)");
+                 "how both files say poses: timestamp tx ty tz qx qy qz qw (tum, ORB-SLAM); 12 "
+                 "numbers, one line for each listed image (kitti); EuRoC's CSV, nanoseconds, qw "
+                 "first (euroc); by the names of the images COLMAP's images.txt (colmap) or "
+                 "nerfstudio's transforms.json (nerfstudio)");
     visit.Flag("align_odometry", &align_odometry,
                "the odometry has a world of its own: it is moved as a "
                "whole so that its first pose that has a true one is that");
     visit.Text("camera", &camera,
-               "\"width height fx fy cx cy\" in pixels; empty: camera.json "
-               "says it");
+               "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
+    visit.Text("camera_file", &camera_file,
+               "the file with the camera: camera.json, ROS' or OpenCV's calibration (.yaml, .xml), "
+               "COLMAP's cameras.txt, nerfstudio's transforms.json; empty: camera.json");
     visit.Text("distortion", &distortion,
                "soslam, tum_rgbd: what the lens did to images and boxes: \"k1 k2 p1 p2 k3\" as "
-               "OpenCV has them; empty: camera.json says it, or nothing");
+               "OpenCV has them, or 4, 8, 12 or 14 of its coefficients; empty: the camera "
+               "file says it, or nothing");
     visit.Choice(
         "detections_format", &detections_format, kDetectionsFormatNames,
         "how `detections` says boxes: detections.csv with or "

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/json_entry.h"
 
+#include <fmt/ranges.h>
+
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
@@ -17,6 +20,37 @@ std::string Quoted(const json& value) {
   constexpr size_t kLongest = 100;
   const std::string text = value.dump();
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+// How many letters have to be put in, left out or changed to make one of the other (Levenshtein).
+size_t Misspellings(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = std::exchange(row[0], i + 1);
+    for (size_t k = 0; k < b.size(); ++k) {
+      const size_t changed = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({row[k] + 1, diagonal + 1, changed});
+    }
+  }
+  return row.back();
+}
+
+// What may have been meant by an unknown key, as the end of a message; empty without a guess.
+std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
+  for (const KeyHint& hint : known.hints) {
+    if (key == hint.key) return fmt::format("; {}", hint.instead);
+  }
+  constexpr size_t kLongestKey = 64, kMostMisspellings = 2;
+  if (key.size() > kLongestKey) return "";
+  for (const char* name : known.keys) {
+    const std::string_view text(name);
+    if (text.size() > kMostMisspellings && Misspellings(key, text) <= kMostMisspellings) {
+      return fmt::format("; did you mean \"{}\"?", name);
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -57,6 +91,14 @@ double JsonEntry::Positive(const char* name) const {
   return Real(name);
 }
 
+std::vector<double> JsonEntry::Reals(const char* name) const {
+  const json& list = List(name);
+  for (const json& element : list) {
+    if (!element.is_number()) Refuse(name, "a list of numbers");
+  }
+  return list.get<std::vector<double>>();
+}
+
 bool JsonEntry::Flag(const char* name, bool default_value) const {
   if (!Has(name)) return default_value;
   if (!Field(name).is_boolean()) Refuse(name, "true or false");
@@ -74,6 +116,15 @@ std::string JsonEntry::Text(const char* name) const {
 void JsonEntry::Refuse(const char* name, const std::string& expected) const {
   throw InputError(
       fmt::format("{}: {} is {}; expected {}", place_, name, Quoted(Field(name)), expected));
+}
+
+void JsonEntry::RefuseUnknownKeys(const KnownKeys& known) const {
+  for (const auto& field : fields_.items()) {
+    const std::string& key = field.key();
+    if (std::find(known.keys.begin(), known.keys.end(), key) != known.keys.end()) continue;
+    throw InputError(fmt::format("{}: unknown key {}; expected some of {}{}", place_, Quoted(key),
+                                 fmt::join(known.keys, ", "), LikelyMeaning(key, known)));
+  }
 }
 
 }  // namespace soslam

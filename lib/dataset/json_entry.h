@@ -11,6 +11,18 @@
 
 namespace soslam {
 
+// A key that is often met where it is not known, and what to write instead.
+struct KeyHint {
+  const char* key;
+  const char* instead;
+};
+
+// The keys that objects of one kind have. All of them are read, or said to be for people only.
+struct KnownKeys {
+  std::vector<const char*> keys;
+  std::vector<KeyHint> hints = {};
+};
+
 // An object of somebody's JSON file, whose fields have yet to be checked. It refers to the
 // document, which has to outlive it. All functions throw InputError, naming place and field, when
 // the field is missing or is not what they return.
@@ -30,6 +42,7 @@ class JsonEntry {
   double Positive(const char* name) const;
   bool Flag(const char* name, bool default_value) const;
   std::string Text(const char* name) const;  // not empty
+  std::vector<double> Reals(const char* name) const;
   template <int kSize>
   Eigen::Matrix<double, kSize, 1> Vector(const char* name) const {
     const nlohmann::json& field = Field(name);
@@ -42,6 +55,9 @@ class JsonEntry {
   }
 
   [[noreturn]] void Refuse(const char* name, const std::string& expected) const;
+
+  // For any key that is not among these: what is not read must not look as if it were.
+  void RefuseUnknownKeys(const KnownKeys& known) const;
 
  private:
   const nlohmann::json& fields_;

@@ -27,7 +27,7 @@ constexpr std::array kColumns = {"type",   "truncated", "occluded", "alpha",  "l
                                  "top",    "right",     "bottom",   "height", "width",
                                  "length", "x",         "y",        "z",      "rotation_y"};
 
-// `words`: the kColumns of one line.
+// `words`: the kColumns of one line, and a score if it has one.
 KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string& place) {
   const auto real = [&](size_t i) { return ParseReal(words[i], place, kColumns[i]); };
   KittiLabel label;
@@ -39,6 +39,7 @@ KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string
   label.size = {real(8), real(9), real(10)};
   label.bottom_centre = {real(11), real(12), real(13)};
   label.rotation_y = real(14);
+  if (words.size() > kColumns.size()) label.score = ParseReal(words[15], place, "score");
   if (label.type != kUnlabelledType && !(label.size.minCoeff() > 0.0)) {
     throw InputError(fmt::format("{}: size is {} {} {}; expected height, width and length above 0",
                                  place, words[8], words[9], words[10]));
@@ -48,9 +49,11 @@ KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string
 
 std::vector<std::string_view> SplitColumns(const TextLine& line, size_t leading) {
   auto words = SplitWords(line.text);
-  if (words.size() != leading + kColumns.size()) {
-    throw InputError(fmt::format("{}: has {} values; expected {}{}", line.place, words.size(),
-                                 leading > 0 ? "frame track " : "", fmt::join(kColumns, " ")));
+  const size_t columns = leading + kColumns.size();
+  if (words.size() != columns && words.size() != columns + 1) {
+    throw InputError(fmt::format("{}: has {} values; expected {}{} [score]", line.place,
+                                 words.size(), leading > 0 ? "frame track " : "",
+                                 fmt::join(kColumns, " ")));
   }
   return words;
 }

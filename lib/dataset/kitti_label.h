@@ -37,11 +37,12 @@ struct KittiLabel {
   Eigen::Vector3d size = Eigen::Vector3d::Ones();  // height, width, length, m
   Eigen::Vector3d bottom_centre = Eigen::Vector3d::Zero();
   double rotation_y = 0.0;  // rad; 0: the length along the camera's x axis
+  double score = 1.0;       // of results of detectors and trackers
 };
 
 // 17 values a line, frame and track first (tracking), or 15 without these (object: frame 0, track
-// counted from 0). Regions that are not labelled (DontCare) are left out. Throw InputError naming
-// the line.
+// counted from 0), and in results of detectors and trackers a score behind them. Regions that are
+// not labelled (DontCare) are left out. Throw InputError naming the line.
 std::vector<KittiLabel> ReadKittiTrackingLabels(const std::filesystem::path& path);
 std::vector<KittiLabel> ReadKittiObjectLabels(const std::filesystem::path& path);
 

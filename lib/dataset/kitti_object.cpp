@@ -60,7 +60,7 @@ void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrien
   if (content->frames.empty()) content->camera = camera;
   if (camera != content->camera) frame.camera = camera;
   for (const KittiLabel& label : labels) {
-    DetectionRow row = RowOfLabel(label, label.box, 1.0, calibration, camera);
+    DetectionRow row = RowOfLabel(label, label.box, label.score, calibration, camera);
     row.frame_id = frame.id;
     row.object_id = frame.id * kIdsPerFrame + label.track;
     AddObject(label, row, content);

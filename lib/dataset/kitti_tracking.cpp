@@ -75,7 +75,7 @@ class Recording {
     AddFrames();
     AddObjects();
     if (detections_.empty() || detections_ == "labels") {
-      for (const KittiLabel& label : labels_) AddRow(label, label.box, 1.0);
+      for (const KittiLabel& label : labels_) AddRow(label, label.box, label.score);
     } else {
       AddFoundBoxes();
     }

@@ -3,22 +3,103 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "base/error.h"
+#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/text_file.h"
+#include "dataset/yaml_fields.h"
 
 namespace soslam {
+namespace {
 
-std::vector<std::string> ReadLabelFile(const std::filesystem::path& path) {
-  std::vector<std::string> labels;
-  for (const TextLine& line : ReadTextLines(path)) {
-    if (line.text.find(',') != std::string::npos) {
-      throw InputError(fmt::format("{}: label is '{}'; expected one name a line, without a comma",
-                                   line.place, line.text));
-    }
-    labels.push_back(line.text);
+namespace fs = std::filesystem;
+
+// What programs call these files; where several are, the first counts.
+constexpr std::array kNames = {"classes.txt", "obj.names", "data.yaml", "data.yml", "dataset.yaml"};
+
+bool IsYaml(const fs::path& path) {
+  return path.extension() == ".yaml" || path.extension() == ".yml";
+}
+
+void CheckName(const std::string& name, const std::string& place) {
+  if (!name.empty() && name.find(',') == name.npos) return;
+  throw InputError(
+      fmt::format("{}: label is '{}'; expected names, each without a comma", place, name));
+}
+
+// Of the keys "names.0", "names.1", ...
+std::vector<std::string> NumberedNames(const NamedFields& fields, const std::string& place) {
+  std::vector<std::string> names;
+  for (;;) {
+    const auto found = fields.find(fmt::format("names.{}", names.size()));
+    if (found == fields.end()) break;
+    names.push_back(found->second.empty() ? "" : found->second.front());
   }
-  if (labels.empty()) throw InputError(path.string() + ": has no label; expected one a line");
-  return labels;
+  const auto numbered = std::ranges::count_if(
+      fields, [](const auto& field) { return field.first.starts_with("names."); });
+  if (static_cast<size_t>(numbered) != names.size()) {
+    throw InputError(
+        fmt::format("{}: names has {} entries, but none for class {}; expected one for "
+                    "each class from 0 on",
+                    place, numbered, names.size()));
+  }
+  return names;
+}
+
+std::vector<std::string> YamlNames(const NamedFields& fields, const std::string& place) {
+  const auto list = fields.find("names");
+  const auto names = list != fields.end() ? list->second : NumberedNames(fields, place);
+  for (const std::string& name : names) CheckName(name, place);
+  return names;
+}
+
+std::vector<std::string> LineNames(const std::vector<TextLine>& lines) {
+  std::vector<std::string> names;
+  for (const TextLine& line : lines) {
+    CheckName(line.text, line.place);
+    names.push_back(line.text);
+  }
+  return names;
+}
+
+std::vector<std::string> NotEmpty(std::vector<std::string> names, const std::string& place) {
+  if (names.empty()) throw InputError(place + ": has no label; expected the names of the classes");
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> ReadLabelFile(const fs::path& path) {
+  return NotEmpty(IsYaml(path) ? YamlNames(ReadYamlFields(path), path.string())
+                               : LineNames(ReadTextLines(path)),
+                  path.string());
+}
+
+std::vector<std::string> ParseLabels(const std::string& text, const std::string& name) {
+  return NotEmpty(
+      IsYaml(name) ? YamlNames(YamlFields(text, name), name) : LineNames(TextLines(text, name)),
+      name);
+}
+
+bool IsLabelFile(const fs::path& name) {
+  return std::ranges::find(kNames, name.filename().string()) != kNames.end();
+}
+
+std::optional<fs::path> FindLabelFile(const fs::path& labels, const fs::path& dataset) {
+  fs::path folder = IsFolder(labels) ? PlainPath(labels) : PlainPath(labels).parent_path();
+  // Labels from elsewhere have a folder around them at most.
+  bool may_leave = IsFolder(labels) && !IsWithin(folder, dataset);
+  for (;;) {
+    for (const char* name : kNames) {
+      if (IsFile(folder / name)) return folder / name;
+    }
+    folder = folder.parent_path();
+    if (!IsWithin(folder, dataset) && !std::exchange(may_leave, false)) return std::nullopt;
+  }
 }
 
 }  // namespace soslam

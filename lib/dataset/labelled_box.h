@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -12,13 +13,14 @@ namespace soslam {
 // name of the image, with or without its folder and extension. FrameLookup finds the image.
 using FrameKey = std::variant<int, std::string>;
 
-// A detection that says what it sees, but not which object: a row of somebody's file.
+// A detection: a row of somebody's file.
 struct LabelledBox {
   std::string place;  // "<file>:<line>" or "<file>#<JSON pointer>", for error messages
   FrameKey frame;
   std::string label;
   double score;  // 1 where the file has none
   Box box;
+  std::optional<int> object_id = std::nullopt;  // which object it is of, where the file says so
 };
 
 // Detectors and annotation tools measure from the outer corner of the top-left pixel; this project

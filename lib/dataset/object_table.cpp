@@ -37,11 +37,7 @@ std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<Lis
   for (const ListedObject& object : given) listed[object.id] = object;
   for (const DetectionRow& row : rows) {
     const ListedObject only_detected{row.object_id, row.label, std::nullopt, std::nullopt};
-    const ListedObject& object = listed.try_emplace(row.object_id, only_detected).first->second;
-    if (object.label != row.label) {
-      throw InputError(fmt::format("{}: label of object {} is '{}'; expected '{}', as elsewhere",
-                                   row.place, row.object_id, row.label, object.label));
-    }
+    listed.try_emplace(row.object_id, only_detected);
   }
   const std::string file = files.objects.value_or(files.detections).string();
   std::vector<Object> objects;

@@ -12,8 +12,9 @@ namespace soslam {
 
 // All objects of a dataset, sorted by id: those given in objects.json, detected or not, and those
 // that only detections name, which have no ground truth. An object stands on its support_plane, or
-// else on the only plane; on none when no plane is known. Throws InputError for contradicting
-// labels, a plane that does not exist, and when the plane is not given although there are several.
+// else on the only plane; on none when no plane is known. Rows of one object have one label. Throws
+// InputError for a plane that does not exist, and when the plane is not given although there are
+// several.
 std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<ListedObject>& given,
                                 const std::vector<DetectionRow>& rows,
                                 const std::vector<SupportPlane>& planes);

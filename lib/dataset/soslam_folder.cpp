@@ -11,7 +11,9 @@
 #include "dataset/folder_camera.h"
 #include "dataset/folder_detections.h"
 #include "dataset/folder_frames.h"
+#include "dataset/object_ids.h"
 #include "dataset/object_table.h"
+#include "dataset/track_labels.h"
 
 namespace soslam {
 namespace {
@@ -22,31 +24,54 @@ int FirstFreeId(const std::vector<ListedObject>& objects) {
   return id;
 }
 
+// Gives the rows of one object one label.
+void MendLabels(const std::vector<ListedObject>& listed, DatasetContent* content) {
+  const int changed = UnifyLabels(listed, &content->rows);
+  if (changed > 0) content->mended["label_of_object"] = changed;
+}
+
+void PrintMended(const DatasetFiles& files, size_t boxes, const DatasetContent& content) {
+  const auto print = [&](const char* name, const char* what) {
+    const auto found = content.mended.find(name);
+    if (found == content.mended.end()) return;
+    fmt::print("{}: {} of {} boxes {}\n", files.detections.filename().string(), found->second,
+               boxes, what);
+  };
+  print("cut_to_image", "reach a little beyond the image and are cut to it");
+  print("label_of_object", "have another label than their object has, and get that");
+}
+
 }  // namespace
 
 DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const ImportOptions& options) {
-  const DatasetFiles files = FindDatasetFiles(folder, options);
+  DatasetFiles files = FindDatasetFiles(folder, options);
   if (files.trajectory_is_fallback) {
     fmt::print(stderr, "warning: {}: no {}.txt; using {} as the trajectory\n", folder.string(),
                kTrajectorySourceNames[static_cast<int>(options.trajectory)],
                files.trajectory.filename().string());
   }
-  const FolderCamera camera = ReadFolderCamera(files.camera, options);
-  const FolderBoxes boxes = ReadFolderBoxes(files, options, camera.camera);
-  const auto images = ListImages(files, options, boxes.boxes);
+  const Calibration calibration = ReadFolderCamera(files.camera, options);
+  const LensCamera& camera = calibration.camera;
   const auto listed = files.objects ? ReadObjects(*files.objects) : std::vector<ListedObject>();
   DatasetContent content;
+  const std::vector<LabelledBox> boxes =
+      WithoutIdsOfNoTrack(ReadFolderBoxes(folder, options, camera.camera, &files, &content.mended),
+                          listed, files.detections, &content.rejected);
+  const auto images = ListImages(folder, files, options, boxes);
   content.camera = camera.camera;
   content.image_distortion = camera.distortion;
   if (files.planes) content.planes = ReadPlanes(*files.planes);
-  content.frames = ReadFolderFrames(folder, files, options, images, &content.findings);
+  content.frames = ReadFolderFrames(folder, files, options, images, calibration.body_from_camera,
+                                    &content.findings);
   content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected);
-  content.has_object_ids = !boxes.object_ids.empty();
+  content.has_object_ids = HaveObjectIds(boxes);
+  if (content.has_object_ids) MendLabels(listed, &content);
   if (camera.distortion) {
     content.rows =
         Undistorted(std::move(content.rows), camera.camera, *camera.distortion, &content.rejected);
   }
   content.objects = ListObjects(files, listed, content.rows, content.planes);
+  PrintMended(files, boxes.size(), content);
   content.has_true_poses = files.groundtruth.has_value();
   content.files = files.All();
   return content;

@@ -70,8 +70,9 @@ std::string ReadEntry(const std::filesystem::path& path, std::int64_t max_bytes,
 
 }  // namespace
 
-std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
-                                          const std::string& extension) {
+std::vector<ArchivedText> ReadTextArchive(
+    const std::filesystem::path& path,
+    const std::function<bool(const std::filesystem::path&)>& wanted) {
   const ArchivePointer opened = Open(path);
   std::vector<ArchivedText> texts;
   std::int64_t bytes_left = kMaxTextBytes;
@@ -88,7 +89,7 @@ std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
       throw InputError(path.string() + ": is packed more than once; expected .tar.gz, .tar, .zip");
     }
     const char* name = archive_entry_pathname(entry);
-    if (name == nullptr || std::filesystem::path(name).extension() != extension) continue;
+    if (name == nullptr || !wanted(name)) continue;
     texts.push_back({name, ReadEntry(path, bytes_left, opened.get())});
     bytes_left -= static_cast<std::int64_t>(texts.back().text.size());
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,11 @@ struct ArchivedText {
   std::string text;
 };
 
-// The files of an archive (tar, also compressed; zip) whose names have this extension (".txt"), by
-// name. Throws InputError for what is no archive, and for one that is cut short, or unpacks to more
-// than text files would.
-std::vector<ArchivedText> ReadTextArchive(const std::filesystem::path& path,
-                                          const std::string& extension);
+// The files of an archive (tar, also compressed; zip) whose names (ArchivedText::name) are
+// `wanted`, by name. Throws InputError for what is no archive, and for one that is cut short, or
+// unpacks to more than text files would.
+std::vector<ArchivedText> ReadTextArchive(
+    const std::filesystem::path& path,
+    const std::function<bool(const std::filesystem::path&)>& wanted);
 
 }  // namespace soslam

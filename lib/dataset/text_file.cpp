@@ -3,14 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/run_log.h"
+#include "base/text_encoding.h"
 
 namespace soslam {
 namespace {
@@ -27,6 +31,15 @@ bool IsUtf8(const std::string& text) {
   }
 }
 
+std::string ReadWhole(const std::filesystem::path& path) {
+  NoteInput(path);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || IsFolder(path)) {
+    throw InputError(path.string() + ": cannot be read; expected a text file");
+  }
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 template <typename Number>
 bool ParseWhole(std::string_view text, Number* number) {
   const char* end = text.data() + text.size();
@@ -34,28 +47,51 @@ bool ParseWhole(std::string_view text, Number* number) {
   return error == std::errc() && stop == end;
 }
 
+// Whether a decimal point in place of the only comma would make it a number.
+bool HasDecimalComma(std::string_view text) {
+  std::string with_point(text);
+  const size_t comma = with_point.find(',');
+  if (comma == with_point.npos) return false;
+  with_point[comma] = '.';
+  double number = 0.0;
+  return ParseWhole(with_point, &number);
+}
+
 }  // namespace
 
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
-  NoteInput(path);
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || IsFolder(path)) {
-    throw InputError(path.string() + ": cannot be read; expected a text file");
-  }
-  return TextLines(stream, path.string());
+  return TextLines(ReadWhole(path), path.string());
 }
 
-std::vector<TextLine> TextLines(std::istream& stream, const std::string& name) {
+std::vector<TextLine> TextLines(const std::string& text, const std::string& name) {
   std::vector<TextLine> lines;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    const std::string_view text = Trimmed(line);
-    if (text.empty() || text.front() == '#') continue;
-    lines.push_back({fmt::format("{}:{}", name, number), std::string(text)});
-    if (!IsUtf8(line) || line.find('\0') != line.npos) {
+  for (TextLine& line : RawLines(text, name)) {
+    const std::string_view trimmed = Trimmed(line.text);
+    if (trimmed.empty() || trimmed.front() == '#') continue;
+    lines.push_back({std::move(line.place), std::string(trimmed)});
+    if (!IsUtf8(line.text) || line.text.find('\0') != line.text.npos) {
       throw InputError(lines.back().place + ": is not UTF-8 text");
     }
+  }
+  return lines;
+}
+
+std::vector<TextLine> ReadRawLines(const std::filesystem::path& path) {
+  return RawLines(ReadWhole(path), path.string());
+}
+
+std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {
+  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
+  std::vector<TextLine> lines;
+  while (!rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find(line_end));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const size_t end = line.find_last_not_of('\r');
+    lines.push_back({fmt::format("{}:{}", name, lines.size() + 1),
+                     std::string(line.substr(0, end == line.npos ? 0 : end + 1))});
   }
   return lines;
 }
@@ -88,7 +124,8 @@ std::vector<std::string_view> SplitFields(std::string_view text) {
 double ParseReal(std::string_view text, const std::string& place, const std::string& field) {
   double number = 0.0;
   if (!ParseWhole(text, &number) || !std::isfinite(number)) {
-    throw InputError(fmt::format("{}: {} is '{}'; expected a finite number", place, field, text));
+    throw InputError(fmt::format("{}: {} is '{}'; expected a finite number{}", place, field, text,
+                                 HasDecimalComma(text) ? ", with a decimal point" : ""));
   }
   return number;
 }

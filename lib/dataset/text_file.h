@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +14,17 @@ struct TextLine {
   std::string text;
 };
 
-// The lines of a UTF-8 text file that are neither blank nor comments (first character #). A byte
-// order mark and carriage returns at line ends are dropped. Throws InputError when the file cannot
-// be read or is not UTF-8.
+// The lines of a UTF-8 text file that are neither blank nor comments (first character #), without
+// blanks at both ends. A byte order mark is dropped. Lines end with a line feed, with or without
+// carriage returns, or, in a text that has no line feed, with a carriage return. Throws InputError
+// when the file cannot be read or is not UTF-8.
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
 // The same of a text that is not a file of its own; `name` stands for it in error messages.
-std::vector<TextLine> TextLines(std::istream& text, const std::string& name);
+std::vector<TextLine> TextLines(const std::string& text, const std::string& name);
+
+// All lines, also blank ones and comments, as they stand.
+std::vector<TextLine> ReadRawLines(const std::filesystem::path& path);
+std::vector<TextLine> RawLines(const std::string& text, const std::string& name);
 
 // Without blanks at both ends.
 std::string_view Trimmed(std::string_view text);

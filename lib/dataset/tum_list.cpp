@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "dataset/text_file.h"
@@ -71,6 +72,11 @@ std::vector<ListedImage> ReadPairedImageList(const std::filesystem::path& path, 
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
   std::vector<TimedPose> trajectory;
   for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParsePose(line));
+  return SortedTrajectory(std::move(trajectory), path);
+}
+
+std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
+                                        const std::filesystem::path& path) {
   if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
   std::stable_sort(
       trajectory.begin(), trajectory.end(),

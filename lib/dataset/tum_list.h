@@ -37,6 +37,10 @@ struct TimedPose {
 // one time that are not about the same, and when there is no pose.
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path);
 
+// What a reader of `path` does with its poses at the end, as said above.
+std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
+                                        const std::filesystem::path& path);
+
 // The pose of `trajectory` (ascending) that is nearest in time, none when it is further away than
 // `max_difference_s`.
 std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,

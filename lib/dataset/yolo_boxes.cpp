@@ -2,61 +2,63 @@
 #include "dataset/yolo_boxes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <set>
-#include <sstream>
 
 #include "base/error.h"
-#include "base/file_kind.h"
-#include "dataset/text_archive.h"
 #include "dataset/text_file.h"
+#include "dataset/yolo_columns.h"
 
 namespace soslam {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr double kRounding = 1e-3;    // files round to three digits at least
+constexpr double kMostBeyond = 0.05;  // of what annotators and detectors draw past the image
 
-// One line: what its numbers mean is up to the reader.
-struct YoloLine {
-  std::string label;
-  std::array<double, 4> values;
-  double score;
-};
-
-YoloLine ParseLine(const TextLine& line, const std::array<const char*, 4>& names,
-                   const std::vector<std::string>& labels) {
+YoloRow ParseLine(const TextLine& line, const std::string& image,
+                  const std::array<const char*, 4>& names) {
   const auto words = SplitWords(line.text);
-  if (words.size() != 5 && words.size() != 6) {
-    throw InputError(fmt::format("{}: has {} numbers; expected class {} [score]", line.place,
-                                 words.size(), fmt::join(names, " ")));
+  if (words.size() < 5 || words.size() > 7) {
+    throw InputError(fmt::format(
+        "{}: has {} numbers; expected class {} [score] [track]{}", line.place, words.size(),
+        fmt::join(names, " "),
+        words.size() > 7 ? ": labels of segmentation (polygons), poses and oriented boxes are not "
+                           "read, save boxes"
+                         : ""));
   }
-  const int index = ParseInteger(words[0], line.place, "class");
-  if (index < 0 || index >= static_cast<int>(labels.size())) {
-    throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels", line.place,
-                                 index, labels.size() - 1, labels.size()));
-  }
-  YoloLine parsed{labels[static_cast<size_t>(index)], {}, 1.0};
+  YoloRow row{line.place, image, ParseInteger(words[0], line.place, "class"), {}, {}};
   for (size_t i = 0; i < names.size(); ++i) {
-    parsed.values[i] = ParseReal(words[i + 1], line.place, names[i]);
+    row.box[i] = ParseReal(words[i + 1], line.place, names[i]);
   }
-  if (words.size() == 6) parsed.score = ParseReal(words[5], line.place, "score");
-  return parsed;
+  for (size_t i = 5; i < words.size(); ++i) {
+    row.extras.push_back(ParseReal(words[i], line.place, fmt::format("number {}", i + 1)));
+  }
+  return row;
 }
 
-Box NormalisedBox(const std::array<double, 4>& values, const std::string& place, int width,
-                  int height) {
-  constexpr double kRounding = 1e-3;  // files round to three digits at least
-  for (const double value : values) {
-    if (value < -kRounding || value > 1.0 + kRounding) {
-      throw InputError(fmt::format(
-          "{}: has {}; expected fractions of the image's width and height, 0 to 1", place, value));
-    }
+// Corners in fractions of the image.
+Box FractionsBox(const std::array<double, 4>& values, const std::string& place) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double least = i < 2 ? -kMostBeyond : -kRounding;
+    if (values[i] >= least && values[i] <= 1.0 + kMostBeyond) continue;
+    throw InputError(
+        fmt::format("{}: has {}; expected fractions of the image's width and height, 0 to 1", place,
+                    values[i]));
   }
   const auto [cx, cy, w, h] = values;
-  return FromCornerOrigin({(cx - 0.5 * w) * width, (cy - 0.5 * h) * height, (cx + 0.5 * w) * width,
-                           (cy + 0.5 * h) * height});
+  return {cx - 0.5 * w, cy - 0.5 * h, cx + 0.5 * w, cy + 0.5 * h};
+}
+
+// How far a box in fractions reaches beyond the image, at most.
+double Beyond(const Box& box) {
+  return std::max({0.0, -box.x_min, -box.y_min, box.x_max - 1.0, box.y_max - 1.0});
+}
+
+Box CutToImage(const Box& box) {
+  return {std::max(box.x_min, 0.0), std::max(box.y_min, 0.0), std::min(box.x_max, 1.0),
+          std::min(box.y_max, 1.0)};
 }
 
 Box PixelBox(const std::array<double, 4>& values, const std::string& place) {
@@ -71,79 +73,53 @@ Box PixelBox(const std::array<double, 4>& values, const std::string& place) {
   return FromCornerOrigin({x, y, x + w, y + h});
 }
 
-// The boxes of one image.
-struct ImageText {
-  std::string image;  // its name without extension
-  std::vector<TextLine> lines;
-};
-
-std::vector<ImageText> ReadFolder(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".txt") files.push_back(entry.path());
+std::vector<YoloRow> ReadRows(const YoloTexts& texts, const std::array<const char*, 4>& names) {
+  std::vector<YoloRow> rows;
+  for (const YoloText& text : texts.images) {
+    for (const TextLine& line : text.lines) rows.push_back(ParseLine(line, text.image, names));
   }
-  std::sort(files.begin(), files.end());
-  std::vector<ImageText> texts;
-  for (const fs::path& file : files) texts.push_back({file.stem().string(), ReadTextLines(file)});
-  return texts;
+  ReadYoloExtras(&rows);
+  return rows;
 }
 
-std::vector<ImageText> ReadArchive(const fs::path& archive) {
-  std::vector<ImageText> texts;
-  for (const ArchivedText& entry : ReadTextArchive(archive, ".txt")) {
-    std::istringstream text(entry.text);
-    texts.push_back({fs::path(entry.name).stem().string(),
-                     TextLines(text, fmt::format("{}/{}", archive.string(), entry.name))});
+LabelledBox LabelledBoxOf(const YoloRow& row, const Box& box,
+                          const std::vector<std::string>& labels) {
+  if (row.class_index < 0 || row.class_index >= static_cast<int>(labels.size())) {
+    throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels", row.place,
+                                 row.class_index, labels.size() - 1, labels.size()));
   }
-  return texts;
-}
-
-std::vector<ImageText> ReadTexts(const fs::path& path) {
-  if (!Exists(path)) {
-    throw InputError(path.string() + ": is missing; expected a folder of YOLO text files");
-  }
-  std::vector<ImageText> texts = IsFolder(path) ? ReadFolder(path) : ReadArchive(path);
-  if (texts.empty()) {
-    throw InputError(path.string() + ": has no *.txt; expected one for each image");
-  }
-  std::set<std::string> images;
-  for (const ImageText& text : texts) {
-    if (images.insert(text.image).second) continue;
-    throw InputError(fmt::format("{}: has several files {}.txt; expected one for each image",
-                                 path.string(), text.image));
-  }
-  return texts;
-}
-
-template <typename MakeBox>
-std::vector<LabelledBox> ReadBoxes(const fs::path& path, const std::vector<std::string>& labels,
-                                   const std::array<const char*, 4>& names,
-                                   const MakeBox& make_box) {
-  std::vector<LabelledBox> boxes;
-  for (const ImageText& image : ReadTexts(path)) {
-    for (const TextLine& line : image.lines) {
-      const YoloLine parsed = ParseLine(line, names, labels);
-      boxes.push_back({line.place, image.image, parsed.label, parsed.score,
-                       make_box(parsed.values, line.place)});
-    }
-  }
-  return boxes;
+  return {row.place, row.image, labels[static_cast<size_t>(row.class_index)],
+          row.score, box,       row.track};
 }
 
 }  // namespace
 
-std::vector<LabelledBox> ReadNormalisedYoloBoxes(const fs::path& path,
+std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  const std::vector<std::string>& labels,
-                                                 int image_width, int image_height) {
-  return ReadBoxes(path, labels, {"cx", "cy", "w", "h"},
-                   [&](const std::array<double, 4>& values, const std::string& place) {
-                     return NormalisedBox(values, place, image_width, image_height);
-                   });
+                                                 int image_width, int image_height,
+                                                 RejectionCounts* mended) {
+  std::vector<LabelledBox> boxes;
+  for (const YoloRow& row : ReadRows(texts, {"cx", "cy", "w", "h"})) {
+    Box box = FractionsBox(row.box, row.place);
+    const double beyond = Beyond(box);
+    if (beyond <= kMostBeyond) box = CutToImage(box);
+    if (beyond > kRounding && beyond <= kMostBeyond) ++(*mended)["cut_to_image"];
+    boxes.push_back(
+        LabelledBoxOf(row,
+                      FromCornerOrigin({box.x_min * image_width, box.y_min * image_height,
+                                        box.x_max * image_width, box.y_max * image_height}),
+                      labels));
+  }
+  return boxes;
 }
 
-std::vector<LabelledBox> ReadPixelYoloBoxes(const fs::path& path,
+std::vector<LabelledBox> ReadPixelYoloBoxes(const YoloTexts& texts,
                                             const std::vector<std::string>& labels) {
-  return ReadBoxes(path, labels, {"x", "y", "w", "h"}, &PixelBox);
+  std::vector<LabelledBox> boxes;
+  for (const YoloRow& row : ReadRows(texts, {"x", "y", "w", "h"})) {
+    boxes.push_back(LabelledBoxOf(row, PixelBox(row.box, row.place), labels));
+  }
+  return boxes;
 }
 
 }  // namespace soslam

@@ -2,6 +2,8 @@
 #include "geometry/distortion.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <opencv2/calib3d.hpp>
 
 namespace soslam {
@@ -11,9 +13,14 @@ cv::Matx33d Intrinsics(const Camera& camera) {
   return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
 }
 
-cv::Matx<double, 1, 5> Coefficients(const Distortion& distortion) {
-  return {distortion.k1, distortion.k2, distortion.p1, distortion.p2, distortion.k3};
-}
+// In OpenCV's order.
+constexpr std::array kCoefficients = {
+    &Distortion::k1, &Distortion::k2, &Distortion::p1,    &Distortion::p2,   &Distortion::k3,
+    &Distortion::k4, &Distortion::k5, &Distortion::k6,    &Distortion::s1,   &Distortion::s2,
+    &Distortion::s3, &Distortion::s4, &Distortion::tau_x, &Distortion::tau_y};
+
+// How many of them OpenCV takes.
+constexpr std::array<size_t, 5> kCounts = {4, 5, 8, 12, 14};
 
 // Points along the four edges. An edge that bows out by b px between two corners is met to within
 // b / kIntervals^2, a thousandth of its bow.
@@ -31,6 +38,28 @@ std::vector<Eigen::Vector2d> Outline(const Box& box) {
 
 }  // namespace
 
+std::vector<double> DistortionCoefficients(const Distortion& distortion) {
+  std::vector<double> coefficients;
+  for (const auto coefficient : kCoefficients) coefficients.push_back(distortion.*coefficient);
+  const auto is_zero_from = [&](size_t count) {
+    return std::all_of(coefficients.begin() + static_cast<std::ptrdiff_t>(count),
+                       coefficients.end(), [](double k) { return k == 0.0; });
+  };
+  for (const size_t count : {5, 8, 12}) {
+    if (!is_zero_from(count)) continue;
+    coefficients.resize(count);
+    break;
+  }
+  return coefficients;
+}
+
+std::optional<Distortion> DistortionOfCoefficients(std::span<const double> coefficients) {
+  if (std::ranges::find(kCounts, coefficients.size()) == kCounts.end()) return std::nullopt;
+  Distortion distortion;
+  for (size_t i = 0; i < coefficients.size(); ++i) distortion.*kCoefficients[i] = coefficients[i];
+  return distortion;
+}
+
 std::vector<Eigen::Vector2d> DistortPixels(const Camera& camera, const Distortion& distortion,
                                            const std::vector<Eigen::Vector2d>& pixels) {
   if (pixels.empty()) return {};
@@ -40,8 +69,8 @@ std::vector<Eigen::Vector2d> DistortPixels(const Camera& camera, const Distortio
     points.emplace_back(ray.x(), ray.y(), ray.z());
   }
   std::vector<cv::Point2d> projected;
-  cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), Intrinsics(camera), Coefficients(distortion),
-                    projected);
+  cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), Intrinsics(camera),
+                    DistortionCoefficients(distortion), projected);
   std::vector<Eigen::Vector2d> distorted;
   for (const cv::Point2d& point : projected) distorted.emplace_back(point.x, point.y);
   return distorted;
@@ -57,7 +86,7 @@ std::vector<std::optional<Eigen::Vector2d>> UndistortPixels(
   const cv::TermCriteria iterations(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-9);
   constexpr double kTolerancePx = 1e-3;
   std::vector<cv::Point2d> solutions;
-  cv::undistortPoints(points, solutions, Intrinsics(camera), Coefficients(distortion),
+  cv::undistortPoints(points, solutions, Intrinsics(camera), DistortionCoefficients(distortion),
                       cv::noArray(), Intrinsics(camera), iterations);
   std::vector<Eigen::Vector2d> pixels;
   for (const cv::Point2d& solution : solutions) pixels.emplace_back(solution.x, solution.y);

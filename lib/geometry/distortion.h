@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "geometry/box.h"
@@ -10,19 +11,35 @@
 
 namespace soslam {
 
-// How a lens bends the image of a pinhole camera: OpenCV's model with five coefficients, radial k1,
-// k2, k3 and tangential p1, p2, dimensionless (docs.opencv.org, "Camera Calibration and 3D
-// Reconstruction"). Pixels of images that the lens took are called distorted; the camera's own
-// intrinsics hold before and after.
+// How a lens bends the image of a pinhole camera: OpenCV's model, radial k1 to k6 (k4 to k6 in the
+// denominator), tangential p1, p2, of a thin prism s1 to s4, dimensionless, and of a tilted sensor
+// tau_x, tau_y in radians (docs.opencv.org, "Camera Calibration and 3D Reconstruction"). Pixels of
+// images that the lens took are called distorted; the camera's own intrinsics hold before and
+// after.
 struct Distortion {
   double k1 = 0.0;
   double k2 = 0.0;
   double p1 = 0.0;
   double p2 = 0.0;
   double k3 = 0.0;
+  double k4 = 0.0;
+  double k5 = 0.0;
+  double k6 = 0.0;
+  double s1 = 0.0;
+  double s2 = 0.0;
+  double s3 = 0.0;
+  double s4 = 0.0;
+  double tau_x = 0.0;
+  double tau_y = 0.0;
 
   bool operator==(const Distortion&) const = default;
 };
+
+// The coefficients in the order above, which is OpenCV's: 5, 8, 12 or 14, as few as hold all that
+// are not 0.
+std::vector<double> DistortionCoefficients(const Distortion& distortion);
+// The model with these coefficients; none unless there are 4, 5, 8, 12 or 14 of them.
+std::optional<Distortion> DistortionOfCoefficients(std::span<const double> coefficients);
 
 // Where the lens puts what a pinhole camera would see at each of `pixels`.
 std::vector<Eigen::Vector2d> DistortPixels(const Camera& camera, const Distortion& distortion,

@@ -8,10 +8,9 @@ namespace soslam {
 
 ImageUndistorter::ImageUndistorter(const Camera& camera, const Distortion& distortion) {
   const cv::Matx33d intrinsics(camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0);
-  const cv::Matx<double, 1, 5> coefficients(distortion.k1, distortion.k2, distortion.p1,
-                                            distortion.p2, distortion.k3);
-  cv::initUndistortRectifyMap(intrinsics, coefficients, cv::noArray(), intrinsics,
-                              {camera.width, camera.height}, CV_32FC1, source_x_, source_y_);
+  cv::initUndistortRectifyMap(intrinsics, DistortionCoefficients(distortion), cv::noArray(),
+                              intrinsics, {camera.width, camera.height}, CV_32FC1, source_x_,
+                              source_y_);
 }
 
 cv::Mat ImageUndistorter::Undistort(const cv::Mat& distorted) const {

@@ -79,6 +79,9 @@ TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
   sequence.image_distortion = Distortion{0.1, -0.2, 0.003, -0.004, 0.5};
   WriteSequence(file, sequence, {});
   EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
+  sequence.image_distortion->k6 = 0.25;
+  WriteSequence(file, sequence, {});
+  EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
 }
 
 TEST_F(ArtefactFilesTest, OrientationOfImagesComesBack) {

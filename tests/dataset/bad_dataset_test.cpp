@@ -81,10 +81,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "detections.csv:3: frame is 4; expected a row of rgb.txt, 0 to 3"},
         BadCase{"FrameNegative", "detections.csv", "0,2,box", "-1,2,box", "frame is -1"},
         BadCase{"LabelEmpty", "detections.csv", "0,2,box", "0,2,", "label is empty"},
-        BadCase{"LabelsContradict", "detections.csv", "1,2,box", "1,2,crate",
-                "detections.csv:5: label of object 2 is 'crate'; expected 'box'"},
-        BadCase{"LabelContradictsObjects", "detections.csv", "0,1,cup", "0,1,mug",
-                "detections.csv:2: label of object 1 is 'mug'; expected 'cup'"}),
+        BadCase{"Utf16", "detections.csv", "",
+                "\xFF\xFE"
+                "f",
+                "is UTF-16 text; expected UTF-8"},
+        BadCase{"LabelContradictsObjects", "objects.json", "\"cup\"", "\"mug\"",
+                "detections.csv:2: label of object 1 is 'cup'"}),
     CaseName);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -95,14 +97,20 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"Malformed", "camera.json", "640,", "640", "parse error at line 1"},
         BadCase{"KeyTwice", "camera.json", "\"cx\"", "\"fx\"", "key \"fx\" twice"},
         BadCase{"NotAnObject", "camera.json", "", "[]", "is not an object"},
-        BadCase{"FocalLengthMissing", "camera.json", "\"fx\"", "\"f\"", "fx is missing"},
+        BadCase{"FocalLengthMissing", "camera.json", "\"fx\"", "\"name\"", "fx is missing"},
         BadCase{"FocalLengthNegative", "camera.json", "510.0", "-510.0", "fy is -510.0"},
         BadCase{"FocalLengthZero", "camera.json", "500.0", "0", "fx is 0"},
         BadCase{"WidthZero", "camera.json", "640", "0", "width is 0"},
         BadCase{"HeightNotAnInteger", "camera.json", "480", "480.5", "height is 480.5"},
         BadCase{"CentreNotANumber", "camera.json", "239.5", "\"239.5\"", "cy is \"239.5\""},
         BadCase{"NumberTooLarge", "camera.json", "239.5", "1e999", "number overflow"},
-        BadCase{"NotPinhole", "camera.json", "pinhole", "fisheye", "model is \"fisheye\""}),
+        BadCase{"NotPinhole", "camera.json", "pinhole", "fisheye",
+                "lens model 'fisheye' is not supported"},
+        BadCase{"KeyUnknown", "camera.json", "\"model\"", "\"skew\"", "unknown key \"skew\""},
+        BadCase{"Utf16", "camera.json", "",
+                "\xFE\xFF"
+                "{",
+                "is UTF-16 text"}),
     CaseName);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -113,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"NormalZero", "planes.json", "[0, 0, 2]", "[0, 0, 1e-9]",
                 "planes.json[0]: normal is [0,0,1e-09]"},
         BadCase{"NormalShort", "planes.json", "[0, 0, 2]", "[0, 2]", "expected 3 numbers"},
-        BadCase{"OffsetMissing", "planes.json", "\"d\"", "\"e\"", "planes.json[0]: d is missing"},
+        BadCase{"OffsetMissing", "planes.json", "\"d\"", "\"name\"",
+                "planes.json[0]: d is missing"},
         BadCase{
             "IdTwice", "planes.json", "",
             R"([{"id": 3, "normal": [0, 0, 1], "d": 0}, {"id": 3, "normal": [0, 0, 1], "d": 1}])",
@@ -133,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
                 R"([{"id": 1, "label": "cup"}, {"id": 1, "label": "cup"}])", "id 1 twice"},
         BadCase{"HalfAxisZero", "objects.json", "0.1, 0.2, 0.3", "0.1, 0, 0.3",
                 "objects.json[0]: half_axes is [0.1,0,0.3]"},
-        BadCase{"HalfAxesMissing", "objects.json", "\"half_axes\"", "\"size\"",
+        BadCase{"HalfAxesMissing", "objects.json", "\"half_axes\"", "\"name\"",
                 "half_axes is missing"},
         BadCase{"Quaternion", "objects.json", "0.6, 0.8", "0.6, 0.9",
                 "objects.json[0]: quaternion has norm 1.08"},

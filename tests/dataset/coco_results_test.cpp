@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
@@ -46,11 +48,38 @@ TEST_F(CocoResultsTest, DatasetSaysWhatIdsMean) {
   ExpectLabelledBox(boxes[0], "rgb/b.png", "milk carton", 0.5, {0.5, 1.5, 3.5, 5.5});
 }
 
+TEST_F(CocoResultsTest, WithoutScoreItIsOne) {
+  EXPECT_EQ(Read(R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4]}])").at(0).score, 1.0);
+}
+
+TEST_F(CocoResultsTest, ADataSetHoldsItsBoxesItself) {
+  nlohmann::json dataset = nlohmann::json::parse(kDataset);
+  dataset["annotations"] = nlohmann::json::parse(R"([
+      {"id": 0, "image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4], "iscrowd": 0},
+      {"id": 1, "image_id": 3, "category_id": 1, "bbox": [0, 0, 9, 9], "iscrowd": 1},
+      {"id": 2, "image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4], "track_id": 5},
+      {"id": 3, "image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4],
+       "attributes": {"track_id": 6}}])");
+  const auto boxes = Read(dataset.dump());
+  ASSERT_EQ(boxes.size(), 3u);
+  ExpectLabelledBox(boxes[0], "rgb/b.png", "milk carton", 1.0, {0.5, 1.5, 3.5, 5.5});
+  EXPECT_EQ(boxes[0].place, (folder_ / "results.json").string() + "#/annotations/0");
+  EXPECT_FALSE(boxes[0].object_id);
+  EXPECT_EQ(boxes[1].object_id, 5);
+  EXPECT_EQ(boxes[2].object_id, 6);
+}
+
+TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
+  const auto boxes =
+      ReadWith(kDataset, R"([{"image_id": "a.png", "category_id": 2, "bbox": [1, 2, 3, 4]}])");
+  ExpectLabelledBox(boxes.at(0), "a.png", "cup", 1.0, {0.5, 1.5, 3.5, 5.5});
+}
+
 TEST_F(CocoResultsTest, NoDetectionIsNoError) { EXPECT_TRUE(Read("[]").empty()); }
 
 TEST_F(CocoResultsTest, BadResultsAreNamed) {
   const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
-      {R"({"image_id": 0})", {"results.json", "not a list"}},
+      {R"({"image_id": 0})", {"results.json", "not a list", "annotations"}},
       {R"([3])", {"results.json#/0", "not an object"}},
       {R"([{"category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])", {"#/0", "image_id is missing"}},
       {R"([{"image_id": 0.5, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])",
@@ -61,7 +90,6 @@ TEST_F(CocoResultsTest, BadResultsAreNamed) {
        {"#/0", "bbox is [1,2,3]", "4 numbers"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, -3, 4], "score": 1}])",
        {"#/0", "[x, y, width, height]"}},
-      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4]}])", {"score is missing"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "score": "1"}])",
        {"score is \"1\""}}};
   for (const auto& [text, words] : cases) ExpectError<InputError>([&] { Read(text); }, words);

@@ -11,7 +11,7 @@
 namespace soslam {
 namespace {
 
-class LabelledBoxesCsvTest : public testing::Test {
+class DetectionsCsvTest : public testing::Test {
  protected:
   std::filesystem::path Write(const std::string& text) {
     WriteBytes(folder_ / "detections.csv", text);
@@ -20,44 +20,69 @@ class LabelledBoxesCsvTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(LabelledBoxesCsvTest, WithAndWithoutObjectIds) {
+TEST_F(DetectionsCsvTest, WithAndWithoutObjectIds) {
   for (const char* text : {"frame,label,score,x1,y1,x2,y2\n3,cup,0.5,1,2,3.25,4\n",
                            "# a comment\nscore,frame,object_id,label,x1,y1,x2,y2\n"
-                           "0.5,3,unknown,cup,1,2,3.25,4\n"}) {
-    const auto boxes = ReadLabelledBoxes(Write(text));
+                           "0.5,3,7,cup,1,2,3.25,4\n"}) {
+    const auto boxes = ReadDetectionsCsv(Write(text));
     ASSERT_EQ(boxes.size(), 1u);
     ExpectLabelledBox(boxes[0], 3, "cup", 0.5, {1, 2, 3.25, 4});
   }
 }
 
-TEST_F(LabelledBoxesCsvTest, DetectionsNeedObjectIds) {
-  const auto path = Write("frame,label,score,x1,y1,x2,y2\n");
-  ExpectError<InputError>([&] { ReadDetections(path); }, {"detections.csv:1", "'object_id'"});
+TEST_F(DetectionsCsvTest, ObjectIds) {
+  const auto boxes = ReadDetectionsCsv(
+      Write("frame,object_id,label,score,x1,y1,x2,y2\n3,7,cup,0.5,1,2,3,4\n3,,cup,0.5,1,2,3,4\n"
+            "3,8.0,cup,0.5,1,2,3,4\n"));
+  EXPECT_EQ(boxes.at(0).object_id, 7);
+  EXPECT_FALSE(boxes.at(1).object_id);
+  EXPECT_EQ(boxes.at(2).object_id, 8);
 }
 
-TEST_F(LabelledBoxesCsvTest, WrittenBoxesComeBackRounded) {
+TEST_F(DetectionsCsvTest, AsSpreadsheetsAndOtherProgramsWriteIt) {
+  for (const char* text :
+       {"\"frame\",\"label\",\"score\",\"x1\",\"y1\",\"x2\",\"y2\"\n3,\"milk "
+        "carton\",0.5,1,2,3.25,4\n",
+        "frame;label;score;x1;y1;x2;y2\n3;milk carton;0.5;1;2;3.25;4\n",
+        "Frame \tLABEL\tScore\tX1\ty1\tx2\ty2\n3\tmilk carton\t0.5\t1\t2\t3.25\t4\n",
+        "frame,label,score,x1,y1,x2,y2\r3,milk carton,0.5,1,2,3.25,4\r"}) {
+    const auto boxes = ReadDetectionsCsv(Write(text));
+    ASSERT_EQ(boxes.size(), 1u) << text;
+    ExpectLabelledBox(boxes[0], 3, "milk carton", 0.5, {1, 2, 3.25, 4});
+  }
+  const auto boxes =
+      ReadDetectionsCsv(Write("frame,Object ID,label,score,x1,y1,x2,y2\n3,7,cup,0.5,1,2,3,4\n"));
+  EXPECT_EQ(boxes.at(0).object_id, 7);
+}
+
+TEST_F(DetectionsCsvTest, WrittenBoxesComeBackRounded) {
   const std::string text = LabelledBoxesText(
       {{"", 0, "milk carton", 0.123456, {-0.5, 10.126, 20, 30}}, {"", 12, "cup", 1, {1, 2, 3, 4}}});
   EXPECT_EQ(text,
             "frame,label,score,x1,y1,x2,y2\n"
             "0,milk carton,0.1235,-0.50,10.13,20.00,30.00\n"
             "12,cup,1.0000,1.00,2.00,3.00,4.00\n");
-  const auto boxes = ReadLabelledBoxes(Write(text));
+  const auto boxes = ReadDetectionsCsv(Write(text));
   ASSERT_EQ(boxes.size(), 2u);
   ExpectLabelledBox(boxes[0], 0, "milk carton", 0.1235, {-0.5, 10.13, 20, 30});
 }
 
-TEST_F(LabelledBoxesCsvTest, BadFilesAreNamed) {
+TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
   const std::string header = "frame,label,score,x1,y1,x2,y2\n";
   const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
       {"", {"detections.csv", "is empty"}},
       {"0,cup,0.5,1,2,3,4\n", {"detections.csv:1", "'frame' is missing"}},
       {header + "0,cup,0.5,1,2,3\n", {"detections.csv:2", "has 6 fields; expected 7"}},
       {header + "a.png,cup,0.5,1,2,3,4\n", {"detections.csv:2", "frame is 'a.png'"}},
+      {"frame;label;score;x1;y1;x2;y2\n0;cup;0,5;1;2;3;4\n",
+       {"detections.csv:2", "score is '0,5'", "a decimal point"}},
+      {header + "0,cup,0.5,1,2,3,4,5\n", {"has 8 fields; expected 7"}},
+      {header + "0,\"cup,0.5,1,2,3,4\n", {"detections.csv:2", "not closed"}},
+      {"frame,Frame,label,score,x1,y1,x2,y2\n", {"detections.csv:1", "'frame' is twice"}},
       {header + "0,,0.5,1,2,3,4\n", {"detections.csv:2", "label is empty"}},
       {header + "0,cup,0.5,1,2,3,wide\n", {"detections.csv:2", "y2 is 'wide'"}}};
   for (const auto& [text, words] : cases) {
-    ExpectError<InputError>([&] { ReadLabelledBoxes(Write(text)); }, words);
+    ExpectError<InputError>([&] { ReadDetectionsCsv(Write(text)); }, words);
   }
 }
 

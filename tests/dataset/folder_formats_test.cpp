@@ -133,6 +133,67 @@ TEST_F(FolderFormatsTest, KittiTrajectoriesAreInTheOrderOfTheList) {
   ExpectError<InputError>([&] { Import(); }, {"groundtruth.txt", "has 2 poses", "expected 4"});
 }
 
+TEST_F(FolderFormatsTest, ColmapNamesItsImages) {
+  options_.folder.camera = "";
+  options_.folder.camera_file = "sparse/cameras.txt";
+  options_.folder.groundtruth = "sparse/images.txt";
+  options_.folder.trajectory_format = TrajectoryFormat::kColmap;
+  Write("sparse/cameras.txt", "1 SIMPLE_RADIAL 640 480 500 320 240 0.1\n");
+  Write("sparse/images.txt",
+        "7 1 0 0 0 -4 0 0 1 rgb/2.0.png\n1 2 -1\n3 1 0 0 0 -5 0 0 1 3.0.png\n\n"
+        "4 1 0 0 0 0 0 0 1 none.png\n\n");
+  testing::internal::CaptureStdout();
+  const Sequence sequence = Import();
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("images.txt: 2 of 4 images have a pose; 1 poses are of images"));
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.frames[0].id, 1);
+  EXPECT_EQ(sequence.frames[0].world_from_camera.translation.x(), 4.0);
+  EXPECT_EQ(sequence.camera.cx, 319.5);
+  EXPECT_EQ(sequence.image_distortion, Distortion{0.1});
+  Write("sparse/images.txt", "7 1 0 0 0 -4 0 0 1 2.0.png\n\n8 1 0 0 0 -4 0 0 1 2.0.png\n\n");
+  ExpectError<InputError>([&] { Import(); }, {"images.txt:3", "second pose", "2.0.png"});
+  Write("sparse/images.txt", "7 1 0 0 0 -4 0 0 1 none.png\n\n");
+  ExpectError<InputError>([&] { Import(); }, {"images.txt:1", "none.png", "not listed"});
+}
+
+TEST_F(FolderFormatsTest, NerfstudioIsListTrajectoryAndCamera) {
+  options_.folder.camera = "";
+  options_.folder.images = options_.folder.groundtruth = options_.folder.camera_file =
+      "transforms.json";
+  options_.folder.trajectory_format = TrajectoryFormat::kNerfstudio;
+  Write("transforms.json", R"({"w": 640, "h": 480, "fl_x": 500, "frames": [
+      {"file_path": "rgb/1.0.png",
+       "transform_matrix": [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]},
+      {"file_path": "rgb/2.0.png",
+       "transform_matrix": [[1, 0, 0, 4], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]}]})");
+  Write("detections.csv", "frame,label,score,x1,y1,x2,y2\n1,cup,0.9,100,100,200,200\n");
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_EQ(sequence.frames[0].image, "rgb/1.0.png");
+  EXPECT_EQ(sequence.frames[1].timestamp, 1.0);
+  EXPECT_TRUE((sequence.frames[1].world_from_camera * Eigen::Vector3d(0, 0, 1))
+                  .isApprox(Eigen::Vector3d(4, 2, 2)));
+  options_.folder.camera = "640 480 500 510 319.5 239.5";
+  ExpectError<SettingsError>([&] { Import(); }, {"camera_file", "both"});
+}
+
+TEST_F(FolderFormatsTest, EurocsBodyIsNotItsCamera) {
+  options_.folder.groundtruth = "data.csv";
+  options_.folder.trajectory_format = TrajectoryFormat::kEuroc;
+  Write("data.csv", "# time\n1000000000,1,2,3,1,0,0,0\n2000000000,4,2,3,1,0,0,0\n");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(Import().frames.at(1).world_from_camera.translation, Eigen::Vector3d(4, 2, 3));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("data.csv: taken as the poses of the camera"));
+  options_.folder.camera = "";
+  options_.folder.camera_file = "sensor.yaml";
+  Write("sensor.yaml",
+        "T_BS:\n  data: [1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n"
+        "resolution: [640, 480]\nintrinsics: [500, 510, 319.5, 239.5]\n");
+  EXPECT_EQ(Import().frames.at(1).world_from_camera.translation, Eigen::Vector3d(4.5, 2, 3));
+}
+
 // A point 1 m right of, 1 m above and 4 m ahead of a camera with y up at (1, 2, 3).
 TEST_F(FolderFormatsTest, IclNuimIsMirrored) {
   options_.format = DatasetFormat::kIclNuim;
@@ -159,6 +220,26 @@ TEST_F(FolderFormatsTest, YoloInFractions) {
   ExpectBox(detection.box, {279.5, -0.5, 359.5, 239.5});
   EXPECT_EQ(detection.score, 0.75);
   EXPECT_TRUE(detection.is_bound[1]);
+}
+
+TEST_F(FolderFormatsTest, YoloWithNamesAndTracks) {
+  Write("labels/1.0.txt", "1 0.5 0.25 0.125 0.5 0.75 4\n1 0.2 0.2 0.1 0.1 0.5 -1\n");
+  Write("labels/classes.txt", "book\ncup\n");
+  options_.folder.detections_format = DetectionsFormat::kYolo;
+  options_.detections = "labels";
+  options_.min_observations = 1;
+  std::vector<fs::path> files;
+  testing::internal::CaptureStdout();
+  const Sequence sequence = ImportDataset(folder_, options_, &files);
+  EXPECT_THAT(
+      testing::internal::GetCapturedStdout(),
+      testing::AllOf(testing::HasSubstr("labels/classes.txt: names of 2 classes, book, cup"),
+                     testing::HasSubstr("1 of 2 boxes have object_id -1")));
+  ASSERT_EQ(sequence.objects.size(), 1u);
+  EXPECT_EQ(sequence.objects[0].id, 4);
+  EXPECT_EQ(sequence.objects[0].label, "cup");
+  EXPECT_EQ(sequence.rejected_detections.at("without_object_id"), 1);
+  EXPECT_EQ(std::ranges::count(files, folder_ / "labels/classes.txt"), 1);
 }
 
 TEST_F(FolderFormatsTest, YoloInPixelsFromAnArchiveAndWithoutAList) {
@@ -249,6 +330,8 @@ TEST_F(FolderFormatsTest, SettingsThatCannotBeAreRefused) {
   options_.folder.camera = "640.5 480 500 500 320 240";
   ExpectError<SettingsError>([&] { Import(); }, {"camera", "640.5"});
   options_.folder.camera = "640 480 500 500 320 240";
+  options_.folder.distortion = "0.1 0 0";
+  ExpectError<SettingsError>([&] { Import(); }, {"distortion", "4, 8, 12 or 14"});
   options_.folder.distortion = "0.1 k2 0 0 0";
   ExpectError<SettingsError>([&] { Import(); }, {"distortion", "k1 k2 p1 p2 k3"});
 }

@@ -46,7 +46,18 @@ TEST_F(ImagePathTest, NamesThatLeadOutAreRefused) {
   ExpectRefused(Path("elsewhere/secret.png").string());
   ExpectRefused("../dataset2/absent.png");
   ExpectRefused("");
-  ExpectRefused(Path("dataset/rgb/0.png").string());
+}
+
+TEST_F(ImagePathTest, AbsolutePathsIntoTheDatasetAreTaken) {
+  const std::string inside = Path("dataset/rgb/0.png").string();
+  EXPECT_EQ(Of(inside), Path("dataset/rgb/0.png"));
+  EXPECT_EQ(NameInDataset(Path("dataset"), inside), "rgb/0.png");
+  fs::create_directory_symlink("dataset", Path("link"));
+  EXPECT_EQ(NameInDataset(Path("link"), inside), "rgb/0.png");
+  EXPECT_EQ(NameInDataset(Path("dataset"), "./rgb/0.png"), "./rgb/0.png");
+  const std::string outside = Path("elsewhere/secret.png").string();
+  EXPECT_EQ(NameInDataset(Path("dataset"), outside), outside);
+  ExpectError<InputError>([&] { Of(outside); }, {outside, "an absolute path that leads outside"});
 }
 
 TEST_F(ImagePathTest, LinksThatLeadOutAreRefused) {

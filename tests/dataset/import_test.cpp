@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "support/dataset_fixture.h"
 
@@ -113,6 +115,42 @@ TEST_F(ImportTest, ToleratesByteOrderMarkCarriageReturnsAndCommentsInAllTextFile
   EXPECT_EQ(sequence.frames.back().image, plain.frames.back().image);
   EXPECT_EQ(sequence.frames.size(), plain.frames.size());
   EXPECT_EQ(sequence.detections.size(), plain.detections.size());
+}
+
+TEST_F(ImportTest, OldMacLineEndsAreReadInAllTextFiles) {
+  const Sequence plain = Import();
+  for (const char* name : {"rgb.txt", "odometry.txt", "groundtruth.txt", "detections.csv"}) {
+    std::ranges::replace(dataset.files[name], '\n', '\r');
+  }
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.frames.size(), plain.frames.size());
+  EXPECT_EQ(sequence.frames.back().image, plain.frames.back().image);
+  EXPECT_EQ(sequence.detections.size(), plain.detections.size());
+}
+
+TEST_F(ImportTest, AbsoluteImagePathsIntoTheFolderAreTaken) {
+  dataset.Replace("rgb.txt", "rgb/0.jpg", (folder / "rgb/0.jpg").string());
+  EXPECT_EQ(Import().frames.at(0).image, "rgb/0.jpg");
+}
+
+TEST_F(ImportTest, BoxesOfNoTrackAreNoObject) {
+  for (const char* row : {"0,2,box", "1,2,box", "2,2,box"}) {
+    dataset.Replace("detections.csv", row, std::string(row).replace(2, 1, "-1"));
+  }
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.objects.size(), 1u);
+  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("without_object_id", 3)));
+}
+
+TEST_F(ImportTest, LabelsThatFlickerAreThoseOfMostBoxes) {
+  dataset.Replace("detections.csv", "1,2,box", "1,2,crate");
+  options.labels = "box";
+  testing::internal::CaptureStdout();
+  const Sequence sequence = Import();
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("detections.csv: 1 of 7 boxes have another label"));
+  EXPECT_EQ(sequence.objects.at(1).label, "box");
+  EXPECT_EQ(sequence.detections.size(), 3u);
 }
 
 TEST_F(ImportTest, ColumnsMayComeInAnyOrderAmongOthers) {

@@ -47,6 +47,17 @@ TEST_F(KittiLabelTest, BadCalibrationsAreRefused) {
   refused("P2: -1 0 0 0 0 1 0 0 0 0 1 0\n", {"calib.txt:1", "rectified"});
 }
 
+TEST_F(KittiLabelTest, ResultsHaveAScore) {
+  std::string columns = KittiBox{1, 1.5, 12, 0.3, 1.5, 1.6, 3.9}.Columns();
+  EXPECT_EQ(Read(columns).score, 1.0);
+  columns.pop_back();  // the end of the line
+  EXPECT_EQ(Read(columns + " 0.25").score, 0.25);
+  ExpectRefused(columns + " high", {"000000.txt:1", "score is 'high'"});
+  ExpectRefused(columns + " 0.25 1", {"17 values", "[score]"});
+  WriteBytes(folder_ / "0001.txt", "4 7 " + columns + " 0.5\n");
+  EXPECT_EQ(ReadKittiTrackingLabels(folder_ / "0001.txt").at(0).score, 0.5);
+}
+
 // The corners of the landmark, projected with the camera, are those of KITTI's own formulas with
 // P2.
 TEST_F(KittiLabelTest, LandmarksProjectAsKittiSays) {

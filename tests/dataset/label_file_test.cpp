@@ -31,5 +31,36 @@ TEST_F(LabelFileTest, BadFilesAreNamed) {
   ExpectError<InputError>([&] { ReadLabelFile(folder_ / "none.txt"); }, {"none.txt"});
 }
 
+TEST_F(LabelFileTest, NamesOfYolosYaml) {
+  for (const char* text :
+       {"path: x\nnames: [milk carton, 'cup']\n", "names:\n  - milk carton\n  - cup\nnc: 2\n",
+        "names:\n  0: milk carton\n  1: cup\n", "names: {1: cup, 0: milk carton}\n"}) {
+    EXPECT_THAT(ParseLabels(text, "data.yaml"), testing::ElementsAre("milk carton", "cup")) << text;
+  }
+  ExpectError<InputError>([&] { ParseLabels("names: {0: cup, 2: box}\n", "data.yaml"); },
+                          {"data.yaml", "none for class 1"});
+  ExpectError<InputError>([&] { ParseLabels("nc: 2\n", "data.yaml"); }, {"data.yaml", "no label"});
+  ExpectError<InputError>([&] { ParseLabels("names: ['a, b']\n", "data.yaml"); }, {"'a, b'"});
+}
+
+TEST_F(LabelFileTest, IsFoundAmongOrAroundLabels) {
+  const auto dataset = folder_ / "dataset";
+  const auto labels = dataset / "labels" / "train";
+  std::filesystem::create_directories(labels);
+  WriteBytes(folder_ / "classes.txt", "of another\n");
+  EXPECT_FALSE(FindLabelFile(labels, dataset));
+  WriteBytes(dataset / "data.yaml", "names: [cup]\n");
+  EXPECT_EQ(FindLabelFile(labels, dataset), dataset / "data.yaml");
+  EXPECT_EQ(FindLabelFile(dataset / "labels.zip", dataset), dataset / "data.yaml");
+  WriteBytes(labels / "obj.names", "cup\n");
+  WriteBytes(labels / "classes.txt", "cup\n");
+  EXPECT_EQ(FindLabelFile(labels, dataset), labels / "classes.txt");
+  std::filesystem::create_directories(folder_ / "elsewhere" / "labels");
+  EXPECT_FALSE(FindLabelFile(folder_ / "elsewhere" / "labels", dataset));
+  WriteBytes(folder_ / "elsewhere" / "classes.txt", "cup\n");
+  EXPECT_EQ(FindLabelFile(folder_ / "elsewhere" / "labels", dataset),
+            folder_ / "elsewhere" / "classes.txt");
+}
+
 }  // namespace
 }  // namespace soslam

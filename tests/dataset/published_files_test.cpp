@@ -44,7 +44,7 @@ TEST(PublishedFilesTest, OaSlamBoxesOfADistortingCamera) {
 TEST(PublishedFilesTest, YoloBoxesInPixels) {
   const fs::path archive = RealDataset("fr3_long_office") / "yolo_txts.tar.gz";
   if (!fs::exists(archive)) GTEST_SKIP() << archive << " is not there";
-  const auto boxes = ReadPixelYoloBoxes(archive, CocoLabels());
+  const auto boxes = ReadPixelYoloBoxes(ReadYoloTexts(archive), CocoLabels());
   EXPECT_EQ(boxes.size(), 17225u);
   EXPECT_EQ(CountImages(boxes), 2585u);
 }

@@ -16,12 +16,15 @@ const std::vector<std::string> kLabels = {"cup", "teddy bear", "book"};
 class YoloBoxesTest : public testing::Test {
  protected:
   std::vector<LabelledBox> Normalised() {
-    return ReadNormalisedYoloBoxes(folder_.path(), kLabels, 640, 480);
+    return ReadNormalisedYoloBoxes(ReadYoloTexts(folder_.path()), kLabels, 640, 480, &mended_);
   }
-  std::vector<LabelledBox> Pixels() { return ReadPixelYoloBoxes(folder_.path(), kLabels); }
+  std::vector<LabelledBox> Pixels() {
+    return ReadPixelYoloBoxes(ReadYoloTexts(folder_.path()), kLabels);
+  }
   void Write(const std::string& name, const std::string& text) { WriteBytes(folder_ / name, text); }
 
   TemporaryFolder folder_;
+  RejectionCounts mended_;
 };
 
 // The image covers 0 to 640 from its corner, -0.5 to 639.5 in pixels.
@@ -48,13 +51,14 @@ TEST_F(YoloBoxesTest, PixelCornerAndSize) {
 
 TEST_F(YoloBoxesTest, BadLinesAreNamed) {
   const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
-      {"0 0.1 0.1 0.1", {"has 4 numbers", "class cx cy w h [score]"}},
-      {"0 0.1 0.1 0.1 0.1 0.5 0.5", {"has 7 numbers"}},
+      {"0 0.1 0.1 0.1", {"has 4 numbers", "class cx cy w h [score] [track]"}},
+      {"0 0.1 0.1 0.1 0.1 0.5 0.5", {"has 7 numbers", "0.5 0.5", "track", "segmentation"}},
+      {"0 0.1 0.1 0.1 0.1 0.5 0.5 0.2 0.2", {"has 9 numbers", "segmentation", "save boxes"}},
       {"3 0.1 0.1 0.1 0.1", {"class is 3", "0 to 2"}},
       {"-1 0.1 0.1 0.1 0.1", {"class is -1"}},
       {"cup 0.1 0.1 0.1 0.1", {"class is 'cup'"}},
       {"0 0.1 0.1 nan 0.1", {"w is 'nan'"}},
-      {"0 0.1 0.1 0.1 0.1 high", {"score is 'high'"}},
+      {"0 0.1 0.1 0.1 0.1 high", {"number 6 is 'high'"}},
       {"0 0.1 0.1 0.1 -0.1", {"has -0.1", "fractions"}},
       {"0 218 246 65 94 0.4", {"has 218", "fractions"}}};
   for (const auto& [line, words] : cases) {
@@ -67,7 +71,7 @@ TEST_F(YoloBoxesTest, BadLinesAreNamed) {
 
 TEST_F(YoloBoxesTest, BadPixelLinesAreNamed) {
   const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
-      {"0 1 2 3", {"has 4 numbers", "class x y w h [score]"}},
+      {"0 1 2 3", {"has 4 numbers", "class x y w h [score] [track]"}},
       {"0 100 100 -5 20", {"size is -5 x 20"}},
       {"0 0.5 0.25 0.125 0.5", {"at most 1", "pixels"}}};
   for (const auto& [line, words] : cases) {
@@ -78,10 +82,26 @@ TEST_F(YoloBoxesTest, BadPixelLinesAreNamed) {
   }
 }
 
-TEST_F(YoloBoxesTest, FolderWithoutFilesIsNamed) {
-  ExpectError<InputError>([&] { Pixels(); }, {folder_.path().string(), "no *.txt"});
-  ExpectError<InputError>([&] { ReadPixelYoloBoxes(folder_ / "none", kLabels); },
-                          {"none", "is missing"});
+TEST_F(YoloBoxesTest, BoxesALittleOutsideAreCutAndCounted) {
+  Write("a.txt",
+        "0 0.5 0.5 1.04 0.9\n0 0.98 -0.01 0.1 0.06\n0 0.5 0.5 1.0005 1\n0 0.9 0.5 0.4 0.2\n");
+  const auto boxes = Normalised();
+  ExpectBox(boxes[0].box, {-0.5, 0.05 * 480 - 0.5, 639.5, 0.95 * 480 - 0.5});
+  ExpectBox(boxes[1].box, {0.93 * 640 - 0.5, -0.5, 639.5, 0.02 * 480 - 0.5});
+  ExpectBox(boxes[2].box, {-0.5, -0.5, 639.5, 479.5});  // rounding
+  ExpectBox(boxes[3].box, {0.7 * 640 - 0.5, 0.4 * 480 - 0.5, 1.1 * 640 - 0.5, 0.6 * 480 - 0.5});
+  EXPECT_EQ(mended_, (RejectionCounts{{"cut_to_image", 2}}));
+  Write("a.txt", "0 0.5 0.5 1.06 0.9\n");
+  ExpectError<InputError>([&] { Normalised(); }, {"a.txt:1", "has 1.06", "fractions"});
+}
+
+TEST_F(YoloBoxesTest, TracksBecomeObjectIds) {
+  Write("a.txt", "0 0.5 0.5 0.1 0.1 0.75 7\n1 0.5 0.5 0.2 0.2\n");
+  const auto boxes = Normalised();
+  EXPECT_EQ(boxes[0].object_id, 7);
+  EXPECT_EQ(boxes[0].score, 0.75);
+  EXPECT_FALSE(boxes[1].object_id);
+  EXPECT_EQ(boxes[1].score, 1.0);
 }
 
 }  // namespace

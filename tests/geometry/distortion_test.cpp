@@ -30,10 +30,42 @@ TEST(DistortionTest, NumbersByHand) {
   EXPECT_NEAR(distorted[0].y(), 0.5, 1e-9);
 }
 
+// With k4 = 0.4 the radial factor has the denominator 1 + 0.4 / 4, and s1 = 0.02 adds 0.02 r^2 to
+// x.
+TEST(DistortionTest, RationalAndPrismNumbersByHand) {
+  const Camera camera{1000, 1000, 1000.0, 1000.0, 0.0, 0.0};
+  Distortion lens{0.1};
+  lens.k4 = 0.4;
+  lens.s1 = 0.02;
+  const auto distorted = DistortPixels(camera, lens, {{500.0, 0.0}});
+  EXPECT_NEAR(distorted[0].x(), 500.0 * 1.025 / 1.1 + 5.0, 1e-9);
+  EXPECT_NEAR(distorted[0].y(), 0.0, 1e-9);
+}
+
+TEST(DistortionTest, AsFewCoefficientsAsHoldAllThatAreNotZero) {
+  Distortion lens = kKinectLens;
+  EXPECT_EQ(DistortionCoefficients(lens),
+            (std::vector{0.231222, -0.784899, -0.003257, -0.000105, 0.917205}));
+  EXPECT_EQ(DistortionCoefficients(Distortion()), std::vector<double>(5));
+  lens.k5 = 0.1;
+  EXPECT_EQ(DistortionCoefficients(lens).size(), 8u);
+  lens.s4 = 0.1;
+  EXPECT_EQ(DistortionCoefficients(lens).size(), 12u);
+  lens.tau_x = 0.1;
+  EXPECT_EQ(DistortionCoefficients(lens).size(), 14u);
+  EXPECT_EQ(DistortionOfCoefficients(DistortionCoefficients(lens)), lens);
+  EXPECT_EQ(DistortionOfCoefficients(std::vector{1.0, 2.0, 3.0, 4.0}), (Distortion{1, 2, 3, 4}));
+  for (const size_t count : {0, 1, 3, 6, 7, 9, 13, 15}) {
+    EXPECT_FALSE(DistortionOfCoefficients(std::vector<double>(count))) << count;
+  }
+}
+
 TEST(DistortionTest, UndistortingUndoesDistorting) {
   std::vector<Eigen::Vector2d> pixels;
   for (int i = 0; i < 500; ++i) pixels.push_back(RandomPixel(kKinect));
-  for (const Distortion& lens : {kKinectLens, kBarrel, Distortion{0.1, 0.0, 0.01, -0.02, 0.0}}) {
+  for (const Distortion& lens : {kKinectLens, kBarrel, Distortion{0.1, 0.0, 0.01, -0.02, 0.0},
+                                 Distortion{0.2, -0.1, 0.001, 0.002, 0.0, 0.15, -0.05, 0.01, 0.001,
+                                            0.002, 0.003, -0.001, 0.01, -0.02}}) {
     const auto back = UndistortPixels(kKinect, lens, DistortPixels(kKinect, lens, pixels));
     ASSERT_EQ(back.size(), pixels.size());
     for (size_t i = 0; i < pixels.size(); ++i) {

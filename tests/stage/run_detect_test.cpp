@@ -68,7 +68,7 @@ class RunDetectTest : public testing::Test {
 
 TEST_F(RunDetectTest, WritesBoxesWithoutObjectIds) {
   Run(Files());
-  const auto boxes = ReadLabelledBoxes(folder_ / "detections.csv");
+  const auto boxes = ReadDetectionsCsv(folder_ / "detections.csv");
   ASSERT_EQ(boxes.size(), 5u);
   const Box cup{21.5, 16.5, 41.5, 46.5};
   ExpectLabelledBox(boxes[0], 2, "cup", 0.4, cup);
@@ -107,7 +107,7 @@ TEST_F(RunDetectTest, CocoLabelsWithoutALabelFile) {
   StageFiles files = Files();
   files.erase("labels");
   Run(files);
-  EXPECT_EQ(ReadLabelledBoxes(folder_ / "detections.csv").at(0).label, "teddy bear");
+  EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "teddy bear");
 }
 
 TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
@@ -145,11 +145,11 @@ TEST_F(RunDetectTest, ExifTurnsImages) {
   options_.min_score = 0.3;  // half of the input is the image
   Run(Files());
   // (22, 17) to (42, 47) of the input, whose columns 16 to 48 are the upright image of 32 x 64.
-  ExpectBox(ReadLabelledBoxes(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
+  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
   options_.image_orientation = ImageOrientation::kStored;
   Run(Files());
   // Rows 16 to 48 are the stored image of 64 x 32.
-  ExpectBox(ReadLabelledBoxes(folder_ / "detections.csv").at(0).box, {21.5, 0.5, 41.5, 30.5});
+  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {21.5, 0.5, 41.5, 30.5});
 }
 
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {

@@ -7,8 +7,11 @@ namespace {
 
 const FuzzTarget kBoxArchives("box_archives", [](const HostileInput& input) {
   const auto archive = input.AsFile("boxes.zip");
-  IsAccepted(archive, [&] { ReadNormalisedYoloBoxes(archive, {"cup", "chair"}, 640, 480); });
-  IsAccepted(archive, [&] { ReadPixelYoloBoxes(archive, {"cup", "chair"}); });
+  YoloTexts texts;
+  if (!IsAccepted(archive, [&] { texts = ReadYoloTexts(archive); })) return;
+  RejectionCounts mended;
+  IsAccepted(archive, [&] { ReadNormalisedYoloBoxes(texts, {"cup", "chair"}, 640, 480, &mended); });
+  IsAccepted(archive, [&] { ReadPixelYoloBoxes(texts, {"cup", "chair"}); });
 });
 
 }  // namespace

@@ -9,8 +9,7 @@ namespace {
 const FuzzTarget kDatasetJson("dataset_json", [](const HostileInput& input) {
   const auto file = input.AsFile("dataset.json");
   IsAccepted(file, [&] { ReadCamera(file); });
-  IsAccepted(file, [&] { ReadCameraWithYUp(file); });
-  IsAccepted(file, [&] { ReadDistortion(file); });
+  IsAccepted(file, [&] { ReadCamera(file, CameraYAxis::kUp); });
   IsAccepted(file, [&] { ReadPlanes(file); });
   IsAccepted(file, [&] { ReadObjects(file); });
 });

@@ -9,10 +9,10 @@ namespace {
 
 const FuzzTarget kDetectionsCsv("detections_csv", [](const HostileInput& input) {
   const auto file = input.AsFile("detections.csv");
-  IsAccepted(file, [&] { HasObjectIds(file); });
-  IsAccepted(file, [&] { ReadDetections(file); });
-  IsAccepted(file, [&] { ReadLabelledBoxes(file); });
+  IsAccepted(file, [&] { ReadDetectionsCsv(file); });
   IsAccepted(file, [&] { ReadLabelFile(file); });
+  const auto yaml = input.AsFile("data.yaml");
+  IsAccepted(yaml, [&] { ReadLabelFile(yaml); });
 });
 
 }  // namespace

@@ -64,6 +64,12 @@ const FuzzTarget kCoco("import_coco", [](const HostileInput& input) {
   options.folder.class_names = "names.json";
   Import(input, options);
 });
+const FuzzTarget kNerfstudio("import_nerfstudio", [](const HostileInput& input) {
+  ImportOptions options = OfFormat(DatasetFormat::kSoslam);
+  options.folder.images = options.folder.odometry = options.folder.camera_file = "transforms.json";
+  options.folder.trajectory_format = TrajectoryFormat::kNerfstudio;
+  Import(input, options);
+});
 const FuzzTarget kKittiClasses("import_kitti_classes", [](const HostileInput& input) {
   Import(input, OfDetections(DetectionsFormat::kKitti, "boxes"));
 });

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/colmap_model.h"
+#include "dataset/euroc_trajectory.h"
 #include "dataset/kitti_trajectory.h"
+#include "dataset/nerfstudio.h"
 #include "dataset/tum_list.h"
 #include "fuzz/fuzz_target.h"
 
@@ -10,6 +13,9 @@ const FuzzTarget kTrajectories("trajectories", [](const HostileInput& input) {
   const auto file = input.AsFile("trajectory.txt");
   IsAccepted(file, [&] { ReadTrajectory(file); });
   IsAccepted(file, [&] { ReadKittiTrajectory(file); });
+  IsAccepted(file, [&] { ReadEurocTrajectory(file); });
+  IsAccepted(file, [&] { ReadColmapPoses(file); });
+  IsAccepted(file, [&] { ReadNerfstudioPoses(file); });
 });
 
 }  // namespace

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "dataset/lens_camera.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// What a calibration says of a camera. Pixel (0, 0) is the centre of the top-left one, as here.
+struct Calibration {
+  LensCamera camera;
+  std::optional<Rigid3d> body_from_camera;  // EuRoC's T_BS; the body is what EuRoC's poses are of
+};
+
+// A camera in YAML (.yaml, .yml) or XML (.xml), by the names of the fields, in which capitals and
+// underscores do not count:
+//
+//   size        image_width and image_height (ROS, OpenCV), width and height, resolution (EuRoC)
+//   intrinsics  camera_matrix or K: 9 numbers, or a matrix with "data"; intrinsics: fx fy cx cy;
+//               Camera.fx, .fy, .cx, .cy (ORB-SLAM)
+//   lens        distortion_coefficients, dist_coeffs, distortion_coeffs or D: in OpenCV's order;
+//               Camera.k1, .k2, .p1, .p2, .k3
+//   its model   distortion_model, camera_model, Camera.type (ParseLens)
+//
+// Other fields are of no matter to the camera. Throws InputError, naming the field, for what is
+// missing, and for a skew.
+Calibration ReadCalibration(const std::filesystem::path& path);
+
+}  // namespace soslam

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/camera_file.h"
+
+#include <string>
+
+#include "dataset/colmap_model.h"
+#include "dataset/dataset_json.h"
+#include "dataset/nerfstudio.h"
+
+namespace soslam {
+
+Calibration ReadCameraFile(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".yaml" || extension == ".yml" || extension == ".xml") {
+    return ReadCalibration(path);
+  }
+  Calibration read;
+  if (extension == ".txt") {
+    read.camera = ReadColmapCamera(path);
+  } else {
+    read.camera = IsNerfstudio(path) ? ReadNerfstudioCamera(path) : ReadCamera(path);
+  }
+  return read;
+}
+
+}  // namespace soslam

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "dataset/json_entry.h"
+
+namespace soslam {
+
+// The keys of the JSON files of a dataset folder, and what other programs call them.
+
+const KnownKeys& CameraKeys();  // of camera.json
+const KnownKeys& PlaneKeys();   // of an entry of planes.json
+const KnownKeys& ObjectKeys();  // of an entry of objects.json
+
+}  // namespace soslam

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// The pose of an image that is known by its name, as structure from motion has it, not by its time.
+struct NamedPose {
+  std::string place;          // "<file>:<line>" or "<file>#<JSON pointer>", for error messages
+  std::string image;          // path, as the file has it
+  Rigid3d world_from_camera;  // camera x right, y down, z forward
+};
+
+}  // namespace soslam

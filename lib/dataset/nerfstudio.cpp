@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/nerfstudio.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "dataset/json_entry.h"
+#include "dataset/nearest_rotation.h"
+#include "geometry/image_size.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array kCameraKeys = {"w",  "h",  "fl_x", "fl_y", "cx", "cy", "camera_angle_x",
+                                    "k1", "k2", "k3",   "k4",   "p1", "p2", "camera_model"};
+
+int Pixels(const JsonEntry& entry, const char* name) {
+  const double pixels = entry.Real(name);
+  if (!(pixels > 0.0) || pixels > kMaxPixels || pixels != std::floor(pixels)) {
+    entry.Refuse(name, "pixels above 0");
+  }
+  return static_cast<int>(pixels);
+}
+
+double RealOr(const JsonEntry& entry, const char* name, double value) {
+  return entry.Has(name) ? entry.Real(name) : value;
+}
+
+Camera ParseCamera(const JsonEntry& entry) {
+  Camera camera{Pixels(entry, "w"), Pixels(entry, "h"), 0.0, 0.0, 0.0, 0.0};
+  if (!IsImageSize(camera.width, camera.height)) {
+    entry.Refuse("h", fmt::format("at most {} pixels in all", kMaxPixels));
+  }
+  if (entry.Has("fl_x") || !entry.Has("camera_angle_x")) {
+    camera.fx = entry.Positive("fl_x");
+  } else {
+    camera.fx = 0.5 * camera.width / std::tan(0.5 * entry.Positive("camera_angle_x"));
+  }
+  camera.fy = entry.Has("fl_y") ? entry.Positive("fl_y") : camera.fx;
+  camera.cx = RealOr(entry, "cx", 0.5 * camera.width) - 0.5;
+  camera.cy = RealOr(entry, "cy", 0.5 * camera.height) - 0.5;
+  return camera;
+}
+
+std::optional<Distortion> LensOf(const JsonEntry& entry) {
+  std::vector<double> coefficients;
+  for (const char* name : {"k1", "k2", "p1", "p2", "k3"}) {
+    coefficients.push_back(RealOr(entry, name, 0.0));
+  }
+  std::string model = entry.Has("camera_model") ? entry.Text("camera_model") : "OPENCV";
+  if (entry.Flag("is_fisheye", false)) model = "fisheye";  // of instant-ngp
+  if (model == "FULL_OPENCV") model = "OPENCV";            // it has no more than these here
+  const auto distortion = ParseLens(model, coefficients, entry.place());
+  if (RealOr(entry, "k4", 0.0) != 0.0) entry.Refuse("k4", "0: no lens model here has it");
+  return distortion;
+}
+
+// A frame that names a camera key has to say what all do.
+void RefuseOtherCameras(const JsonEntry& all) {
+  const json& frames = all.List("frames");
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const JsonEntry frame(frames[i], fmt::format("{}#/frames/{}", all.place(), i));
+    for (const char* key : kCameraKeys) {
+      if (!frame.Has(key) || (all.Has(key) && frame.Field(key) == all.Field(key))) continue;
+      frame.Refuse(key, "one camera for all frames, in the file's own " + std::string(key));
+    }
+  }
+}
+
+NamedPose ParsePose(const JsonEntry& frame) {
+  const json& rows = frame.List("transform_matrix");
+  Eigen::Matrix4d matrix;
+  for (size_t r = 0; r < 4; ++r) {
+    for (size_t c = 0; c < 4; ++c) {
+      if (rows.size() != 4 || !rows[r].is_array() || rows[r].size() != 4 ||
+          !rows[r][c].is_number()) {
+        frame.Refuse("transform_matrix", "4 rows of 4 numbers");
+      }
+      matrix(static_cast<int>(r), static_cast<int>(c)) = rows[r][c].get<double>();
+    }
+  }
+  const Eigen::Quaterniond world_from_opengl =
+      NearestRotation(matrix.topLeftCorner<3, 3>(), frame.place());
+  const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
+  return {frame.place(),
+          frame.Text("file_path"),
+          {world_from_opengl * half_turn_about_x, matrix.topRightCorner<3, 1>()}};
+}
+
+}  // namespace
+
+LensCamera ReadNerfstudioCamera(const std::filesystem::path& path) {
+  const json document = ParseJsonFile(path);
+  const JsonEntry entry(document, path.string());
+  if (entry.Has("frames")) RefuseOtherCameras(entry);
+  return {ParseCamera(entry), LensOf(entry)};
+}
+
+std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path) {
+  const json document = ParseJsonFile(path);
+  const JsonEntry entry(document, path.string());
+  const json& frames = entry.List("frames");
+  std::vector<NamedPose> poses;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    poses.push_back(
+        ParsePose(JsonEntry(frames[i], fmt::format("{}#/frames/{}", path.string(), i))));
+  }
+  if (poses.empty()) entry.Refuse("frames", "at least one frame");
+  for (const char* name : {"applied_transform", "applied_scale"}) {
+    if (!entry.Has(name)) continue;
+    fmt::print("{}: {} is not undone: the world is that of its frames\n", path.filename().string(),
+               name);
+  }
+  return poses;
+}
+
+std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path) {
+  const json document = ParseJsonFile(path);
+  const json& frames = JsonEntry(document, path.string()).List("frames");
+  std::vector<ListedImage> images;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const JsonEntry frame(frames[i], fmt::format("{}#/frames/{}", path.string(), i));
+    images.push_back({static_cast<double>(i), frame.Text("file_path")});
+  }
+  if (images.empty()) throw InputError(path.string() + ": lists no image");
+  return images;
+}
+
+bool IsNerfstudio(const std::filesystem::path& path) {
+  const json document = ParseJsonFile(path);
+  return document.is_object() && (document.contains("frames") || document.contains("fl_x") ||
+                                  document.contains("camera_angle_x"));
+}
+
+}  // namespace soslam

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dataset/lens_camera.h"
+#include "dataset/named_pose.h"
+#include "dataset/tum_list.h"
+
+namespace soslam {
+
+// nerfstudio's transforms.json, also as instant-ngp writes it. The readers throw InputError with
+// file and JSON pointer.
+
+// The camera: w, h, fl_x, fl_y (that of x when absent; camera_angle_x in place of both), cx, cy
+// (the middle when absent), k1, k2, k3, p1, p2, camera_model. What a frame says of its own has to
+// be the same. Pixel (0, 0) is the outer corner of the top-left one: half a pixel is taken off cx,
+// cy.
+LensCamera ReadNerfstudioCamera(const std::filesystem::path& path);
+
+// The poses of "frames": "transform_matrix", 4 x 4, is world_from_camera with the camera axes of
+// OpenGL (x right, y up, z backward), which become x right, y down, z forward here. The image is
+// "file_path". In file order; at least one. An "applied_transform" or "applied_scale", which say
+// how the world came from that of the reconstruction, is not undone, and that is said on stdout.
+std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path);
+
+// Its frames as a list of images, a second apart.
+std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path);
+
+// Whether a JSON file is one of these, not a camera.json.
+bool IsNerfstudio(const std::filesystem::path& path);
+
+}  // namespace soslam

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/object_ids.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace soslam {
+namespace {
+
+// How often each id is of several boxes of one image; ids below 0 do not count.
+std::map<int, int> ImagesWithSeveral(const std::vector<LabelledBox>& boxes) {
+  std::map<std::pair<FrameKey, int>, int> counts;
+  std::map<int, int> images;
+  for (const LabelledBox& box : boxes) {
+    if (!box.object_id || *box.object_id < 0) continue;
+    if (++counts[{box.frame, *box.object_id}] == 2) ++images[*box.object_id];
+  }
+  return images;
+}
+
+bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
+  const bool has_others = std::ranges::any_of(
+      boxes, [](const LabelledBox& box) { return box.object_id && *box.object_id > 0; });
+  const auto images = ImagesWithSeveral(boxes);
+  return images.size() == 1 && images.contains(0) && images.at(0) >= (has_others ? 2 : 1);
+}
+
+}  // namespace
+
+std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
+                                             const std::vector<ListedObject>& objects,
+                                             const std::filesystem::path& file,
+                                             RejectionCounts* rejected) {
+  if (!HaveObjectIds(boxes)) return boxes;
+  std::set<int> listed;
+  for (const ListedObject& object : objects) listed.insert(object.id);
+  const bool zero_is_of_none = ZeroIsOfNoTrack(boxes);
+  std::set<int> ids_of_none;
+  for (LabelledBox& box : boxes) {
+    if (!box.object_id || listed.contains(*box.object_id)) continue;
+    if (*box.object_id > 0 || (*box.object_id == 0 && !zero_is_of_none)) continue;
+    ids_of_none.insert(*box.object_id);
+    box.object_id.reset();
+  }
+  const std::string which = ids_of_none.empty()
+                                ? "no object_id"
+                                : fmt::format("object_id {}", fmt::join(ids_of_none, ", "));
+  if (!HaveObjectIds(boxes)) {
+    fmt::print(
+        "{}: all {} boxes have {}, that of no track: nobody has said which boxes are of one "
+        "object, so association has to be estimated\n",
+        file.filename().string(), boxes.size(), which);
+    return boxes;
+  }
+  const size_t without =
+      std::erase_if(boxes, [](const LabelledBox& box) { return !box.object_id.has_value(); });
+  if (without == 0) return boxes;
+  (*rejected)[RejectReasonName(RejectReason::kWithoutObjectId)] += static_cast<int>(without);
+  fmt::print("{}: {} of {} boxes have {}, that of no track, and are not used\n",
+             file.filename().string(), without, without + boxes.size(), which);
+  return boxes;
+}
+
+bool HaveObjectIds(const std::vector<LabelledBox>& boxes) {
+  return std::ranges::any_of(boxes,
+                             [](const LabelledBox& box) { return box.object_id.has_value(); });
+}
+
+}  // namespace soslam

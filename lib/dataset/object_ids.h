@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "dataset/dataset_json.h"
+#include "dataset/gate.h"
+#include "dataset/labelled_box.h"
+
+namespace soslam {
+
+// Trackers write an id for boxes of no track, too: one below 0, or 0 while real ids begin at 1. Ids
+// below 0 are taken for that; 0 where it is of several boxes of one image in at least two images
+// (one, when no box has another id), as no other id ever is. Ids that objects.json lists are real.
+//
+// Returns the boxes with ids, or all of them, without ids, when none has one. Those that are left
+// out are counted in `rejected`; what was done is said on stdout, with the name of the `file`.
+std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
+                                             const std::vector<ListedObject>& objects,
+                                             const std::filesystem::path& file,
+                                             RejectionCounts* rejected);
+
+// Whether any box says which object it is of.
+bool HaveObjectIds(const std::vector<LabelledBox>& boxes);
+
+}  // namespace soslam

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/calibration_file.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "dataset/camera_file.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+// As ROS' camera_calibration writes it.
+constexpr const char* kRos = R"(image_width: 640
+image_height: 480
+camera_name: head
+camera_matrix:
+  rows: 3
+  cols: 3
+  data: [500.0, 0.0, 319.5, 0.0, 510.0, 239.5, 0.0, 0.0, 1.0]
+distortion_model: plumb_bob
+distortion_coefficients:
+  rows: 1
+  cols: 5
+  data: [0.1, -0.2, 0.003, -0.004, 0.5]
+rectification_matrix:
+  rows: 3
+  cols: 3
+  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]
+)";
+
+// As `ros2 topic echo` writes a CameraInfo.
+constexpr const char* kRosMessage = R"(header:
+  stamp:
+    sec: 1
+  frame_id: camera
+height: 480
+width: 640
+distortion_model: rational_polynomial
+d:
+- 1.0
+- 2.0
+- 3.0
+- 4.0
+- 5.0
+- 6.0
+- 7.0
+- 8.0
+k:
+- 500.0
+- 0.0
+- 319.5
+- 0.0
+- 510.0
+- 239.5
+- 0.0
+- 0.0
+- 1.0
+---
+)";
+
+constexpr const char* kOpenCv = R"(%YAML:1.0
+---
+calibration_time: "Wed 25 Nov 2026"
+image_width: 640
+image_height: 480
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 500., 0., 3.195e+02, 0., 510.,
+       239.5, 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 5
+   cols: 1
+   dt: d
+   data: [ 0.1, -0.2, 0.003, -0.004, 0.5 ]
+)";
+
+constexpr const char* kEuroc = R"(sensor_type: camera
+comment: VI-Sensor cam0
+T_BS:
+  cols: 4
+  rows: 4
+  data: [0.0, -1.0, 0.0, -0.02,
+         1.0, 0.0, 0.0, -0.06,
+         0.0, 0.0, 1.0, 0.01,
+         0.0, 0.0, 0.0, 1.0]
+rate_hz: 20
+resolution: [640, 480]
+camera_model: pinhole
+intrinsics: [500, 510, 319.5, 239.5] #fu, fv, cu, cv
+distortion_model: radial-tangential
+distortion_coefficients: [0.1, -0.2, 0.003, -0.004]
+)";
+
+constexpr const char* kOrbSlam = R"(%YAML:1.0
+Camera.type: "PinHole"
+Camera1.fx: 500
+Camera1.fy: 510
+Camera1.cx: 319.5
+Camera1.cy: 239.5
+Camera1.k1: 0.1
+Camera1.k2: -0.2
+Camera1.p1: 0.003
+Camera1.p2: -0.004
+Camera.width: 640
+Camera.height: 480
+)";
+
+constexpr const char* kOpenCvXml = R"(<?xml version="1.0"?>
+<opencv_storage>
+<image_Width>640</image_Width>
+<image_Height>480</image_Height>
+<Camera_Matrix type_id="opencv-matrix">
+  <rows>3</rows><cols>3</cols><dt>d</dt>
+  <data>500. 0. 319.5 0. 510. 239.5 0. 0. 1.</data></Camera_Matrix>
+<Distortion_Coefficients type_id="opencv-matrix">
+  <rows>5</rows><cols>1</cols><dt>d</dt>
+  <data>0.1 -0.2 0.003 -0.004 0.5</data></Distortion_Coefficients>
+</opencv_storage>
+)";
+
+const Camera kCamera = {640, 480, 500, 510, 319.5, 239.5};
+
+class CalibrationFileTest : public testing::Test {
+ protected:
+  Calibration Read(const std::string& text, const std::string& name = "a.yaml") {
+    WriteBytes(folder_ / name, text);
+    return ReadCameraFile(folder_ / name);
+  }
+  void ExpectRefused(const std::string& from, const std::string& to,
+                     const std::vector<std::string>& words) {
+    std::string text = kRos;
+    text.replace(text.find(from), from.size(), to);
+    ExpectError<InputError>([&] { Read(text); }, words);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
+  const Distortion lens{0.1, -0.2, 0.003, -0.004, 0.5};
+  const Distortion lens_of_four{0.1, -0.2, 0.003, -0.004};
+  for (const auto& [text, name, distortion] :
+       std::vector<std::tuple<const char*, const char*, Distortion>>{
+           {kRos, "ros.yaml", lens},
+           {kRosMessage, "info.yml", {1, 2, 3, 4, 5, 6, 7, 8}},
+           {kOpenCv, "opencv.yml", lens},
+           {kOpenCvXml, "opencv.xml", lens},
+           {kEuroc, "sensor.yaml", lens_of_four},
+           {kOrbSlam, "orb.yaml", lens_of_four}}) {
+    const LensCamera read = Read(text, name).camera;
+    EXPECT_EQ(read.camera, kCamera) << name;
+    EXPECT_EQ(read.distortion, distortion) << name;
+  }
+}
+
+TEST_F(CalibrationFileTest, EurocSaysWhereTheCameraIs) {
+  EXPECT_FALSE(Read(kRos).body_from_camera);
+  const auto body_from_camera = Read(kEuroc).body_from_camera;
+  ASSERT_TRUE(body_from_camera);
+  EXPECT_TRUE(
+      (*body_from_camera * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(-0.02, 0.94, 0.01)));
+}
+
+TEST_F(CalibrationFileTest, BadCalibrationsAreNamed) {
+  ExpectRefused("image_width: 640", "name: x", {"a.yaml", "image_width"});
+  ExpectRefused("image_width: 640", "image_width: -1", {"image size is -1 x 480"});
+  ExpectRefused("camera_matrix", "matrix", {"no camera_matrix"});
+  ExpectRefused("[500.0, 0.0,", "[500.0,", {"camera matrix has 8 numbers; expected 9"});
+  ExpectRefused("[500.0, 0.0,", "[500.0, 2.5,", {"skew 2.5"});
+  ExpectRefused("[500.0", "[-500.0", {"focal lengths are -500 and 510"});
+  ExpectRefused("plumb_bob", "equidistant", {"'equidistant' is not supported", "undistort"});
+  ExpectRefused("-0.004, 0.5]", "-0.004, x]", {"distortion coefficients is 'x'"});
+  ExpectRefused("-0.004, 0.5]", "-0.004, 0.5, 1]", {"6 numbers"});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "dataset/dataset_json.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class CameraJsonTest : public testing::Test {
+ protected:
+  LensCamera Read(const std::string& more) {
+    WriteBytes(folder_ / "camera.json", R"({"width": 640, "height": 480, "fx": 500, "fy": 500,
+                                            "cx": 320, "cy": 240)" +
+                                            more + "}");
+    return ReadCamera(folder_ / "camera.json");
+  }
+  void ExpectRefused(const std::string& more, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { Read(more); }, words);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CameraJsonTest, CoefficientsAreInOpenCvsOrder) {
+  EXPECT_EQ(Read(R"(, "distortion": [0.1, -0.2, 0.003, -0.004, 0.5])").distortion,
+            (Distortion{0.1, -0.2, 0.003, -0.004, 0.5}));
+  EXPECT_EQ(Read(R"(, "distortion": [0.1, -0.2, 0.003, -0.004])").distortion,
+            (Distortion{0.1, -0.2, 0.003, -0.004}));
+  EXPECT_EQ(Read(R"(, "distortion": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14])").distortion,
+            (Distortion{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14}));
+  EXPECT_FALSE(Read("").distortion);
+  ExpectRefused(R"(, "distortion": [0.1, -0.2, 0.003])", {"camera.json", "3 numbers", "4, 5, 8"});
+  ExpectRefused(R"(, "distortion": null)", {"camera.json", "distortion is null"});
+  ExpectRefused(R"(, "distortion": [0.1, "0", 0, 0])", {"camera.json", "a list of numbers"});
+}
+
+TEST_F(CameraJsonTest, ModelsAreReadUnderAllTheirNames) {
+  for (const char* name : {"model", "camera_model", "distortion_model"}) {
+    const std::string key = std::string(", \"") + name + "\": ";
+    EXPECT_TRUE(Read(key + R"("radtan", "distortion": [0.1, 0, 0, 0])").distortion);
+    ExpectRefused(key + R"("equidistant", "distortion": [0.1, 0, 0, 0])",
+                  {"camera.json", "'equidistant' is not supported", "undistort"});
+    ExpectRefused(key + R"("rational_polynomial", "distortion": [0.1, 0, 0, 0])", {"8, 12, 14"});
+  }
+  EXPECT_TRUE(
+      Read(
+          R"(, "model": "pinhole", "distortion_model": "plumb_bob", "distortion": [1, 0, 0, 0, 0])")
+          .distortion);
+}
+
+TEST_F(CameraJsonTest, UnknownKeysAreRefusedWithWhatTheyMayMean) {
+  ExpectRefused(R"(, "k1": -0.28, "k2": 0.07)",
+                {"camera.json: unknown key \"k1\"", "width, height, fx, fy",
+                 "\"distortion\": [k1, k2, p1, p2, k3]"});
+  ExpectRefused(R"(, "distorsion": [0, 0, 0, 0, 0])", {"did you mean \"distortion\"?"});
+  ExpectRefused(R"(, "distortion_coefficients": [0, 0, 0, 0, 0])", {"\"distortion\": [k1"});
+  ExpectRefused(R"(, "skew": 12)", {"\"skew\"", "not skewed"});
+  ExpectRefused(R"(, "colour": "red")", {"unknown key \"colour\""});
+  Read(R"(, "name": "a", "description": "b", "comment": "c", "source": "d", "fps": 30,
+          "depth_scale": 5000)");
+}
+
+TEST_F(CameraJsonTest, UnknownKeysOfPlanesAndObjectsAreRefused) {
+  WriteBytes(folder_ / "planes.json", R"([{"id": 0, "normal": [0, 0, 1], "offset": 0}])");
+  ExpectError<InputError>([&] { ReadPlanes(folder_ / "planes.json"); },
+                          {"planes.json[0]: unknown key \"offset\"", "normal . x + d = 0"});
+  for (const auto& [key, words] : std::vector<std::pair<std::string, std::string>>{
+           {"yaw", "quaternion_xyzw"},
+           {"size", "half_axes"},
+           {"position", "\"center\""},
+           {"mirror_symetric", "did you mean \"mirror_symmetric\"?"}}) {
+    WriteBytes(folder_ / "objects.json",
+               R"([{"id": 0, "label": "cup"}, {"id": 1, "label": "cup", ")" + key + "\": 0.3}]");
+    ExpectError<InputError>([&] { ReadObjects(folder_ / "objects.json"); },
+                            {"objects.json[1]: unknown key \"" + key + "\"", words});
+  }
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/nerfstudio.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "dataset/camera_file.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+class NerfstudioTest : public testing::Test {
+ protected:
+  std::filesystem::path Write() {
+    WriteBytes(folder_ / "transforms.json", document_.dump());
+    return folder_ / "transforms.json";
+  }
+  LensCamera Camera() { return ReadCameraFile(Write()).camera; }
+  void ExpectRefused(const char* pointer, const json& value,
+                     const std::vector<std::string>& words) {
+    const json before = document_;
+    document_[json::json_pointer(pointer)] = value;
+    ExpectError<InputError>(
+        [&] {
+          Camera();
+          ReadNerfstudioPoses(Write());
+        },
+        words);
+    document_ = before;
+  }
+
+  // A camera at (1, 2, 3) with the world's axes: by OpenGL it looks along -z, with y up.
+  json document_ = {
+      {"camera_model", "OPENCV"},
+      {"w", 640},
+      {"h", 480.0},
+      {"fl_x", 500.0},
+      {"fl_y", 510.0},
+      {"cx", 320.0},
+      {"cy", 240.0},
+      {"k1", 0.1},
+      {"p2", -0.2},
+      {"frames",
+       {{{"file_path", "./images/a.jpg"},
+         {"transform_matrix", {{1, 0, 0, 1}, {0, 1, 0, 2}, {0, 0, 1, 3}, {0, 0, 0, 1}}}}}}};
+  TemporaryFolder folder_;
+};
+
+TEST_F(NerfstudioTest, CameraCountsFromTheCorner) {
+  const LensCamera read = Camera();
+  EXPECT_EQ(read.camera, (soslam::Camera{640, 480, 500, 510, 319.5, 239.5}));
+  EXPECT_EQ(read.distortion, (Distortion{0.1, 0, 0, -0.2}));
+}
+
+TEST_F(NerfstudioTest, WhatIsAbsentHasItsUsualValue) {
+  for (const char* key : {"fl_x", "fl_y", "cx", "cy", "k1", "p2", "camera_model"}) {
+    document_.erase(key);
+  }
+  document_["camera_angle_x"] = 2.0 * std::atan(0.8);  // half of the width over the focal length
+  const LensCamera read = Camera();
+  EXPECT_NEAR(read.camera.fx, 400.0, 1e-9);
+  EXPECT_EQ(read.camera.fy, read.camera.fx);
+  EXPECT_EQ(read.camera.cx, 319.5);
+}
+
+TEST_F(NerfstudioTest, PosesHaveOpenGlAxes) {
+  document_["applied_transform"] = json::array();
+  testing::internal::CaptureStdout();
+  const auto poses = ReadNerfstudioPoses(Write());
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("transforms.json: applied_transform is not undone"));
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].image, "./images/a.jpg");
+  const Rigid3d& pose = poses[0].world_from_camera;
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(1, 2, -2)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 5, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(6, 2, 3)));
+}
+
+TEST_F(NerfstudioTest, FramesAreAListOfImages) {
+  const auto images = ReadNerfstudioImages(Write());
+  ASSERT_EQ(images.size(), 1u);
+  EXPECT_EQ(images[0].image, "./images/a.jpg");
+  EXPECT_EQ(images[0].timestamp, 0.0);
+}
+
+TEST_F(NerfstudioTest, BadFilesAreNamed) {
+  ExpectRefused("/camera_model", "OPENCV_FISHEYE", {"transforms.json", "not supported"});
+  ExpectRefused("/is_fisheye", true, {"'fisheye' is not supported"});
+  ExpectRefused("/k4", 0.1, {"k4 is 0.1"});
+  ExpectRefused("/w", 640.5, {"w is 640.5", "pixels"});
+  ExpectRefused("/h", 1e9, {"h is"});
+  ExpectRefused("/fl_x", 0, {"fl_x is 0"});
+  ExpectRefused("/frames", json::array(), {"frames is []"});
+  ExpectRefused("/frames/0/fl_x", 400, {"transforms.json#/frames/0", "fl_x is 400", "one camera"});
+  ExpectRefused("/frames/0/transform_matrix", {{1, 0, 0, 1}}, {"#/frames/0", "4 rows"});
+  ExpectRefused("/frames/0/transform_matrix/0/0", 2, {"#/frames/0", "not orthonormal"});
+  ExpectRefused("/frames/0/transform_matrix/0/0", -1, {"#/frames/0", "determinant -1"});
+  ExpectRefused("/frames/0/file_path", "", {"#/frames/0", "file_path"});
+  document_["frames"][0]["fl_x"] = 500.0;  // that of all
+  EXPECT_EQ(Camera().camera.fx, 500.0);
+}
+
+}  // namespace
+}  // namespace soslam

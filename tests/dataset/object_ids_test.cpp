@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/object_ids.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace soslam {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+// Boxes of frame 0, 1, ... with these ids each.
+std::vector<LabelledBox> Boxes(const std::vector<std::vector<std::optional<int>>>& frames) {
+  std::vector<LabelledBox> boxes;
+  for (size_t frame = 0; frame < frames.size(); ++frame) {
+    for (const auto& id : frames[frame]) {
+      boxes.push_back({"", static_cast<int>(frame), "cup", 1.0, {0, 0, 1, 1}, id});
+    }
+  }
+  return boxes;
+}
+
+class ObjectIdsTest : public testing::Test {
+ protected:
+  // The ids that are left.
+  std::vector<int> Ids(const std::vector<std::vector<std::optional<int>>>& frames) {
+    testing::internal::CaptureStdout();
+    boxes_ = WithoutIdsOfNoTrack(Boxes(frames), listed_, "a/detections.csv", &rejected_);
+    printed_ = testing::internal::GetCapturedStdout();
+    std::vector<int> ids;
+    for (const LabelledBox& box : boxes_) {
+      if (box.object_id) ids.push_back(*box.object_id);
+    }
+    return ids;
+  }
+
+  std::vector<ListedObject> listed_;
+  std::vector<LabelledBox> boxes_;
+  RejectionCounts rejected_;
+  std::string printed_;
+};
+
+TEST_F(ObjectIdsTest, IdsOfTracksStay) {
+  EXPECT_THAT(Ids({{0, 1}, {0, 2}}), ElementsAre(0, 1, 0, 2));
+  EXPECT_THAT(Ids({{0, 0, 1}, {0, 1}}), ElementsAre(0, 0, 1, 0, 1));        // once only
+  EXPECT_THAT(Ids({{0, 0, 1, 1}, {0, 0}}), ElementsAre(0, 0, 1, 1, 0, 0));  // so has another id
+  EXPECT_THAT(Ids({{0}, {0}}), ElementsAre(0, 0));                          // one object
+  EXPECT_THAT(rejected_, IsEmpty());
+  EXPECT_EQ(printed_, "");
+}
+
+TEST_F(ObjectIdsTest, BoxesOfNoTrackAreLeftOutAndCounted) {
+  EXPECT_THAT(Ids({{1, -1, -1}, {1, std::nullopt, -7}}), ElementsAre(1, 1));
+  EXPECT_EQ(boxes_.size(), 2u);
+  EXPECT_THAT(rejected_, ElementsAre(Pair("without_object_id", 4)));
+  EXPECT_THAT(printed_, HasSubstr("detections.csv: 4 of 6 boxes have object_id -7, -1"));
+}
+
+TEST_F(ObjectIdsTest, ZeroIsNoTrackWhereItAloneIsOfSeveralBoxes) {
+  EXPECT_THAT(Ids({{0, 0, 1}, {0, 0, 0, 1, 2}, {0}}), ElementsAre(1, 1, 2));
+  EXPECT_THAT(rejected_, ElementsAre(Pair("without_object_id", 6)));
+}
+
+TEST_F(ObjectIdsTest, ATableWithoutTracksHasNoIds) {
+  for (const auto& frames : std::vector<std::vector<std::vector<std::optional<int>>>>{
+           {{-1, -1}, {-1, -2}}, {{0, 0}, {0, -1}}}) {
+    EXPECT_THAT(Ids(frames), IsEmpty());
+    EXPECT_EQ(boxes_.size(), 4u);
+    EXPECT_THAT(printed_, HasSubstr("all 4 boxes"));
+    EXPECT_THAT(printed_, HasSubstr("association has to be estimated"));
+  }
+  EXPECT_THAT(rejected_, IsEmpty());
+}
+
+TEST_F(ObjectIdsTest, ListedObjectsAreObjects) {
+  listed_ = {{-1, "cup", std::nullopt, std::nullopt}, {0, "cup", std::nullopt, std::nullopt}};
+  EXPECT_THAT(Ids({{-1, 0, 0}, {0, 0, -2}}), ElementsAre(-1, 0, 0, 0, 0));
+}
+
+}  // namespace
+}  // namespace soslam

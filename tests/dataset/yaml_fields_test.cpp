@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/yaml_fields.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "dataset/xml_fields.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+
+NamedFields Parse(const std::string& text) { return YamlFields(text, "a.yaml"); }
+
+TEST(YamlFieldsTest, MapsAndListsOfBothStyles) {
+  EXPECT_THAT(
+      Parse("%YAML:1.0\n---\n# a comment\nwidth: 640 # pixels\nmatrix: !!opencv-matrix\n"
+            "   rows: 2\n   data: [ 1., 2.,\n       3., 4. ]\nempty:\n"
+            "names:\n  - 'a: b'\n  - \"c # d\"\nK:\n- 1\n- 2\nmap: {x: [1, 2], 'y': z}\n"),
+      ElementsAre(Pair("K", ElementsAre("1", "2")), Pair("map.x", ElementsAre("1", "2")),
+                  Pair("map.y", ElementsAre("z")),
+                  Pair("matrix.data", ElementsAre("1.", "2.", "3.", "4.")),
+                  Pair("matrix.rows", ElementsAre("2")),
+                  Pair("names", ElementsAre("a: b", "c # d")), Pair("width", ElementsAre("640"))));
+}
+
+TEST(YamlFieldsTest, NestedMapsEndWithTheirIndentation) {
+  EXPECT_THAT(Parse("a:\n  b:\n    c: 1\n  d: 2\ne: 3\n"),
+              ElementsAre(Pair("a.b.c", ElementsAre("1")), Pair("a.d", ElementsAre("2")),
+                          Pair("e", ElementsAre("3"))));
+}
+
+TEST(YamlFieldsTest, BlocksOfTextAndFurtherDocumentsAreLeftOut) {
+  EXPECT_THAT(Parse("download: |\n  import os\n\n  x = [1\nnames: [a]\n---\nnames: [b]\n"),
+              ElementsAre(Pair("names", ElementsAre("a"))));
+  EXPECT_THAT(Parse("list: []\n"), ElementsAre(Pair("list", IsEmpty())));
+}
+
+TEST(YamlFieldsTest, WhatIsNotReadIsNamed) {
+  const auto refused = [](const std::string& text, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { Parse(text); }, words);
+  };
+  refused("a: 1\nwhat\n", {"a.yaml:2", "'what'", "key: value"});
+  refused("a: 1\na: 2\n", {"a.yaml:2", "key a twice"});
+  refused("a: [1, 2\nb: 3\n", {"not closed"});
+  refused("- 1\n", {"a.yaml:1", "no list"});
+  refused("a:\n  - b: 1\n", {"a.yaml:2", "list of maps"});
+  refused("a: &anchor\n", {"a.yaml:1", "anchor"});
+  refused("a:\n\tb: 1\n", {"a.yaml:2", "tab"});
+  std::string deep;
+  for (int i = 0; i < 30; ++i) deep += std::string(static_cast<size_t>(i), ' ') + "a:\n";
+  refused(deep, {"nested too deep"});
+  refused("a: " + std::string(50, '[') + std::string(50, ']'), {"nested too deep"});
+  std::string many = "a: [1";
+  for (int i = 0; i < 100000; ++i) many += ",1";
+  refused(many + "]", {"more than 100000 values"});
+}
+
+class XmlFieldsTest : public testing::Test {
+ protected:
+  NamedFields Read(const std::string& text) {
+    WriteBytes(folder_ / "a.xml", text);
+    return ReadXmlFields(folder_ / "a.xml");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(XmlFieldsTest, WordsByElement) {
+  EXPECT_THAT(Read("<?xml version=\"1.0\"?>\n<opencv_storage>\n<!-- <no> --><width>640</width>\n"
+                   "<m type_id=\"opencv-matrix\"><rows>1</rows><data>\n 1. 2.\n 3.</data></m>"
+                   "<none/></opencv_storage>\n"),
+              ElementsAre(Pair("m", IsEmpty()), Pair("m.data", ElementsAre("1.", "2.", "3.")),
+                          Pair("m.rows", ElementsAre("1")), Pair("none", IsEmpty()),
+                          Pair("width", ElementsAre("640"))));
+}
+
+TEST_F(XmlFieldsTest, BadFilesAreNamed) {
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { Read(text); }, words);
+  };
+  refused("", {"a.xml", "no elements"});
+  refused("<a><b>1</b>", {"a.xml", "<a> that is not closed"});
+  refused("<a><b>1</c></a>", {"</c> of nothing"});
+  refused("</a>", {"</a> of nothing"});
+  refused("<a><b>1</b><b>2</b></a>", {"<b> twice"});
+  refused("<a", {"< without >"});
+  std::string deep;
+  for (int i = 0; i < 30; ++i) deep += "<a>";
+  refused(deep, {"nested too deep"});
+}
+
+}  // namespace
+}  // namespace soslam
