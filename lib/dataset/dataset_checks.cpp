@@ -23,7 +23,8 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   for (const Check check : {&CheckPoses, &CheckObjects}) {
     if (findings.empty()) Append(check, view, &findings);
   }
-  for (const Check check : {&CheckTruth, &CheckPlanes, &CheckScores, &CheckRejections}) {
+  for (const Check check :
+       {&CheckTruth, &CheckPlanes, &CheckScores, &CheckLabels, &CheckRejections}) {
     Append(check, view, &findings);
   }
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());

@@ -32,6 +32,8 @@ std::vector<Finding> CheckImages(const ImportView& view);
 std::vector<Finding> CheckBoxes(const ImportView& view);
 // Scores outside 0 to 1.
 std::vector<Finding> CheckScores(const ImportView& view);
+// Class names that are shifted against the classes: counted from 1, or with blank lines between.
+std::vector<Finding> CheckLabels(const ImportView& view);
 // Gates that drop more than a third of the detections.
 std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.

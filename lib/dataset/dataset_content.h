@@ -31,7 +31,11 @@ struct DatasetContent {
   bool has_object_ids = true;   // otherwise each row is of an object of its own
   std::optional<Distortion> image_distortion = std::nullopt;  // see Sequence
   std::vector<std::filesystem::path> files;                   // that were read
-  std::vector<Finding> findings = {};                         // of the files themselves
+  // Of the detector that numbers its classes, by class, and the file that has them; empty where
+  // detections name their labels.
+  std::vector<std::string> class_names = {};
+  std::optional<std::filesystem::path> class_names_file = std::nullopt;
+  std::vector<Finding> findings = {};  // of the files themselves
 };
 
 }  // namespace soslam

@@ -43,7 +43,7 @@ void SetTracks(const Rows& rows, size_t extra) {
 
 void ReadPairs(const Rows& rows) {
   const YoloRow* other = nullptr;
-  for (const auto [score, track] : {std::pair<size_t, size_t>{0, 1}, {1, 0}}) {
+  for (const auto& [score, track] : {std::pair<size_t, size_t>{0, 1}, {1, 0}}) {
     const YoloRow* no_score = FirstOther(rows, score, &IsScore);
     const YoloRow* no_track = FirstOther(rows, track, &IsTrack);
     if (no_score == nullptr && no_track == nullptr) {

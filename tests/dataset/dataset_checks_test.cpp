@@ -199,6 +199,46 @@ TEST_F(DatasetChecksTest, BoxesThatTheBorderGateDrops) {
               ElementsAre(AllOf(HasSubstr("rejected_near_border"), HasSubstr("border_px"))));
 }
 
+// Labels.
+
+class ClassNamesTest : public DatasetChecksTest {
+ protected:
+  // YOLO's labels with these classes for the five balls, and these lines of names.
+  void WriteYolo(const std::array<int, 5>& classes, const std::string& names) {
+    std::filesystem::create_directories(folder / "labels");
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      std::string lines;
+      for (size_t ball = 0; ball < classes.size(); ++ball) {
+        const Box box = dataset.BoxOf(ball, frame);
+        lines += fmt::format("{} {} {} {} {}\n", classes[ball], (box.Centre().x() + 0.5) / 640,
+                             (box.Centre().y() + 0.5) / 480, box.Width() / 640, box.Height() / 480);
+      }
+      std::ofstream(folder / fmt::format("labels/{:06}.txt", frame)) << lines;
+    }
+    std::ofstream(folder / "names.txt") << names;
+    options.detections = "labels";
+    options.folder.detections_format = DetectionsFormat::kYolo;
+    options.folder.class_names = "names.txt";
+    dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  }
+};
+
+TEST_F(ClassNamesTest, AreRight) {
+  WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\nvase\nbowl\nbottle\ntable\n\n");
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(ClassNamesTest, AreCountedFromOne) {
+  WriteYolo({1, 3, 5, 7, 9}, "ball\na\ncup\nb\nvase\nc\nbowl\nd\nbottle\ne\n");
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("class_numbers: 0 of 120"),
+                                            HasSubstr("but 120 if"), HasSubstr("one lower"))));
+}
+
+TEST_F(ClassNamesTest, HaveABlankLineBetween) {
+  WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\n\nvase\nbowl\nbottle\n");
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("names.txt has 1 blank lines")));
+}
+
 // Poses.
 
 struct WrittenPose {
