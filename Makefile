@@ -79,7 +79,7 @@ endif
 help: ## List the targets
 	@echo 'make <target> [NAME=value ...]'
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16 | sed 's/^/  /'
-	@echo 'DATASET=<name of a folder in DATA_ROOT>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
+	@echo 'DATASET=<folder in DATA_ROOT, or its path>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
 	@echo 'RESULTS=results, PIPELINES=pipelines, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
 	@echo 'OUTSIDE_PATHS=--allow_outside_paths (images may lie outside their dataset: see docs/datasets.md)'
 	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
