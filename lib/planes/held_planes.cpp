@@ -150,6 +150,14 @@ void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<Sh
   hypothesis->planes = std::move(held);
 }
 
+// Boxes may lead ways to hold cameras to one up although they began at different ones.
+bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& hypothesis) {
+  return std::ranges::any_of(followed, [&](const Hypothesis& other) {
+    return other.planes && hypothesis.planes &&
+           IsSameUp(other.evidence.up_in_world, hypothesis.evidence.up_in_world);
+  });
+}
+
 // `tried`: also those that were given up for what their bodies cost, and are not among `followed`.
 HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, std::vector<Hypothesis> followed) {
   const HoldingChoice choice = Choose(followed);
@@ -183,7 +191,7 @@ HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<Segmen
     tried.push_back({hypotheses[i].evidence.holding, by_bodies.costs[i], 0.0, std::nullopt});
     if (by_bodies.costs[i] > kHopeless) continue;
     FollowToPlanes(sequence, priors, options, threads, &hypotheses[i]);
-    followed.push_back(std::move(hypotheses[i]));
+    if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(std::move(hypotheses[i]));
   }
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });

@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
                      {"objects.json", "zero byte"}},
         RefusedInput{"ImageBeyondMemory",
                      "import",
-                     DatasetText("camera.json", "\"width\":", "\"width\": 2000000000, \"old\":"),
+                     DatasetText("camera.json", "\"width\":", "\"width\": 2000000000, \"source\":"),
                      kInput,
                      {"camera.json", "pixels in all"}},
         RefusedInput{"CameraBeyondMemory",

@@ -175,7 +175,7 @@ TEST_F(RunEdgesTest, FailureLeavesTheOldResult) {
 }
 
 TEST_F(RunEdgesTest, ImagesOutsideTheDatasetAreRefused) {
-  const std::string outside = (folder_ / "rgb/0.png").string();
+  const std::string outside = (folder_.path().parent_path() / "0.png").string();
   for (const std::string& path :
        {std::string("../0.png"), std::string("rgb/../../0.png"), outside}) {
     sequence_.frames[3].image = path;
