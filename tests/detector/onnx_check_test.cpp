@@ -51,7 +51,7 @@ TEST(OnnxCheckTest, WholeTensorsAreAccepted) {
 }
 
 TEST(OnnxCheckTest, TensorsWithOtherNumbersThanTheirShapeNeedsAreRefused) {
-  for (const size_t bytes : {0, 20, 23, 25, 28}) {
+  for (const size_t bytes : {0u, 20u, 23u, 25u, 28u}) {
     ExpectRefused(File(Tensor(kFloat, {2, 3}).Text(kRawData, Zeros(bytes))),
                   {"net.onnx", "'weights'"});
   }

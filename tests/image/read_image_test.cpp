@@ -177,7 +177,7 @@ TEST_F(ReadImageTest, CutShortBeforeAnotherImageIsRefused) {
   const std::string jpeg =
       JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(1, ByteOrder::kBigEndian, thumbnail));
   EXPECT_NO_THROW(ReadGreyImage(Write("whole.jpg", jpeg)));
-  for (const size_t missing : {2, 10, 100}) {
+  for (const size_t missing : {2u, 10u, 100u}) {
     const std::string cut = jpeg.substr(0, jpeg.size() - missing);
     for (const std::string& tail : {std::string(), thumbnail, std::string("\xff\xc0\xff\xd9")}) {
       const auto path = Write("cut.jpg", cut + tail);
