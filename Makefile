@@ -119,7 +119,7 @@ locked-run: locked-plan
 	else echo '# then the stages that $(PLAN) lists'; fi
 
 # What of the plan is made: all variants, or `imports`.
-GOAL ?= all
+GOAL := all
 
 # Killed stages leave temporaries and what says that they began. (Those of exports and pages may be of a run beside
 # this one.) After the clock was set back, files from the future would pass for newer than what changes from now on:
@@ -188,12 +188,10 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	  echo 'export: no map.json of VARIANT="$(VARIANT)" in $(RESULTS)/$(DATASET); make run writes it' >&2; }; \
 	exit $$status
 
-# Variants that were planned already; the import runs anew where its files have changed, so that it looks at them.
-PLANNED = $(sort $(patsubst $(RESULTS)/$(DATASET)/%/stages.txt,%,$(wildcard $(RESULTS)/$(DATASET)/*/stages.txt)))
-
+# The import runs anew where its files have changed, so that it looks at them.
 .PHONY: doctor
 doctor: build ## Say what import and all stages that ran for DATASET=<name> found: errors, warnings, remedies
-	+@said=$$($(MAKE) run-built GOAL=imports VARIANT='$(or $(PLANNED),all)' 2>&1 > /dev/null) || \
+	+@said=$$($(MAKE) run-built GOAL=imports VARIANT=planned 2>&1 > /dev/null) || \
 	  test -e $(PLAN) || { echo "$$said" >&2; exit 3; }
 	@$(BIN)/soslam-doctor --results $(RESULTS) --name '$(DATASET)'
 

@@ -49,9 +49,11 @@ const BoxConvention& ConventionOf(const ImportOptions& options) {
   }
 }
 
-// Has an area, and lies in the image up to a few per cent, which detectors and roundings take.
+// What detectors and roundings take, as a share of the image's sides.
+constexpr double kMargin = 0.03;
+
+// Has an area, and lies in the image up to the margin.
 bool IsPlausible(const Box& box, const Camera& camera) {
-  constexpr double kMargin = 0.03;
   const double margin_x = kMargin * camera.width;
   const double margin_y = kMargin * camera.height;
   return box.Width() > 0.0 && box.Height() > 0.0 && box.x_min >= -margin_x &&
@@ -72,7 +74,7 @@ const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camer
   const BoxConvention* best = nullptr;
   int most = static_cast<int>(kNearlyAll * static_cast<double>(boxes.size()));
   for (const BoxConvention& other : kConventions) {
-    if (other.name == assumed.name) continue;
+    if (&other == &assumed) continue;
     const int plausible = CountPlausible(
         boxes, camera, [&](const Box& box) { return other.read(assumed.write(box)); });
     if (plausible <= most) continue;
@@ -112,7 +114,13 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
   const int bad = static_cast<int>(boxes.size()) - plausible;
   if (bad < kFewest || bad <= kTolerated * all) return {};
   const BoxConvention& assumed = ConventionOf(options);
-  const bool is_mostly_right = plausible > kMostly * all;
+  const BoxConvention* better = BetterConvention(boxes, camera, assumed);
+  // Boxes of whole objects that the image cuts reach out of it on all sides.
+  const auto is_left_or_above = [&](const Box& box) {
+    return box.x_min < -kMargin * camera.width || box.y_min < -kMargin * camera.height;
+  };
+  const bool is_larger = std::ranges::none_of(boxes, is_left_or_above);
+  const bool is_mostly_right = plausible > kMostly * all || (better == nullptr && !is_larger);
   const Eigen::Vector2d extent = Extent(boxes);
   Finding finding{
       "box_convention",
@@ -124,26 +132,38 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
       "boxes in the image",
       "",
       ""};
-  if (const BoxConvention* better = BetterConvention(boxes, camera, assumed)) {
+  if (better != nullptr) {
     finding.cause = fmt::format("boxes that are meant as {}", better->name);
     finding.remedy = fmt::format("write {}, or name the right detections_format", assumed.name);
-    return {finding};
+  } else if (is_larger) {
+    finding.cause = "boxes of images of another size, or of another camera";
+    finding.remedy = fmt::format(
+        "give boxes in pixels of {} x {}, or the camera of the images that "
+        "the detector saw",
+        camera.width, camera.height);
+  } else {
+    finding.cause = "boxes of whole objects that the image cuts, or of another camera";
+    finding.remedy = "cut the boxes at the border of the image, as detectors do";
   }
-  finding.cause = "boxes of images of another size, or of another camera";
-  finding.remedy = fmt::format(
-      "give boxes in pixels of {} x {}, or the camera of the images that "
-      "the detector saw",
-      camera.width, camera.height);
   return {finding};
 }
 
-// Boxes of images that were made smaller end where those images do.
+// Boxes of images that were made smaller begin at the left border, and some end where those images
+// do.
 std::vector<Finding> CheckUnusedPart(const std::vector<Box>& boxes, const Camera& camera) {
   constexpr size_t kFewest = 30;
   constexpr double kLargestPart = 0.7;
+  constexpr double kAtBorder = 0.02;
+  constexpr double kSameEndPx = 1.5;
   const Eigen::Vector2d extent = Extent(boxes);
   const Eigen::Vector2d part = extent.cwiseQuotient(Eigen::Vector2d(camera.width, camera.height));
   if (boxes.size() < kFewest || part.maxCoeff() > kLargestPart) return {};
+  const bool begins = std::ranges::any_of(
+      boxes, [&](const Box& box) { return box.x_min < kAtBorder * camera.width; });
+  const auto ends = std::ranges::count_if(boxes, [&](const Box& box) {
+    return box.x_max > extent.x() - kSameEndPx || box.y_max > extent.y() - kSameEndPx;
+  });
+  if (!begins || ends < 3) return {};
   return {
       {"box_extent", Severity::kWarning,
        fmt::format("none of {} boxes reaches farther than {:.0f}, {:.0f} in an image of {} x {}",

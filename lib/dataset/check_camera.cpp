@@ -21,8 +21,9 @@ std::string InWords(const Camera& camera) {
 
 // Where the principal point would be the middle of the image if its sides were swapped.
 bool HasSwappedSides(const Camera& camera) {
-  const bool is_square = IsAbout(camera.width, camera.height);
-  return !is_square && IsAbout(camera.cx, 0.5 * camera.height) &&
+  const bool is_off =
+      !IsAbout(camera.cx, 0.5 * camera.width, 0.1) || !IsAbout(camera.cy, 0.5 * camera.height, 0.1);
+  return is_off && IsAbout(camera.cx, 0.5 * camera.height) &&
          IsAbout(camera.cy, 0.5 * camera.width);
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr size_t kFewest = 10;  // boxes that say something
+constexpr double kCutPx = 2.0;  // from the border: boxes that the image cuts
 
 // A box, and the true landmark that an id stands for, seen from the same camera.
 struct BoxAndTruth {
@@ -22,9 +24,10 @@ struct BoxAndTruth {
   Landmark landmark_in_camera;
 };
 
-// The boxes of static objects beside the true landmarks of the objects with their id plus `shift`.
+// The whole boxes of static objects beside the true landmarks of the objects with their id plus
+// `shift`.
 std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
-  std::map<int, const Landmark*> landmarks;
+  std::map<std::int64_t, const Landmark*> landmarks;
   for (const Object& object : view.content.objects) {
     if (!object.ground_truth || !object.is_static) continue;
     landmarks[object.id] = &object.ground_truth->landmark_in_world;
@@ -35,13 +38,15 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
   }
   std::vector<BoxAndTruth> pairs;
   for (const DetectionRow& row : view.content.rows) {
-    const auto landmark = landmarks.find(row.object_id + shift);
+    const auto landmark = landmarks.find(std::int64_t{row.object_id} + shift);
     const auto frame = frames.find(row.frame_id);
     if (landmark == landmarks.end() || frame == frames.end()) continue;
+    const Camera camera = frame->second->camera.value_or(view.content.camera);
+    const Box in_image = row.box_in_image_file.value_or(row.box);
+    if (DistanceToBorder(in_image, camera.width, camera.height) <= kCutPx) continue;
     const Rigid3d world_from_camera =
         frame->second->true_world_from_camera.value_or(frame->second->world_from_camera);
-    pairs.push_back({row.box, frame->second->camera.value_or(view.content.camera),
-                     Transform(world_from_camera.Inverse(), *landmark->second)});
+    pairs.push_back({row.box, camera, Transform(world_from_camera.Inverse(), *landmark->second)});
   }
   return pairs;
 }

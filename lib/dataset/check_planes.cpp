@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -38,10 +39,7 @@ std::vector<const Detection*> DetectionsOnMainPlane(const Sequence& sequence) {
   return most;
 }
 
-std::string PlaneInWords(const Sequence& sequence, const Detection& detection) {
-  if (sequence.planes.empty()) return "the support plane";
-  const auto index = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
-  const SupportPlane& plane = sequence.planes.at(index);
+std::string PlaneInWords(const SupportPlane& plane) {
   const Eigen::Vector3d& n = plane.plane_in_world.normal;
   return fmt::format("plane {} (normal {:.3g} {:.3g} {:.3g}, d {:.3g})", plane.id, n.x(), n.y(),
                      n.z(), plane.plane_in_world.offset);
@@ -67,69 +65,98 @@ bool IsUpright(const std::vector<const Detection*>& detections) {
   return angle_deg > 60.0 && angle_deg < 120.0;
 }
 
-// The side of the plane on which the cameras are.
-std::vector<Finding> CheckSide(const Sequence& sequence,
-                               const std::vector<const Detection*>& detections) {
-  const auto below = std::ranges::count_if(detections, [](const Detection* detection) {
-    return detection->plane_in_camera.offset <= 0.0;
-  });
-  const auto all = static_cast<std::ptrdiff_t>(detections.size());
-  if (2 * below <= all) return {};
-  return {{"plane_side", below == all ? Severity::kError : Severity::kWarning,
-           fmt::format("{} of {} views of objects on {} are from below it or from within", below,
-                       all, PlaneInWords(sequence, *detections.front())),
-           "cameras on the side that the normal points to: normal . x + d > 0",
-           IsUpright(detections) ? kWall : "a normal that points down, or d of the other sign",
-           IsUpright(detections) ? "give the plane that objects stand on"
-                                 : "turn the sign of the normal and of d, or of d alone"}};
-}
-
-// Whether what stands on a plane is about as high above it, as far as boxes tell; things before a
-// wall are not.
-bool AreObjectsAlong(const ImportView& view, const Plane& plane_in_world) {
-  std::vector<double> heights;
-  std::vector<Eigen::Vector3d> points;
+// Where the things on a plane are, as far as boxes tell: points in the world of the planes.
+std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_index) {
+  const bool has_true_planes =
+      view.options.camera_planes == PlanePoses::kGroundTruth && view.content.has_true_poses;
   const auto pose = [&](size_t frame) -> std::optional<Rigid3d> {
     const ListedFrame& listed = view.content.frames[frame];
+    if (has_true_planes) return listed.frame.true_world_from_camera;
     return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
   };
-  for (const auto& rays : TrackedRays(view)) {
-    const auto point = NearestPointInWorld(rays, pose);
-    if (!point) continue;
-    points.push_back(*point);
-    heights.push_back(plane_in_world.SignedDistance(*point));
+  std::set<int> on_plane;
+  for (const Object& object : view.content.objects) {
+    if (object.plane_index == plane_index) on_plane.insert(object.id);
   }
-  constexpr size_t kFewest = 3;
-  if (points.size() < kFewest) return false;
-  Eigen::Vector3d low = points.front(), high = points.front();
-  for (const Eigen::Vector3d& point : points) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
+  std::vector<Eigen::Vector3d> points;
+  for (const TrackedThing& thing : TrackedThings(view)) {
+    if (thing.object_id && !on_plane.contains(*thing.object_id)) continue;
+    const auto point = NearestPointInWorld(thing.rays, pose);
+    if (point) points.push_back(*point);
   }
-  const auto [lowest, highest] = std::ranges::minmax(heights);
-  return lowest > 0.0 && highest - lowest < 0.5 * (high - low).norm();
+  return points;
 }
 
-std::vector<Finding> CheckAttitude(const ImportView& view,
-                                   const std::vector<const Detection*>& detections) {
-  const Sequence& sequence = view.sequence;
-  if (!IsUpright(detections) || sequence.planes.empty()) return {};
-  const auto index = static_cast<size_t>(sequence.ObjectOf(*detections.front()).plane_index);
-  if (AreObjectsAlong(view, sequence.planes.at(index).plane_in_world)) return {};
-  return {{"plane_attitude", Severity::kWarning,
-           fmt::format("the normal of {} is {:.0f} degrees from the images' up",
-                       PlaneInWords(sequence, *detections.front()), AngleToImagesUpDeg(detections)),
-           "a plane that most objects stand on, about level as cameras are held", kWall,
-           "give the plane that objects stand on, in the world of the poses"}};
+std::vector<double> HeightsOver(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> heights;
+  for (const Eigen::Vector3d& point : points) heights.push_back(plane.SignedDistance(point));
+  return heights;
+}
+
+// The main plane, what is on it, and how it is seen.
+struct MainPlane {
+  SupportPlane plane;
+  std::vector<const Detection*> detections;
+  std::vector<Eigen::Vector3d> points_in_world;
+};
+
+// The side of the plane on which cameras and things are. Cameras alone may well be below it, as
+// those of a robot below a table.
+std::vector<Finding> CheckSide(const MainPlane& main) {
+  const auto below = std::ranges::count_if(main.detections, [](const Detection* detection) {
+    return detection->plane_in_camera.offset <= 0.0;
+  });
+  const auto all = std::ssize(main.detections);
+  if (2 * below <= all) return {};
+  const auto height = MedianOf(HeightsOver(main.plane.plane_in_world, main.points_in_world));
+  if (height && *height > 0.0) return {};
+  const bool is_upright = IsUpright(main.detections);
+  return {{"plane_side", height ? Severity::kError : Severity::kWarning,
+           fmt::format("{} of {} views of objects on {} are from below it or from within, and so "
+                       "{} the objects, as far as boxes tell",
+                       below, all, PlaneInWords(main.plane), height ? "are" : "may be"),
+           "cameras and objects on the side that the normal points to: normal . x + d > 0",
+           is_upright ? kWall : "a normal that points down, or d of the other sign",
+           is_upright ? "give the plane that objects stand on"
+                      : "turn the sign of the normal and of d, or of d alone"}};
+}
+
+// Whether things are about as high above their plane; things before a wall are not.
+bool AreAlong(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
+  constexpr double kTolerance = 0.1;
+  constexpr double kFlat = 0.5;
+  Eigen::AlignedBox3d around;
+  for (const Eigen::Vector3d& point : points) around.extend(point);
+  const double size = around.diagonal().norm();
+  const std::vector<double> heights = HeightsOver(plane, points);
+  const auto [lowest, highest] = std::ranges::minmax(heights);
+  return lowest > -kTolerance * size && highest - lowest < kFlat * size;
+}
+
+std::vector<Finding> CheckAttitude(const MainPlane& main) {
+  constexpr size_t kFewest = 3;
+  if (!IsUpright(main.detections) || main.points_in_world.size() < kFewest) return {};
+  if (AreAlong(main.plane.plane_in_world, main.points_in_world)) return {};
+  return {
+      {"plane_attitude", Severity::kWarning,
+       fmt::format("the normal of {} is {:.0f} degrees from the images' up, and objects are not "
+                   "along it",
+                   PlaneInWords(main.plane), AngleToImagesUpDeg(main.detections)),
+       "a plane that most objects stand on, about level as cameras are held", kWall,
+       "give the plane that objects stand on, in the world of the poses"}};
 }
 
 }  // namespace
 
 std::vector<Finding> CheckPlanes(const ImportView& view) {
-  const auto detections = DetectionsOnMainPlane(view.sequence);
-  if (detections.empty()) return {};
-  std::vector<Finding> findings = CheckSide(view.sequence, detections);
-  if (findings.empty()) findings = CheckAttitude(view, detections);
+  MainPlane main;
+  main.detections = DetectionsOnMainPlane(view.sequence);
+  if (main.detections.empty()) return {};
+  const int index = view.sequence.ObjectOf(*main.detections.front()).plane_index;
+  main.plane = view.sequence.planes.at(static_cast<size_t>(index));
+  main.points_in_world = PointsOnPlane(view, index);
+  std::vector<Finding> findings = CheckSide(main);
+  if (findings.empty()) findings = CheckAttitude(main);
   return findings;
 }
 

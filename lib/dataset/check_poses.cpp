@@ -11,70 +11,100 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+using Things = std::vector<TrackedThing>;
 
 std::optional<Rigid3d> PoseAt(const ImportView& view, size_t frame) {
-  if (frame >= view.content.frames.size()) return std::nullopt;
   const ListedFrame& listed = view.content.frames[frame];
   return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
 }
 
-std::string ErrorInWords(double error_rad) {
-  return fmt::format("{:.2f} degrees", kDegPerRad * error_rad);
+// The pose of a neighbour in the list, of the same segment.
+std::optional<Rigid3d> PoseBeside(const ImportView& view, size_t frame, int shift) {
+  const std::vector<ListedFrame>& frames = view.content.frames;
+  const size_t beside = frame + static_cast<size_t>(shift);  // wraps before the first frame
+  if (beside >= frames.size()) return std::nullopt;
+  if (frames[beside].frame.segment != frames[frame].frame.segment) return std::nullopt;
+  return PoseAt(view, beside);
+}
+
+// Whether an error is of about the same rays.
+bool IsComparable(const std::optional<RayError>& error, const RayError& as_read) {
+  constexpr double kMost = 0.8;
+  return error && static_cast<double>(error->rays) >= kMost * static_cast<double>(as_read.rays);
+}
+
+// Whether the cameras turn so far that no motion of things can look like another reading of poses.
+bool DoCamerasTurn(const ImportView& view) {
+  constexpr double kFar = 10.0 * std::numbers::pi / 180.0;
+  const Frame* first = nullptr;
+  for (const ListedFrame& listed : view.content.frames) {
+    if (!listed.has_pose) continue;
+    if (first == nullptr) first = &listed.frame;
+    if (listed.frame.world_from_camera.rotation.angularDistance(first->world_from_camera.rotation) >
+        kFar) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Poses that mean something else than they are read as make things fly apart; as they are meant,
 // things are to within a degree where they are seen.
-std::vector<Finding> CheckReadings(const ImportView& view,
-                                   const std::vector<std::vector<TrackedRay>>& things,
-                                   double as_read) {
-  constexpr double kFits = 1.0 / kDegPerRad;
+std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
+                                   const RayError& as_read) {
+  constexpr double kFitsDeg = 1.0;
   constexpr double kMuchBetter = 0.25;
   const PoseReading* best = nullptr;
-  double best_error = std::min(kFits, kMuchBetter * as_read);
+  double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
   for (const PoseReading& reading : PoseReadings()) {
     const auto error = MedianRayError(things, [&](size_t frame) -> std::optional<Rigid3d> {
       const auto pose = PoseAt(view, frame);
       return pose ? std::optional(reading.Apply(*pose)) : std::nullopt;
     });
-    if (!error || *error >= best_error) continue;
+    if (!IsComparable(error, as_read) || error->median_deg >= best_deg) continue;
     best = &reading;
-    best_error = *error;
+    best_deg = error->median_deg;
   }
-  if (as_read <= kFits || best == nullptr) return {};
+  if (as_read.median_deg <= kFitsDeg || best == nullptr) return {};
+  // Rays that meet behind the cameras may be of things that move faster than these.
+  const bool is_certain = as_read.median_deg <= 90.0 || DoCamerasTurn(view);
   return {
-      {"pose_convention", Severity::kError,
-       fmt::format("things are {} from where they are seen (median), but {} if the poses are {}",
-                   ErrorInWords(as_read), ErrorInWords(best_error), best->name),
-       "poses world_from_camera, camera z forward, quaternion qx qy qz qw", best->cause,
-       best->remedy}};
+      {kPoseConvention, is_certain ? Severity::kError : Severity::kWarning,
+       fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
+                   "the poses are {}",
+                   as_read.median_deg, best_deg, best->name),
+       "poses world_from_camera, camera z forward, quaternion qx qy qz qw; things that stand still",
+       best->cause, best->remedy}};
 }
 
 // Boxes that are one image late or early: things are clearly nearer to where they are seen one way,
 // and farther off the other way. That the first image has no box says so, too.
-std::vector<Finding> CheckFrameNumbers(const ImportView& view,
-                                       const std::vector<std::vector<TrackedRay>>& things,
-                                       double as_read) {
+std::vector<Finding> CheckFrameNumbers(const ImportView& view, const Things& things,
+                                       const RayError& as_read) {
   constexpr double kClearlyBetter = 0.7;
   constexpr double kBetter = 0.85;
+  constexpr double kLeastDeg = 0.02;
+  constexpr double kFitsDeg = 2.0;
   const auto error_at = [&](int shift) {
-    return MedianRayError(things, [&](size_t frame) {
-      return PoseAt(view, static_cast<size_t>(static_cast<std::ptrdiff_t>(frame) + shift));
-    });
+    return MedianRayError(things, [&](size_t frame) { return PoseBeside(view, frame, shift); });
   };
+  const int first_id = view.content.frames.front().frame.id;
   const bool is_first_empty = std::ranges::none_of(
-      view.content.rows, [](const DetectionRow& row) { return row.frame_id == 0; });
+      view.content.rows, [&](const DetectionRow& row) { return row.frame_id == first_id; });
   for (const int shift : {-1, 1}) {
     const auto error = error_at(shift);
     const auto opposite = error_at(-shift);
+    if (!IsComparable(error, as_read) || !IsComparable(opposite, as_read)) continue;
     const double share = shift < 0 && is_first_empty ? kBetter : kClearlyBetter;
-    if (!error || !opposite || *error >= share * as_read || *opposite <= as_read) continue;
+    const double most_deg =
+        std::min({share * as_read.median_deg, as_read.median_deg - kLeastDeg, kFitsDeg});
+    if (error->median_deg >= most_deg || opposite->median_deg <= as_read.median_deg) continue;
     const bool is_late = shift < 0;
     return {
         {"frame_numbers", Severity::kWarning,
-         fmt::format("things are {} from where they are seen (median), but {} if each box is of "
-                     "the image {} the one that it names",
-                     ErrorInWords(as_read), ErrorInWords(*error), is_late ? "before" : "after"),
+         fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
+                     "each box is of the image {} the one that it names",
+                     as_read.median_deg, error->median_deg, is_late ? "before" : "after"),
          "frames that are rows of the list of images, from 0",
          is_late ? "frames counted from 1" : "frames that begin one image late",
          is_late ? "subtract 1 from the frames of the detections"
@@ -87,12 +117,9 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view,
 
 std::vector<Finding> CheckPoses(const ImportView& view) {
   constexpr size_t kFewestRays = 15;
-  const auto things = TrackedRays(view);
-  size_t rays = 0;
-  for (const auto& thing : things) rays += thing.size();
-  if (rays < kFewestRays) return {};
+  const Things things = TrackedThings(view);
   const auto as_read = MedianRayError(things, [&](size_t frame) { return PoseAt(view, frame); });
-  if (!as_read) return {};
+  if (!as_read || as_read->rays < kFewestRays) return {};
   std::vector<Finding> findings = CheckReadings(view, things, *as_read);
   if (findings.empty()) findings = CheckFrameNumbers(view, things, *as_read);
   return findings;

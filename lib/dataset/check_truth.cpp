@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numbers>
 #include <vector>
@@ -18,9 +19,11 @@ struct PosePair {
   Rigid3d truth;
 };
 
+// Those of the first segment, as each has a world of its own.
 std::vector<PosePair> Pairs(const ImportView& view) {
   std::vector<PosePair> pairs;
   for (const ListedFrame& listed : view.content.frames) {
+    if (listed.frame.segment != view.content.frames.front().frame.segment) break;
     const auto& truth = listed.frame.true_world_from_camera;
     if (listed.has_pose && truth) pairs.push_back({listed.frame.world_from_camera, *truth});
   }
@@ -47,22 +50,29 @@ std::string InWords(const Gap& gap) {
   return fmt::format("{:.2f} m and {:.1f} degrees", gap.translation_m, gap.rotation_deg);
 }
 
-// The length of the true path (m), in which drift is measured.
-double PathLength(const std::vector<PosePair>& pairs) {
-  double length = 0.0;
-  for (size_t i = 1; i < pairs.size(); ++i) {
-    length += (pairs[i].truth.translation - pairs[i - 1].truth.translation).norm();
-  }
-  return length;
+// How far a camera moves (m): the diagonal of the box around its path.
+double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
+  Eigen::AlignedBox3d around;
+  for (const PosePair& pair : pairs) around.extend((pair.*pose).translation);
+  return around.diagonal().norm();
+}
+
+// Whether both cameras move about as far.
+bool IsSameScale(const std::vector<PosePair>& pairs) {
+  constexpr double kLargestRatio = 1.5;
+  constexpr double kLeastM = 0.3;
+  const double truth = std::max(kLeastM, ExtentOf(pairs, &PosePair::truth));
+  const double estimated = std::max(kLeastM, ExtentOf(pairs, &PosePair::estimated));
+  return std::max(truth, estimated) <= kLargestRatio * std::min(truth, estimated);
 }
 
 // Whether the gap is what odometry drifts.
-bool IsDrift(const Gap& gap, double path_length_m) {
+bool IsDrift(const Gap& gap, double extent_m) {
   constexpr double kMostDeg = 20.0;
-  constexpr double kMostShare = 0.2;
+  constexpr double kMostShare = 0.3;
   constexpr double kLeastM = 0.1;
   return gap.rotation_deg <= kMostDeg &&
-         gap.translation_m <= std::max(kLeastM, kMostShare * path_length_m);
+         gap.translation_m <= std::max(kLeastM, kMostShare * extent_m);
 }
 
 std::vector<PosePair> ReadAs(const PoseReading& reading, std::vector<PosePair> pairs) {
@@ -77,9 +87,9 @@ std::vector<PosePair> AlignedAtFirst(std::vector<PosePair> pairs) {
   return pairs;
 }
 
-void Explain(const std::vector<PosePair>& pairs, double length_m, Finding* finding) {
+void Explain(const std::vector<PosePair>& pairs, double extent_m, Finding* finding) {
   const auto fits = [&](const std::vector<PosePair>& read) {
-    return IsDrift(GapOf(read), length_m);
+    return IsDrift(GapOf(read), extent_m) && IsSameScale(read);
   };
   for (const PoseReading& reading : PoseReadings()) {
     const auto read = ReadAs(reading, pairs);
@@ -114,18 +124,18 @@ std::vector<Finding> CheckTruth(const ImportView& view) {
   const std::vector<PosePair> pairs = Pairs(view);
   if (pairs.size() < kFewest) return {};
   const Gap gap = GapOf(pairs);
-  const double length_m = PathLength(pairs);
-  if (IsDrift(gap, length_m)) return {};
+  const double extent_m = ExtentOf(pairs, &PosePair::truth);
+  if (IsDrift(gap, extent_m) && IsSameScale(pairs)) return {};
   Finding finding{
       "trajectory_against_truth",
       Severity::kWarning,
       fmt::format("estimated and true poses are {} apart (median of {} frames; {} at the "
-                  "first one), on a path of {:.2f} m",
-                  InWords(gap), pairs.size(), InWords(GapOf({pairs.front()})), length_m),
+                  "first one), of a camera that moves by {:.2f} m",
+                  InWords(gap), pairs.size(), InWords(GapOf({pairs.front()})), extent_m),
       "two trajectories of one world, apart by no more than drift",
       "",
       ""};
-  Explain(pairs, length_m, &finding);
+  Explain(pairs, extent_m, &finding);
   return {finding};
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/dataset_checks.h"
 
+#include <algorithm>
+
 namespace soslam {
 
 namespace {
@@ -18,13 +20,16 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   std::vector<Finding> findings;
   for (const Check check : {&CheckCamera, &CheckImages, &CheckBoxes})
     Append(check, view, &findings);
-  // Boxes through a wrong camera, and wrong boxes, contradict the best poses, and those all
-  // objects.
-  for (const Check check : {&CheckPoses, &CheckObjects}) {
-    if (findings.empty()) Append(check, view, &findings);
+  // Boxes through a wrong camera, and wrong boxes, contradict the best poses; wrong poses
+  // contradict objects and planes.
+  const auto has = [&](auto field, const auto& value) {
+    return std::ranges::find(findings, value, field) != findings.end();
+  };
+  if (!has(&Finding::severity, Severity::kError)) Append(&CheckPoses, view, &findings);
+  if (!has(&Finding::severity, Severity::kError) && !has(&Finding::check, kPoseConvention)) {
+    for (const Check check : {&CheckObjects, &CheckPlanes}) Append(check, view, &findings);
   }
-  for (const Check check :
-       {&CheckTruth, &CheckPlanes, &CheckScores, &CheckLabels, &CheckRejections}) {
+  for (const Check check : {&CheckTruth, &CheckScores, &CheckLabels, &CheckRejections}) {
     Append(check, view, &findings);
   }
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());

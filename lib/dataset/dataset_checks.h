@@ -38,7 +38,8 @@ std::vector<Finding> CheckLabels(const ImportView& view);
 std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.
 std::vector<Finding> CheckTruth(const ImportView& view);
-// The poses against the boxes: the same, and frames counted from 1.
+// The poses against the boxes: the same (kPoseConvention), and frames counted from 1.
+inline constexpr const char* kPoseConvention = "pose_convention";
 std::vector<Finding> CheckPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids
 // counted from 1, full sizes for half axes, quaternions with qw first.

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <set>
 #include <string>
 
 #include "evaluation/statistics.h"
@@ -34,23 +36,30 @@ std::map<std::string, bool> SingleLabels(const std::vector<DetectionRow>& rows) 
 
 }  // namespace
 
-std::vector<std::vector<TrackedRay>> TrackedRays(const ImportView& view) {
+std::vector<TrackedThing> TrackedThings(const ImportView& view) {
   const DatasetContent& content = view.content;
   std::map<int, size_t> frame_index;
   for (size_t i = 0; i < content.frames.size(); ++i) frame_index[content.frames[i].frame.id] = i;
-  auto is_single = SingleLabels(content.rows);
-  std::map<std::string, std::vector<TrackedRay>> by_thing;
-  for (const DetectionRow& row : content.rows) {
-    const Box box = row.box_in_image_file.value_or(row.box);
-    if (!IsWhole(box, content.camera)) continue;
-    if (!content.has_object_ids && !is_single[row.label]) continue;
-    const std::string thing = content.has_object_ids ? std::to_string(row.object_id) : row.label;
-    const Eigen::Vector3d ray = content.camera.Ray(row.box.Centre()).normalized();
-    by_thing[thing].push_back({frame_index.at(row.frame_id), ray});
+  std::set<int> moving;
+  for (const Object& object : content.objects) {
+    if (!object.is_static) moving.insert(object.id);
   }
-  std::vector<std::vector<TrackedRay>> things;
-  for (auto& [thing, rays] : by_thing) {
-    if (rays.size() > kFewestRays) things.push_back(std::move(rays));
+  auto is_single = SingleLabels(content.rows);
+  std::map<std::string, TrackedThing> by_name;
+  for (const DetectionRow& row : content.rows) {
+    const size_t frame = frame_index.at(row.frame_id);
+    const Camera camera = content.frames[frame].frame.camera.value_or(content.camera);
+    if (!IsWhole(row.box_in_image_file.value_or(row.box), camera)) continue;
+    if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
+    if (!content.has_object_ids && !is_single[row.label]) continue;
+    const std::string name = content.has_object_ids ? std::to_string(row.object_id) : row.label;
+    TrackedThing& thing = by_name[name];
+    if (content.has_object_ids) thing.object_id = row.object_id;
+    thing.rays.push_back({frame, camera.Ray(row.box.Centre()).normalized()});
+  }
+  std::vector<TrackedThing> things;
+  for (auto& [name, thing] : by_name) {
+    if (thing.rays.size() > kFewestRays) things.push_back(std::move(thing));
   }
   return things;
 }
@@ -76,21 +85,24 @@ std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>
   return sum.ldlt().solve(right);
 }
 
-std::optional<double> MedianRayError(const std::vector<std::vector<TrackedRay>>& things,
-                                     const PoseOfFrame& world_from_camera) {
-  std::vector<double> errors;
-  for (const std::vector<TrackedRay>& rays : things) {
-    const auto point_in_world = NearestPointInWorld(rays, world_from_camera);
+std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
+                                       const PoseOfFrame& world_from_camera) {
+  std::vector<double> errors_deg;
+  for (const TrackedThing& thing : things) {
+    const auto point_in_world = NearestPointInWorld(thing.rays, world_from_camera);
     if (!point_in_world) continue;
-    for (const TrackedRay& ray : rays) {
+    for (const TrackedRay& ray : thing.rays) {
       const auto pose = world_from_camera(ray.frame);
       if (!pose) continue;
       const Eigen::Vector3d towards = pose->Inverse() * *point_in_world;
-      errors.push_back(
-          std::atan2(ray.ray_in_camera.cross(towards).norm(), ray.ray_in_camera.dot(towards)));
+      errors_deg.push_back(
+          std::atan2(ray.ray_in_camera.cross(towards).norm(), ray.ray_in_camera.dot(towards)) *
+          180.0 / std::numbers::pi);
     }
   }
-  return MedianOf(errors);
+  if (errors_deg.empty()) return std::nullopt;
+  const size_t rays = errors_deg.size();
+  return RayError{*MedianOf(std::move(errors_deg)), rays};
 }
 
 }  // namespace soslam

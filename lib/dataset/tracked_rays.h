@@ -10,16 +10,22 @@
 
 namespace soslam {
 
-// The middle of a box of a tracked thing, as a viewing ray of a frame.
+// The middle of a box, as a viewing ray of a frame.
 struct TrackedRay {
   size_t frame = 0;  // into DatasetContent::frames
   Eigen::Vector3d ray_in_camera;
 };
 
-// The rays of each thing of which several boxes are known: those of an object id, or else those of
-// a label that no frame has twice. Boxes that the image cuts do not count, nor things with fewer
-// than three others.
-std::vector<std::vector<TrackedRay>> TrackedRays(const ImportView& view);
+// A thing of which several boxes are known.
+struct TrackedThing {
+  std::optional<int> object_id;  // none: the only thing with its label
+  std::vector<TrackedRay> rays;
+};
+
+// The things that an object id or, without ids, a label that no frame has twice tells apart. Boxes
+// that the image cuts do not count, nor those below min_score, of moving objects, and of things
+// with fewer than three others.
+std::vector<TrackedThing> TrackedThings(const ImportView& view);
 
 // The pose of a frame, by index into DatasetContent::frames; none where there is none.
 using PoseOfFrame = std::function<std::optional<Rigid3d>(size_t frame)>;
@@ -29,9 +35,14 @@ using PoseOfFrame = std::function<std::optional<Rigid3d>(size_t frame)>;
 std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>& rays,
                                                    const PoseOfFrame& world_from_camera);
 
-// How far (rad, median over all rays) things are from where they are seen, each at its nearest
-// point: what poses and boxes disagree by. None when no thing has such a point.
-std::optional<double> MedianRayError(const std::vector<std::vector<TrackedRay>>& things,
-                                     const PoseOfFrame& world_from_camera);
+// How far things are from where they are seen, each at its nearest point: what poses and boxes
+// disagree by.
+struct RayError {
+  double median_deg = 0.0;
+  size_t rays = 0;  // of the things that have such a point
+};
+// None when no thing has such a point.
+std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
+                                       const PoseOfFrame& world_from_camera);
 
 }  // namespace soslam

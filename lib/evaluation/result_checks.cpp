@@ -134,12 +134,30 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
 }
 
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
-                                const SemanticTable& table, SizesFrom sizes_from) {
+                                const SemanticTable& table) {
   const auto relative = RelativeHeights(estimates, sequence, table);
-  std::vector<Finding> findings;
-  if (sizes_from == SizesFrom::kSupport) findings = CheckScale(relative);
+  std::vector<Finding> findings = CheckScale(relative);
   if (findings.empty()) findings = CheckSingleSizes(relative);
   return findings;
+}
+
+std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates) {
+  constexpr double kThinnest = 1e-2;
+  int degenerate = 0;
+  int all = 0;
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (!object.landmark_in_world) continue;
+    const Eigen::Vector3d& half_axes = object.landmark_in_world->half_axes;
+    if (half_axes.minCoeff() < kThinnest * half_axes.maxCoeff()) ++degenerate;
+    ++all;
+  }
+  if (degenerate == 0) return {};
+  return {{"degenerate", Severity::kWarning,
+           fmt::format("{} of {} landmarks are a hundred times as long as thick, or more",
+                       degenerate, all),
+           "landmarks with three axes of about one size",
+           "views that do not determine all axes, where neither support nor size ratios do",
+           "views from more sides, or a variant with support and ratios"}};
 }
 
 std::vector<Finding> CheckCost(const SolverSummary& solver) {
@@ -178,7 +196,7 @@ std::vector<Finding> CheckUp(const PlanesEstimate& estimate) {
 
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {
   constexpr size_t kFewest = 3;
-  if (planes < kFewest || 5 * planes < 3 * objects) return {};
+  if (planes < kFewest || 4 * planes <= 3 * objects) return {};
   return {
       {"plane_count", Severity::kWarning, fmt::format("{} planes of {} objects", planes, objects),
        "several objects on each plane",

@@ -17,14 +17,14 @@ namespace soslam {
 // count.
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates);
 
-// Whether support planes and ratios tell sizes, or views alone, which mostly cannot.
-enum class SizesFrom { kSupport, kViews };
-
 // The heights of landmarks against what their labels allow: one factor for all, as a wrong scale
-// gives (with kSupport), or single objects that are a multiple. The table's labels without a height
-// do not count.
+// gives, or single objects that are a multiple. The table's labels without a height do not count.
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
-                                const SemanticTable& table, SizesFrom sizes_from);
+                                const SemanticTable& table);
+
+// The landmarks of objects that are flat or needles, as views alone make them that do not determine
+// all axes. Which of these is the height they do not say.
+std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates);
 
 // The cost that is left of boxes whose edges have a standard deviation, against what such boxes
 // leave by chance.

@@ -77,16 +77,19 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
     choice.costs.push_back(CostOf(one, lowest, misfit));
   }
   choice.best = BestOf(evidence, choice.costs);
-  const double lowest_cost = choice.costs[choice.best];
+  const double best_cost = choice.costs[choice.best];
+  const double lowest_cost = std::ranges::min(choice.costs);  // maybe of one that cannot be chosen
   double sum = 0.0;
+  std::vector<double> weights;
   for (double& cost : choice.costs) {
-    cost -= lowest_cost;
-    sum += std::exp(-cost);
+    weights.push_back(std::exp(lowest_cost - cost));
+    sum += weights.back();
+    cost -= best_cost;
   }
   double variance = 0.0;
   double others = 0.0;
   for (size_t i = 0; i < evidence.size(); ++i) {
-    choice.probabilities.push_back(std::exp(-choice.costs[i]) / sum);
+    choice.probabilities.push_back(weights[i] / sum);
     const double angle = AngleBetween(evidence[i].up_in_world, evidence[choice.best].up_in_world);
     variance += choice.probabilities[i] * angle * angle;
     if (!IsSameUp(evidence[i].up_in_world, evidence[choice.best].up_in_world))

@@ -82,10 +82,10 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                                          files.at("sequence").string(), tried, reasons));
   }
   std::vector<Finding> findings = CheckFailures(estimates);
-  const bool is_svd = options.method == InitialisationMethod::kSvd;
-  std::ranges::move(
-      CheckSizes(estimates, sequence, table, is_svd ? SizesFrom::kViews : SizesFrom::kSupport),
-      std::back_inserter(findings));
+  std::ranges::move(options.method == InitialisationMethod::kSvd
+                        ? CheckDegenerate(estimates)
+                        : CheckSizes(estimates, sequence, table),
+                    std::back_inserter(findings));
   ReportFindings("initialise", findings);
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), {files.at("sequence"), files.at("table")}, findings});

@@ -118,8 +118,8 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
     info.inputs.push_back(files.at("edges"));
   }
   const MapEstimate map = OptimiseMap(input, options, threads);
-  info.findings = CheckSizes({{}, map.objects}, sequence, table,
-                             options.support ? SizesFrom::kSupport : SizesFrom::kViews);
+  const LandmarkEstimates found = {{}, map.objects};
+  info.findings = options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found);
   if (options.detection_model == DetectionModel::kTangency) {
     std::ranges::move(CheckCost(map.solver), std::back_inserter(info.findings));
   }

@@ -116,6 +116,9 @@ void WriteFile(const fs::path& path, const std::string& text) {
   WriteTextFile(path, text);
 }
 
+// The word for the variants that were planned before; all, where there are none.
+constexpr const char* kPlanned = "planned";
+
 // Says what PossibleVariants leaves out.
 void PrintImpossible(const fs::path& pipelines, const std::string& dataset,
                      const std::vector<std::string>& possible) {
@@ -169,6 +172,7 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
 
   const FoundFiles found = FindFiles(dataset);
   std::vector<std::string> variants = SplitAtSpaces(options.variants);
+  if (options.variants == kPlanned) variants = PlannedVariants(folders.pipelines, folders.results);
   if (variants.empty()) {
     variants = PossibleVariants(folders.pipelines, name, dataset);
     PrintImpossible(folders.pipelines, name, variants);

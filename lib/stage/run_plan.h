@@ -17,7 +17,9 @@ struct PlanOptions {
   void Describe(OptionVisitor& visit) {
     visit.Group("Plan");
     visit.Text("name", &name, "name of the dataset in results and settings; empty: its folder's");
-    visit.Text("variants", &variants, "names of variants, separated by spaces; empty: all");
+    visit.Text("variants", &variants,
+               "names of variants, separated by spaces; planned: those that were planned before; "
+               "empty: all");
   }
 };
 

@@ -140,6 +140,11 @@ TEST_F(DatasetChecksTest, FocalLengthInMillimetres) {
   EXPECT_THAT(Refusal(), HasSubstr("millimetres"));
 }
 
+TEST_F(DatasetChecksTest, ANearlySquareCameraHasNoSwappedSides) {
+  dataset.camera = dataset.written_camera = {660, 620, 500.0, 500.0, 325.0, 314.0};
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
 TEST_F(DatasetChecksTest, PrincipalPointOutsideOfTheImage) {
   dataset.written_camera = {640, 480, 500, 500, 319.5, 700.0};
   EXPECT_THAT(Refusal(), HasSubstr("another camera"));
@@ -147,6 +152,12 @@ TEST_F(DatasetChecksTest, PrincipalPointOutsideOfTheImage) {
 
 // Without images only the boxes tell.
 TEST_F(DatasetChecksTest, CameraOfLargerImagesThanTheBoxes) {
+  dataset.box = [](const Box& b) {  // all over the image, and cut by it
+    const auto cut = [](double x, double size) {
+      return std::clamp(0.5 * size + 3.0 * (x - 0.5 * size), -0.5, size - 0.5);
+    };
+    return std::array{cut(b.x_min, 640), cut(b.y_min, 480), cut(b.x_max, 640), cut(b.y_max, 480)};
+  };
   dataset.written_camera = {1280, 960, 1000.0, 1000.0, 639.5, 479.5};
   EXPECT_THAT(Warnings(), testing::Contains(AllOf(HasSubstr("box_extent"), HasSubstr("1280 x 960"),
                                                   HasSubstr("made smaller"))));
@@ -184,6 +195,22 @@ TEST_F(DatasetChecksTest, BoxesOfLargerImages) {
     return std::array{3 * b.x_min, 3 * b.y_min, 3 * b.x_max, 3 * b.y_max};
   };
   EXPECT_THAT(Refusal(), HasSubstr("images of another size"));
+}
+
+// A box of the whole thing, also where the image cuts it.
+TEST_F(DatasetChecksTest, BoxesOfWholeThingsAreNoOtherConvention) {
+  dataset.box = [](const Box& b) {
+    const auto wide = [](double x, double size) { return 0.5 * size + 4.0 * (x - 0.5 * size); };
+    return std::array{wide(b.x_min, 640), wide(b.y_min, 480), wide(b.x_max, 640),
+                      wide(b.y_max, 480)};
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("whole objects that the image cuts")));
+}
+
+TEST_F(DatasetChecksTest, AnOrbitAroundThingsInTheMiddleIsNoSmallerImage) {
+  dataset.camera.fx = dataset.camera.fy = dataset.written_camera.fx = dataset.written_camera.fy =
+      200;
+  EXPECT_THAT(Warnings(), IsEmpty());
 }
 
 TEST_F(DatasetChecksTest, ScoresInPerCent) {
@@ -297,6 +324,23 @@ TEST_F(DatasetChecksTest, FramesFromOne) {
                                             HasSubstr("subtract 1"))));
 }
 
+// Things that all move like the camera, but faster, look as if poses were reversed.
+TEST_F(DatasetChecksTest, ThingsThatMoveAreNoOtherConvention) {
+  dataset.drive = true;
+  dataset.ball_moves = 2.0;
+  for (const std::string& warning : Warnings()) {
+    EXPECT_THAT(warning, testing::Not(HasSubstr("error")));
+  }
+}
+
+TEST_F(DatasetChecksTest, TrajectoriesOfAnotherScale) {
+  dataset.has_truth = true;
+  dataset.odometry = [](const Rigid3d& pose) {
+    return Rigid3d{pose.rotation, 0.4 * pose.translation};
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("trajectory_against_truth")));
+}
+
 TEST_F(DatasetChecksTest, OdometryInItsOwnWorld) {
   dataset.has_truth = true;
   const Rigid3d own_from_world = dataset.WorldFromCamera(0).Inverse();
@@ -351,6 +395,12 @@ TEST_F(DatasetChecksTest, OffsetOfTheOtherSign) {
   dataset.height_of_floor = -2.0;
   dataset.plane = R"([{"id": 0, "normal": [0, 0, 1], "d": -2}])";
   EXPECT_THAT(Refusal(), HasSubstr("d of the other sign"));
+}
+
+// A table that a low camera looks up to.
+TEST_F(DatasetChecksTest, CamerasBelowATable) {
+  dataset.camera_height = -0.5;
+  EXPECT_THAT(Warnings(), IsEmpty());
 }
 
 TEST_F(DatasetChecksTest, WallForFloor) {

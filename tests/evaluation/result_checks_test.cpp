@@ -38,14 +38,13 @@ class ResultChecksTest : public testing::Test {
       estimates.objects.push_back(estimate);
     }
     std::string words;
-    for (const Finding& finding : CheckSizes(estimates, sequence, table, sizes_from)) {
+    for (const Finding& finding : CheckSizes(estimates, sequence, table)) {
       words += finding.check + ": " + InWords(finding);
     }
     return words;
   }
 
   SemanticTable table;
-  SizesFrom sizes_from = SizesFrom::kSupport;
 };
 
 TEST_F(ResultChecksTest, SizesWithinTheirLabelsSpread) {
@@ -56,12 +55,6 @@ TEST_F(ResultChecksTest, AllObjectsOffByOneFactor) {
   EXPECT_THAT(SizeFindings({0.14, 0.15, 0.16, 0.15}),
               AllOf(HasSubstr("scale: 4 objects are 0.3 times as high"), HasSubstr("about 3.3")));
   EXPECT_THAT(SizeFindings({14, 15, 16, 15}), HasSubstr("30 times as high"));
-}
-
-TEST_F(ResultChecksTest, ViewsAloneSayNothingAboutTheScale) {
-  sizes_from = SizesFrom::kViews;
-  EXPECT_THAT(SizeFindings({1.2, 1.2, 1.2}), IsEmpty());
-  EXPECT_THAT(SizeFindings({14, 15, 16, 15}), HasSubstr("object_size: 4 of 4 objects"));
 }
 
 TEST_F(ResultChecksTest, OneObjectThatIsAMultiple) {
@@ -84,6 +77,32 @@ TEST(CheckFailuresTest, MoreThanAThirdWithoutALandmark) {
   EXPECT_EQ(CheckFailures(estimates)[0].found, "2 of 3 tries gave no landmark: no_solution 2");
 }
 
+TEST(CheckDegenerateTest, LandmarksThatViewsDoNotDetermine) {
+  LandmarkEstimates estimates;
+  for (const double height : {0.1, 1e-9, 1.0}) {
+    ObjectEstimate estimate;
+    estimate.landmark_in_world = Landmark();
+    estimate.landmark_in_world->half_axes = {0.2, 0.3, height};
+    estimates.objects.push_back(estimate);
+  }
+  ASSERT_EQ(CheckDegenerate(estimates).size(), 1u);
+  EXPECT_THAT(CheckDegenerate(estimates)[0].found, HasSubstr("1 of 3 landmarks"));
+  estimates.objects.erase(estimates.objects.begin() + 1);
+  EXPECT_THAT(CheckDegenerate(estimates), IsEmpty());
+}
+
+TEST(CheckFailuresTest, MovingObjectsAreNoFailures) {
+  LandmarkEstimates estimates;
+  for (int i = 0; i < 3; ++i) {
+    ObjectEstimate estimate;
+    estimate.object_index = i;
+    estimate.failure = i < 2 ? kMovingObject : "";
+    if (i == 2) estimate.landmark_in_world = Landmark();
+    estimates.objects.push_back(estimate);
+  }
+  EXPECT_THAT(CheckFailures(estimates), IsEmpty());
+}
+
 // Four edges that are off by one standard deviation each cost 2 a box.
 TEST(CheckCostTest, FarAboveWhatNoiseGives) {
   SolverSummary solver;
@@ -98,6 +117,8 @@ TEST(CheckCostTest, FarAboveWhatNoiseGives) {
 TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
   EXPECT_THAT(CheckPlaneCount(2, 2), IsEmpty());
   EXPECT_THAT(CheckPlaneCount(4, 24), IsEmpty());
+  EXPECT_THAT(CheckPlaneCount(3, 4), IsEmpty());
+  EXPECT_THAT(CheckPlaneCount(3, 5), IsEmpty());
   ASSERT_EQ(CheckPlaneCount(4, 5).size(), 1u);
   EXPECT_EQ(CheckPlaneCount(4, 5)[0].found, "4 planes of 5 objects");
 }

@@ -26,7 +26,10 @@ struct PlausibleDataset {
 
   Camera camera{640, 480, 500.0, 500.0, 319.5, 239.5};  // that took the images
   double height_of_floor = 0.0;
-  double roll_rad = 0.0;  // of the camera
+  double camera_height = 1.4;  // over the floor
+  double roll_rad = 0.0;       // of the camera
+  bool drive = false;          // along x, looking ahead, in place of the arc
+  double ball_moves = 0.0;     // how many times as fast as the camera, along x
 
   // What the files say.
   Camera written_camera = camera;
@@ -46,9 +49,14 @@ struct PlausibleDataset {
   std::function<std::string(double)> pose_time = [](double t) { return fmt::format("{:.6f}", t); };
 
   Rigid3d WorldFromCamera(int frame) const {
+    if (drive) {
+      Eigen::Matrix3d ahead;  // right, down, forward
+      ahead << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+      return {Eigen::Quaterniond(ahead), {-6.0 + 0.1 * frame, 0.0, camera_height}};
+    }
     const double angle = 0.3 + 1.4 * frame / kFrames;
     const Eigen::Vector3d centre(3.0 * std::cos(angle), 3.0 * std::sin(angle),
-                                 height_of_floor + 1.4 + 0.1 * std::sin(5.0 * angle));
+                                 height_of_floor + camera_height + 0.1 * std::sin(5.0 * angle));
     const Eigen::Vector3d forward =
         (Eigen::Vector3d(0.1, 0.0, height_of_floor + 0.3) - centre).normalized();
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -83,7 +91,8 @@ struct PlausibleDataset {
   }
 
   Box BoxOf(size_t ball, int frame) const {
-    const Eigen::Vector3d point = WorldFromCamera(frame).Inverse() * BallInWorld(ball);
+    const Eigen::Vector3d moved(ball_moves * 0.1 * frame, 0.0, 0.0);
+    const Eigen::Vector3d point = WorldFromCamera(frame).Inverse() * (BallInWorld(ball) + moved);
     const Eigen::Vector2d pixel = *camera.Project(point);
     const double half = camera.fx * kRadius / point.z();
     return {pixel.x() - half, pixel.y() - half, pixel.x() + half, pixel.y() + half};
