@@ -28,6 +28,7 @@ json FrameToJson(const Frame& frame) {
                  {"true_world_from_camera", truth ? json(*truth) : json()},
                  {"segment", frame.segment}};
   if (frame.camera) fields["camera"] = *frame.camera;
+  if (!frame.boxes_in_view.empty()) fields["boxes_in_view"] = frame.boxes_in_view;
   return fields;
 }
 
@@ -42,6 +43,7 @@ Frame FrameFromJson(const json& json) {
   // Before version 1.2 all frames were of one segment and one camera.
   if (json.contains("segment")) json["segment"].get_to(frame.segment);
   if (json.contains("camera")) frame.camera = json["camera"].get<Camera>();
+  frame.boxes_in_view = json.value("boxes_in_view", std::vector<Box>());  // since version 1.6
   return frame;
 }
 
@@ -131,7 +133,9 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
       {"box", detection.box},
       {"plane_in_camera", sequence.planes.empty() ? json() : json(detection.plane_in_camera)},
       {"bounds", BoundsToJson(detection.is_bound)},
-      {"nearer_boxes", detection.nearer_boxes}};
+      {"nearer_in_view", detection.nearer_in_view}};
+  if (detection.own_in_view) fields["own_in_view"] = *detection.own_in_view;
+  if (!detection.nearer_boxes.empty()) fields["nearer_boxes"] = detection.nearer_boxes;
   if (detection.true_landmark_in_camera) {
     fields["true_landmark"] = LandmarkToJson(*detection.true_landmark_in_camera, "camera");
   }
@@ -150,6 +154,8 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   // Schema version 1.0 had no bounds: every edge counted as the object's own.
   if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
   detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
+  detection.nearer_in_view = json.value("nearer_in_view", 0);  // since version 1.6
+  if (json.contains("own_in_view")) detection.own_in_view = json["own_in_view"].get<int>();
   if (json.contains("true_landmark")) {  // since version 1.2
     detection.true_landmark_in_camera = LandmarkFromJson(json["true_landmark"], "camera");
   }
@@ -181,6 +187,18 @@ void CheckOrder(const std::vector<Detection>& detections) {
     if (key(detections[i]) <= key(detections[i - 1])) {
       throw InputError(
           fmt::format("/detections/{} is out of order; expected ascending frame, then object", i));
+    }
+  }
+}
+
+void CheckBoxesInView(const Sequence& sequence) {
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[i];
+    const size_t in_view = sequence.FrameOf(detection).boxes_in_view.size();
+    if (static_cast<size_t>(detection.nearer_in_view) > in_view) {
+      throw InputError(fmt::format(
+          "/detections/{}/nearer_in_view is {}; expected at most the {} boxes_in_view of its frame",
+          i, detection.nearer_in_view, in_view));
     }
   }
 }
@@ -269,10 +287,12 @@ Sequence SequenceFromJson(const json& json) {
     sequence.detections.push_back(DetectionFromJson(detection, frames, objects));
   }
   CheckOrder(sequence.detections);
-  // Versions 1.0 and 1.1 did not have them.
+  CheckBoxesInView(sequence);
+  // Versions 1.0 and 1.1 said nothing about what is nearer.
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     Detection& detection = sequence.detections[i];
-    if (json.at("detections")[i].contains("nearer_boxes")) continue;
+    const auto& fields = json.at("detections")[i];
+    if (fields.contains("nearer_boxes") || fields.contains("nearer_in_view")) continue;
     detection.nearer_boxes = NearerBoxes(sequence, detection);
   }
   for (const auto& held_out :

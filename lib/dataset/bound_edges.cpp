@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/occlusion.h"
+
 namespace soslam {
 namespace {
 
@@ -49,7 +51,8 @@ std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
 // measured as well as any.
 void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence) {
   for (Detection& detection : sequence->detections) {
-    const double hidden_share = CoveredShareOfLowerEdge(detection.box, detection.nearer_boxes);
+    const double hidden_share =
+        CoveredShareOfLowerEdge(detection.box, BoxesInFront(*sequence, detection));
     if (hidden_share >= options.hidden_edge_fraction - kShareTolerance) {
       detection.is_bound[3] = true;
     }

@@ -14,7 +14,7 @@ namespace soslam {
 // The edges of a box that end at the border of the image it is in: left, top, right, bottom.
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera);
 
-// Marks the lower edges that nearer_boxes hide (hidden_edge_fraction).
+// Marks the lower edges that BoxesInFront hide (hidden_edge_fraction).
 void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence);
 
 }  // namespace soslam

@@ -25,6 +25,7 @@ Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out) {
     if (place % 2 == 1) {
       destinations.push_back({true, sequence.held_out.size()});
       sequence.held_out.push_back({frames[i], {}});
+      sequence.held_out.back().frame.boxes_in_view.clear();
     } else {
       destinations.push_back({false, sequence.frames.size()});
       sequence.frames.push_back(frames[i]);

@@ -97,9 +97,7 @@ class Importer {
     RejectionCounts not_reported;
     Sequence all_in_view = *sequence_;
     all_in_view.detections = Detections(WithoutDuplicates(std::move(in_view), &not_reported));
-    for (Detection& detection : sequence_->detections) {
-      detection.nearer_boxes = NearerBoxes(all_in_view, detection);
-    }
+    ListBoxesInView(all_in_view, sequence_);
     MarkHiddenEdges(options_, sequence_);
   }
 

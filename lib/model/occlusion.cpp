@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace soslam {
 namespace {
@@ -43,6 +44,71 @@ std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detectio
     }
   }
   return nearer;
+}
+
+namespace {
+
+// A frame's detections in view, nearest first.
+class FrameByDepth {
+ public:
+  FrameByDepth(const Sequence& in_view, int frame_index) {
+    for (const Detection& detection : DetectionsIn(in_view, frame_index)) {
+      entries_.push_back({FootDepth(in_view, detection), &detection});
+    }
+    std::ranges::stable_sort(entries_, {}, &Entry::depth);
+    for (size_t i = 0; i < entries_.size(); ++i) {
+      rank_of_object_[entries_[i].detection->object_index] = static_cast<int>(i);
+    }
+  }
+
+  std::vector<Box> Boxes() const {
+    std::vector<Box> boxes;
+    for (const Entry& entry : entries_) boxes.push_back(entry.detection->box);
+    return boxes;
+  }
+
+  void Decide(const Sequence& sequence, Detection* detection) const {
+    const double depth = FootDepth(sequence, *detection);
+    const auto end = std::ranges::lower_bound(entries_, depth, {}, &Entry::depth);
+    detection->nearer_in_view = static_cast<int>(end - entries_.begin());
+    const auto own = rank_of_object_.find(detection->object_index);
+    if (own != rank_of_object_.end() && own->second < detection->nearer_in_view) {
+      detection->own_in_view = own->second;
+    }
+  }
+
+ private:
+  struct Entry {
+    double depth;
+    const Detection* detection;
+  };
+  std::vector<Entry> entries_;
+  std::map<int, int> rank_of_object_;
+};
+
+}  // namespace
+
+void ListBoxesInView(const Sequence& in_view, Sequence* sequence) {
+  auto detection = sequence->detections.begin();
+  for (size_t i = 0; i < sequence->frames.size(); ++i) {
+    const auto frame_index = static_cast<int>(i);
+    const FrameByDepth by_depth(in_view, frame_index);
+    sequence->frames[i].boxes_in_view = by_depth.Boxes();
+    for (; detection != sequence->detections.end() && detection->frame_index == frame_index;
+         ++detection) {
+      by_depth.Decide(*sequence, &*detection);
+    }
+  }
+}
+
+std::vector<Box> BoxesInFront(const Sequence& sequence, const Detection& detection) {
+  const std::vector<Box>& in_view = sequence.FrameOf(detection).boxes_in_view;
+  std::vector<Box> boxes = detection.nearer_boxes;
+  boxes.reserve(boxes.size() + static_cast<size_t>(detection.nearer_in_view));
+  for (int i = 0; i < detection.nearer_in_view; ++i) {
+    if (i != detection.own_in_view) boxes.push_back(in_view[static_cast<size_t>(i)]);
+  }
+  return boxes;
 }
 
 }  // namespace soslam

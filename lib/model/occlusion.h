@@ -23,4 +23,12 @@ std::optional<Eigen::Vector3d> FootInCamera(const Camera& camera, const Box& box
 // the camera.
 std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detection);
 
+// Decides NearerBoxes for all detections of a sequence, among those of `in_view`: of the same
+// frames, objects and planes, with one detection for each object in a frame. Takes a sort for each
+// frame, and a box for each detection.
+void ListBoxesInView(const Sequence& in_view, Sequence* sequence);
+
+// The boxes that may hide a detection of the sequence, as was decided at import.
+std::vector<Box> BoxesInFront(const Sequence& sequence, const Detection& detection);
+
 }  // namespace soslam

@@ -33,6 +33,9 @@ struct Frame {
       true_world_from_camera;  // ground truth; see ImportOptions for what else uses it
   int segment = 0;             // frames of a segment follow each other
   std::optional<Camera> camera = std::nullopt;  // where it is not Sequence::camera
+  // Of what was detected in it, also if it is not used, one box for each object: nearest first.
+  // Decided at import.
+  std::vector<Box> boxes_in_view = {};
 };
 
 struct SupportPlane {
@@ -77,9 +80,11 @@ struct Detection {
   // Left, top, right, bottom: the object may reach farther than this edge of its box, because the
   // image border or a nearer object cuts it off. Decided at import, for all that follows.
   std::array<bool, 4> is_bound{};
-  // Of objects in the same frame that may hide this one, see NearerBoxes: also of those that are
-  // not used. Decided at import.
-  std::vector<Box> nearer_boxes = {};
+  // What may hide this one, see BoxesInFront: as many of Frame::boxes_in_view, but for that of its
+  // own object where there is one among them. Decided at import.
+  int nearer_in_view = 0;
+  std::optional<int> own_in_view = std::nullopt;
+  std::vector<Box> nearer_boxes = {};  // those beside, of files before version 1.6
   // Where the dataset says for each frame where the object is: exact, also while it moves.
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "initialisation/yaw_sweep.h"
+#include "model/occlusion.h"
 #include "orientation/mirror_planes.h"
 #include "orientation/texture_asymmetry.h"
 
@@ -29,7 +30,7 @@ class OrientationProfile {
         symmetry_options_(symmetry_options),
         observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
         edge_image_(std::make_shared<const EdgeImage>(
-            EdgeImage{edges, detection.box, detection.nearer_boxes})),
+            EdgeImage{edges, detection.box, BoxesInFront(sequence, detection)})),
         symmetry_image_(edges->maps, detection.box),
         asymmetry_(symmetry_image_, observation_.camera, options.texture, symmetry_options) {}
 

@@ -19,6 +19,7 @@
 #include "evaluation/result_checks.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
+#include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
 #include "stage/report_findings.h"
 
@@ -89,7 +90,7 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
   for (const int index : use.edges) {
     const Detection& detection = detection_at(index);
     input->edge_images[index] = std::make_shared<const EdgeImage>(
-        EdgeImage{frame_of(detection), detection.box, detection.nearer_boxes});
+        EdgeImage{frame_of(detection), detection.box, BoxesInFront(sequence, detection)});
   }
 }
 

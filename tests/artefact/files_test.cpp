@@ -154,6 +154,8 @@ TEST_F(ArtefactFilesTest, SequenceComesBack) {
     EXPECT_EQ(nlohmann::json(a.box), nlohmann::json(b.box));
     EXPECT_EQ(a.is_bound, b.is_bound);
     EXPECT_EQ(a.nearer_boxes, b.nearer_boxes);
+    EXPECT_EQ(a.nearer_in_view, b.nearer_in_view);
+    EXPECT_EQ(a.own_in_view, b.own_in_view);
     ExpectSame(a.plane_in_camera, b.plane_in_camera);
     ASSERT_EQ(a.true_landmark_in_camera.has_value(), b.true_landmark_in_camera.has_value());
     if (a.true_landmark_in_camera) {
@@ -254,10 +256,35 @@ TEST_F(ArtefactFilesTest, WithoutShapeExponentsAndBoundsThereAreEllipsoidsAndNon
   EXPECT_EQ(read.detections[1].is_bound, (std::array<bool, 4>{}));
 }
 
+TEST_F(ArtefactFilesTest, WhatIsNearerComesBack) {
+  ListBoxesInView(sequence, &sequence);
+  sequence.detections[1].own_in_view = 0;
+  sequence.detections[2].nearer_boxes = {{1.0, 2.0, 3.0, 4.0}};  // of an older file
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file);
+  size_t boxes = 0;
+  for (size_t i = 0; i < read.detections.size(); ++i) {
+    const auto nearer = BoxesInFront(read, read.detections[i]);
+    EXPECT_EQ(nearer, BoxesInFront(sequence, sequence.detections[i]));
+    boxes += nearer.size();
+  }
+  EXPECT_GT(boxes, 1u);
+}
+
+TEST_F(ArtefactFilesTest, RefusesMoreNearerBoxesThanAreInView) {
+  sequence.detections[1].nearer_in_view = 1;
+  WriteSequence(file, sequence, {});
+  ExpectError<InputError>([&] { ReadSequence(file); },
+                          {"/detections/1/nearer_in_view is 1", "at most the 0 boxes_in_view"});
+}
+
 TEST_F(ArtefactFilesTest, WithoutNearerBoxesTheyAreThoseOfTheSequencesOwnDetections) {
   WriteSequence(file, sequence, {});
   nlohmann::json document = ParseJsonFile(file);
-  for (auto& detection : document["detections"]) detection.erase("nearer_boxes");
+  for (auto& detection : document["detections"]) {
+    detection.erase("nearer_boxes");
+    detection.erase("nearer_in_view");
+  }
   std::ofstream(file) << document;
   size_t boxes = 0;
   for (const Detection& detection : ReadSequence(file).detections) {

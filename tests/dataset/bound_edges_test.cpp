@@ -16,8 +16,8 @@ constexpr Bounds kBottom = {false, false, false, true};
 
 // Of each box, with the others in the same frame.
 std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction = 0.7) {
+  ListBoxesInView(sequence, &sequence);
   for (Detection& detection : sequence.detections) {
-    detection.nearer_boxes = NearerBoxes(sequence, detection);
     detection.is_bound = EdgesCutByBorder(detection.box, sequence.CameraOf(detection));
   }
   ImportOptions options;

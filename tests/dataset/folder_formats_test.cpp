@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "dataset/import.h"
+#include "model/occlusion.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
@@ -98,10 +99,11 @@ TEST_F(FolderFormatsTest, WithoutPlanesWhatEndsLowerIsNearer) {
   Write("detections.csv",
         "frame,label,score,x1,y1,x2,y2\n0,cup,0.9,100,100,200,200\n0,cup,0.8,90,120,210,240\n");
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.detections[0].nearer_boxes.size(), 1u);
-  EXPECT_EQ(sequence.detections[0].nearer_boxes[0].y_max, 240.0);
+  const std::vector<Box> nearer = BoxesInFront(sequence, sequence.detections[0]);
+  ASSERT_EQ(nearer.size(), 1u);
+  EXPECT_EQ(nearer[0].y_max, 240.0);
   EXPECT_TRUE(sequence.detections[0].is_bound[3]);
-  EXPECT_TRUE(sequence.detections[1].nearer_boxes.empty());
+  EXPECT_TRUE(BoxesInFront(sequence, sequence.detections[1]).empty());
 }
 
 TEST_F(FolderFormatsTest, GivenPlanesHoldForDetectionsWithoutIds) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "model/occlusion.h"
 #include "support/dataset_fixture.h"
 
 namespace soslam {
@@ -286,9 +287,11 @@ TEST_F(ImportTest, BoxesThatAreNotUsedHideLowerEdgesUnlessTheyMayNotBeReal) {
   EXPECT_EQ(sequence.detections[0].is_bound, lower_edge);
   EXPECT_EQ(sequence.detections[1].is_bound, (std::array<bool, 4>{}));
   EXPECT_EQ(sequence.detections[2].is_bound, lower_edge);
-  EXPECT_EQ(sequence.detections[0].nearer_boxes, (std::vector<Box>{{90, 200, 210, 470}}));
-  EXPECT_TRUE(sequence.detections[1].nearer_boxes.empty());
-  EXPECT_EQ(sequence.detections[2].nearer_boxes, (std::vector<Box>{{90, 200, 210, 440}}));
+  EXPECT_EQ(BoxesInFront(sequence, sequence.detections[0]),
+            (std::vector<Box>{{90, 200, 210, 470}}));
+  EXPECT_TRUE(BoxesInFront(sequence, sequence.detections[1]).empty());
+  EXPECT_EQ(BoxesInFront(sequence, sequence.detections[2]),
+            (std::vector<Box>{{90, 200, 210, 440}}));
   options.hidden_edge_fraction = 0.0;
   EXPECT_EQ(Import().detections[1].is_bound, lower_edge);
 }

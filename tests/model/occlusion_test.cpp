@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "support/level_sequence.h"
+#include "support/random.h"
 
 namespace soslam {
 namespace {
@@ -80,6 +85,66 @@ TEST(NearerBoxesTest, TheDetectionNeedNotBeTheSequencesOwn) {
   Detection moved = sequence.detections[0];
   moved.box.y_max = 200.0;
   EXPECT_THAT(LeftEdges(NearerBoxes(sequence, moved)), ElementsAre(11));
+}
+
+std::vector<std::array<double, 4>> Sorted(const std::vector<Box>& boxes) {
+  std::vector<std::array<double, 4>> sorted;
+  for (const Box& box : boxes) sorted.push_back({box.x_min, box.y_min, box.x_max, box.y_max});
+  std::ranges::sort(sorted);
+  return sorted;
+}
+
+// Boxes anywhere, many with the same lower edge, some above the horizon.
+Sequence RandomBoxes(int count, bool has_planes) {
+  std::vector<Box> boxes;
+  for (int i = 0; i < count; ++i) {
+    const double x = RandomUniform(0, 500), y = RandomUniform(0, 300);
+    boxes.push_back(
+        {x, y, x + RandomUniform(5, 100), 10.0 * std::ceil(RandomUniform(y, 450) / 10)});
+  }
+  Sequence sequence = LevelSequence(boxes);
+  Frame second = sequence.frames.front();
+  second.id = sequence.frames.back().id + 1;
+  sequence.frames.push_back(second);
+  for (int i = 0; i < count; i += 3) {
+    Detection detection = sequence.detections[static_cast<size_t>(i)];
+    detection.frame_index = static_cast<int>(sequence.frames.size()) - 1;
+    sequence.detections.push_back(detection);
+  }
+  if (!has_planes) sequence.planes.clear();
+  return sequence;
+}
+
+// Used are some detections, one of them with another box than in view.
+TEST(BoxesInFrontTest, AreThoseOfTheDefinition) {
+  for (const bool has_planes : {true, false}) {
+    for (int round = 0; round < 20; ++round) {
+      const Sequence in_view = RandomBoxes(40, has_planes);
+      Sequence used = in_view;
+      std::erase_if(used.detections,
+                    [](const Detection& detection) { return detection.object_index % 4 == 1; });
+      used.detections[2].box.y_max -= 60.0;
+      ListBoxesInView(in_view, &used);
+      for (const Detection& detection : used.detections) {
+        EXPECT_EQ(Sorted(BoxesInFront(used, detection)), Sorted(NearerBoxes(in_view, detection)));
+      }
+    }
+  }
+}
+
+TEST(BoxesInFrontTest, TheNearestIsFirst) {
+  Sequence sequence = LevelSequence({{10, 100, 20, 300}, {11, 100, 20, 320}, {12, 100, 20, 340}});
+  ListBoxesInView(sequence, &sequence);
+  EXPECT_THAT(LeftEdges(BoxesInFront(sequence, sequence.detections[0])), ElementsAre(12, 11));
+}
+
+TEST(BoxesInFrontTest, AnotherBoxOfTheSameObjectDoesNotHideIt) {
+  const Sequence in_view = LevelSequence({{10, 100, 20, 340}, {11, 100, 20, 320}});
+  Sequence used = in_view;
+  used.detections[0].box = {12, 100, 20, 300};
+  ListBoxesInView(in_view, &used);
+  EXPECT_EQ(used.detections[0].own_in_view, 0);
+  EXPECT_THAT(LeftEdges(BoxesInFront(used, used.detections[0])), ElementsAre(11));
 }
 
 }  // namespace
