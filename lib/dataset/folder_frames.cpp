@@ -105,7 +105,8 @@ ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size
 }
 
 ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
-                       const std::vector<ListedImage>& images, const std::optional<Rigid3d>& body_from_camera,
+                       const std::vector<ListedImage>& images,
+                       const std::optional<Rigid3d>& body_from_camera,
                        std::vector<Finding>* findings) {
   const std::vector<TimedPose> trajectory = ReadTimedPoses(path, options, body_from_camera);
   std::ranges::move(
