@@ -6,8 +6,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdlib>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,15 +33,36 @@ std::string PlainKey(const std::string& key) {
   return plain.starts_with("camera1.") ? "camera." + plain.substr(8) : plain;
 }
 
+// Whether a field says by its name that it is of a lens, and is no size of a matrix.
+bool IsOfDistortion(const std::string& plain_key) {
+  for (const char* end : {".rows", ".cols"}) {
+    if (plain_key.ends_with(end)) return false;
+  }
+  const std::string last = plain_key.substr(plain_key.rfind('.') + 1);
+  return plain_key.find("distort") != plain_key.npos ||
+         plain_key.find("distcoef") != plain_key.npos ||
+         (last.starts_with("dist") && !last.starts_with("distance"));
+}
+
+bool IsNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0';
+}
+
 class CalibrationReader {
  public:
   CalibrationReader(const NamedFields& fields, std::string file) : file_(std::move(file)) {
-    for (const auto& [key, values] : fields) fields_[PlainKey(key)] = values;
+    for (const auto& [key, values] : fields) {
+      fields_[PlainKey(key)] = values;
+      names_[PlainKey(key)] = key;
+    }
   }
 
   Calibration Read() const {
     const auto [fx, fy, cx, cy] = Intrinsics();
     const auto [width, height] = Size();
+    RefusePartsOfImages(width, height);
     Calibration read;
     read.camera.camera = {width, height, fx, fy, cx, cy};
     if (!(fx > 0.0) || !(fy > 0.0)) {
@@ -46,7 +70,9 @@ class CalibrationReader {
     }
     read.camera.distortion = Lens();
     if (const auto* matrix = Find({"tbs.data", "tbs"})) {
-      read.body_from_camera = Motion(Numbers(*matrix, "T_BS", 16));
+      using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+      const std::vector<double> numbers = Numbers(*matrix, "T_BS", 16);
+      read.body_from_camera = RigidMotion(RowMajor(numbers.data()), file_ + ": T_BS");
     }
     return read;
   }
@@ -107,6 +133,10 @@ class CalibrationReader {
     if (const Values* values = Find({"cameramatrix.data", "cameramatrix", "k.data", "k"})) {
       const std::vector<double> k = Numbers(*values, "camera matrix", 9);
       if (k[1] != 0.0) Refuse(fmt::format("camera matrix has skew {}; expected 0", k[1]));
+      if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+        Refuse(fmt::format("camera matrix is {}; expected fx 0 cx 0 fy cy 0 0 1: is it transposed?",
+                           fmt::join(k, " ")));
+      }
       return {k[0], k[4], k[2], k[5]};
     }
     if (const Values* values = Find({"intrinsics"})) {
@@ -119,12 +149,51 @@ class CalibrationReader {
     Refuse("has no camera_matrix; expected that or intrinsics (fx, fy, cx, cy)");
   }
 
-  std::vector<double> Coefficients() const {
-    if (const Values* values =
-            Find({"distortioncoefficients.data", "distortioncoefficients", "distortioncoeffs",
-                  "distcoeffs.data", "distcoeffs", "d.data", "d"})) {
-      return Numbers(*values, "distortion coefficients");
+  // A region of interest or binned pixels, of ROS: another camera than that of the whole image.
+  void RefusePartsOfImages(int width, int height) const {
+    const auto number = [&](const char* key) { return Find({key}) == nullptr ? 0.0 : Number(key); };
+    for (const char* key : {"binningx", "binningy"}) {
+      if (number(key) <= 1.0) continue;
+      Refuse(fmt::format("{} is {}; expected 0 or 1: no binning of pixels", names_.at(key),
+                         number(key)));
     }
+    const std::array roi = {number("roi.xoffset"), number("roi.yoffset"), number("roi.width"),
+                            number("roi.height")};
+    if (roi[2] == 0.0 && roi[3] == 0.0) return;
+    if (roi != std::array{0.0, 0.0, 1.0 * width, 1.0 * height}) {
+      Refuse(fmt::format("roi is {}; expected the whole image, 0 0 {} {} or 0 0 0 0",
+                         fmt::join(roi, " "), width, height));
+    }
+  }
+
+  void RefuseFisheye() const {
+    for (const auto& [key, values] : fields_) {
+      if (key.find("fisheye") == key.npos || values.empty()) continue;
+      const std::string& value = values.front();
+      const bool is_zero = IsNumber(value) ? std::stod(value) == 0.0
+                                           : value == "false" || value == "False" || value == "no";
+      if (!is_zero)
+        ParseLens("fisheye", {}, fmt::format("{}: {} is {}", file_, names_.at(key), value));
+    }
+  }
+
+  // What is not `read` must not look as if it were.
+  void RefuseOtherDistortion(const Values* read) const {
+    for (const auto& [key, values] : fields_) {
+      if (&values == read || !IsOfDistortion(key) || !std::ranges::any_of(values, IsNumber))
+        continue;
+      Refuse(fmt::format("{} is not read; expected distortion_coefficients, dist_coeffs or D, once",
+                         names_.at(key)));
+    }
+  }
+
+  std::vector<double> Coefficients() const {
+    const Values* values = Find({"distortioncoefficients.data", "distortioncoefficients",
+                                 "distortioncoeffs.data", "distortioncoeffs", "distcoeffs.data",
+                                 "distcoeffs", "distcoeff.data", "distcoeff", "d.data", "d"});
+    RefuseFisheye();
+    RefuseOtherDistortion(values);
+    if (values != nullptr) return Numbers(*values, "distortion coefficients");
     std::vector<double> coefficients;
     for (const char* key : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
       coefficients.push_back(Find({key}) == nullptr ? 0.0 : Number(key));
@@ -143,13 +212,8 @@ class CalibrationReader {
     return ParseLens("pinhole", coefficients, file_);
   }
 
-  // Of a 4 x 4 matrix by rows.
-  Rigid3d Motion(const std::vector<double>& matrix) const {
-    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> motion(matrix.data());
-    return {NearestRotation(motion.topLeftCorner<3, 3>(), file_), motion.topRightCorner<3, 1>()};
-  }
-
   NamedFields fields_;
+  std::map<std::string, std::string> names_;  // as the file writes them, by plain key
   std::string file_;
 };
 

@@ -21,12 +21,14 @@ struct Calibration {
 //   size        image_width and image_height (ROS, OpenCV), width and height, resolution (EuRoC)
 //   intrinsics  camera_matrix or K: 9 numbers, or a matrix with "data"; intrinsics: fx fy cx cy;
 //               Camera.fx, .fy, .cx, .cy (ORB-SLAM)
-//   lens        distortion_coefficients, dist_coeffs, distortion_coeffs or D: in OpenCV's order;
+//   lens        distortion_coefficients, dist_coeffs, dist_coeff, distortion_coeffs or D: in
+//   OpenCV's order;
 //               Camera.k1, .k2, .p1, .p2, .k3
 //   its model   distortion_model, camera_model, Camera.type (ParseLens)
 //
 // Other fields are of no matter to the camera. Throws InputError, naming the field, for what is
-// missing, and for a skew.
+// missing, for a skew or a transposed matrix, for a fisheye_model, for coefficients of distortion
+// by other names, and for ROS' binning and roi.
 Calibration ReadCalibration(const std::filesystem::path& path);
 
 }  // namespace soslam

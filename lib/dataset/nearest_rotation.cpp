@@ -27,4 +27,15 @@ Eigen::Quaterniond NearestRotation(const Eigen::Matrix3d& matrix, const std::str
       .normalized();
 }
 
+Rigid3d RigidMotion(const Eigen::Matrix4d& matrix, const std::string& place) {
+  constexpr double kTolerance = 1e-6;
+  const Eigen::RowVector4d last = matrix.row(3);
+  if (!((last - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kTolerance)) {
+    throw InputError(fmt::format(
+        "{}: last row of the 4 x 4 matrix is {} {} {} {}; expected 0 0 0 1: is it transposed?",
+        place, last[0], last[1], last[2], last[3]));
+  }
+  return {NearestRotation(matrix.topLeftCorner<3, 3>(), place), matrix.topRightCorner<3, 1>()};
+}
+
 }  // namespace soslam

@@ -4,10 +4,16 @@
 #include <Eigen/Geometry>
 #include <string>
 
+#include "geometry/rigid3.h"
+
 namespace soslam {
 
 // The rotation nearest to a matrix that a file rounded. Throws InputError, naming `place`, when it
 // is no rotation within what rounding explains.
 Eigen::Quaterniond NearestRotation(const Eigen::Matrix3d& matrix, const std::string& place);
+
+// The motion that a 4 x 4 matrix is, with its rotation made exact. Throws InputError also when its
+// last row is not 0 0 0 1, as in one that is written by columns.
+Rigid3d RigidMotion(const Eigen::Matrix4d& matrix, const std::string& place);
 
 }  // namespace soslam

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,8 +18,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kCameraKeys = {"w",  "h",  "fl_x", "fl_y", "cx", "cy", "camera_angle_x",
-                                    "k1", "k2", "k3",   "k4",   "p1", "p2", "camera_model"};
+constexpr std::array kCameraKeys = {
+    "w",  "h",  "fl_x", "fl_y", "cx", "cy", "camera_angle_x", "k1", "k2",
+    "k3", "k4", "k5",   "k6",   "p1", "p2", "camera_model"};
 
 int Pixels(const JsonEntry& entry, const char* name) {
   const double pixels = entry.Real(name);
@@ -57,7 +59,9 @@ std::optional<Distortion> LensOf(const JsonEntry& entry) {
   if (entry.Flag("is_fisheye", false)) model = "fisheye";  // of instant-ngp
   if (model == "FULL_OPENCV") model = "OPENCV";            // it has no more than these here
   const auto distortion = ParseLens(model, coefficients, entry.place());
-  if (RealOr(entry, "k4", 0.0) != 0.0) entry.Refuse("k4", "0: no lens model here has it");
+  for (const char* name : {"k4", "k5", "k6"}) {
+    if (RealOr(entry, name, 0.0) != 0.0) entry.Refuse(name, "0: no lens model here has it");
+  }
   return distortion;
 }
 
@@ -85,12 +89,11 @@ NamedPose ParsePose(const JsonEntry& frame) {
       matrix(static_cast<int>(r), static_cast<int>(c)) = rows[r][c].get<double>();
     }
   }
-  const Eigen::Quaterniond world_from_opengl =
-      NearestRotation(matrix.topLeftCorner<3, 3>(), frame.place());
+  const Rigid3d world_from_opengl = RigidMotion(matrix, frame.place());
   const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
   return {frame.place(),
           frame.Text("file_path"),
-          {world_from_opengl * half_turn_about_x, matrix.topRightCorner<3, 1>()}};
+          {world_from_opengl.rotation * half_turn_about_x, world_from_opengl.translation}};
 }
 
 }  // namespace
@@ -126,8 +129,11 @@ std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path)
   std::vector<ListedImage> images;
   for (size_t i = 0; i < frames.size(); ++i) {
     const JsonEntry frame(frames[i], fmt::format("{}#/frames/{}", path.string(), i));
-    images.push_back({static_cast<double>(i), frame.Text("file_path")});
+    images.push_back({0.0, frame.Text("file_path")});
   }
+  std::ranges::stable_sort(
+      images, {}, [](const ListedImage& image) { return std::filesystem::path(image.image); });
+  for (size_t i = 0; i < images.size(); ++i) images[i].timestamp = static_cast<double>(i);
   if (images.empty()) throw InputError(path.string() + ": lists no image");
   return images;
 }

@@ -170,10 +170,46 @@ TEST_F(CalibrationFileTest, BadCalibrationsAreNamed) {
   ExpectRefused("camera_matrix", "matrix", {"no camera_matrix"});
   ExpectRefused("[500.0, 0.0,", "[500.0,", {"camera matrix has 8 numbers; expected 9"});
   ExpectRefused("[500.0, 0.0,", "[500.0, 2.5,", {"skew 2.5"});
+  ExpectRefused("319.5, 0.0, 510.0, 239.5, 0.0, 0.0, 1.0]", "0, 0, 510.0, 0, 319.5, 239.5, 1.0]",
+                {"camera matrix is 500 0 0", "transposed"});
   ExpectRefused("[500.0", "[-500.0", {"focal lengths are -500 and 510"});
   ExpectRefused("plumb_bob", "equidistant", {"'equidistant' is not supported", "undistort"});
   ExpectRefused("-0.004, 0.5]", "-0.004, x]", {"distortion coefficients is 'x'"});
   ExpectRefused("-0.004, 0.5]", "-0.004, 0.5, 1]", {"6 numbers"});
+  ExpectRefused("camera_name: head", "fisheye_model: 1", {"fisheye_model is 1", "undistort"});
+  ExpectRefused("distortion_coefficients", "distortion_parameters",
+                {"distortion_parameters.data is not read"});
+  ExpectRefused("camera_name: head", "dist_coeffs: [0.2, 0, 0, 0]", {"dist_coeffs is not read"});
+  ExpectRefused("camera_name: head", "binning_x: 2", {"binning_x is 2"});
+  ExpectRefused("camera_name: head", "roi: {x_offset: 8, y_offset: 0, width: 320, height: 480}",
+                {"roi is 8 0 320 480"});
+}
+
+TEST_F(CalibrationFileTest, WhatSaysNothingOfTheCameraIsOfNoMatter) {
+  std::string text = kRos;
+  text +=
+      "fisheye_model: 0\nbinning_x: 1\nbinning_y: 0\nmin_dist: 30\n"
+      "roi: {x_offset: 0, y_offset: 0, width: 640, height: 480, do_rectify: false}\n";
+  EXPECT_EQ(Read(text).camera.camera, kCamera);
+}
+
+TEST_F(CalibrationFileTest, DistCoeffIsDistortion) {
+  const LensCamera read =
+      Read(
+          "width: 640\nheight: 480\nK: [500, 0, 319.5, 0, 510, 239.5, 0, 0, 1]\n"
+          "dist_coeff: [[0.1, -0.2, 0.003, -0.004]]\n")
+          .camera;
+  EXPECT_EQ(read.distortion, (Distortion{0.1, -0.2, 0.003, -0.004}));
+}
+
+TEST_F(CalibrationFileTest, TransposedMotionIsRefused) {
+  ExpectError<InputError>(
+      [&] {
+        Read(
+            "T_BS: [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, -0.02, -0.06, 0.01, 1]\n"
+            "resolution: [640, 480]\nintrinsics: [500, 510, 319.5, 239.5]\n");
+      },
+      {"a.yaml: T_BS", "last row", "-0.02 -0.06 0.01 1", "transposed"});
 }
 
 }  // namespace

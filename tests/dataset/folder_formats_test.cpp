@@ -183,7 +183,7 @@ TEST_F(FolderFormatsTest, NerfstudioIsListTrajectoryAndCamera) {
 TEST_F(FolderFormatsTest, EurocsBodyIsNotItsCamera) {
   options_.folder.groundtruth = "data.csv";
   options_.folder.trajectory_format = TrajectoryFormat::kEuroc;
-  Write("data.csv", "# time\n1000000000,1,2,3,1,0,0,0\n2000000000,4,2,3,1,0,0,0\n");
+  Write("data.csv", "# time\n1000000000,1,2,3,1,0,0,0\n2000000000,4,2,3,0.70710678,0,0,0.70710678\n");
   testing::internal::CaptureStdout();
   EXPECT_EQ(Import().frames.at(1).world_from_camera.translation, Eigen::Vector3d(4, 2, 3));
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
@@ -191,9 +191,14 @@ TEST_F(FolderFormatsTest, EurocsBodyIsNotItsCamera) {
   options_.folder.camera = "";
   options_.folder.camera_file = "sensor.yaml";
   Write("sensor.yaml",
-        "T_BS:\n  data: [1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n"
+        "T_BS:\n  data: [1, 0, 0, 0.5, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1]\n"
         "resolution: [640, 480]\nintrinsics: [500, 510, 319.5, 239.5]\n");
-  EXPECT_EQ(Import().frames.at(1).world_from_camera.translation, Eigen::Vector3d(4.5, 2, 3));
+  // The body is turned by 90 degrees about z, the camera in it by as much about x.
+  const Rigid3d pose = Import().frames.at(1).world_from_camera;
+  EXPECT_TRUE(pose.translation.isApprox(Eigen::Vector3d(4, 2.5, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(4, 3.5, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 1, 0)).isApprox(Eigen::Vector3d(4, 2.5, 4)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 1)).isApprox(Eigen::Vector3d(5, 2.5, 3)));
 }
 
 // A point 1 m right of, 1 m above and 4 m ahead of a camera with y up at (1, 2, 3).

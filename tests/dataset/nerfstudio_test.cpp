@@ -36,7 +36,7 @@ class NerfstudioTest : public testing::Test {
     document_ = before;
   }
 
-  // A camera at (1, 2, 3) with the world's axes: by OpenGL it looks along -z, with y up.
+  // A camera at (1, 2, 3) whose OpenGL axes x, y, z are y, z, x of the world.
   json document_ = {
       {"camera_model", "OPENCV"},
       {"w", 640},
@@ -49,7 +49,7 @@ class NerfstudioTest : public testing::Test {
       {"p2", -0.2},
       {"frames",
        {{{"file_path", "./images/a.jpg"},
-         {"transform_matrix", {{1, 0, 0, 1}, {0, 1, 0, 2}, {0, 0, 1, 3}, {0, 0, 0, 1}}}}}}};
+         {"transform_matrix", {{0, 0, 1, 1}, {1, 0, 0, 2}, {0, 1, 0, 3}, {0, 0, 0, 1}}}}}}};
   TemporaryFolder folder_;
 };
 
@@ -79,9 +79,9 @@ TEST_F(NerfstudioTest, PosesHaveOpenGlAxes) {
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].image, "./images/a.jpg");
   const Rigid3d& pose = poses[0].world_from_camera;
-  EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(1, 2, -2)));
-  EXPECT_TRUE((pose * Eigen::Vector3d(0, 5, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
-  EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(6, 2, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(-4, 2, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 5, 0)).isApprox(Eigen::Vector3d(1, 2, -2)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, 7, 3)));
 }
 
 TEST_F(NerfstudioTest, FramesAreAListOfImages) {
@@ -91,18 +91,29 @@ TEST_F(NerfstudioTest, FramesAreAListOfImages) {
   EXPECT_EQ(images[0].timestamp, 0.0);
 }
 
+TEST_F(NerfstudioTest, ImagesAreSortedByName) {
+  document_["frames"] = {{{"file_path", "images/b.jpg"}}, {{"file_path", "images/a.jpg"}}};
+  const auto images = ReadNerfstudioImages(Write());
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(images[0].image, "images/a.jpg");
+  EXPECT_EQ(images[1].image, "images/b.jpg");
+  EXPECT_EQ(images[1].timestamp, 1.0);
+}
+
 TEST_F(NerfstudioTest, BadFilesAreNamed) {
   ExpectRefused("/camera_model", "OPENCV_FISHEYE", {"transforms.json", "not supported"});
   ExpectRefused("/is_fisheye", true, {"'fisheye' is not supported"});
   ExpectRefused("/k4", 0.1, {"k4 is 0.1"});
+  ExpectRefused("/k6", 0.1, {"k6 is 0.1"});
   ExpectRefused("/w", 640.5, {"w is 640.5", "pixels"});
   ExpectRefused("/h", 1e9, {"h is"});
   ExpectRefused("/fl_x", 0, {"fl_x is 0"});
   ExpectRefused("/frames", json::array(), {"frames is []"});
   ExpectRefused("/frames/0/fl_x", 400, {"transforms.json#/frames/0", "fl_x is 400", "one camera"});
   ExpectRefused("/frames/0/transform_matrix", {{1, 0, 0, 1}}, {"#/frames/0", "4 rows"});
-  ExpectRefused("/frames/0/transform_matrix/0/0", 2, {"#/frames/0", "not orthonormal"});
-  ExpectRefused("/frames/0/transform_matrix/0/0", -1, {"#/frames/0", "determinant -1"});
+  ExpectRefused("/frames/0/transform_matrix/0/2", 2, {"#/frames/0", "not orthonormal"});
+  ExpectRefused("/frames/0/transform_matrix/0/2", -1, {"#/frames/0", "determinant -1"});
+  ExpectRefused("/frames/0/transform_matrix/3/0", 1, {"#/frames/0", "last row", "1 0 0 1"});
   ExpectRefused("/frames/0/file_path", "", {"#/frames/0", "file_path"});
   document_["frames"][0]["fl_x"] = 500.0;  // that of all
   EXPECT_EQ(Camera().camera.fx, 500.0);
