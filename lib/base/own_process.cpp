@@ -8,13 +8,36 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
+#include <new>
 #include <system_error>
 
 namespace soslam {
 namespace {
 
-[[noreturn]] void WorkAndExit(const std::function<void()>& work) {
+constexpr int kOutOfMemory = 71;
+
+// What this process has of addresses: sanitizers take terabytes. None where the system does not
+// say.
+std::optional<std::uint64_t> AddressBytes() {
+  std::uint64_t pages = 0;
+  std::ifstream stream("/proc/self/statm");
+  if (!(stream >> pages)) return std::nullopt;
+  return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+void Lower(__rlimit_resource resource, rlim_t value) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0 || limit.rlim_cur <= value) return;
+  limit.rlim_cur = value;
+  setrlimit(resource, &limit);
+}
+
+[[noreturn]] void WorkAndExit(const std::function<void()>& work, const ProcessLimits& limits) {
+  Lower(RLIMIT_CPU, limits.cpu_s);
+  if (const auto bytes = AddressBytes()) Lower(RLIMIT_AS, *bytes + limits.memory_bytes);
   const rlimit no_core_dump{0, 0};
   setrlimit(RLIMIT_CORE, &no_core_dump);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -22,6 +45,8 @@ namespace {
   dup2(nowhere, STDERR_FILENO);
   try {
     work();
+  } catch (const std::bad_alloc&) {
+    _exit(kOutOfMemory);
   } catch (...) {  // thrown again where it is done in earnest
   }
   _exit(0);
@@ -29,16 +54,20 @@ namespace {
 
 }  // namespace
 
-std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work) {
+std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
+                                             const ProcessLimits& limits) {
   const pid_t process = fork();
   if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  if (process == 0) WorkAndExit(work);
+  if (process == 0) WorkAndExit(work, limits);
   int status = 0;
   while (waitpid(process, &status, 0) < 0) {
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
   }
   if (WIFSIGNALED(status)) {
     return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  }
+  if (WEXITSTATUS(status) == kOutOfMemory) {
+    return fmt::format("too little memory ({} bytes more)", limits.memory_bytes);
   }
   if (WEXITSTATUS(status) != 0) return fmt::format("exit code {}", WEXITSTATUS(status));
   return std::nullopt;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <new>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 
@@ -28,6 +29,16 @@ std::string Reason(const std::exception& error) {
   return begin == text.npos ? "no reason given" : text.substr(begin, end - begin + 1);
 }
 
+// Throws std::bad_alloc where that, or OpenCV's word for it, is what was thrown: not the network's
+// form is at fault.
+void RethrowOutOfMemory(const std::exception& error) {
+  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
+  if ((of_opencv != nullptr && of_opencv->code == cv::Error::StsNoMem) ||
+      dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+    throw std::bad_alloc();
+  }
+}
+
 std::string ReadNetwork(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!IsFile(path) || !stream) {
@@ -49,6 +60,7 @@ cv::dnn::Net LoadNetwork(const std::filesystem::path& path) {
     network.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     return network;
   } catch (const std::exception& error) {  // of OpenCV, or of what it is built on
+    RethrowOutOfMemory(error);
     throw InputError(fmt::format("{}: is not an ONNX network that OpenCV {} can load: {}",
                                  path.string(), CV_VERSION, Reason(error)));
   }
@@ -87,6 +99,7 @@ cv::Mat YoloDetector::Forward(const cv::Mat& input) {
     network_.setInput(blob);
     network_.forward(outputs, network_.getUnconnectedOutLayersNames());
   } catch (const std::exception& error) {  // of OpenCV, or of what it is built on
+    RethrowOutOfMemory(error);
     throw InputError(fmt::format("{}: cannot be run on an input of {} x {} pixels: {}", name_,
                                  input.cols, input.rows, Reason(error)));
   }

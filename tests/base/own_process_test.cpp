@@ -2,9 +2,11 @@
 #include "base/own_process.h"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <new>
 #include <stdexcept>
 
 namespace soslam {
@@ -25,6 +27,27 @@ TEST(OwnProcessTest, CrashesAreNamed) {
   EXPECT_TRUE(CrashInOwnProcess([] { std::abort(); }));
   EXPECT_EQ(CrashInOwnProcess([] { std::_Exit(7); }), "exit code 7");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(OwnProcessTest, LimitsOfTimeAndMemoryEndIt) {
+  volatile int steps = 0;
+  const auto slow = CrashInOwnProcess(
+      [&] {
+        for (;;) steps = steps + 1;
+      },
+      {.cpu_s = 1});
+  ASSERT_TRUE(slow);
+  EXPECT_NE(slow->find("CPU time limit exceeded"), slow->npos) << *slow;
+  const auto large = CrashInOwnProcess([] { throw std::bad_alloc(); });
+  ASSERT_TRUE(large);
+  EXPECT_NE(large->find("too little memory"), large->npos) << *large;
+  // More addresses than the limit, none of them touched.
+  EXPECT_TRUE(CrashInOwnProcess([] {
+    constexpr size_t kBytes = size_t{9} << 30;
+    void* bytes =
+        mmap(nullptr, kBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (bytes == MAP_FAILED) throw std::bad_alloc();
+  }));
 }
 
 }  // namespace
