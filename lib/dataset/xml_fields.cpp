@@ -17,6 +17,7 @@ namespace {
 
 constexpr size_t kMaxDepth = 10;
 constexpr size_t kMaxValues = 100000;
+constexpr size_t kMaxPath = 200;  // characters of the names of elements in each other
 
 class XmlReader {
  public:
@@ -61,7 +62,14 @@ class XmlReader {
     const std::string name(
         tag.substr(is_end ? 2 : 1).substr(0, tag.substr(is_end ? 2 : 1).find_first_of(" \t\r\n/")));
     if (!is_end) {
+      if (++elements_ > kMaxValues) Refuse(fmt::format("has more than {} elements", kMaxValues));
       open_.push_back(name);
+      if (name.size() > kMaxPath || Path().size() > kMaxPath) {
+        Refuse(
+            fmt::format("has an element whose name, with those around it, has more than {} "
+                        "characters",
+                        kMaxPath));
+      }
       if (open_.size() > kMaxDepth) Refuse("is nested too deep");
       if (open_.size() > 1 && !fields_.try_emplace(Path()).second) {
         Refuse(fmt::format("has <{}> twice; expected once", Path()));
@@ -94,6 +102,7 @@ class XmlReader {
   std::string_view rest_;
   std::vector<std::string> open_;
   size_t values_ = 0;
+  size_t elements_ = 0;
   NamedFields fields_;
 };
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr size_t kMaxDepth = 10;
 constexpr size_t kMaxValues = 100000;
+constexpr size_t kMaxPath = 200;  // characters of the keys around a value
 
 // Where `found` is first true of text outside of quotes; npos when it never is.
 template <typename Found>
@@ -95,7 +96,13 @@ class YamlReader {
     throw InputError(lines_[std::min(next_, lines_.size() - 1)].place + ": " + what);
   }
 
-  static std::string Join(const std::string& path, std::string_view key) {
+  // The path of a key that is read now.
+  std::string Join(const std::string& path, std::string_view key) {
+    if (++keys_ > kMaxValues) Refuse(fmt::format("has more than {} keys", kMaxValues));
+    if (path.size() + key.size() > kMaxPath) {
+      Refuse(fmt::format("has a key of {} characters, with those around it; expected at most {}",
+                         path.size() + key.size(), kMaxPath));
+    }
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
   }
 
@@ -196,6 +203,7 @@ class YamlReader {
   std::vector<TextLine> lines_;
   size_t next_ = 0;  // the line that is read
   size_t values_ = 0;
+  size_t keys_ = 0;
   std::vector<OpenKey> open_;  // from the outermost on
   NamedFields fields_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/yaml_fields.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,6 +61,13 @@ TEST(YamlFieldsTest, WhatIsNotReadIsNamed) {
   std::string many = "a: [1";
   for (int i = 0; i < 100000; ++i) many += ",1";
   refused(many + "]", {"more than 100000 values"});
+  refused("a:\n  " + std::string(200, 'b') + ": 1\n",
+          {"a.yaml:2", "201 characters", "at most 200"});
+  refused("a: {b: {" + std::string(250, 'c') + ": 1}}\n", {"252 characters"});
+  std::string keys;
+  for (int i = 0; i <= 100000; ++i) keys += fmt::format("k{}:\n", i);
+  refused(keys, {"more than 100000 keys"});
+  refused(std::string(4000001, '\n'), {"more than 4000000 lines"});
 }
 
 class XmlFieldsTest : public testing::Test {
@@ -93,6 +101,11 @@ TEST_F(XmlFieldsTest, BadFilesAreNamed) {
   std::string deep;
   for (int i = 0; i < 30; ++i) deep += "<a>";
   refused(deep, {"nested too deep"});
+  refused("<a><" + std::string(201, 'b') + ">", {"more than 200 characters"});
+  refused("<a><" + std::string(150, 'b') + "><" + std::string(50, 'c') + ">", {"200 characters"});
+  std::string many = "<a>";
+  for (int i = 0; i < 100000; ++i) many += fmt::format("<b{}/>", i);
+  refused(many, {"more than 100000 elements"});
 }
 
 }  // namespace
