@@ -80,11 +80,10 @@ std::vector<TimedPose> ReadCameraOfEuroc(const fs::path& path,
   return trajectory;
 }
 
-std::vector<TimedPose> ReadTimedPoses(const fs::path& path, const ImportOptions& options,
+std::vector<TimedPose> ReadTimedPoses(const fs::path& path, TrajectoryFormat format,
+                                      const ImportOptions& options,
                                       const std::optional<Rigid3d>& body_from_camera) {
-  if (options.folder.trajectory_format == TrajectoryFormat::kEuroc) {
-    return ReadCameraOfEuroc(path, body_from_camera);
-  }
+  if (format == TrajectoryFormat::kEuroc) return ReadCameraOfEuroc(path, body_from_camera);
   std::vector<TimedPose> trajectory = ReadTrajectory(path);
   if (options.format != DatasetFormat::kIclNuim) return trajectory;
   for (const TimedPose& pose : trajectory) CheckFrameNumber(pose.timestamp, path.string());
@@ -104,11 +103,11 @@ ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size
   return poses;
 }
 
-ImagePoses PosesByTime(const fs::path& path, const ImportOptions& options,
+ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
                        const std::vector<ListedImage>& images,
                        const std::optional<Rigid3d>& body_from_camera,
                        std::vector<Finding>* findings) {
-  const std::vector<TimedPose> trajectory = ReadTimedPoses(path, options, body_from_camera);
+  const std::vector<TimedPose> trajectory = ReadTimedPoses(path, format, options, body_from_camera);
   std::ranges::move(
       CheckTimestamps(images, trajectory, path.filename().string(), options.max_time_difference_s),
       std::back_inserter(*findings));
@@ -156,14 +155,14 @@ ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named
   return poses;
 }
 
-ImagePoses ReadPoses(const fs::path& path, const ImportOptions& options,
+ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
                      const std::vector<ListedImage>& images,
                      const std::optional<Rigid3d>& body_from_camera,
                      std::vector<Finding>* findings) {
-  const TrajectoryFormat format = options.folder.trajectory_format;
   const bool is_mirrored = options.format == DatasetFormat::kIclNuim;
   if (is_mirrored && format != TrajectoryFormat::kTum && format != TrajectoryFormat::kKitti) {
-    throw SettingsError("trajectory_format: expected tum or kitti for format icl_nuim");
+    throw SettingsError(
+        "trajectory_format, groundtruth_format: expected tum or kitti for format icl_nuim");
   }
   switch (format) {
     case TrajectoryFormat::kKitti:
@@ -173,7 +172,7 @@ ImagePoses ReadPoses(const fs::path& path, const ImportOptions& options,
     case TrajectoryFormat::kNerfstudio:
       return PosesByName(path, ReadNerfstudioPoses(path), images);
     default:
-      return PosesByTime(path, options, images, body_from_camera, findings);
+      return PosesByTime(path, format, options, images, body_from_camera, findings);
   }
 }
 
@@ -233,12 +232,18 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
                                           const std::vector<ListedImage>& images,
                                           const std::optional<Rigid3d>& body_from_camera,
                                           std::vector<Finding>* findings) {
-  ImagePoses estimates = ReadPoses(files.trajectory, options, images, body_from_camera, findings);
+  const TrajectoryFormat of_odometry = options.folder.trajectory_format;
+  const TrajectoryFormat of_truth = options.folder.groundtruth_format == TrajectoryFormat::kSame
+                                        ? of_odometry
+                                        : options.folder.groundtruth_format;
+  const bool is_truth = files.groundtruth == files.trajectory;
+  ImagePoses estimates = ReadPoses(files.trajectory, is_truth ? of_truth : of_odometry, options,
+                                   images, body_from_camera, findings);
   ImagePoses truth(images.size());
-  if (files.groundtruth == files.trajectory) {
+  if (is_truth) {
     truth = estimates;
   } else if (files.groundtruth) {
-    truth = ReadPoses(*files.groundtruth, options, images, body_from_camera, findings);
+    truth = ReadPoses(*files.groundtruth, of_truth, options, images, body_from_camera, findings);
   }
   if (options.folder.align_odometry) AlignAtFirst(truth, files.trajectory, &estimates);
   std::vector<ListedFrame> frames;

@@ -31,13 +31,17 @@ enum class HeldOutFrames {
 };
 inline constexpr const char* kHeldOutFramesNames[] = {"none", "odd"};
 
-enum class TrajectoryFormat { kTum, kKitti, kEuroc, kColmap, kNerfstudio };
+enum class TrajectoryFormat { kTum, kKitti, kEuroc, kColmap, kNerfstudio, kSame };
 inline constexpr const char* kTrajectoryFormatNames[] = {"tum", "kitti", "euroc", "colmap",
                                                          "nerfstudio"};
 
 enum class DetectionsFormat { kCsv, kYolo, kYoloPixels, kCoco, kOaSlam, kKitti };
 inline constexpr const char* kDetectionsFormatNames[] = {"csv",  "yolo",    "yolo_pixels",
                                                          "coco", "oa_slam", "kitti"};
+
+// Also "same": as trajectory_format.
+inline constexpr const char* kGroundtruthFormatNames[] = {"tum",    "kitti",      "euroc",
+                                                          "colmap", "nerfstudio", "same"};
 
 // What is in which file of a folder of images, and how. Paths are relative to the dataset folder,
 // or absolute.
@@ -46,6 +50,7 @@ struct FolderOptions {
   std::string odometry = "odometry.txt";
   std::string groundtruth = "groundtruth.txt";
   TrajectoryFormat trajectory_format = TrajectoryFormat::kTum;
+  TrajectoryFormat groundtruth_format = TrajectoryFormat::kSame;
   bool align_odometry = false;
   std::string camera;
   std::string camera_file;
@@ -63,10 +68,12 @@ struct FolderOptions {
     visit.Text("odometry", &odometry, "the file with the pose estimates");
     visit.Text("groundtruth", &groundtruth, "the file with the true poses");
     visit.Choice("trajectory_format", &trajectory_format, kTrajectoryFormatNames,
-                 "how both files say poses: timestamp tx ty tz qx qy qz qw (tum, ORB-SLAM); 12 "
+                 "how the odometry says poses: timestamp tx ty tz qx qy qz qw (tum, ORB-SLAM); 12 "
                  "numbers, one line for each listed image (kitti); EuRoC's CSV, nanoseconds, qw "
                  "first (euroc); by the names of the images COLMAP's images.txt (colmap) or "
                  "nerfstudio's transforms.json (nerfstudio)");
+    visit.Choice("groundtruth_format", &groundtruth_format, kGroundtruthFormatNames,
+                 "how the groundtruth says poses; same: as trajectory_format says");
     visit.Flag("align_odometry", &align_odometry,
                "the odometry has a world of its own: it is moved as a "
                "whole so that its first pose that has a true one is that");
