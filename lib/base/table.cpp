@@ -56,13 +56,6 @@ std::string MarkdownGrid(const Lines& lines, size_t left_columns) {
   return text;
 }
 
-std::string CsvText(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string LatexCharacter(char c) {
   switch (c) {
     case '\\':
@@ -118,6 +111,13 @@ std::vector<std::string> Formatted(const Values& values, const Format& format) {
 }
 
 }  // namespace
+
+std::string CsvText(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
 
 size_t WidthOf(const std::string& text) {
   // Bytes of UTF-8 that continue a character do not count.

@@ -40,4 +40,7 @@ std::string ToCsv(const Table& table);
 // A table* environment to \input; it needs the package booktabs. Cells without value are dashes.
 std::string ToLatex(const Table& table);
 
+// A field of CSV, in quotes where it has to be (RFC 4180).
+std::string CsvText(const std::string& text);
+
 }  // namespace soslam

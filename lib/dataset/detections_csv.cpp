@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "base/error.h"
+#include "base/table.h"
 #include "dataset/csv_line.h"
 #include "dataset/text_file.h"
 
@@ -100,7 +101,7 @@ class Row {
 }  // namespace
 
 std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
-  const std::vector<TextLine> lines = ReadTextLines(path);
+  const std::vector<TextLine> lines = ReadTableLines(path);
   if (lines.empty()) {
     throw InputError(
         fmt::format("{}: is empty; expected a header {}", path.string(), fmt::join(kColumns, ",")));
@@ -115,7 +116,7 @@ std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes) {
   std::string text = fmt::format("{}\n", fmt::join(kColumns, ","));
   for (const LabelledBox& row : boxes) {
     text += fmt::format("{},{},{:.4f},{:.2f},{:.2f},{:.2f},{:.2f}\n", std::get<int>(row.frame),
-                        row.label, row.score, row.box.x_min, row.box.y_min, row.box.x_max,
+                        CsvText(row.label), row.score, row.box.x_min, row.box.y_min, row.box.x_max,
                         row.box.y_max);
   }
   return text;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -31,13 +32,58 @@ bool IsUtf8(const std::string& text) {
   }
 }
 
+void CheckEncoding(std::string_view text, const std::string& place) {
+  if (IsUtf8(std::string(text)) && text.find('\0') == text.npos) return;
+  throw InputError(place + ": is not UTF-8 text");
+}
+
 std::string ReadWhole(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMaxBytes = 1 << 30;
   NoteInput(path);
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || IsFolder(path)) {
+  std::error_code error;
+  const std::uintmax_t bytes = IsFile(path) ? std::filesystem::file_size(path, error) : 0;
+  std::ifstream stream;
+  if (IsFile(path) && !error) stream.open(path, std::ios::binary);  // a pipe would have it wait
+  if (!stream.is_open()) {
     throw InputError(path.string() + ": cannot be read; expected a text file");
   }
+  if (bytes > kMaxBytes) {
+    throw InputError(fmt::format("{}: has {} bytes; expected a text file of at most {}",
+                                 path.string(), bytes, kMaxBytes));
+  }
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Calls `use` with each line and its number from 1.
+template <typename Use>
+void ForEachLine(const std::string& text, const std::string& name, const Use& use) {
+  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
+  for (size_t number = 1; !rest.empty(); ++number) {
+    const std::string_view line = rest.substr(0, rest.find(line_end));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const size_t end = line.find_last_not_of('\r');
+    use(line.substr(0, end == line.npos ? 0 : end + 1), number);
+  }
+}
+
+bool IsComment(std::string_view line) { return Trimmed(line).starts_with('#'); }
+
+// Without what is of `blanks` at both ends of a line.
+std::vector<TextLine> LinesWithout(std::string_view blanks, const std::string& text,
+                                   const std::string& name) {
+  std::vector<TextLine> lines;
+  ForEachLine(text, name, [&](std::string_view line, size_t number) {
+    if (Trimmed(line).empty() || IsComment(line)) return;
+    const size_t begin = line.find_first_not_of(blanks);
+    const size_t end = line.find_last_not_of(blanks);
+    lines.push_back(
+        {fmt::format("{}:{}", name, number), std::string(line.substr(begin, end - begin + 1))});
+    CheckEncoding(line, lines.back().place);
+  });
+  return lines;
 }
 
 template <typename Number>
@@ -64,16 +110,11 @@ std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
 }
 
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name) {
-  std::vector<TextLine> lines;
-  for (TextLine& line : RawLines(text, name)) {
-    const std::string_view trimmed = Trimmed(line.text);
-    if (trimmed.empty() || trimmed.front() == '#') continue;
-    lines.push_back({std::move(line.place), std::string(trimmed)});
-    if (!IsUtf8(line.text) || line.text.find('\0') != line.text.npos) {
-      throw InputError(lines.back().place + ": is not UTF-8 text");
-    }
-  }
-  return lines;
+  return LinesWithout(kBlanks, text, name);
+}
+
+std::vector<TextLine> ReadTableLines(const std::filesystem::path& path) {
+  return LinesWithout(" \r", ReadWhole(path), path.string());
 }
 
 std::vector<TextLine> ReadRawLines(const std::filesystem::path& path) {
@@ -81,18 +122,15 @@ std::vector<TextLine> ReadRawLines(const std::filesystem::path& path) {
 }
 
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {
-  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
+  constexpr size_t kMaxLines = 4'000'000;
   std::vector<TextLine> lines;
-  while (!rest.empty()) {
-    const std::string_view line = rest.substr(0, rest.find(line_end));
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    const size_t end = line.find_last_not_of('\r');
-    lines.push_back({fmt::format("{}:{}", name, lines.size() + 1),
-                     std::string(line.substr(0, end == line.npos ? 0 : end + 1))});
-  }
+  ForEachLine(text, name, [&](std::string_view line, size_t number) {
+    if (number > kMaxLines) {
+      throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
+    }
+    lines.push_back({fmt::format("{}:{}", name, number), std::string(line)});
+    if (!IsComment(line)) CheckEncoding(line, lines.back().place);
+  });
   return lines;
 }
 

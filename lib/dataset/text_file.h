@@ -17,12 +17,17 @@ struct TextLine {
 // The lines of a UTF-8 text file that are neither blank nor comments (first character #), without
 // blanks at both ends. A byte order mark is dropped. Lines end with a line feed, with or without
 // carriage returns, or, in a text that has no line feed, with a carriage return. Throws InputError
-// when the file cannot be read or is not UTF-8.
+// when the file cannot be read, is no regular one or one of more than 1 GiB, and when it is not
+// UTF-8.
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
 // The same of a text that is not a file of its own; `name` stands for it in error messages.
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name);
 
-// All lines, also blank ones and comments, as they stand.
+// The same of a table: tabs at both ends of a line are kept, as fields may be empty.
+std::vector<TextLine> ReadTableLines(const std::filesystem::path& path);
+
+// All lines, also blank ones and comments, as they stand; at most 4 million. Comments need not be
+// UTF-8.
 std::vector<TextLine> ReadRawLines(const std::filesystem::path& path);
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name);
 

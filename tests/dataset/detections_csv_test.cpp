@@ -2,6 +2,7 @@
 #include "dataset/detections_csv.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "base/error.h"
 #include "support/expect_error.h"
@@ -65,6 +66,33 @@ TEST_F(DetectionsCsvTest, WrittenBoxesComeBackRounded) {
   const auto boxes = ReadDetectionsCsv(Write(text));
   ASSERT_EQ(boxes.size(), 2u);
   ExpectLabelledBox(boxes[0], 0, "milk carton", 0.1235, {-0.5, 10.13, 20, 30});
+}
+
+TEST_F(DetectionsCsvTest, LabelsWithCommasAndQuotesComeBack) {
+  for (const char* label : {"box, large", "12\" screen", "\"cup\""}) {
+    const auto boxes =
+        ReadDetectionsCsv(Write(LabelledBoxesText({{"", 0, label, 1, {1, 2, 3, 4}}})));
+    ASSERT_EQ(boxes.size(), 1u);
+    EXPECT_EQ(boxes[0].label, label);
+  }
+}
+
+TEST_F(DetectionsCsvTest, FirstAndLastFieldBetweenTabsMayBeEmpty) {
+  const auto boxes =
+      ReadDetectionsCsv(Write("object_id\tframe\tlabel\tscore\tx1\ty1\tx2\ty2\tnote\n"
+                              "\t3\tcup\t0.5\t1\t2\t3\t4\t\r\n\t\t\n"));
+  ASSERT_EQ(boxes.size(), 1u);
+  EXPECT_FALSE(boxes[0].object_id);
+  EXPECT_EQ(boxes[0].label, "cup");
+}
+
+TEST_F(DetectionsCsvTest, OnlyRegularFilesAreRead) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  ExpectError<InputError>([&] { ReadDetectionsCsv(folder_ / "pipe"); }, {"pipe", "cannot be read"});
+  Write("");
+  std::filesystem::resize_file(folder_ / "detections.csv", (1u << 30) + 1);  // of no blocks
+  ExpectError<InputError>([&] { ReadDetectionsCsv(folder_ / "detections.csv"); },
+                          {"detections.csv", "1073741825 bytes", "at most 1073741824"});
 }
 
 TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
