@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "dataset/folder_entries.h"
 
 namespace soslam {
 namespace {
@@ -53,12 +54,11 @@ class Finder {
 std::vector<fs::path> FilesIn(const fs::path& path) {
   if (!IsFolder(path)) return {path};
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    const fs::path name = entry.path().filename();
+  for (const fs::path& entry : EntriesAtAnyDepth(path)) {
+    const fs::path name = entry.filename();
     const bool is_hidden = name.string().starts_with('.');  // of macOS
-    if (IsFile(entry.path()) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
+    if (IsFile(entry) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 

@@ -16,6 +16,7 @@
 #include "dataset/coco_labels.h"
 #include "dataset/coco_results.h"
 #include "dataset/detections_csv.h"
+#include "dataset/folder_entries.h"
 #include "dataset/frame_lookup.h"
 #include "dataset/kitti_boxes.h"
 #include "dataset/label_file.h"
@@ -28,20 +29,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> Sorted(const fs::path& folder) {
-  std::vector<fs::path> entries;
-  for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
-  std::sort(entries.begin(), entries.end());
-  return entries;
-}
-
 // A file of one class, or a folder with a folder for each class, which has one file.
 std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   if (!IsFolder(path)) return ReadKittiBoxes(path);
   std::vector<LabelledBox> boxes;
-  for (const fs::path& class_folder : Sorted(path)) {
+  for (const fs::path& class_folder : FolderEntries(path)) {
     if (!IsFolder(class_folder)) continue;
-    const std::vector<fs::path> files = Sorted(class_folder);
+    const std::vector<fs::path> files = FolderEntries(class_folder);
     if (files.size() != 1) {
       throw InputError(fmt::format("{}: has {} files; expected one, that of this sequence",
                                    class_folder.string(), files.size()));
@@ -77,28 +71,30 @@ std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& fold
 
 }  // namespace
 
-std::vector<LabelledBox> ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
-                                         const Camera& camera, DatasetFiles* files,
-                                         RejectionCounts* mended) {
+FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
+                            const Camera& camera, DatasetFiles* files, RejectionCounts* mended) {
   const fs::path& path = files->detections;
   switch (options.folder.detections_format) {
     case DetectionsFormat::kCsv:
-      return ReadDetectionsCsv(path);
+      return {ReadDetectionsCsv(path), {}};
     case DetectionsFormat::kCoco:
-      return ReadCocoResults(path, files->class_names);
+      return {ReadCocoResults(path, files->class_names),
+              files->class_names ? std::vector<std::string>() : CocoLabels()};
     case DetectionsFormat::kKitti:
-      return ReadKittiClasses(path);
-    case DetectionsFormat::kOaSlam:
-      return ReadOaSlamBoxes(
-          path, files->class_names ? ReadLabelFile(*files->class_names) : CocoLabels());
+      return {ReadKittiClasses(path), {}};
+    case DetectionsFormat::kOaSlam: {
+      const auto names = files->class_names ? ReadLabelFile(*files->class_names) : CocoLabels();
+      return {ReadOaSlamBoxes(path, names), names};
+    }
     case DetectionsFormat::kYolo: {
       const YoloTexts texts = ReadYoloTexts(path);
-      return ReadNormalisedYoloBoxes(texts, YoloLabels(texts, folder, files), camera.width,
-                                     camera.height, mended);
+      const auto names = YoloLabels(texts, folder, files);
+      return {ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height, mended), names};
     }
     case DetectionsFormat::kYoloPixels: {
       const YoloTexts texts = ReadYoloTexts(path);
-      return ReadPixelYoloBoxes(texts, YoloLabels(texts, folder, files));
+      const auto names = YoloLabels(texts, folder, files);
+      return {ReadPixelYoloBoxes(texts, names), names};
     }
   }
   throw std::logic_error("format without a reader");

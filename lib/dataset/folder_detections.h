@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dataset/dataset_content.h"
@@ -13,12 +14,17 @@
 
 namespace soslam {
 
+// Boxes, and the class names by which they got their labels; none where they name these themselves.
+struct FolderBoxes {
+  std::vector<LabelledBox> boxes;
+  std::vector<std::string> class_names;
+};
+
 // The boxes of a folder of images, in any of the formats of `detections_format`. The class names of
 // YOLO's labels may lie with them: `files` then gets to know where, and it is said on stdout. Boxes
 // that are not as they stand in the file are counted in `mended`. Throws InputError.
-std::vector<LabelledBox> ReadFolderBoxes(const std::filesystem::path& folder,
-                                         const ImportOptions& options, const Camera& camera,
-                                         DatasetFiles* files, RejectionCounts* mended);
+FolderBoxes ReadFolderBoxes(const std::filesystem::path& folder, const ImportOptions& options,
+                            const Camera& camera, DatasetFiles* files, RejectionCounts* mended);
 
 // The boxes as rows of these images. Boxes without object ids are of an object each, with ids from
 // `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and how many

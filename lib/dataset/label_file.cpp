@@ -97,6 +97,7 @@ std::optional<fs::path> FindLabelFile(const fs::path& labels, const fs::path& da
     for (const char* name : kNames) {
       if (IsFile(folder / name)) return folder / name;
     }
+    if (folder == folder.parent_path()) return std::nullopt;  // the root
     folder = folder.parent_path();
     if (!IsWithin(folder, dataset) && !std::exchange(may_leave, false)) return std::nullopt;
   }

@@ -9,6 +9,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "dataset/dataset_json.h"
+#include "dataset/folder_entries.h"
 #include "dataset/json_entry.h"
 #include "dataset/nearest_rotation.h"
 #include "dataset/text_file.h"
@@ -156,13 +157,12 @@ class Problem {
 
 std::vector<fs::path> ProblemFiles(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  for (const fs::path& entry : FolderEntries(folder)) {
+    if (entry.extension() == ".json") files.push_back(entry);
   }
   if (files.empty()) {
     throw InputError(folder.string() + ": has no *.json; expected one for each problem");
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 

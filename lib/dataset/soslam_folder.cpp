@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
-#include "dataset/coco_labels.h"
 #include "dataset/dataset_files.h"
 #include "dataset/dataset_json.h"
 #include "dataset/folder_camera.h"
 #include "dataset/folder_detections.h"
 #include "dataset/folder_frames.h"
-#include "dataset/label_file.h"
 #include "dataset/object_ids.h"
 #include "dataset/object_table.h"
 #include "dataset/track_labels.h"
@@ -24,20 +23,6 @@ int FirstFreeId(const std::vector<ListedObject>& objects) {
   int id = 0;
   for (const ListedObject& object : objects) id = std::max(id, object.id + 1);
   return id;
-}
-
-// The class names by which boxes get their labels, unless an archive of boxes has its own.
-std::vector<std::string> ClassNames(const DatasetFiles& files, const ImportOptions& options) {
-  switch (options.folder.detections_format) {
-    case DetectionsFormat::kYolo:
-    case DetectionsFormat::kYoloPixels:
-    case DetectionsFormat::kOaSlam:
-      return files.class_names ? ReadLabelFile(*files.class_names) : CocoLabels();
-    case DetectionsFormat::kCoco:
-      return files.class_names ? std::vector<std::string>() : CocoLabels();
-    default:
-      return {};
-  }
 }
 
 // Gives the rows of one object one label.
@@ -70,11 +55,11 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   const LensCamera& camera = calibration.camera;
   const auto listed = files.objects ? ReadObjects(*files.objects) : std::vector<ListedObject>();
   DatasetContent content;
+  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &content.mended);
   const std::vector<LabelledBox> boxes =
-      WithoutIdsOfNoTrack(ReadFolderBoxes(folder, options, camera.camera, &files, &content.mended),
-                          listed, files.detections, &content.rejected);
+      WithoutIdsOfNoTrack(std::move(read.boxes), listed, files.detections, &content.rejected);
   const auto images = ListImages(folder, files, options, boxes);
-  content.class_names = ClassNames(files, options);
+  content.class_names = std::move(read.class_names);
   if (!content.class_names.empty()) content.class_names_file = files.class_names;
   content.camera = camera.camera;
   content.image_distortion = camera.distortion;

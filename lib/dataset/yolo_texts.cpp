@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "dataset/folder_entries.h"
 #include "dataset/label_file.h"
 #include "dataset/text_archive.h"
 
@@ -37,13 +38,9 @@ bool IsList(const fs::path& path, const std::vector<TextLine>& lines) {
 }
 
 YoloTexts ReadFolder(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (IsLabels(entry.path().filename())) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
   YoloTexts texts;
-  for (const fs::path& file : files) {
+  for (const fs::path& file : FolderEntries(folder)) {
+    if (!IsLabels(file.filename())) continue;
     auto lines = ReadTextLines(file);
     if (!IsList(file, lines)) texts.images.push_back({file.stem().string(), std::move(lines)});
   }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "dataset/import.h"
+#include "dataset/soslam_folder.h"
 #include "model/occlusion.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
@@ -159,6 +160,19 @@ TEST_F(FolderFormatsTest, ColmapNamesItsImages) {
   ExpectError<InputError>([&] { Import(); }, {"images.txt:1", "none.png", "not listed"});
 }
 
+TEST_F(FolderFormatsTest, GroundTruthMayHaveAFormatOfItsOwn) {
+  options_.folder.odometry = "images.txt";
+  options_.folder.trajectory_format = TrajectoryFormat::kColmap;
+  options_.folder.groundtruth_format = TrajectoryFormat::kTum;
+  Write("images.txt", "7 1 0 0 0 -4 0 0 1 rgb/2.0.png\n\n");
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.frames.size(), 1u);
+  EXPECT_EQ(sequence.frames[0].world_from_camera.translation.x(), 4.0);
+  EXPECT_EQ(sequence.frames[0].true_world_from_camera->translation.x(), 0.1);
+  options_.trajectory = TrajectorySource::kGroundTruth;
+  EXPECT_EQ(Import().frames.at(1).world_from_camera.translation.x(), 0.1);
+}
+
 TEST_F(FolderFormatsTest, NerfstudioIsListTrajectoryAndCamera) {
   options_.folder.camera = "";
   options_.folder.images = options_.folder.groundtruth = options_.folder.camera_file =
@@ -183,7 +197,8 @@ TEST_F(FolderFormatsTest, NerfstudioIsListTrajectoryAndCamera) {
 TEST_F(FolderFormatsTest, EurocsBodyIsNotItsCamera) {
   options_.folder.groundtruth = "data.csv";
   options_.folder.trajectory_format = TrajectoryFormat::kEuroc;
-  Write("data.csv", "# time\n1000000000,1,2,3,1,0,0,0\n2000000000,4,2,3,0.70710678,0,0,0.70710678\n");
+  Write("data.csv",
+        "# time\n1000000000,1,2,3,1,0,0,0\n2000000000,4,2,3,0.70710678,0,0,0.70710678\n");
   testing::internal::CaptureStdout();
   EXPECT_EQ(Import().frames.at(1).world_from_camera.translation, Eigen::Vector3d(4, 2, 3));
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
@@ -262,6 +277,21 @@ TEST_F(FolderFormatsTest, YoloInPixelsFromAnArchiveAndWithoutAList) {
   const Detection detection = ImportOne(DetectionsFormat::kYoloPixels, "txts.tar.gz");
   ExpectBox(detection.box, {99.5, 109.5, 119.5, 139.5});
   EXPECT_EQ(Import().frames.at(0).world_from_camera.translation.x(), 0.1);
+}
+
+TEST_F(FolderFormatsTest, ClassNamesOfAnArchiveAreThoseThatAreKnown) {
+  Write("txts/2.0.txt", "0 100 110 20 30 0.6\n");
+  Write("txts/classes.txt", "mug\n");
+  ASSERT_EQ(
+      RunCommand({"tar", "czf", (folder_ / "txts.tar.gz").string(), "-C", folder_.string(), "txts"})
+          .exit_code,
+      0);
+  fs::remove_all(folder_ / "txts");
+  options_.folder.detections_format = DetectionsFormat::kYoloPixels;
+  options_.detections = "txts.tar.gz";
+  const DatasetContent content = ReadSoslamFolder(folder_, options_);
+  EXPECT_THAT(content.class_names, testing::ElementsAre("mug"));
+  EXPECT_FALSE(content.class_names_file);
 }
 
 TEST_F(FolderFormatsTest, CocoResults) {

@@ -43,6 +43,14 @@ TEST_F(LabelFileTest, NamesOfYolosYaml) {
   ExpectError<InputError>([&] { ParseLabels("names: ['a, b']\n", "data.yaml"); }, {"'a, b'"});
 }
 
+TEST_F(LabelFileTest, SearchEndsAtTheRoot) { EXPECT_FALSE(FindLabelFile("/proc/self", "/")); }
+
+TEST_F(LabelFileTest, LatinLettersOfOneByteAreRefused) {
+  ExpectError<InputError>([&] { ParseLabels("nc: 1\nnames: [t\xFCr]\n", "data.yaml"); },
+                          {"data.yaml:2", "not UTF-8"});
+  EXPECT_THAT(ParseLabels("# t\xFCr\nnames: [door]\n", "data.yaml"), testing::ElementsAre("door"));
+}
+
 TEST_F(LabelFileTest, IsFoundAmongOrAroundLabels) {
   const auto dataset = folder_ / "dataset";
   const auto labels = dataset / "labels" / "train";

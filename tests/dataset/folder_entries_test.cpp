@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/folder_entries.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+TEST(FolderEntriesTest, ByName) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "a");
+  WriteBytes(folder / "b", "");
+  WriteBytes(folder / "a" / "c", "");
+  EXPECT_THAT(FolderEntries(folder.path()), testing::ElementsAre(folder / "a", folder / "b"));
+  EXPECT_THAT(EntriesAtAnyDepth(folder.path()),
+              testing::ElementsAre(folder / "a", folder / "a" / "c", folder / "b"));
+}
+
+TEST(FolderEntriesTest, WhatCannotBeListedIsNamed) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "file", "");
+  ExpectError<InputError>([&] { FolderEntries(folder / "file"); }, {"file: cannot be listed"});
+  ExpectError<InputError>([&] { EntriesAtAnyDepth(folder / "none"); }, {"none: cannot be listed"});
+}
+
+}  // namespace
+}  // namespace soslam
