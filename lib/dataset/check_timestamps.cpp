@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "dataset/dataset_checks.h"
 
@@ -84,16 +85,14 @@ void Explain(const TimeRange& images, const TimeRange& poses, const std::string&
   }
 }
 
-std::vector<Finding> CheckEqual(std::vector<double> times) {
-  std::ranges::sort(times);
-  const auto repeated = std::ranges::unique(times);
-  if (repeated.empty()) return {};
-  const size_t all = times.size();
-  return {{"equal_timestamps", Severity::kWarning,
-           fmt::format("{} of {} images have the time stamp of another one", repeated.size(), all),
-           "a time stamp for each image, as images of one time take the same pose",
-           "stamps with too few digits, or in whole seconds",
-           "write stamps with all their digits"}};
+std::vector<Finding> CheckEqual(const std::vector<double>& times) {
+  const size_t repeated = times.size() - std::set<double>(times.begin(), times.end()).size();
+  if (repeated == 0) return {};
+  return {
+      {"equal_timestamps", Severity::kWarning,
+       fmt::format("{} of {} images have the time stamp of another one", repeated, times.size()),
+       "a time stamp for each image, as images of one time take the same pose",
+       "stamps with too few digits, or in whole seconds", "write stamps with all their digits"}};
 }
 
 }  // namespace

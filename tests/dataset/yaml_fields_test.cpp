@@ -63,7 +63,8 @@ TEST(YamlFieldsTest, WhatIsNotReadIsNamed) {
   refused(many + "]", {"more than 100000 values"});
   refused("a:\n  " + std::string(200, 'b') + ": 1\n",
           {"a.yaml:2", "201 characters", "at most 200"});
-  refused("a: {b: {" + std::string(250, 'c') + ": 1}}\n", {"252 characters"});
+  refused("a: {b: {" + std::string(250, 'c') + ": 1}}\n",
+          {"characters, with those around it; expected at most 200"});
   std::string keys;
   for (int i = 0; i <= 100000; ++i) keys += fmt::format("k{}:\n", i);
   refused(keys, {"more than 100000 keys"});
