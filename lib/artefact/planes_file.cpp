@@ -24,11 +24,13 @@ json HoldingToJson(const PlanesEstimate& estimate) {
   json tried = json::array();
   for (const TriedHolding& one : estimate.holdings) {
     tried.push_back({{"held", NameOf(one.holding)},
+                     {"verticals", one.verticals},
                      {"cost", one.cost},
                      {"probability", one.probability},
                      {"planes", OrNull(one.planes)}});
   }
   return {{"held", NameOf(estimate.holding)},
+          {"verticals", estimate.verticals},
           {"is_clear", estimate.holding_tilt_variance == 0.0},
           {"tried", tried}};
 }

@@ -10,9 +10,10 @@
 namespace soslam {
 namespace {
 
-// Negative logarithms of probabilities: of a holding other than level, of things that are all seen
-// from below, and of an object whose boxes are wrong.
+// Negative logarithms of probabilities: of a holding other than level, of verticals that are none,
+// of things that are all seen from below, and of an object whose boxes are wrong.
 const double kNotLevel = std::log(100.0);
+const double kWrongVerticals = std::log(100.0);
 const double kFromBelow = std::log(1000.0);
 const double kWrongObject = std::log(1e4);
 
@@ -41,6 +42,7 @@ double Misfit(const Costs& lowest, double expected_cost) {
 double CostOf(const HoldingEvidence& evidence, const Costs& lowest, double misfit) {
   double cost = evidence.other_cost / misfit + kFromBelow * evidence.share_from_below;
   if (evidence.holding != CameraHolding::kLevel) cost += kNotLevel;
+  if (evidence.doubts_verticals) cost += kWrongVerticals;
   for (size_t i = 0; i < lowest.size(); ++i) {
     if (!std::isfinite(lowest[i])) continue;
     const auto& own = evidence.object_costs[i];

@@ -12,6 +12,7 @@ namespace soslam {
 // What speaks against cameras being held in one way, as negative logarithms of likelihoods.
 struct HoldingEvidence {
   CameraHolding holding = CameraHolding::kLevel;
+  bool doubts_verticals = false;  // edges that were taken for vertical ones are others
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
   // Of each object's boxes, upright bodies explaining them; none where there is no such body.
   std::vector<std::optional<double>> object_costs;
@@ -37,10 +38,11 @@ bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other);
 inline constexpr double kClearHolding = 0.01;
 
 // The most probable of at least one that can be chosen; all have the same objects. One sequence in
-// a hundred is taken to be held in any certain way other than level, one in a thousand to see all
-// things from below their planes. Where objects cost more than `expected_cost` even in the best
-// case, boxes say less than their noise promises: costs count in that proportion. No object alone
-// decides, as its boxes may be of several.
+// a hundred is taken to be held in any certain way other than level, or to have edges that are
+// taken for vertical ones by mistake, one in a thousand to see all things from below their planes.
+// Where objects cost more than `expected_cost` even in the best case, boxes say less than their
+// noise promises: costs count in that proportion. No object alone decides, as its boxes may be of
+// several.
 HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double expected_cost,
                             double clear = kClearHolding);
 

@@ -18,7 +18,7 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 
 constexpr double kSameAxis = 1e-9;  // one minus a cosine
 // Negative logarithm of how improbable a holding is that is not followed to its planes.
-const double kHopeless = std::log(1e6);
+const double kHopeless = std::log(1e4);
 
 struct Hypothesis {
   HoldingEvidence evidence;
@@ -95,29 +95,43 @@ bool TakeOppositeCosts(const std::vector<Hypothesis>& known, Hypothesis* hypothe
   return false;
 }
 
-// Those whose up directions differ, with what upright bodies anywhere say about them.
+// Adds what upright bodies anywhere say about a way to hold cameras, unless one before leads to the
+// same up.
+void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
+                   const HoldingEvidence& holding,
+                   const std::vector<std::optional<ShapePrior>>& priors,
+                   const PlanesOptions& options, int threads, std::vector<Hypothesis>* hypotheses) {
+  const Eigen::Vector3d& up = trajectory.attitude.up_in_world;
+  const bool is_known = std::ranges::any_of(*hypotheses, [&](const Hypothesis& other) {
+    return IsSameUp(other.evidence.up_in_world, up);
+  });
+  if (is_known) return;
+  Hypothesis hypothesis{holding, 0.0, trajectory, std::nullopt};
+  hypothesis.evidence.up_in_world = up;
+  if (!TakeOppositeCosts(*hypotheses, &hypothesis)) {
+    const BodyCosts costs = CostsOfUprightBodies(WithPoses(sequence, trajectory.world_from_camera),
+                                                 priors, trajectory.attitude, options, threads);
+    hypothesis.evidence.object_costs = costs.of_objects;
+    hypothesis.expected_cost = costs.expected;
+  }
+  hypotheses->push_back(std::move(hypothesis));
+}
+
+// Those whose up directions differ. Where cameras look one way, verticals are looked for around an
+// up that is hardly known: those found may be other edges.
 std::vector<Hypothesis> Hypotheses(const Sequence& sequence, const std::vector<SegmentView>& views,
                                    const std::vector<std::optional<ShapePrior>>& priors,
                                    const PlanesOptions& options, int threads) {
   std::vector<Hypothesis> hypotheses;
   for (const CameraHolding holding : kCameraHoldings) {
-    Hypothesis hypothesis;
-    hypothesis.trajectory = LevelFrames(sequence, views, options, holding);
-    const CameraAttitude& attitude = hypothesis.trajectory.attitude;
-    const bool is_known = std::ranges::any_of(hypotheses, [&](const Hypothesis& other) {
-      return IsSameUp(other.evidence.up_in_world, attitude.up_in_world);
-    });
-    if (is_known) continue;
-    hypothesis.evidence.holding = holding;
-    hypothesis.evidence.up_in_world = attitude.up_in_world;
-    if (!TakeOppositeCosts(hypotheses, &hypothesis)) {
-      const BodyCosts costs =
-          CostsOfUprightBodies(WithPoses(sequence, hypothesis.trajectory.world_from_camera), priors,
-                               attitude, options, threads);
-      hypothesis.evidence.object_costs = costs.of_objects;
-      hypothesis.expected_cost = costs.expected;
-    }
-    hypotheses.push_back(std::move(hypothesis));
+    HoldingEvidence evidence;
+    evidence.holding = holding;
+    AddHypothesis(sequence, LevelFrames(sequence, views, options, holding), evidence, priors,
+                  options, threads, &hypotheses);
+    if (views.empty()) continue;
+    evidence.doubts_verticals = true;
+    AddHypothesis(sequence, LevelFrames(sequence, {}, options, holding), evidence, priors, options,
+                  threads, &hypotheses);
   }
   return hypotheses;
 }
@@ -159,15 +173,19 @@ bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& h
 }
 
 // `tried`: also those that were given up for what their bodies cost, and are not among `followed`.
-HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, std::vector<Hypothesis> followed) {
+HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, bool has_views,
+                        const std::vector<Hypothesis>& followed) {
   const HoldingChoice choice = Choose(followed);
   HeldPlanes best = *followed[choice.best].planes;
   best.estimate.holdings = tried;
   best.estimate.holding = followed[choice.best].evidence.holding;
+  best.estimate.verticals = has_views && !followed[choice.best].evidence.doubts_verticals;
   best.estimate.holding_tilt_variance = choice.tilt_variance;
   for (TriedHolding& one : best.estimate.holdings) {
     for (size_t i = 0; i < followed.size(); ++i) {
-      if (followed[i].evidence.holding != one.holding) continue;
+      const HoldingEvidence& evidence = followed[i].evidence;
+      const bool verticals = has_views && !evidence.doubts_verticals;
+      if (evidence.holding != one.holding || verticals != one.verticals) continue;
       one.cost = choice.costs[i];
       one.probability = choice.probabilities[i];
       if (followed[i].planes) {
@@ -188,7 +206,9 @@ HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<Segmen
   std::vector<TriedHolding> tried;
   std::vector<Hypothesis> followed;
   for (size_t i = 0; i < hypotheses.size(); ++i) {
-    tried.push_back({hypotheses[i].evidence.holding, by_bodies.costs[i], 0.0, std::nullopt});
+    const HoldingEvidence& evidence = hypotheses[i].evidence;
+    tried.push_back({evidence.holding, !views.empty() && !evidence.doubts_verticals,
+                     by_bodies.costs[i], 0.0, std::nullopt});
     if (by_bodies.costs[i] > kHopeless) continue;
     FollowToPlanes(sequence, priors, options, threads, &hypotheses[i]);
     if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(std::move(hypotheses[i]));
@@ -196,7 +216,7 @@ HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<Segmen
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
   if (!has_planes) ThrowNoPlanes(sequence);
-  return MostProbable(tried, std::move(followed));
+  return MostProbable(tried, !views.empty(), followed);
 }
 
 }  // namespace soslam

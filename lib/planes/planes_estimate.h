@@ -47,7 +47,8 @@ struct ObjectSupport {
 // One way in which the cameras may be held, and what came of it.
 struct TriedHolding {
   CameraHolding holding = CameraHolding::kLevel;
-  double cost = 0.0;  // over the lowest of all (negative logarithms of likelihoods)
+  bool verticals = false;  // taken to be in the images
+  double cost = 0.0;       // over the lowest of all (negative logarithms of likelihoods)
   double probability = 0.0;
   std::optional<int> planes;  // how many; none when it was given up before
 };
@@ -59,10 +60,11 @@ struct PlanesEstimate {
   // u^T information u, the cost of a unit vector u (1 / rad^2).
   Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
   std::optional<Eigen::Matrix3d> attitude_information;
-  // Empty where the cameras' attitude was given; otherwise in the order of kCameraHoldings, and the
-  // one that is taken.
+  // Empty where the cameras' attitude was given; otherwise in the order of kCameraHoldings, and
+  // what is taken.
   std::vector<TriedHolding> holdings;
   CameraHolding holding = CameraHolding::kLevel;
+  bool verticals = false;
   // Of the normals, as the cameras may be held otherwise (rad^2); zero where that is clear.
   double holding_tilt_variance = 0.0;
   std::optional<double> cost;  // of all boxes, ratios and camera attitudes
