@@ -126,8 +126,11 @@ TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
 TEST(CheckUpTest, OtherWaysToHoldTheCameraThatAreAboutAsProbable) {
   PlanesEstimate estimate;
   estimate.holding = CameraHolding::kRolled90;
-  estimate.holdings = {{CameraHolding::kLevel, 1.0, 0.25, 2},
-                       {CameraHolding::kRolled90, 0.0, 0.75, 1}};
+  TriedHolding level, rolled;
+  level.probability = 0.25;
+  rolled.holding = CameraHolding::kRolled90;
+  rolled.probability = 0.75;
+  estimate.holdings = {level, rolled};
   EXPECT_THAT(CheckUp(estimate), IsEmpty());
   estimate.holding_tilt_variance = 0.5;
   ASSERT_EQ(CheckUp(estimate).size(), 1u);
