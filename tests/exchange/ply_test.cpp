@@ -95,7 +95,7 @@ TEST(PlyTest, ColoursGoByLabel) {
 TEST(PlyTest, ColoursAreAllDifferentAndInRange) {
   World world;
   for (int i = 0; i < 30; ++i)
-    world.objects.push_back({i, "l" + std::to_string(i), {}, {}, 1.0, {}});
+    world.objects.push_back({i, "l" + std::to_string(i), {}, Eigen::Vector3d::UnitZ(), 1.0, {}});
   const LabelColours colours = ColoursOfLabels({world});
   std::set<std::vector<int>> rounded;
   for (const auto& [label, colour] : colours) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <vector>
 
@@ -37,10 +37,10 @@ TEST_P(CorpusTest, EveryInputIsReadOrRefused) {
   int inputs = 0;
   for (const auto& entry : fs::directory_iterator(kCorpus / GetParam())) {
     const std::string bytes = FileBytes(entry.path());
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();  // of this process: others may keep it waiting
     EXPECT_NO_THROW(read(HostileInput(bytes))) << entry.path();
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    EXPECT_LT(seconds.count(), kMaxSeconds) << entry.path();
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    EXPECT_LT(seconds, kMaxSeconds) << entry.path();
     EXPECT_LT(PeakMemoryMb(), kMaxMemoryMb) << entry.path();
     ++inputs;
   }

@@ -80,7 +80,7 @@ struct ViewOfBox {
   // of contact is dh / dm, of h at the plane's normal m in the object frame.
   Eigen::Matrix3d ContactCurvature(size_t edge) const {
     constexpr double kStep = 1e-6;
-    const TangentBox::Edge& compared = TangentBox(edges, start).edges[edge];
+    const TangentBox::Edge compared = TangentBox(edges, start).edges[edge];
     const Landmark landmark = view.LandmarkInCamera();
     const Eigen::Matrix3d world_from_object =
         (view.world_from_camera.rotation * landmark.frame_from_object.rotation).toRotationMatrix();
