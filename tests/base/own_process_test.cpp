@@ -30,7 +30,7 @@ TEST(OwnProcessTest, CrashesAreNamed) {
 }
 
 TEST(OwnProcessTest, LimitsOfTimeAndMemoryEndIt) {
-  volatile int steps = 0;
+  volatile unsigned steps = 0;
   const auto slow = CrashInOwnProcess(
       [&] {
         for (;;) steps = steps + 1;
