@@ -164,6 +164,13 @@ void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<Sh
   hypothesis->planes = std::move(held);
 }
 
+// Verticals are not doubted where they leave bodies at least as probable as their doubt does.
+bool IsDoubtedInVain(const std::vector<TriedHolding>& tried, CameraHolding holding, double cost) {
+  return std::ranges::any_of(tried, [&](const TriedHolding& other) {
+    return other.verticals && other.holding == holding && other.cost <= cost;
+  });
+}
+
 // Boxes may lead ways to hold cameras to one up although they began at different ones.
 bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& hypothesis) {
   return std::ranges::any_of(followed, [&](const Hypothesis& other) {
@@ -210,6 +217,9 @@ HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<Segmen
     tried.push_back({evidence.holding, !views.empty() && !evidence.doubts_verticals,
                      by_bodies.costs[i], 0.0, std::nullopt});
     if (by_bodies.costs[i] > kHopeless) continue;
+    if (evidence.doubts_verticals && IsDoubtedInVain(tried, evidence.holding, by_bodies.costs[i])) {
+      continue;
+    }
     FollowToPlanes(sequence, priors, options, threads, &hypotheses[i]);
     if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(std::move(hypotheses[i]));
   }
