@@ -95,19 +95,17 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
   return rows;
 }
 
-std::vector<DetectionRow> WithEnoughObservations(const std::vector<DetectionRow>& rows,
+std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
                                                  int min_observations, RejectionCounts* rejected) {
   std::map<int, int> observations;
   for (const DetectionRow& row : rows) ++observations[row.object_id];
-  std::vector<DetectionRow> kept;
-  for (const DetectionRow& row : rows) {
-    if (observations[row.object_id] >= min_observations) {
-      kept.push_back(row);
-    } else {
-      ++(*rejected)[RejectReasonName(RejectReason::kTooFewObservations)];
-    }
+  const auto dropped = std::erase_if(rows, [&](const DetectionRow& row) {
+    return observations[row.object_id] < min_observations;
+  });
+  if (dropped > 0) {
+    (*rejected)[RejectReasonName(RejectReason::kTooFewObservations)] += static_cast<int>(dropped);
   }
-  return kept;
+  return rows;
 }
 
 }  // namespace soslam

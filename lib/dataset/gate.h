@@ -51,7 +51,7 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
                                             RejectionCounts* rejected);
 
 // Drops all rows of objects that have fewer than `min_observations`.
-std::vector<DetectionRow> WithEnoughObservations(const std::vector<DetectionRow>& rows,
+std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
                                                  int min_observations, RejectionCounts* rejected);
 
 }  // namespace soslam

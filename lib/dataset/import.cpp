@@ -82,20 +82,22 @@ class Importer {
   void Import() {
     RejectionCounts* rejected = &sequence_->rejected_detections;
     std::vector<DetectionRow> usable, in_view;
+    usable.reserve(content_.rows.size());
+    in_view.reserve(content_.rows.size());
     for (const DetectionRow& row : content_.rows) {
       const auto reason = Gate(row);
       if (!reason) usable.push_back(row);
       if (!reason || IsInView(*reason)) in_view.push_back(row);
       if (reason) ++(*rejected)[RejectReasonName(*reason)];
     }
+    Sequence all_in_view = *sequence_;
     usable = WithoutDuplicates(std::move(usable), rejected);
     if (content_.has_object_ids) {
-      usable = WithEnoughObservations(usable, options_.min_observations, rejected);
+      usable = WithEnoughObservations(std::move(usable), options_.min_observations, rejected);
     }
-    sequence_->detections = Detections(usable);
+    sequence_->detections = Detections(std::move(usable));
 
     RejectionCounts not_reported;
-    Sequence all_in_view = *sequence_;
     all_in_view.detections = Detections(WithoutDuplicates(std::move(in_view), &not_reported));
     ListBoxesInView(all_in_view, sequence_);
     MarkHiddenEdges(options_, sequence_);
@@ -117,8 +119,9 @@ class Importer {
     return GateRow(row, sequence_->CameraOf(frame), options_);
   }
 
-  std::vector<Detection> Detections(const std::vector<DetectionRow>& rows) const {
+  std::vector<Detection> Detections(std::vector<DetectionRow> rows) const {
     std::vector<Detection> detections;
+    detections.reserve(rows.size());
     for (const DetectionRow& row : rows) {
       Detection detection;
       detection.frame_index = std::get<int>(slots_.at(row.frame_id));
