@@ -9,10 +9,11 @@ namespace soslam {
 // How a YOLO network lays out its output. N candidates, C classes; centre, width and height are
 // pixels of the network's input.
 enum class YoloLayout {
-  kV5,  // [1, N, 5 + C]: cx cy w h, objectness, a score of each class. Also YOLOv7, YOLOX.
-  kV8,  // [1, 4 + C, N]: the same turned on its side, without objectness. Also YOLO11.
+  kV5,     // [1, N, 5 + C]: cx cy w h, objectness, a score of each class. Also YOLOv7.
+  kV8,     // [1, 4 + C, N]: the same turned on its side, without objectness. Also YOLO11.
+  kYolox,  // kV5's, cx cy in cells and the logarithms of w h in cells: YOLOX as it is published.
 };
-inline constexpr const char* kYoloLayoutNames[] = {"v5", "v8"};
+inline constexpr const char* kYoloLayoutNames[] = {"v5", "v8", "yolox"};
 
 // What a network takes as the value of a pixel.
 enum class PixelValues {
@@ -32,8 +33,11 @@ struct DetectorOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Network");
-    visit.Choice("output_layout", &output_layout, kYoloLayoutNames,
-                 "the network's output: v5 [1, N, 5 + classes] or v8 [1, 4 + classes, N]");
+    visit.Choice(
+        "output_layout", &output_layout, kYoloLayoutNames,
+        "the network's output: v5 [1, N, 5 + classes], v8 [1, 4 + classes, N], or yolox: v5 "
+        "with boxes in cells of its grids, as YOLOX is published (exported with "
+        "--decode_in_inference it is v5)");
     visit.Choice("pixel_values", &pixel_values, kPixelValuesNames,
                  "what the network takes: rgb_0_1 (Ultralytics) or bgr_0_255 (YOLOX)");
     visit.Integer("input_width_px", &input_width, {1, 8192},

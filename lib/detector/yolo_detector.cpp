@@ -76,10 +76,11 @@ YoloDetector::YoloDetector(const std::filesystem::path& network, int classes,
       network_(LoadNetwork(network)) {}
 
 std::vector<YoloDetection> YoloDetector::Detect(const cv::Mat& image) {
-  const Letterbox letterbox(image.size(), {options_.input_width, options_.input_height});
+  const cv::Size input(options_.input_width, options_.input_height);
+  const Letterbox letterbox(image.size(), input);
   const cv::Mat output = Forward(letterbox.Fit(image));
   const auto candidates =
-      ReadYoloOutput(output, options_.output_layout, classes_, options_.min_score, name_);
+      ReadYoloOutput(output, options_.output_layout, input, classes_, options_.min_score, name_);
   std::vector<YoloDetection> detections;
   for (YoloDetection detection : WithoutOverlaps(candidates, classes_, options_.max_overlap)) {
     detection.box = letterbox.ToImage(detection.box);

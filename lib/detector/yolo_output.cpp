@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>
 
 #include "base/error.h"
@@ -12,37 +13,89 @@
 namespace soslam {
 namespace {
 
-// The output as one row per candidate: cx cy w h, the objectness of layout v5, the class scores.
+// The output as one row per candidate: cx cy w h, the objectness but of layout v8, the class
+// scores.
 cv::Mat CandidateRows(const cv::Mat& output, YoloLayout layout, int classes,
                       const std::string& network) {
-  const bool is_v5 = layout == YoloLayout::kV5;
-  const int fields = (is_v5 ? 5 : 4) + classes;
+  const bool has_objectness = layout != YoloLayout::kV8;
+  const int fields = (has_objectness ? 5 : 4) + classes;
   const std::vector<int> shape(output.size.p, output.size.p + output.dims);
-  const size_t field_axis = is_v5 ? 2 : 1;
+  const size_t field_axis = has_objectness ? 2 : 1;
   if (shape.size() != 3 || shape[0] != 1 || shape[field_axis] != fields ||
       output.type() != CV_32FC1) {
-    throw InputError(
-        fmt::format("{}: output has shape [{}]; expected {} of layout {} with {} classes", network,
-                    fmt::join(shape, ", "),
-                    is_v5 ? fmt::format("[1, N, {}]", fields) : fmt::format("[1, {}, N]", fields),
-                    kYoloLayoutNames[static_cast<int>(layout)], classes));
+    throw InputError(fmt::format(
+        "{}: output has shape [{}]; expected {} of layout {} with {} classes", network,
+        fmt::join(shape, ", "),
+        has_objectness ? fmt::format("[1, N, {}]", fields) : fmt::format("[1, {}, N]", fields),
+        kYoloLayoutNames[static_cast<int>(layout)], classes));
   }
   const cv::Mat rows(shape[1], shape[2], CV_32FC1, const_cast<uchar*>(output.data));
-  return is_v5 ? rows : cv::Mat(rows.t());
+  return has_objectness ? rows : cv::Mat(rows.t());
+}
+
+constexpr int kYoloxStrides[] = {8, 16, 32};
+
+// How many cells YOLOX's grids over an input have.
+int YoloxCells(const cv::Size& input) {
+  int cells = 0;
+  for (const int stride : kYoloxStrides) cells += (input.width / stride) * (input.height / stride);
+  return cells;
+}
+
+// The rows with boxes in pixels, for boxes in cells of YOLOX's grids: each grid row by row, the
+// finest first.
+cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
+  if (rows.rows != YoloxCells(input)) {
+    throw InputError(fmt::format(
+        "{}: output has {} candidates; expected {} of layout yolox for an input of {} x {} pixels",
+        network, rows.rows, YoloxCells(input), input.width, input.height));
+  }
+  cv::Mat decoded = rows.clone();
+  int index = 0;
+  for (const int stride : kYoloxStrides) {
+    const int columns = input.width / stride;
+    const int cells = columns * (input.height / stride);
+    const auto pixels = static_cast<float>(stride);
+    for (int cell = 0; cell < cells; ++cell, ++index) {
+      float* row = decoded.ptr<float>(index);
+      row[0] = (row[0] + static_cast<float>(cell % columns)) * pixels;
+      row[1] = (row[1] + static_cast<float>(cell / columns)) * pixels;
+      row[2] = std::exp(row[2]) * pixels;
+      row[3] = std::exp(row[3]) * pixels;
+    }
+  }
+  return decoded;
+}
+
+// Throws InputError for YOLOX's candidates in cells, which would pass for tiny boxes: logarithms of
+// widths and heights are small, and among that many boxes in pixels some are not.
+void CheckInPixels(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
+  if (rows.rows != YoloxCells(input) || rows.empty()) return;
+  double largest = 0.0;
+  cv::minMaxLoc(rows.colRange(2, 4), nullptr, &largest);
+  if (largest >= kYoloxStrides[0]) return;
+  throw InputError(
+      fmt::format("{}: the largest box of the output is {:.2f} pixels; expected boxes in pixels "
+                  "(of YOLOX as it "
+                  "is published: output_layout = yolox)",
+                  network, largest));
 }
 
 }  // namespace
 
-std::vector<YoloDetection> ReadYoloOutput(const cv::Mat& output, YoloLayout layout, int classes,
-                                          double min_score, const std::string& network) {
-  const cv::Mat rows = CandidateRows(output, layout, classes, network);
+std::vector<YoloDetection> ReadYoloOutput(const cv::Mat& output, YoloLayout layout,
+                                          const cv::Size& input, int classes, double min_score,
+                                          const std::string& network) {
+  cv::Mat rows = CandidateRows(output, layout, classes, network);
+  if (layout == YoloLayout::kV5) CheckInPixels(rows, input, network);
+  if (layout == YoloLayout::kYolox) rows = FromYoloxGrids(rows, input, network);
   const int first_class = rows.cols - classes;
   const auto is_finite = [](float value) { return std::isfinite(value); };
   std::vector<YoloDetection> boxes;
   for (int i = 0; i < rows.rows; ++i) {
     const float* row = rows.ptr<float>(i);
     const float* best = std::max_element(row + first_class, row + rows.cols);
-    const double score = layout == YoloLayout::kV5 ? static_cast<double>(*best) * row[4] : *best;
+    const double score = layout == YoloLayout::kV8 ? *best : static_cast<double>(*best) * row[4];
     if (score < min_score) continue;
     if (!std::isfinite(score) || !std::all_of(row, row + 4, is_finite)) {
       throw NumericalError(fmt::format("{}: candidate {} of the output is not finite", network, i));

@@ -19,11 +19,12 @@ struct YoloDetection {
 
 // The candidates with at least `min_score` in the output of a YOLO network, each as its best class;
 // the score is that of the class, times the objectness where there is one. Boxes are pixels of the
-// network's input from its outer corner. `network` names it in error messages. Throws InputError
-// when the output does not have this layout for that many classes; NumericalError for a box or
-// score that is not finite.
-std::vector<YoloDetection> ReadYoloOutput(const cv::Mat& output, YoloLayout layout, int classes,
-                                          double min_score, const std::string& network);
+// network's input, which is of size `input`, from its outer corner. `network` names it in error
+// messages. Throws InputError when the output does not have this layout for that many classes;
+// NumericalError for a box or score that is not finite.
+std::vector<YoloDetection> ReadYoloOutput(const cv::Mat& output, YoloLayout layout,
+                                          const cv::Size& input, int classes, double min_score,
+                                          const std::string& network);
 
 // Without the boxes that overlap one of the same class and higher score by more than `max_overlap`
 // (IoU); by descending score.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
@@ -18,7 +19,7 @@ cv::Mat Output(const std::vector<int>& shape, const std::vector<float>& values) 
 }
 
 std::vector<YoloDetection> Read(const cv::Mat& output, YoloLayout layout, double min_score = 0.25) {
-  return ReadYoloOutput(output, layout, 2, min_score, "net.onnx");
+  return ReadYoloOutput(output, layout, {64, 32}, 2, min_score, "net.onnx");
 }
 
 void ExpectScored(const YoloDetection& box, int class_index, double score, const Box& expected) {
@@ -48,6 +49,46 @@ TEST(YoloOutputTest, V8HasAColumnPerCandidate) {
   ASSERT_EQ(boxes.size(), 2u);
   ExpectScored(boxes[0], 1, 0.5, {90, 45, 110, 55});
   ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
+}
+
+// An input of 64 x 32 has grids of 8 x 4, 4 x 2 and 2 x 1 cells.
+TEST(YoloOutputTest, YoloxHasBoxesInCellsOfItsGrids) {
+  std::vector<float> values(42 * 7, 0.0F);
+  const auto set = [&](size_t candidate, const std::vector<float>& row) {
+    std::copy(row.begin(), row.end(), values.begin() + static_cast<long>(7 * candidate));
+  };
+  set(8 + 3, {0.5F, 0.25F, 0, 0.5F, 0.8F, 0.1F, 0.5F});  // column 3, row 1 of the first grid
+  set(32 + 6, {0, 0.5F, 0, 0, 1, 1, 0});                 // column 2, row 1 of the second
+  set(40 + 1, {-0.5F, 0.5F, 0, -0.5F, 1, 0.5F, 0});      // column 1 of the third
+  const auto boxes = Read(Output({1, 42, 7}, values), YoloLayout::kYolox);
+  ASSERT_EQ(boxes.size(), 3u);
+  const double half = 4 * std::exp(0.5F), wide = 16 * std::exp(-0.5F);
+  ExpectScored(boxes[0], 1, 0.4, {24, 10 - half, 32, 10 + half});
+  ExpectScored(boxes[1], 0, 1.0, {24, 16, 40, 32});
+  ExpectScored(boxes[2], 0, 0.5, {0, 16 - wide, 32, 16 + wide});
+}
+
+TEST(YoloOutputTest, YoloxOfAnotherInputIsRefused) {
+  for (const int candidates : {41, 43}) {
+    const std::vector<float> zeros(static_cast<size_t>(candidates) * 7, 0.0F);
+    ExpectError<InputError>(
+        [&] {
+          Read(Output({1, candidates, 7}, zeros), YoloLayout::kYolox);
+        },
+        {"net.onnx", fmt::format("{} candidates; expected 42", candidates), "64 x 32"});
+  }
+}
+
+TEST(YoloOutputTest, BoxesInCellsAreNotTakenForPixels) {
+  std::vector<float> values(42 * 7, 1.0F);
+  values[3] = 7.5F;
+  ExpectError<InputError>(
+      [&] {
+        Read(Output({1, 42, 7}, values), YoloLayout::kV5);
+      },
+      {"net.onnx", "7.50 pixels", "output_layout = yolox"});
+  values[3] = 8.0F;
+  EXPECT_EQ(Read(Output({1, 42, 7}, values), YoloLayout::kV5).size(), 42u);
 }
 
 TEST(YoloOutputTest, ScoreAtTheThresholdIsKept) {
