@@ -17,6 +17,11 @@ DATASETS ?=
 SCENES ?=
 SEEDS ?= 1
 SBATCH ?=
+DOWNLOADS ?= pipelines/downloads.tsv
+ANNOTATIONS ?= data/annotations
+NETWORKS ?= networks
+WITHOUT ?=
+MIRROR ?=
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -35,8 +40,11 @@ refuse-options = $(if $(filter -%,$(value $(1))),$(error $(1)='$(value $(1))': e
 one-word = $(if $(filter-out 1,$(words $(value $(1)))),$(error $(1)='$(value $(1))': expected $(2)))
 ONE_FOLDER = one folder without spaces in its path (a symbolic link to it will do)
 NAMES := DATASET VARIANT STAGE DATA_ROOT RESULTS PIPELINES THREADS BUILD DATASETS SCENES SEEDS
+NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT
 $(foreach name,$(NAMES),$(call refuse-special,$(name))$(call refuse-options,$(name)))
-$(foreach name,DATA_ROOT RESULTS PIPELINES BUILD,$(call one-word,$(name),$(ONE_FOLDER)))
+$(foreach name,DATA_ROOT RESULTS PIPELINES BUILD ANNOTATIONS NETWORKS,$(call one-word,$(name),$(ONE_FOLDER)))
+$(call one-word,DOWNLOADS,one file without spaces in its path)
+$(if $(filter-out :,$(call special-in,MIRROR)),$(error MIRROR='$(value MIRROR)': expected an address))
 $(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_PATHS: expected --allow_outside_paths))
 
 BIN := $(BUILD)/bin
@@ -59,7 +67,7 @@ dataset-name = $(call checked-name,$(1),$(if $(findstring /,$(1:/=)),$(call name
 name-in-data-root = $(if $(filter $(abspath $(DATA_ROOT))/,$(dir $(abspath $(1)))),$(notdir $(abspath $(1))))
 checked-name = $(if $(filter-out .%,$(2)),$(2),$(error dataset '$(1)': expected the name of one folder in \
   DATA_ROOT = $(DATA_ROOT)$(if $(findstring /,$(1:/=)), (or DATASET=$(notdir $(1:/=)) DATA_ROOT=$(dir $(1:/=))))))
-ifneq ($(filter run doctor ablation export explain,$(MAKECMDGOALS)),)
+ifneq ($(filter data run doctor ablation export explain,$(MAKECMDGOALS)),)
 $(call one-word,DATASET,the name of one folder in DATA_ROOT = $(DATA_ROOT))
 endif
 override DATASET := $(foreach name,$(DATASET),$(call dataset-name,$(name)))
@@ -85,6 +93,8 @@ help: ## List the targets
 	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
+	@echo 'Datasets of others (see docs/data.md): MIRROR=<address of copies of the downloads>, WITHOUT=<folder of the'
+	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
 
 .PHONY: demo
@@ -93,6 +103,19 @@ demo: ## Run all variants on the sequence that comes with the project, and print
 	@$(MAKE) tables
 	@echo
 	@echo 'This table: $(RESULTS)/tables.md. Every intermediate result: $(RESULTS)/room_a/<variant>/'
+
+FETCH = MIRROR='$(MIRROR)' WITHOUT='$(WITHOUT)' pipelines/fetch.sh $(DOWNLOADS)
+
+.PHONY: data
+data: ## Fetch DATASET=<name> from its publishers, check it, lay our annotation over it: DATA_ROOT/<name>
+	@pipelines/install-packages.sh pipelines/data-packages.txt
+	@$(FETCH) $(ANNOTATIONS) $(DATA_ROOT) '$(DATASET)'
+
+.PHONY: network
+network: ## Fetch the detector network YOLOX-nano, check it and show its licence: NETWORKS/yolox_nano
+	@pipelines/install-packages.sh pipelines/data-packages.txt
+	@$(FETCH) pipelines/networks $(NETWORKS) yolox_nano
+	@cat $(NETWORKS)/yolox_nano/README.md
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)
@@ -230,6 +253,7 @@ $(BUILD)/build.ninja: | setup
 
 .PHONY: test
 test: $(BUILD)/build.ninja ## Build everything and run all tests
+	@pipelines/install-packages.sh pipelines/data-packages.txt
 	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
 	@pipelines/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2
