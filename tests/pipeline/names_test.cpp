@@ -53,6 +53,10 @@ TEST_F(NamesTest, OfTheCallerAreNeverCarriedOut) {
     ExpectRefused("run-built", name + "=a';" + touch + ";'", "expected no '");
   }
   ExpectRefused("run-built", "OUTSIDE_PATHS=;" + touch, "expected --allow_outside_paths");
+  for (const std::string name : {"DOWNLOADS", "ANNOTATIONS", "NETWORKS", "WITHOUT", "MIRROR"}) {
+    ExpectRefused("data", name + "=$(shell " + touch + ")", "expected");
+    ExpectRefused("data", name + "=a';" + touch + ";'", "expected");
+  }
   EXPECT_EQ(Make("run-built", {"VARIANT=SVD\n\t" + touch}).exit_code, 2);
   EXPECT_FALSE(fs::exists(Marker()));
 }

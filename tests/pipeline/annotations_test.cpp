@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the project has to say of datasets of others: the table of downloads, and what is made of
+// them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::MatchesRegex;
+
+const fs::path kAnnotations = SOSLAM_SOURCE_DIR "/data/annotations";
+
+std::vector<std::string> Lines(const fs::path& path) {
+  std::vector<std::string> lines;
+  std::istringstream text(FileBytes(path));
+  for (std::string line; std::getline(text, line);) {
+    if (!line.empty() && line[0] != '#') lines.push_back(line);
+  }
+  return lines;
+}
+
+std::vector<std::string> Fields(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream text(line);
+  for (std::string field; std::getline(text, field, '\t');) fields.push_back(field);
+  return fields;
+}
+
+TEST(DownloadsTest, RowsAreWhole) {
+  std::set<std::string> names;
+  for (const std::string& line : Lines(SOSLAM_SOURCE_DIR "/pipelines/downloads.tsv")) {
+    SCOPED_TRACE(line);
+    const auto fields = Fields(line);
+    ASSERT_EQ(fields.size(), 7u);
+    names.insert(fields[0]);
+    EXPECT_THAT(fields[1], MatchesRegex("https://[^ ]+"));
+    EXPECT_THAT(fields[2], MatchesRegex("-|[0-9]+"));
+    EXPECT_THAT(fields[3], MatchesRegex("-|[0-9a-f]{64}"));
+    EXPECT_EQ(fields[2] == "-", fields[3] == "-");
+    EXPECT_THAT(fields[4], MatchesRegex("-|.+/"));
+    EXPECT_FALSE(fields[6].empty());
+  }
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre("fr1_desk", "fr1_rpy", "fr2_desk_11", "fr3_cabinet",
+                                            "icl_lr_kt1", "kitti_tracking", "yolox_nano"));
+}
+
+TEST(AnnotationsTest, HaveAReadmeAndASumForEachListedImage) {
+  for (const auto& entry : fs::directory_iterator(kAnnotations)) {
+    SCOPED_TRACE(entry.path());
+    EXPECT_TRUE(fs::exists(entry.path() / "README.md"));
+    std::set<std::string> summed;
+    for (const std::string& line : Lines(entry.path() / "SHA256SUMS")) {
+      EXPECT_THAT(line, MatchesRegex("[0-9a-f]{64}  [^ ]+"));
+      summed.insert(line.substr(66));
+    }
+    if (!fs::exists(entry.path() / "rgb.txt")) continue;
+    for (const std::string& line : Lines(entry.path() / "rgb.txt")) {
+      EXPECT_EQ(summed.count(line.substr(line.find(' ') + 1)), 1u) << line;
+    }
+  }
+}
+
+// prepare.sh of a dataset on downloads that the test makes.
+class PrepareTest : public testing::Test {
+ protected:
+  void Prepare(const std::string& name, const fs::path& own) const {
+    const CommandResult prepared =
+        RunCommand({"env", "-C", folder_.path().string(), "bash", "-euo", "pipefail",
+                    (kAnnotations / name / "prepare.sh").string(), own.string()});
+    EXPECT_EQ(prepared.exit_code, 0) << prepared.errors;
+  }
+  void Write(const std::string& name, const std::string& bytes) const {
+    fs::create_directories((folder_ / name).parent_path());
+    WriteBytes(folder_ / name, bytes);
+  }
+
+  TemporaryFolder folder_;
+};
+
+// OpenCV's encoder is an independent witness.
+TEST_F(PrepareTest, ImagesAreJpegOfQuality92) {
+  cv::Mat image(48, 64, CV_8UC3);
+  cv::theRNG().state = 1;
+  cv::randu(image, 0, 256);
+  fs::create_directory(folder_ / "png");
+  cv::imwrite((folder_ / "png/1.5.png").string(), image);
+  cv::imwrite((folder_ / "expected.jpg").string(), image, {cv::IMWRITE_JPEG_QUALITY, 92});
+  Write("own/rgb.txt", "# timestamp filename\n1.5 rgb/1.5.jpg\n");
+  Prepare("fr1_rpy", folder_ / "own");
+  EXPECT_TRUE(FileBytes(folder_ / "rgb/1.5.jpg") == FileBytes(folder_ / "expected.jpg"));
+}
+
+TEST_F(PrepareTest, BoxesOfImagesBecomeATable) {
+  Write("rgb.txt", "1.5 rgb/1.5.jpg\n2.5 rgb/2.5.jpg\n3.5 rgb/3.5.jpg\n");
+  Write("bbox/1.5.txt", "0 10 20 30 40 28 0.42 0\n");
+  Write("bbox/3.5.txt", "0 11 21 31 41 28 0.9 0\n");
+  Prepare("fr3_cabinet", folder_.path());
+  EXPECT_EQ(FileBytes(folder_ / "detections.csv"),
+            "frame,object_id,label,score,x1,y1,x2,y2\n"
+            "0,0,cabinet,0.42,10,20,30,40\n"
+            "2,0,cabinet,0.9,11,21,31,41\n");
+}
+
+TEST_F(PrepareTest, BoxesGetTheIdsOfTheirObjects) {
+  Write("detections_yolov5.json",
+        R"([{"file_name": "1.5.png", "detections": [)"
+        R"({"category_id": 7, "detection_score": 0.34721, "bbox": [1.0, 2.0, 3.5, 4.0]}, )"
+        R"({"category_id": 8, "detection_score": 0.5, "bbox": [5.0, 6.0, 7.0, 8.0]}]}, )"
+        R"({"file_name": "9.5.png", "detections": [)"
+        R"({"category_id": 7, "detection_score": 0.6, "bbox": [0.0, 0.0, 1.0, 1.0]}]}, )"
+        R"({"file_name": "2.5.png", "detections": []}, {"file_name": "3.5.png", "detections": [)"
+        R"({"category_id": 7, "detection_score": 0.7, "bbox": [9.0, 10.0, 11.0, 12.0]}]}])");
+  Write("own/rgb.txt", "# timestamp filename\n1.5 rgb/1.5.png\n2.5 rgb/2.5.png\n3.5 rgb/3.5.png\n");
+  Write("own/ids.csv", "frame,detection,object_id,label\n0,1,12,tape roll\n2,0,3,cup\n");
+  Prepare("fr2_desk_11", folder_ / "own");
+  EXPECT_EQ(FileBytes(folder_ / "detections.csv"),
+            "frame,object_id,label,score,x1,y1,x2,y2\n"
+            "0,12,tape roll,0.500,5.0,6.0,7.0,8.0\n"
+            "2,3,cup,0.700,9.0,10.0,11.0,12.0\n");
+}
+
+TEST_F(PrepareTest, ATrajectoryAndACameraForEachSequence) {
+  Write("poses_orbslam3_stereo/0003/CameraTrajectory.txt", "1 0 0\n");
+  Write("calib/0003.txt", "P0: 1 2 \nP2: 3  4 \nR_rect 5 \n");
+  Prepare("kitti_tracking", folder_.path());
+  EXPECT_EQ(FileBytes(folder_ / "poses_orbslam3_stereo/0003.txt"), "1 0 0\n");
+  EXPECT_EQ(FileBytes(folder_ / "calib/0003.txt"), "P2: 3 4\n");
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `make data` and what it calls, over a server and files of the test's own.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "support/http_server.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A publisher of an archive and a list of poses, and an annotation of them.
+class FetchTest : public testing::Test {
+ protected:
+  FetchTest() {
+    for (const char* name : {"published/top/rgb", "published/top/other", "own/desk", "data"}) {
+      fs::create_directories(folder_ / name);
+    }
+    WriteBytes(folder_ / "published/top/rgb/1.png", "one");
+    WriteBytes(folder_ / "published/top/rgb/2.png", "two");
+    WriteBytes(folder_ / "published/top/rgb/3.png", "not wanted");
+    WriteBytes(folder_ / "published/top/other/1.png", "another one");
+    // Bytes that do not pack, so that the archive is large enough to be cut.
+    for (unsigned i = 0, random = 1; i < 20000; ++i) {
+      noise_ += static_cast<char>((random = random * 1664525U + 1013904223U) >> 24U);
+    }
+    WriteBytes(folder_ / "published/top/rgb/noise.png", noise_);
+    Run({"tar", "-C", (folder_ / "published").string(), "-czf", (folder_ / "desk.tgz").string(),
+         "top"});
+    archive_ = FileBytes(folder_ / "desk.tgz");
+    WriteBytes(folder_ / "own/desk/SHA256SUMS", Sha256OfText("one") + "  rgb/1.png\n" +
+                                                    Sha256OfText("two") + "  rgb/2.png\n" +
+                                                    Sha256OfText("0 1 2\n") + "  poses.txt\n");
+    WriteBytes(folder_ / "own/desk/objects.json", "[]");
+    WriteBytes(folder_ / "own/desk/prepare.sh", "tr , ' ' < poses.csv > poses.txt\n");
+    WriteTable(std::to_string(archive_.size()), Sha256OfText(archive_));
+  }
+
+  ~FetchTest() override { ::umount((folder_ / "data").c_str()); }
+
+  // The table with these bytes and sum for the archive.
+  void WriteTable(const std::string& bytes, const std::string& sum) const {
+    WriteBytes(folder_ / "downloads.tsv",
+               fmt::format("# comment\n"
+                           "desk\thttp://nowhere.invalid/a/desk.tgz\t{}\t{}\ttop/rgb/\trgb/\tCC0\n"
+                           "desk\thttp://nowhere.invalid/poses.csv\t-\t-\t-\tposes.csv\tMIT\n",
+                           bytes, sum));
+  }
+  static CommandResult Run(const std::vector<std::string>& words) { return RunCommand(words); }
+  CommandResult Fetch(const std::string& mirror, const std::string& without = "",
+                      const std::string& name = "desk") const {
+    return Run({"env", "MIRROR=" + mirror, "WITHOUT=" + without,
+                SOSLAM_SOURCE_DIR "/pipelines/fetch.sh", (folder_ / "downloads.tsv").string(),
+                (folder_ / "own").string(), (folder_ / "data").string(), name});
+  }
+  HttpServer::Contents Files() const {
+    return {{"/desk.tgz", archive_}, {"/poses.csv", "0,1,2\n"}};
+  }
+  fs::path Target() const { return folder_ / "data/desk"; }
+  fs::path Part() const { return folder_ / "data/.downloads/desk/desk.tgz.part"; }
+
+  void ExpectWhole(const CommandResult& fetched) const {
+    EXPECT_EQ(fetched.exit_code, 0) << fetched.errors;
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(Target())) {
+      if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(Target()));
+    }
+    EXPECT_THAT(names, testing::UnorderedElementsAre("SHA256SUMS", "objects.json", "poses.txt",
+                                                     "rgb/1.png", "rgb/2.png"));
+    EXPECT_EQ(FileBytes(Target() / "rgb/1.png"), "one");
+    EXPECT_EQ(FileBytes(Target() / "poses.txt"), "0 1 2\n");
+    EXPECT_FALSE(fs::exists(folder_ / "data/.downloads/desk"));
+  }
+  void ExpectFailed(const CommandResult& fetched, int exit_code,
+                    const std::vector<std::string>& words) const {
+    EXPECT_EQ(fetched.exit_code, exit_code) << fetched.output << fetched.errors;
+    for (const std::string& word : words) EXPECT_THAT(fetched.errors, HasSubstr(word));
+    EXPECT_FALSE(fs::exists(Target()));
+  }
+
+  TemporaryFolder folder_;
+  std::string noise_;
+  std::string archive_;
+};
+
+TEST_F(FetchTest, FromAServer) {
+  HttpServer server(Files());
+  const CommandResult fetched = Fetch(server.Address());
+  ExpectWhole(fetched);
+  EXPECT_THAT(fetched.output, HasSubstr("desk.tgz (CC0)"));
+  EXPECT_THAT(fetched.output, HasSubstr("3 files fetched and checked"));
+  EXPECT_THAT(server.Requests(), ElementsAre("/desk.tgz", "/poses.csv"));
+}
+
+TEST_F(FetchTest, FromFiles) {
+  WriteBytes(folder_ / "poses.csv", "0,1,2\n");
+  ExpectWhole(Fetch("file://" + folder_.path().string()));
+}
+
+TEST_F(FetchTest, ByMake) {
+  HttpServer server(Files());
+  const CommandResult made = RunMake(
+      {"-C", SOSLAM_SOURCE_DIR, "data", "DATASET=desk", "MIRROR=" + server.Address(),
+       "DOWNLOADS=" + (folder_ / "downloads.tsv").string(),
+       "ANNOTATIONS=" + (folder_ / "own").string(), "DATA_ROOT=" + (folder_ / "data").string()});
+  ExpectWhole(made);
+}
+
+TEST_F(FetchTest, OfANetworkByMakeOnlyThePublishedOne) {
+  HttpServer server(HttpServer::Contents{{"/yolox_nano.onnx", std::string(3659407, 'x')}});
+  const CommandResult made =
+      RunMake({"-C", SOSLAM_SOURCE_DIR, "network", "MIRROR=" + server.Address(),
+               "NETWORKS=" + (folder_ / "networks").string()});
+  EXPECT_EQ(made.exit_code, 2);
+  EXPECT_THAT(made.output, HasSubstr("Apache-2.0"));
+  EXPECT_THAT(made.errors, HasSubstr("yolox_nano.onnx: found 3659407 bytes with SHA-256"));
+  EXPECT_FALSE(fs::exists(folder_ / "networks/yolox_nano"));
+}
+
+TEST_F(FetchTest, WhatIsWholeIsNotFetchedAgainButItsAnnotationIsLaid) {
+  HttpServer server(Files());
+  Fetch(server.Address());
+  WriteBytes(folder_ / "own/desk/objects.json", "[1]");
+  const size_t requests = server.Requests().size();
+  ExpectWhole(Fetch(server.Address()));
+  EXPECT_EQ(server.Requests().size(), requests);
+  EXPECT_EQ(FileBytes(Target() / "objects.json"), "[1]");
+}
+
+TEST_F(FetchTest, AFileThatWasLostIsFetchedAgain) {
+  HttpServer server(Files());
+  Fetch(server.Address());
+  fs::remove(Target() / "rgb/2.png");
+  ExpectWhole(Fetch(server.Address()));
+}
+
+TEST_F(FetchTest, HalfAFileIsGoneOnWith) {
+  HttpServer server(Files());
+  server.EndAfter(6000);
+  ExpectFailed(Fetch(server.Address()), 4, {"desk.tgz: the connection ended", "goes on with it"});
+  EXPECT_EQ(FileBytes(Part()), archive_.substr(0, 6000));
+  server.EndAfter(std::string::npos);
+  ExpectWhole(Fetch(server.Address()));
+  EXPECT_THAT(server.Requests(), ElementsAre("/desk.tgz", "/desk.tgz from 6000", "/poses.csv"));
+}
+
+TEST_F(FetchTest, HalfAFileOfUnknownSizeIsGoneOnWith) {
+  WriteTable("-", "-");
+  HttpServer server(Files());
+  server.EndAfter(6000);
+  ExpectFailed(Fetch(server.Address()), 4, {"the connection ended"});
+  server.EndAfter(std::string::npos);
+  ExpectWhole(Fetch(server.Address()));
+}
+
+TEST_F(FetchTest, AServerThatGivesNoPartsGivesTheWholeAgain) {
+  HttpServer server(Files());
+  server.EndAfter(6000);
+  Fetch(server.Address());
+  server.EndAfter(std::string::npos);
+  server.WholeFilesOnly();
+  ExpectWhole(Fetch(server.Address()));
+}
+
+// Killed when all bytes were there and their name was not.
+TEST_F(FetchTest, AWholeFileWithoutItsNameIsTaken) {
+  HttpServer server(Files());
+  for (const bool size_is_known : {true, false}) {
+    if (!size_is_known) WriteTable("-", "-");
+    fs::create_directories(Part().parent_path());
+    WriteBytes(Part(), archive_);
+    ExpectWhole(Fetch(server.Address()));
+    fs::remove_all(Target());
+  }
+}
+
+TEST_F(FetchTest, AnArchiveOfAnotherSumIsRefusedAndRemoved) {
+  const std::string expected = Sha256OfText("another");
+  WriteTable(std::to_string(archive_.size()), expected);
+  HttpServer server(Files());
+  ExpectFailed(Fetch(server.Address()), 3,
+               {"desk.tgz: found", Sha256OfText(archive_), "expected", expected, "is removed"});
+  EXPECT_FALSE(fs::exists(Part()));
+}
+
+TEST_F(FetchTest, AnArchiveThatIsTooShortIsGoneOnWith) {
+  HttpServer::Contents files = Files();
+  files["/desk.tgz"] = archive_.substr(0, 9000);
+  {
+    HttpServer server(files);
+    ExpectFailed(Fetch(server.Address()), 3,
+                 {fmt::format("9000 bytes came; expected {}", archive_.size())});
+  }
+  HttpServer server(Files());
+  ExpectWhole(Fetch(server.Address()));
+  EXPECT_THAT(server.Requests(), ElementsAre("/desk.tgz from 9000", "/poses.csv"));
+}
+
+TEST_F(FetchTest, AFileOfAnotherSumIsNotLaid) {
+  HttpServer::Contents files = Files();
+  files["/poses.csv"] = "0,1,3\n";
+  HttpServer server(files);
+  ExpectFailed(Fetch(server.Address()), 3,
+               {"poses.txt of desk: found SHA-256 " + Sha256OfText("0 1 3\n"),
+                "expected " + Sha256OfText("0 1 2\n")});
+}
+
+TEST_F(FetchTest, AFileThatTheArchiveLacksIsNamed) {
+  WriteBytes(folder_ / "own/desk/SHA256SUMS", Sha256OfText("four") + "  rgb/4.png\n");
+  HttpServer server(Files());
+  ExpectFailed(Fetch(server.Address()), 3, {"rgb/4.png of desk: found SHA-256 nothing"});
+}
+
+// Its sum is not known: it is whole if it can be unpacked.
+TEST_F(FetchTest, ADamagedArchiveIsRemovedAndFetchedAnew) {
+  WriteTable("-", "-");
+  HttpServer::Contents files = Files();
+  files["/desk.tgz"] = archive_.substr(0, 9000);
+  {
+    HttpServer server(files);
+    ExpectFailed(Fetch(server.Address()), 3, {"desk.tgz: cannot be unpacked", "a folder top/rgb/"});
+  }
+  HttpServer server(Files());
+  ExpectWhole(Fetch(server.Address()));
+}
+
+TEST_F(FetchTest, AnAddressWithoutTheFile) {
+  HttpServer server(HttpServer::Contents{});
+  ExpectFailed(Fetch(server.Address()), 4, {"desk.tgz: the address has no such file"});
+  ExpectFailed(Fetch("file://" + (folder_ / "nowhere").string()), 4, {"has no such file"});
+}
+
+TEST_F(FetchTest, NoNetwork) {
+  std::string closed;
+  {
+    HttpServer server(HttpServer::Contents{});
+    closed = server.Address();
+  }
+  ExpectFailed(Fetch(closed), 4, {closed + "/desk.tgz: no answer; expected a network"});
+}
+
+TEST_F(FetchTest, APartCanBeLeftOut) {
+  HttpServer server(HttpServer::Contents{{"/poses.csv", "0,1,2\n"}});
+  const CommandResult fetched = Fetch(server.Address(), "rgb");
+  EXPECT_EQ(fetched.exit_code, 0) << fetched.errors;
+  EXPECT_THAT(server.Requests(), ElementsAre("/poses.csv"));
+  EXPECT_TRUE(fs::exists(Target() / "poses.txt"));
+  EXPECT_FALSE(fs::exists(Target() / "rgb"));
+}
+
+TEST_F(FetchTest, AFolderOfSomebodyElseStaysAsItIs) {
+  fs::create_directory(Target());
+  WriteBytes(Target() / "objects.json", "mine");
+  HttpServer server(Files());
+  const CommandResult fetched = Fetch(server.Address());
+  EXPECT_EQ(fetched.exit_code, 2);
+  EXPECT_THAT(fetched.errors, HasSubstr("was not made by this command"));
+  EXPECT_EQ(FileBytes(Target() / "objects.json"), "mine");
+  EXPECT_THAT(server.Requests(), IsEmpty());
+}
+
+TEST_F(FetchTest, AFolderThatCannotBeWrittenTo) {
+  fs::remove(folder_ / "data");
+  WriteBytes(folder_ / "data", "a file");
+  HttpServer server(Files());
+  ExpectFailed(Fetch(server.Address()), 2, {"data cannot be written to"});
+}
+
+TEST_F(FetchTest, AFullDisk) {
+  const std::string disk = (folder_ / "data").string();
+  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=12k") != 0) {
+    GTEST_SKIP() << "needs root, to mount a small disk";
+  }
+  HttpServer server(Files());
+  ExpectFailed(Fetch(server.Address()), 4, {"cannot write", "is full"});
+  ASSERT_EQ(::mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT, "size=30k"), 0);
+  ExpectFailed(Fetch(server.Address()), 3, {"cannot be unpacked", "room on the disk"});
+  ASSERT_EQ(::mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT, "size=1m"), 0);
+  ExpectWhole(Fetch(server.Address()));
+}
+
+TEST_F(FetchTest, AnUnknownNameIsAnsweredWithTheKnownOnes) {
+  ExpectFailed(Fetch("", "", "chair"), 2, {"nothing is known of 'chair'; expected one of desk"});
+}
+
+}  // namespace
+}  // namespace soslam
