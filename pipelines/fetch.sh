@@ -80,6 +80,7 @@ unpack() {
     bsdtar -t -f "$file" &> /dev/null || rm "$file"
     fail 3 "$file: cannot be unpacked; expected a whole archive with a folder $from, and room on the disk"
   fi
+  chmod -R u+rwX "$work/files"  # whatever the archive says
 }
 
 # All wanted files are right, in this folder.
@@ -94,7 +95,9 @@ flock 9
 mkdir -p "$work"
 
 if ! is_whole "$target"; then
-  rm -rf "$work/files"
+  mkdir -p "$work/files"
+  chmod -R u+rwX "$work/files"
+  rm -r "$work/files"
   mkdir "$work/files"
   while IFS=$'\t' read -r _ url bytes sum from to licence; do
     without "${to}x" && continue
@@ -108,8 +111,8 @@ if ! is_whole "$target"; then
     fail 3 "$own/prepare.sh: fails on what came, in $work/files; expected files as its comment says"
   while read -r sum path; do
     found=$(sum_of "$work/files/$path")
-    [[ $found == "$sum" ]] || fail 3 "$path of $name: found SHA-256 $found; expected $sum; $target is as it was, what \
-came is in $work; likely its publisher changed it"
+    [[ $found == "$sum" ]] || fail 3 "$path of $name: found SHA-256 $found; expected $sum; $target is as it was; what \
+came is in $work (removed, it is fetched anew); likely its publisher changed it"
   done < <(wanted)
 fi
 

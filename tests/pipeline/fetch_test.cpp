@@ -109,6 +109,17 @@ TEST_F(FetchTest, FromFiles) {
   ExpectWhole(Fetch("file://" + folder_.path().string()));
 }
 
+TEST_F(FetchTest, FilesThatTheArchiveHasReadOnlyAreTheUsers) {
+  fs::permissions(folder_ / "published/top/rgb/1.png", fs::perms::owner_read);
+  RunCommand({"tar", "-C", (folder_ / "published").string(), "-czf",
+              (folder_ / "desk.tgz").string(), "top"});
+  WriteBytes(folder_ / "poses.csv", "0,1,2\n");
+  WriteTable("-", "-");
+  ExpectWhole(Fetch("file://" + folder_.path().string()));
+  EXPECT_EQ(fs::status(Target() / "rgb/1.png").permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(FetchTest, ByMake) {
   HttpServer server(Files());
   const CommandResult made = RunMake(

@@ -20,7 +20,7 @@ namespace soslam {
 // An HTTP server on this machine that gives files from memory, as servers do and as they fail.
 class HttpServer {
  public:
-  using Contents = std::map<std::string, std::string>;  // of files, by path from /
+  using Contents = std::map<std::string, std::string>;  // files by path, as /a/b
 
   explicit HttpServer(Contents files) : files_(std::move(files)) {
     socket_ = ::socket(AF_INET, SOCK_STREAM, 0);
