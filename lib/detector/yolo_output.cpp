@@ -57,9 +57,11 @@ cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::st
     const int cells = columns * (input.height / stride);
     const auto pixels = static_cast<float>(stride);
     for (int cell = 0; cell < cells; ++cell, ++index) {
+      const int cell_column = cell % columns;
+      const int cell_row = cell / columns;
       float* row = decoded.ptr<float>(index);
-      row[0] = (row[0] + static_cast<float>(cell % columns)) * pixels;
-      row[1] = (row[1] + static_cast<float>(cell / columns)) * pixels;
+      row[0] = (row[0] + static_cast<float>(cell_column)) * pixels;
+      row[1] = (row[1] + static_cast<float>(cell_row)) * pixels;
       row[2] = std::exp(row[2]) * pixels;
       row[3] = std::exp(row[3]) * pixels;
     }
