@@ -76,11 +76,10 @@ void CheckInPixels(const cv::Mat& rows, const cv::Size& input, const std::string
   double largest = 0.0;
   cv::minMaxLoc(rows.colRange(2, 4), nullptr, &largest);
   if (largest >= kYoloxStrides[0]) return;
-  throw InputError(
-      fmt::format("{}: the largest box of the output is {:.2f} pixels; expected boxes in pixels "
-                  "(of YOLOX as it "
-                  "is published: output_layout = yolox)",
-                  network, largest));
+  throw InputError(fmt::format(
+      "{}: the largest box of the output is {:.2f} pixels; expected boxes in pixels (YOLOX as it "
+      "is published has other ones: output_layout = yolox)",
+      network, largest));
 }
 
 }  // namespace
