@@ -113,15 +113,33 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view, const Things& thi
   return {};
 }
 
+// Poses of an IMU that are taken for those of the camera; boxes that fit them say that they are.
+std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayError>& as_read) {
+  constexpr double kFitsDeg = 1.0;
+  if (!view.content.may_have_poses_of_body) return {};
+  if (as_read && as_read->median_deg <= kFitsDeg) return {};
+  return {{"body_poses", Severity::kWarning,
+           "EuRoC's poses are taken for those of the camera" +
+               (as_read ? fmt::format(", but things are {:.1f} degrees from where they are then "
+                                      "seen (median)",
+                                      as_read->median_deg)
+                        : ""),
+           "the camera's place in the body (T_BS), and things to within a degree where they are "
+           "seen",
+           "poses of a body that is not the camera, as an IMU",
+           "camera_file: the camera's sensor.yaml, with T_BS"}};
+}
+
 }  // namespace
 
 std::vector<Finding> CheckPoses(const ImportView& view) {
   constexpr size_t kFewestRays = 15;
   const Things things = TrackedThings(view);
-  const auto as_read = MedianRayError(things, [&](size_t frame) { return PoseAt(view, frame); });
-  if (!as_read || as_read->rays < kFewestRays) return {};
-  std::vector<Finding> findings = CheckReadings(view, things, *as_read);
-  if (findings.empty()) findings = CheckFrameNumbers(view, things, *as_read);
+  auto as_read = MedianRayError(things, [&](size_t frame) { return PoseAt(view, frame); });
+  if (as_read && as_read->rays < kFewestRays) as_read.reset();
+  std::vector<Finding> findings = CheckBody(view, as_read);
+  if (findings.empty() && as_read) findings = CheckReadings(view, things, *as_read);
+  if (findings.empty() && as_read) findings = CheckFrameNumbers(view, things, *as_read);
   return findings;
 }
 

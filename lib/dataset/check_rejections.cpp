@@ -38,7 +38,9 @@ const std::map<std::string, CauseAndRemedy>& GatesOfData() {
         "an id for each object, or no ids and estimated association"}},
       {name(RejectReason::kTooFewObservations),
        {"ids that change from image to image",
-        "ids that stay, or no ids and estimated association; min_observations"}}};
+        "ids that stay, or no ids and estimated association; min_observations"}},
+      {name(RejectReason::kWithoutObjectId),
+       {"a tracker that finds few tracks", "no object_id and estimated association"}}};
   return gates;
 }
 

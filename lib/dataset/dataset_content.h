@@ -29,6 +29,8 @@ struct DatasetContent {
   RejectionCounts mended;  // those that are used otherwise than as they stand, by what was done
   bool has_true_poses = false;  // of some frames at least
   bool has_object_ids = true;   // otherwise each row is of an object of its own
+  // Poses are those of the camera only if the body that they are of is the camera.
+  bool may_have_poses_of_body = false;
   std::optional<Distortion> image_distortion = std::nullopt;  // see Sequence
   std::vector<std::filesystem::path> files;                   // that were read
   // Of the detector that numbers its classes, by class, and the file that has them; empty where

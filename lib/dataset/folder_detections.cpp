@@ -104,7 +104,7 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const DatasetFiles& files,
                                       const std::vector<ListedImage>& images, int first_free_id,
                                       RejectionCounts* rejected) {
-  const FrameLookup lookup(images);
+  FrameLookup lookup(images);
   const int max_boxes = std::numeric_limits<int>::max() - std::max(first_free_id, 0);
   if (boxes.size() > static_cast<size_t>(max_boxes)) {
     throw InputError(fmt::format("{}: has {} boxes; expected at most {}", files.detections.string(),

@@ -67,13 +67,7 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
 std::vector<TimedPose> ReadCameraOfEuroc(const fs::path& path,
                                          const std::optional<Rigid3d>& body_from_camera) {
   std::vector<TimedPose> trajectory = ReadEurocTrajectory(path);
-  if (!body_from_camera) {
-    fmt::print(
-        "{}: taken as the poses of the camera; where they are of another body (an IMU), give the "
-        "camera's sensor.yaml, with T_BS, as camera_file\n",
-        path.filename().string());
-    return trajectory;
-  }
+  if (!body_from_camera) return trajectory;
   for (TimedPose& pose : trajectory) {
     pose.world_from_camera = pose.world_from_camera * *body_from_camera;
   }
@@ -130,7 +124,7 @@ ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const Impo
 
 ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named,
                        const std::vector<ListedImage>& images) {
-  const FrameLookup lookup(images);
+  FrameLookup lookup(images);
   ImagePoses poses(images.size());
   size_t matched = 0;
   for (const NamedPose& pose : named) {
@@ -170,7 +164,7 @@ ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const Import
     case TrajectoryFormat::kColmap:
       return PosesByName(path, ReadColmapPoses(path), images);
     case TrajectoryFormat::kNerfstudio:
-      return PosesByName(path, ReadNerfstudioPoses(path), images);
+      return PosesByName(path, ReadNerfstudioPoses(path, findings), images);
     default:
       return PosesByTime(path, format, options, images, body_from_camera, findings);
   }

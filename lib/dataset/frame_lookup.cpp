@@ -3,26 +3,68 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <cctype>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 
 namespace soslam {
+namespace {
 
-FrameLookup::FrameLookup(const std::vector<ListedImage>& images)
-    : size_(static_cast<int>(images.size())) {
-  for (int row = 0; row < size_; ++row) {
-    const std::filesystem::path path = images[static_cast<size_t>(row)].image;
+namespace fs = std::filesystem;
+
+fs::path FolderOf(const std::string& image) {
+  return fs::path(image).lexically_normal().parent_path();
+}
+
+// The innermost names in which two folders differ, as far as both go; empty where they do not.
+std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
+  for (; one.has_filename() && other.has_filename();
+       one = one.parent_path(), other = other.parent_path()) {
+    if (one.filename() != other.filename()) {
+      return {one.filename().string(), other.filename().string()};
+    }
+  }
+  return {};
+}
+
+// The name of a folder without what tells the cameras of a rig apart.
+std::string RigOf(std::string folder) {
+  for (const std::string side : {"left", "right"}) {
+    const size_t found = folder.find(side);
+    if (found != folder.npos) folder.replace(found, side.size(), "0");
+  }
+  std::string rig;
+  for (const char c : folder) {
+    const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    if (!is_digit) rig += c;
+    if (is_digit && !rig.ends_with('0')) rig += '0';
+  }
+  return rig;
+}
+
+bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
+  const auto [name, other_name] = Difference(folder, other);
+  return name != other_name && RigOf(name) == RigOf(other_name);
+}
+
+}  // namespace
+
+FrameLookup::FrameLookup(const std::vector<ListedImage>& images) {
+  for (const ListedImage& image : images) {
+    const fs::path path = image.image;
     const std::set<std::string> names = {path.string(), path.filename().string(),
                                          path.stem().string()};
+    const auto row = static_cast<int>(folders_.size());
     for (const std::string& name : names) rows_by_name_[name].push_back(row);
+    folders_.push_back(FolderOf(image.image));
   }
 }
 
-std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& place) const {
+std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& place) {
   if (const int* row = std::get_if<int>(&key)) {
-    return *row >= 0 && *row < size_ ? std::optional(*row) : std::nullopt;
+    return *row >= 0 && *row < std::ssize(folders_) ? std::optional(*row) : std::nullopt;
   }
   const std::string& name = std::get<std::string>(key);
   auto found = rows_by_name_.find(name);
@@ -35,7 +77,17 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
     throw InputError(fmt::format("{}: image '{}' could be rows {} of the list; expected one", place,
                                  name, fmt::join(rows, ", ")));
   }
-  return rows.front();
+  const int row = rows.front();
+  const fs::path folder = FolderOf(name);
+  if (AreOfTwoCameras(folder, folders_[static_cast<size_t>(row)])) return std::nullopt;
+  const fs::path& named = named_folders_.try_emplace(row, folder).first->second;
+  if (!Difference(folder, named).first.empty()) {
+    throw InputError(
+        fmt::format("{}: image '{}' would be row {} of the list, as that of the same name in '{}' "
+                    "is; expected images of one folder",
+                    place, name, row, named.string()));
+  }
+  return row;
 }
 
 }  // namespace soslam

@@ -105,7 +105,8 @@ LensCamera ReadNerfstudioCamera(const std::filesystem::path& path) {
   return {ParseCamera(entry), LensOf(entry)};
 }
 
-std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path) {
+std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
+                                           std::vector<Finding>* findings) {
   const json document = ParseJsonFile(path);
   const JsonEntry entry(document, path.string());
   const json& frames = entry.List("frames");
@@ -115,11 +116,17 @@ std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path) {
         ParsePose(JsonEntry(frames[i], fmt::format("{}#/frames/{}", path.string(), i))));
   }
   if (poses.empty()) entry.Refuse("frames", "at least one frame");
-  for (const char* name : {"applied_transform", "applied_scale"}) {
-    if (!entry.Has(name)) continue;
-    fmt::print("{}: {} is not undone: the world is that of its frames\n", path.filename().string(),
-               name);
-  }
+  const double scale = entry.Has("applied_scale") ? entry.Positive("applied_scale") : 1.0;
+  if (scale == 1.0) return poses;
+  findings->push_back(
+      {"applied_scale", Severity::kWarning,
+       fmt::format(
+           "{}: applied_scale is {:g}: the poses are those of the reconstruction times that",
+           path.filename().string(), scale),
+       "poses in metres", "a program that made the scene larger or smaller, to fit into a cube",
+       fmt::format("multiply translations by {:g} where the reconstruction was in metres; nothing "
+                   "where applied_scale made metres of it",
+                   1.0 / scale)});
   return poses;
 }
 

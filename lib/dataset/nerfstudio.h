@@ -8,6 +8,7 @@
 #include "dataset/lens_camera.h"
 #include "dataset/named_pose.h"
 #include "dataset/tum_list.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -23,8 +24,9 @@ LensCamera ReadNerfstudioCamera(const std::filesystem::path& path);
 // The poses of "frames": "transform_matrix", 4 x 4, is world_from_camera with the camera axes of
 // OpenGL (x right, y up, z backward), which become x right, y down, z forward here. The image is
 // "file_path". In file order; at least one. An "applied_transform" or "applied_scale", which say
-// how the world came from that of the reconstruction, is not undone, and that is said on stdout.
-std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path);
+// how the world came from that of the reconstruction, is not undone; another scale is a finding.
+std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
+                                           std::vector<Finding>* findings);
 
 // Its frames as a list of images, by their names, as nerfstudio itself sorts them, a second apart:
 // the order in the file is of no meaning.

@@ -35,7 +35,8 @@ bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
 std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
                                              const std::vector<ListedObject>& objects,
                                              const std::filesystem::path& file,
-                                             RejectionCounts* rejected) {
+                                             RejectionCounts* rejected,
+                                             std::vector<Finding>* findings) {
   if (!HaveObjectIds(boxes)) return boxes;
   std::set<int> listed;
   for (const ListedObject& object : objects) listed.insert(object.id);
@@ -51,10 +52,14 @@ std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
                                 ? "no object_id"
                                 : fmt::format("object_id {}", fmt::join(ids_of_none, ", "));
   if (!HaveObjectIds(boxes)) {
-    fmt::print(
-        "{}: all {} boxes have {}, that of no track: nobody has said which boxes are of one "
-        "object, so association has to be estimated\n",
-        file.filename().string(), boxes.size(), which);
+    findings->push_back(
+        {"object_ids", Severity::kWarning,
+         fmt::format("{}: all {} boxes have {}, that of no track", file.filename().string(),
+                     boxes.size(), which),
+         "an id for each object, or no object_id",
+         "boxes of a detector, or of a tracker that found no track: nobody has said which are of "
+         "one object",
+         "leave object_id away, and let association be estimated (setting of soslam-associate)"});
     return boxes;
   }
   const size_t without =

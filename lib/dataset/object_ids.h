@@ -7,6 +7,7 @@
 #include "dataset/dataset_json.h"
 #include "dataset/gate.h"
 #include "dataset/labelled_box.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -14,12 +15,13 @@ namespace soslam {
 // below 0 are taken for that; 0 where it is of several boxes of one image in at least two images
 // (one, when no box has another id), as no other id ever is. Ids that objects.json lists are real.
 //
-// Returns the boxes with ids, or all of them, without ids, when none has one. Those that are left
-// out are counted in `rejected`; what was done is said on stdout, with the name of the `file`.
+// Returns the boxes with ids. Those that are left out are counted in `rejected`, and said on stdout
+// with the name of the `file`. When no box has an id, all are returned without, which is a finding.
 std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
                                              const std::vector<ListedObject>& objects,
                                              const std::filesystem::path& file,
-                                             RejectionCounts* rejected);
+                                             RejectionCounts* rejected,
+                                             std::vector<Finding>* findings);
 
 // Whether any box says which object it is of.
 bool HaveObjectIds(const std::vector<LabelledBox>& boxes);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "dataset/dataset_files.h"
@@ -31,15 +33,30 @@ void MendLabels(const std::vector<ListedObject>& listed, DatasetContent* content
   if (changed > 0) content->mended["label_of_object"] = changed;
 }
 
-void PrintMended(const DatasetFiles& files, size_t boxes, const DatasetContent& content) {
-  const auto print = [&](const char* name, const char* what) {
-    const auto found = content.mended.find(name);
-    if (found == content.mended.end()) return;
-    fmt::print("{}: {} of {} boxes {}\n", files.detections.filename().string(), found->second,
-               boxes, what);
-  };
-  print("cut_to_image", "reach a little beyond the image and are cut to it");
-  print("label_of_object", "have another label than their object has, and get that");
+// Boxes that are used otherwise than as they stand: said on stdout, and a finding where they are
+// more than a third.
+void ReportMended(const DatasetFiles& files, size_t boxes, DatasetContent* content) {
+  constexpr size_t kFewest = 10;
+  const std::map<std::string, Finding> kinds = {
+      {"cut_to_image",
+       {"boxes_cut", Severity::kWarning, "reach a little beyond the image and are cut to it",
+        "boxes in the image", "boxes of whole objects, or of images of another size",
+        "give boxes as fractions of the image that the camera takes"}},
+      {"label_of_object",
+       {"labels_of_objects", Severity::kWarning,
+        "have another label than their object has, and get that", "one label for each object",
+        "ids that are of several things, or a detector that calls one thing by several names",
+        "give each thing an id of its own, or no ids and estimated association"}}};
+  for (const auto& [name, count] : content->mended) {
+    Finding finding = kinds.at(name);
+    finding.found = fmt::format("{}: {} of {} boxes {}", files.detections.filename().string(),
+                                count, boxes, finding.found);
+    if (boxes < kFewest || 3 * static_cast<size_t>(count) <= boxes) {
+      fmt::print("{}\n", finding.found);
+    } else {
+      content->findings.push_back(std::move(finding));
+    }
+  }
 }
 
 }  // namespace
@@ -56,8 +73,8 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   const auto listed = files.objects ? ReadObjects(*files.objects) : std::vector<ListedObject>();
   DatasetContent content;
   FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &content.mended);
-  const std::vector<LabelledBox> boxes =
-      WithoutIdsOfNoTrack(std::move(read.boxes), listed, files.detections, &content.rejected);
+  const std::vector<LabelledBox> boxes = WithoutIdsOfNoTrack(
+      std::move(read.boxes), listed, files.detections, &content.rejected, &content.findings);
   const auto images = ListImages(folder, files, options, boxes);
   content.class_names = std::move(read.class_names);
   if (!content.class_names.empty()) content.class_names_file = files.class_names;
@@ -74,8 +91,10 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
         Undistorted(std::move(content.rows), camera.camera, *camera.distortion, &content.rejected);
   }
   content.objects = ListObjects(files, listed, content.rows, content.planes);
-  PrintMended(files, boxes.size(), content);
+  ReportMended(files, boxes.size(), &content);
   content.has_true_poses = files.groundtruth.has_value();
+  content.may_have_poses_of_body =
+      !calibration.body_from_camera && options.folder.trajectory_format == TrajectoryFormat::kEuroc;
   content.files = files.All();
   return content;
 }

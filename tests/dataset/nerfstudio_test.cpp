@@ -30,7 +30,7 @@ class NerfstudioTest : public testing::Test {
     ExpectError<InputError>(
         [&] {
           Camera();
-          ReadNerfstudioPoses(Write());
+          ReadNerfstudioPoses(Write(), &findings_);
         },
         words);
     document_ = before;
@@ -50,6 +50,7 @@ class NerfstudioTest : public testing::Test {
       {"frames",
        {{{"file_path", "./images/a.jpg"},
          {"transform_matrix", {{0, 0, 1, 1}, {1, 0, 0, 2}, {0, 1, 0, 3}, {0, 0, 0, 1}}}}}}};
+  std::vector<Finding> findings_;
   TemporaryFolder folder_;
 };
 
@@ -71,17 +72,26 @@ TEST_F(NerfstudioTest, WhatIsAbsentHasItsUsualValue) {
 }
 
 TEST_F(NerfstudioTest, PosesHaveOpenGlAxes) {
-  document_["applied_transform"] = json::array();
-  testing::internal::CaptureStdout();
-  const auto poses = ReadNerfstudioPoses(Write());
-  EXPECT_THAT(testing::internal::GetCapturedStdout(),
-              testing::HasSubstr("transforms.json: applied_transform is not undone"));
+  const auto poses = ReadNerfstudioPoses(Write(), &findings_);
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].image, "./images/a.jpg");
   const Rigid3d& pose = poses[0].world_from_camera;
   EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(-4, 2, 3)));
   EXPECT_TRUE((pose * Eigen::Vector3d(0, 5, 0)).isApprox(Eigen::Vector3d(1, 2, -2)));
   EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, 7, 3)));
+}
+
+// A turn of the world does not matter to anything.
+TEST_F(NerfstudioTest, AnotherScaleIsAFinding) {
+  document_["applied_transform"] = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}};
+  document_["applied_scale"] = 1.0;
+  ReadNerfstudioPoses(Write(), &findings_);
+  EXPECT_THAT(findings_, testing::IsEmpty());
+  document_["applied_scale"] = 0.25;
+  ReadNerfstudioPoses(Write(), &findings_);
+  ASSERT_EQ(findings_.size(), 1u);
+  EXPECT_THAT(findings_[0].found, testing::HasSubstr("transforms.json: applied_scale is 0.25"));
+  EXPECT_THAT(findings_[0].remedy, testing::HasSubstr("multiply translations by 4"));
 }
 
 TEST_F(NerfstudioTest, FramesAreAListOfImages) {
@@ -115,6 +125,7 @@ TEST_F(NerfstudioTest, BadFilesAreNamed) {
   ExpectRefused("/frames/0/transform_matrix/0/2", -1, {"#/frames/0", "determinant -1"});
   ExpectRefused("/frames/0/transform_matrix/3/0", 1, {"#/frames/0", "last row", "1 0 0 1"});
   ExpectRefused("/frames/0/file_path", "", {"#/frames/0", "file_path"});
+  ExpectRefused("/applied_scale", 0, {"transforms.json", "applied_scale is 0"});
   document_["frames"][0]["fl_x"] = 500.0;  // that of all
   EXPECT_EQ(Camera().camera.fx, 500.0);
 }

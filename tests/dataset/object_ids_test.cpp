@@ -28,7 +28,9 @@ class ObjectIdsTest : public testing::Test {
   // The ids that are left.
   std::vector<int> Ids(const std::vector<std::vector<std::optional<int>>>& frames) {
     testing::internal::CaptureStdout();
-    boxes_ = WithoutIdsOfNoTrack(Boxes(frames), listed_, "a/detections.csv", &rejected_);
+    findings_.clear();
+    boxes_ =
+        WithoutIdsOfNoTrack(Boxes(frames), listed_, "a/detections.csv", &rejected_, &findings_);
     printed_ = testing::internal::GetCapturedStdout();
     std::vector<int> ids;
     for (const LabelledBox& box : boxes_) {
@@ -40,6 +42,7 @@ class ObjectIdsTest : public testing::Test {
   std::vector<ListedObject> listed_;
   std::vector<LabelledBox> boxes_;
   RejectionCounts rejected_;
+  std::vector<Finding> findings_;
   std::string printed_;
 };
 
@@ -49,6 +52,7 @@ TEST_F(ObjectIdsTest, IdsOfTracksStay) {
   EXPECT_THAT(Ids({{0, 0, 1, 1}, {0, 0}}), ElementsAre(0, 0, 1, 1, 0, 0));  // so has another id
   EXPECT_THAT(Ids({{0}, {0}}), ElementsAre(0, 0));                          // one object
   EXPECT_THAT(rejected_, IsEmpty());
+  EXPECT_THAT(findings_, IsEmpty());
   EXPECT_EQ(printed_, "");
 }
 
@@ -69,8 +73,9 @@ TEST_F(ObjectIdsTest, ATableWithoutTracksHasNoIds) {
            {{-1, -1}, {-1, -2}}, {{0, 0}, {0, -1}}}) {
     EXPECT_THAT(Ids(frames), IsEmpty());
     EXPECT_EQ(boxes_.size(), 4u);
-    EXPECT_THAT(printed_, HasSubstr("all 4 boxes"));
-    EXPECT_THAT(printed_, HasSubstr("association has to be estimated"));
+    ASSERT_EQ(findings_.size(), 1u);
+    EXPECT_THAT(findings_[0].found, HasSubstr("detections.csv: all 4 boxes have object_id"));
+    EXPECT_THAT(findings_[0].remedy, HasSubstr("let association be estimated"));
   }
   EXPECT_THAT(rejected_, IsEmpty());
 }

@@ -15,7 +15,8 @@ const FuzzTarget kTrajectories("trajectories", [](const HostileInput& input) {
   IsAccepted(file, [&] { ReadKittiTrajectory(file); });
   IsAccepted(file, [&] { ReadEurocTrajectory(file); });
   IsAccepted(file, [&] { ReadColmapPoses(file); });
-  IsAccepted(file, [&] { ReadNerfstudioPoses(file); });
+  std::vector<Finding> findings;
+  IsAccepted(file, [&] { ReadNerfstudioPoses(file, &findings); });
 });
 
 }  // namespace
