@@ -46,6 +46,7 @@ Association Associate(const Sequence& sequence, const SemanticTable& table,
   MergeTracks(model, threads, &association);
   DropFalseTracks(model, threads, &association);
   ListObjects(sequence, &association);
+  association.up_of_segments = model.up_of_segments();
   return association;
 }
 

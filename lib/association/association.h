@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "association/fit_object.h"
 #include "association/labels.h"
 #include "association/options.h"
+#include "association/up_estimate.h"
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
 
@@ -68,7 +70,8 @@ struct Track {
 struct Association {
   std::vector<DetectionDecision> detections;  // one per Sequence::detections
   std::vector<Track> tracks;
-  std::vector<int> objects;  // into `tracks`, by their first detection
+  std::vector<int> objects;                  // into `tracks`, by their first detection
+  std::map<int, UpEstimate> up_of_segments;  // empty: planes are known
 };
 
 // The sequence as if nobody knew what its objects stand on.

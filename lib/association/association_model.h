@@ -20,6 +20,7 @@ class AssociationModel {
 
   const Sequence& sequence() const { return sequence_; }
   const AssociateOptions& options() const { return options_; }
+  const std::map<int, UpEstimate>& up_of_segments() const { return up_of_segments_; }
   const std::string& LabelOf(const Detection& detection) const {
     return sequence_.ObjectOf(detection).label;
   }

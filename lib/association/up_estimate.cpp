@@ -128,7 +128,17 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   }
   const double expected_cost = 0.5 * static_cast<double>(boxes.size());
   const HoldingChoice choice = ChooseHolding(evidence, expected_cost, kClear);
-  return UpOf(attitudes[choice.best], choice.tilt_variance);
+  UpEstimate up = UpOf(attitudes[choice.best], choice.tilt_variance);
+  up.holding = evidence[choice.best].holding;
+  up.holding_tilt_variance = choice.tilt_variance;
+  for (size_t i = 0; i < evidence.size(); ++i) {
+    TriedHolding tried;
+    tried.holding = evidence[i].holding;
+    tried.cost = choice.costs[i];
+    tried.probability = choice.probabilities[i];
+    up.holdings.push_back(tried);
+  }
+  return up;
 }
 
 }  // namespace

@@ -4,10 +4,12 @@
 #include <Eigen/Core>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "association/options.h"
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "planes/planes_estimate.h"
 
 namespace soslam {
 
@@ -17,6 +19,11 @@ struct UpEstimate {
   // Of the rotation vector that turns it to where it really is (rad^2, world axes); zero about
   // itself.
   Eigen::Matrix3d covariance;
+  // How cameras are held, of the ways that lead to different ups, and how much the others leave
+  // open (rad^2); zero where that is clear.
+  CameraHolding holding = CameraHolding::kLevel;
+  std::vector<TriedHolding> holdings = {};
+  double holding_tilt_variance = 0.0;
 };
 
 // Of a label's objects, with a height also where the table has none.

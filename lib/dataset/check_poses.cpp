@@ -118,7 +118,7 @@ std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayEr
   constexpr double kFitsDeg = 1.0;
   if (!view.content.may_have_poses_of_body) return {};
   if (as_read && as_read->median_deg <= kFitsDeg) return {};
-  return {{"body_poses", Severity::kWarning,
+  return {{kPoseConvention, Severity::kWarning,
            "EuRoC's poses are taken for those of the camera" +
                (as_read ? fmt::format(", but things are {:.1f} degrees from where they are then "
                                       "seen (median)",

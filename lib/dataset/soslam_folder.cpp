@@ -64,7 +64,7 @@ void ReportMended(const DatasetFiles& files, size_t boxes, DatasetContent* conte
 DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const ImportOptions& options) {
   DatasetFiles files = FindDatasetFiles(folder, options);
   if (files.trajectory_is_fallback) {
-    fmt::print(stderr, "warning: {}: no {}.txt; using {} as the trajectory\n", folder.string(),
+    fmt::print("{}: no {}.txt; using {} as the trajectory\n", folder.string(),
                kTrajectorySourceNames[static_cast<int>(options.trajectory)],
                files.trajectory.filename().string());
   }

@@ -33,8 +33,10 @@ bool IsUtf8(const std::string& text) {
 }
 
 void CheckEncoding(std::string_view text, const std::string& place) {
-  if (IsUtf8(std::string(text)) && text.find('\0') == text.npos) return;
-  throw InputError(place + ": is not UTF-8 text");
+  if (text.find('\0') != text.npos) {
+    throw InputError(place + ": has a zero byte, as UTF-16 text has; expected UTF-8");
+  }
+  if (!IsUtf8(std::string(text))) throw InputError(place + ": is not UTF-8 text");
 }
 
 std::string ReadWhole(const std::filesystem::path& path) {

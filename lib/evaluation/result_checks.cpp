@@ -179,18 +179,18 @@ std::vector<Finding> CheckCost(const SolverSummary& solver) {
        "errors: soslam-inspect, or the report page"}};
 }
 
-std::vector<Finding> CheckUp(const PlanesEstimate& estimate) {
-  if (estimate.holding_tilt_variance == 0.0) return {};
+std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
+                             double tilt_variance) {
+  if (tilt_variance == 0.0) return {};
   std::vector<std::string> ways;
-  for (const TriedHolding& tried : estimate.holdings) {
+  for (const TriedHolding& tried : holdings) {
     ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.holding), tried.probability));
   }
   return {{"up_direction", Severity::kWarning,
-           fmt::format("cameras are taken to be held {}; probabilities: {}",
-                       NameOf(estimate.holding), fmt::join(ways, ", ")),
+           fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
+                       fmt::join(ways, ", ")),
            "one way to hold them that explains the boxes much better than others",
-           "few objects, or cameras that were rolled or look down; tilt_sigma_deg in planes.json "
-           "has what that leaves open",
+           "few objects, or cameras that were rolled or look down",
            "give planes.json where up is known, or images that show vertical edges"}};
 }
 

@@ -33,7 +33,9 @@ std::vector<Finding> CheckCost(const SolverSummary& solver);
 // Estimated planes, when they are nearly as many as the objects on them.
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects);
 
-// How cameras are held, and so what is up, where other ways are about as probable.
-std::vector<Finding> CheckUp(const PlanesEstimate& estimate);
+// How cameras are held, and so what is up, where other ways are about as probable and leave up open
+// by `tilt_variance`.
+std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
+                             double tilt_variance);
 
 }  // namespace soslam

@@ -11,6 +11,8 @@
 #include "association/agreement.h"
 #include "association/association.h"
 #include "base/error.h"
+#include "evaluation/result_checks.h"
+#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {
@@ -25,6 +27,16 @@ std::string DescribeTracks(const Association& association) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kTrackFateNames[i], counts[i]);
   }
   return text.empty() ? "none" : text;
+}
+
+// That of the first segment whose up is open.
+std::vector<Finding> CheckUpOfSegments(const Association& association) {
+  std::vector<Finding> findings;
+  for (const auto& [segment, up] : association.up_of_segments) {
+    findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
+    if (!findings.empty()) break;
+  }
+  return findings;
 }
 
 }  // namespace
@@ -44,8 +56,11 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
                                          DescribeTracks(association)));
   }
   const Agreement agreement = CompareWithGiven(sequence, association, options.min_observations);
-  const ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
+  const ArtefactInfo info = {OptionsToJson(options),
+                             {files.at("sequence"), files.at("table")},
+                             CheckUpOfSegments(association)};
   const Sequence associated = AssociatedSequence(sequence, association, agreement);
+  ReportFindings("associate", info.findings);
   WriteAssociations(files.at("associations"), sequence, association, agreement, info);
   WriteSequence(files.at("output"), associated, info);
   fmt::print("{} objects with {} of {} detections; tracks: {}\n", association.objects.size(),

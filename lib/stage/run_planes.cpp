@@ -186,7 +186,9 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
   if (options.planes == PlaneSource::kEstimated) {
     info.findings = CheckPlaneCount(result.estimate.planes.size(), sequence.objects.size());
-    std::ranges::move(CheckUp(result.estimate), std::back_inserter(info.findings));
+    std::ranges::move(CheckUp(result.estimate.holding, result.estimate.holdings,
+                              result.estimate.holding_tilt_variance),
+                      std::back_inserter(info.findings));
   }
   ReportFindings("planes", info.findings);
   WritePlanes(files.at("report"), result.estimate, sequence, info);

@@ -74,6 +74,35 @@ class DatasetChecksTest : public testing::Test {
     options.folder.detections_format = DetectionsFormat::kCoco;
   }
 
+  // The poses of a body, as EuRoC has them.
+  void WriteEuroc(const Rigid3d& camera_from_body) {
+    std::filesystem::create_directories(folder);
+    std::ofstream file(folder / "data.csv");
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      const Rigid3d pose = dataset.WorldFromCamera(frame) * camera_from_body;
+      const Eigen::Quaterniond& q = pose.rotation;
+      file << fmt::format("{}00000000,{},{},{},{},{},{},{}\n", 1000 + 5 * frame,
+                          pose.translation.x(), pose.translation.y(), pose.translation.z(), q.w(),
+                          q.x(), q.y(), q.z());
+    }
+    options.folder.odometry = "data.csv";
+    options.folder.trajectory_format = TrajectoryFormat::kEuroc;
+  }
+
+  void WriteColmap() {
+    std::filesystem::create_directories(folder);
+    std::ofstream file(folder / "images.txt");
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      const Rigid3d pose = dataset.WorldFromCamera(frame).Inverse();
+      const Eigen::Quaterniond& q = pose.rotation;
+      file << fmt::format("{} {} {} {} {} {} {} {} 1 {:06}.png\n\n", frame + 1, q.w(), q.x(), q.y(),
+                          q.z(), pose.translation.x(), pose.translation.y(), pose.translation.z(),
+                          frame);
+    }
+    options.folder.odometry = "images.txt";
+    options.folder.trajectory_format = TrajectoryFormat::kColmap;
+  }
+
   PlausibleDataset dataset;
   ImportOptions options;
   std::filesystem::path folder = FreshTestFolder() / "small";
@@ -117,6 +146,26 @@ TEST_F(DatasetChecksTest, ImagesThatAreTurnedUpsideDown) {
                                             HasSubstr("image_orientation stored"))));
   options.image_orientation = ImageOrientation::kStored;
   EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// A camera of the stored images.
+TEST_F(DatasetChecksTest, ImagesThatAreShownWithSwappedSides) {
+  WriteImages(640, 480, /*exif_orientation=*/6);
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("480 x 640"), HasSubstr("as they are stored"),
+                               HasSubstr("image_orientation stored")));
+  options.image_orientation = ImageOrientation::kStored;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// COLMAP does not turn them, whatever size the camera has.
+TEST_F(DatasetChecksTest, TurnedImagesWithPosesOfColmap) {
+  WriteColmap();
+  WriteImages(640, 480);
+  EXPECT_THAT(Warnings(), IsEmpty());
+  WriteImages(480, 640, /*exif_orientation=*/6);
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("image_orientation: 24 of 24 images"),
+                                            HasSubstr("COLMAP's poses and camera"),
+                                            HasSubstr("image_orientation stored"))));
 }
 
 TEST_F(DatasetChecksTest, CameraOfSwappedSides) {
@@ -183,6 +232,14 @@ TEST_F(DatasetChecksTest, CentresWhereCornersBelong) {
   EXPECT_THAT(Refusal(), HasSubstr("meant as centre and size"));
 }
 
+TEST_F(DatasetChecksTest, AFewBoxesOutOfTheImage) {
+  dataset.box = [count = 0](const Box& b) mutable {
+    const double shift = ++count % 8 == 0 ? 600.0 : 0.0;
+    return std::array{b.x_min + shift, b.y_min, b.x_max + shift, b.y_max};
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("box_convention: 14 of 115 boxes")));
+}
+
 TEST_F(DatasetChecksTest, BoxesAsFractions) {
   dataset.box = [](const Box& b) {
     return std::array{b.x_min / 640, b.y_min / 480, b.x_max / 640, b.y_max / 480};
@@ -226,7 +283,36 @@ TEST_F(DatasetChecksTest, BoxesThatTheBorderGateDrops) {
               ElementsAre(AllOf(HasSubstr("rejected_near_border"), HasSubstr("border_px"))));
 }
 
+// Objects that boxes are of.
+
+TEST_F(DatasetChecksTest, NoBoxOfATrack) {
+  dataset.first_object_id = -5;
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("object_ids: detections.csv: all 115 boxes"),
+                                            HasSubstr("let association be estimated"))));
+}
+
+TEST_F(DatasetChecksTest, HalfOfTheBoxesOfNoTrack) {
+  dataset.first_object_id = -2;
+  dataset.label = [](size_t) { return "ball"; };
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("rejected_without_object_id: 46 of 115"),
+                                            HasSubstr("a tracker that finds few tracks"))));
+}
+
 // Labels.
+
+TEST_F(DatasetChecksTest, LabelsThatFlicker) {
+  const auto flicker = [](int of_seven) {
+    return [of_seven, count = 0](size_t ball) mutable {
+      return count++ % 7 < of_seven ? "thing" : PlausibleDataset::Labels()[ball];
+    };
+  };
+  dataset.label = flicker(1);
+  EXPECT_THAT(Warnings(), IsEmpty());
+  dataset.label = flicker(3);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("labels_of_objects: detections.csv: 51 of 115 boxes"),
+                                HasSubstr("ids that are of several things"))));
+}
 
 class ClassNamesTest : public DatasetChecksTest {
  protected:
@@ -253,6 +339,17 @@ class ClassNamesTest : public DatasetChecksTest {
 TEST_F(ClassNamesTest, AreRight) {
   WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\nvase\nbowl\nbottle\ntable\n\n");
   EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// The left edge is by 2 % of the width out of the image.
+TEST_F(ClassNamesTest, BoxesThatReachBeyondTheImage) {
+  WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\nvase\nbowl\nbottle\n");
+  dataset.objects = "";
+  for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+    std::ofstream(folder / fmt::format("labels/{:06}.txt", frame))
+        << "0 0.03 0.5 0.1 0.2\n1 0.5 0.5 0.1 0.2\n";
+  }
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("boxes_cut: labels: 24 of 48 boxes")));
 }
 
 TEST_F(ClassNamesTest, AreCountedFromOne) {
@@ -324,6 +421,31 @@ TEST_F(DatasetChecksTest, FramesFromOne) {
                                             HasSubstr("subtract 1"))));
 }
 
+TEST_F(DatasetChecksTest, FramesThatBeginOneImageLate) {
+  dataset.first_row = -1;
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("frame_numbers"), HasSubstr("begin one image late"),
+                                HasSubstr("add 1"))));
+}
+
+TEST_F(DatasetChecksTest, EurocsPosesOfTheCamera) {
+  WriteEuroc(Rigid3d());
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// An IMU that is turned by a quarter against the camera about its optical axis.
+TEST_F(DatasetChecksTest, EurocsPosesOfAnImu) {
+  const double half = std::sqrt(0.5);
+  WriteEuroc({Eigen::Quaterniond(half, 0, 0, -half), {0.1, 0, 0}});
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("pose_convention: EuRoC's poses"),
+                                            HasSubstr("sensor.yaml, with T_BS"))));
+  std::ofstream(folder / "sensor.yaml")
+      << "T_BS:\n  data: [0, -1, 0, 0, 1, 0, 0, -0.1, 0, 0, 1, 0, 0, 0, 0, 1]\n"
+         "resolution: [640, 480]\nintrinsics: [500, 500, 319.5, 239.5]\n";
+  options.folder.camera_file = "sensor.yaml";
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
 // Things that all move like the camera, but faster, look as if poses were reversed.
 TEST_F(DatasetChecksTest, ThingsThatMoveAreNoOtherConvention) {
   dataset.drive = true;
@@ -391,6 +513,15 @@ TEST_F(DatasetChecksTest, NormalThatPointsDown) {
   EXPECT_THAT(Refusal(), AllOf(HasSubstr("from below"), HasSubstr("sign of the normal")));
 }
 
+// Of one label without ids, boxes do not tell where the balls are.
+TEST_F(DatasetChecksTest, NormalThatPointsDownWhereBoxesDoNotTell) {
+  dataset.has_object_ids = false;
+  dataset.label = [](size_t) { return "ball"; };
+  dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("plane_side"), HasSubstr("may be the objects"))));
+}
+
 TEST_F(DatasetChecksTest, OffsetOfTheOtherSign) {
   dataset.height_of_floor = -2.0;
   dataset.plane = R"([{"id": 0, "normal": [0, 0, 1], "d": -2}])";
@@ -435,6 +566,12 @@ TEST_F(DatasetChecksTest, BothInNanoseconds) {
 TEST_F(DatasetChecksTest, AnotherClock) {
   dataset.pose_time = [](double t) { return fmt::format("{:.6f}", t + 5000.0); };
   EXPECT_THAT(Refusal(), AllOf(HasSubstr("other clocks"), HasSubstr("5000.000 apart")));
+}
+
+TEST_F(DatasetChecksTest, AClockThatJumps) {
+  dataset.pose_time = [](double t) { return fmt::format("{:.6f}", t < 104.0 ? t : t + 5000.0); };
+  EXPECT_THAT(Warnings(), testing::Contains(AllOf(HasSubstr("timestamps: 8 of 24 images"),
+                                                  HasSubstr("max_time_difference_s"))));
 }
 
 TEST_F(DatasetChecksTest, EqualTimestamps) {

@@ -91,15 +91,15 @@ TEST_F(ImportTest, CarriesPlanesIntoFramesWithTruePoses) {
   EXPECT_DOUBLE_EQ(Import().detections[0].plane_in_camera.offset, 1.0);
 }
 
-TEST_F(ImportTest, TrajectoryIsChosenAndFallsBackWithAWarning) {
+TEST_F(ImportTest, TrajectoryIsChosenAndFallsBackAsItSays) {
   options.trajectory = TrajectorySource::kGroundTruth;
   EXPECT_EQ(Import().frames[0].world_from_camera.translation.z(), 1.0);
   options.trajectory = TrajectorySource::kOdometry;
   std::filesystem::remove(folder / "odometry.txt");
   dataset.files.erase("odometry.txt");
-  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
   EXPECT_EQ(Import().frames[0].world_from_camera.translation.z(), 1.0);
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
               testing::AllOf(testing::HasSubstr("no odometry.txt"),
                              testing::HasSubstr("using groundtruth.txt")));
 }

@@ -124,17 +124,14 @@ TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
 }
 
 TEST(CheckUpTest, OtherWaysToHoldTheCameraThatAreAboutAsProbable) {
-  PlanesEstimate estimate;
-  estimate.holding = CameraHolding::kRolled90;
   TriedHolding level, rolled;
   level.probability = 0.25;
   rolled.holding = CameraHolding::kRolled90;
   rolled.probability = 0.75;
-  estimate.holdings = {level, rolled};
-  EXPECT_THAT(CheckUp(estimate), IsEmpty());
-  estimate.holding_tilt_variance = 0.5;
-  ASSERT_EQ(CheckUp(estimate).size(), 1u);
-  EXPECT_EQ(CheckUp(estimate)[0].found,
+  EXPECT_THAT(CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.0), IsEmpty());
+  const auto findings = CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.5);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].found,
             "cameras are taken to be held rolled_90; probabilities: level 0.25, rolled_90 0.75");
 }
 

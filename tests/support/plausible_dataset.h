@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -38,6 +39,7 @@ struct PlausibleDataset {
     return std::array<double, 4>{b.x_min, b.y_min, b.x_max, b.y_max};
   };
   bool has_object_ids = true;
+  int first_object_id = 1;
   int first_row = 0;  // the number of the first image
   std::string score = "0.9";
   std::string plane = R"([{"id": 0, "normal": [0, 0, 1], "d": 0}])";
@@ -134,10 +136,11 @@ struct PlausibleDataset {
     std::string text = has_object_ids ? "frame,object_id,label,score,x1,y1,x2,y2\n"
                                       : "frame,label,score,x1,y1,x2,y2\n";
     // One image fewer than there are, so that numbers from 1 stay within the list.
-    for (int frame = 0; frame + 1 < kFrames; ++frame) {
+    for (int frame = std::max(0, -first_row); frame + 1 < kFrames; ++frame) {
       for (size_t ball = 0; ball < Labels().size(); ++ball) {
         const auto [a, b, c, d] = box(BoxOf(ball, frame));
-        const std::string id = has_object_ids ? fmt::format("{},", ball + 1) : "";
+        const int object_id = first_object_id + static_cast<int>(ball);
+        const std::string id = has_object_ids ? fmt::format("{},", object_id) : "";
         text += fmt::format("{},{}{},{},{},{},{},{}\n", frame + first_row, id, label(ball), score,
                             a, b, c, d);
       }
