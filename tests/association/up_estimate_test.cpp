@@ -7,10 +7,9 @@
 #include <numbers>
 #include <random>
 
+#include "support/posts_and_mats.h"
 #include "support/random.h"
 #include "support/rolled.h"
-#include "synthesis/random_scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {
@@ -83,32 +82,6 @@ TEST(UpEstimateTest, ErrorsAreAsLargeAsTheCovarianceSays) {
   EXPECT_LT(sum / kTrials, 2.5);
 }
 
-// Posts and mats, each label twice, whose boxes are no objects' yet.
-Sequence PostsAndMats() {
-  Scene scene = RandomScene(2, 4, 20, {Shape::kBox});
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    scene.objects[i].label = i % 2 == 0 ? "post" : "mat";
-    scene.objects[i].half_axes =
-        i % 2 == 0 ? Eigen::Vector3d(0.1, 0.1, 0.5) : Eigen::Vector3d(0.5, 0.5, 0.1);
-  }
-  Sequence sequence = SyntheticSequence(scene, false);
-  sequence.planes.clear();
-  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
-  return sequence;
-}
-
-SemanticTable TableOfPostsAndMats() {
-  const auto prior = [](double ratio, double height_m) {
-    ShapePrior prior{Eigen::Vector2d::Constant(ratio), Eigen::Vector2d::Constant(0.3),
-                     kCuboidExponent};
-    prior.height_m = LogNormal{height_m, 0.3};
-    return prior;
-  };
-  SemanticTable table;
-  table.priors = {{"post", prior(0.2, 1.0)}, {"mat", prior(5.0, 0.2)}};
-  return table;
-}
-
 // Which end is up does not matter.
 TEST(UpEstimateTest, SingleBoxesSayHowCamerasAreRolled) {
   for (int quarters = 0; quarters < 4; ++quarters) {
@@ -118,6 +91,24 @@ TEST(UpEstimateTest, SingleBoxesSayHowCamerasAreRolled) {
     EXPECT_GT(std::abs(up.up_in_world.z()), std::cos(25.0 * kRadians)) << quarters;
     EXPECT_LT(up.covariance.norm(), 0.3) << quarters;
   }
+}
+
+// Spreads as of labels that stand for many things.
+TEST(UpEstimateTest, OtherWaysToHoldCamerasAreNamedWithTheirProbabilities) {
+  const auto up_with = [](double log_sigma) {
+    return UpOfSegments(Rolled(PostsAndMats(), 1), TableOfPostsAndMats(log_sigma),
+                        AssociateOptions())
+        .at(0);
+  };
+  const UpEstimate clear = up_with(0.3);
+  EXPECT_EQ(clear.holding, CameraHolding::kRolled90);
+  EXPECT_EQ(clear.holding_tilt_variance, 0.0);
+  const UpEstimate open = up_with(0.5);
+  EXPECT_EQ(open.holding, CameraHolding::kRolled90);
+  EXPECT_GT(open.holding_tilt_variance, 0.0);
+  double sum = 0.0;
+  for (const TriedHolding& tried : open.holdings) sum += tried.probability;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
 // A table that says nothing leaves cameras level, and no less sure of it.

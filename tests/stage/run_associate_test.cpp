@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stage/run_associate.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
@@ -8,6 +9,8 @@
 #include "base/error.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
+#include "support/posts_and_mats.h"
+#include "support/rolled.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -94,6 +97,26 @@ TEST_F(RunAssociateTest, WithoutPlanesItLinksAllTheSameAndLeavesThemUnknown) {
   const Sequence associated = ReadSequence(File("output"), PlaneNeed::kNotNeeded);
   EXPECT_TRUE(associated.planes.empty());
   EXPECT_EQ(associated.objects.size(), sequence_.objects.size());
+}
+
+// Spreads as of labels that stand for many things.
+TEST_F(RunAssociateTest, SaysWhereUpIsOpen) {
+  WriteBytes(File("table"), R"({"labels": {
+    "post": {"a_by_c": 0.2, "a_by_c_log_sigma": 0.5, "b_by_c": 0.2, "b_by_c_log_sigma": 0.5,
+             "height_m": 1, "height_log_sigma": 0.5, "shape_exponent": 1, "source": "the test"},
+    "mat": {"a_by_c": 5, "a_by_c_log_sigma": 0.5, "b_by_c": 5, "b_by_c_log_sigma": 0.5,
+            "height_m": 0.2, "height_log_sigma": 0.5, "shape_exponent": 1,
+            "source": "the test"}}})");
+  WriteSequence(File("sequence"), PostsAndMats(), {});
+  Run();
+  EXPECT_FALSE(Associations().contains("findings"));
+  WriteSequence(File("sequence"), Rolled(PostsAndMats(), 1), {});
+  testing::internal::CaptureStderr();
+  Run();
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::HasSubstr("soslam-associate: warning: cameras are taken to be held "
+                                 "rolled_90; probabilities: level"));
+  EXPECT_EQ(Associations()["findings"].at(0)["check"], "up_direction");
 }
 
 TEST_F(RunAssociateTest, SameBytesForAnyNumberOfThreads) {
