@@ -24,13 +24,22 @@
 namespace soslam {
 namespace {
 
-// In lower case, without underscores, and without what ORB-SLAM3 calls its first camera.
+// In lower case, without underscores, and without what Kalibr and ORB-SLAM3 call their first
+// camera.
 std::string PlainKey(const std::string& key) {
   std::string plain;
   for (const char c : key) {
     if (c != '_') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
+  if (plain.starts_with("cam0.")) return plain.substr(5);
   return plain.starts_with("camera1.") ? "camera." + plain.substr(8) : plain;
+}
+
+// Whether a field is of another camera of Kalibr's than the first: "cam1.intrinsics".
+bool IsOfOtherCamera(const std::string& plain_key) {
+  const std::string camera = plain_key.substr(0, plain_key.find('.'));
+  return camera.size() > 3 && camera.starts_with("cam") &&
+         camera.find_first_not_of("0123456789", 3) == camera.npos;
 }
 
 // Whether a field says by its name that it is of a lens, and is no size of a matrix.
@@ -54,25 +63,25 @@ class CalibrationReader {
  public:
   CalibrationReader(const NamedFields& fields, std::string file) : file_(std::move(file)) {
     for (const auto& [key, values] : fields) {
+      if (IsOfOtherCamera(PlainKey(key))) continue;
       fields_[PlainKey(key)] = values;
       names_[PlainKey(key)] = key;
     }
   }
 
   Calibration Read() const {
+    Calibration read;
+    read.camera.distortion = Lens();
     const auto [fx, fy, cx, cy] = Intrinsics();
     const auto [width, height] = Size();
     RefusePartsOfImages(width, height);
-    Calibration read;
     read.camera.camera = {width, height, fx, fy, cx, cy};
     if (!(fx > 0.0) || !(fy > 0.0)) {
       Refuse(fmt::format("focal lengths are {} and {}; expected pixels above 0", fx, fy));
     }
-    read.camera.distortion = Lens();
-    if (const auto* matrix = Find({"tbs.data", "tbs"})) {
-      using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-      const std::vector<double> numbers = Numbers(*matrix, "T_BS", 16);
-      read.body_from_camera = RigidMotion(RowMajor(numbers.data()), file_ + ": T_BS");
+    read.body_from_camera = Motion({"tbs.data", "tbs"}, "T_BS");
+    if (const auto camera_from_body = Motion({"tcamimu"}, "T_cam_imu")) {
+      read.body_from_camera = camera_from_body->Inverse();
     }
     return read;
   }
@@ -101,6 +110,14 @@ class CalibrationReader {
   std::vector<double> Numbers(const Values& values, const char* name, size_t count) const {
     if (values.size() == count) return Numbers(values, name);
     Refuse(fmt::format("{} has {} numbers; expected {}", name, values.size(), count));
+  }
+
+  std::optional<Rigid3d> Motion(std::initializer_list<const char*> keys, const char* name) const {
+    const Values* matrix = Find(keys);
+    if (matrix == nullptr) return std::nullopt;
+    using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+    const std::vector<double> numbers = Numbers(*matrix, name, 16);
+    return RigidMotion(RowMajor(numbers.data()), fmt::format("{}: {}", file_, name));
   }
 
   double Number(const char* key) const {

@@ -12,13 +12,15 @@ namespace soslam {
 // What a calibration says of a camera. Pixel (0, 0) is the centre of the top-left one, as here.
 struct Calibration {
   LensCamera camera;
-  std::optional<Rigid3d> body_from_camera;  // EuRoC's T_BS; the body is what EuRoC's poses are of
+  std::optional<Rigid3d> body_from_camera;  // EuRoC's T_BS or Kalibr's T_cam_imu; the body is what
+                                            // EuRoC's poses are of
 };
 
 // A camera in YAML (.yaml, .yml) or XML (.xml), by the names of the fields, in which capitals and
 // underscores do not count:
 //
-//   size        image_width and image_height (ROS, OpenCV), width and height, resolution (EuRoC)
+//   size        image_width and image_height (ROS, OpenCV), width and height, resolution (EuRoC,
+//               Kalibr)
 //   intrinsics  camera_matrix or K: 9 numbers, or a matrix with "data"; intrinsics: fx fy cx cy;
 //               Camera.fx, .fy, .cx, .cy (ORB-SLAM)
 //   lens        distortion_coefficients, dist_coeffs, dist_coeff, distortion_coeffs or D: in
@@ -26,6 +28,7 @@ struct Calibration {
 //               Camera.k1, .k2, .p1, .p2, .k3
 //   its model   distortion_model, camera_model, Camera.type (ParseLens)
 //
+// Of a rig the first camera: cam0 of Kalibr's camchain.yaml, Camera1 of ORB-SLAM3's settings.
 // Other fields are of no matter to the camera. Throws InputError, naming the field, for what is
 // missing, for a skew or a transposed matrix, for a fisheye_model, for coefficients of distortion
 // by other names, and for ROS' binning and roi.

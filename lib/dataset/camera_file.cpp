@@ -15,7 +15,7 @@ Calibration ReadCameraFile(const std::filesystem::path& path) {
     return ReadCalibration(path);
   }
   Calibration read;
-  if (extension == ".txt") {
+  if (extension == ".txt" || extension == ".bin") {
     read.camera = ReadColmapCamera(path);
   } else {
     read.camera = IsNerfstudio(path) ? ReadNerfstudioCamera(path) : ReadCamera(path);

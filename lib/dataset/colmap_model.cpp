@@ -111,7 +111,15 @@ NamedPose ParsePose(const TextLine& line) {
 
 }  // namespace
 
+void RefuseColmapBinary(const std::filesystem::path& path) {
+  if (path.extension() != ".bin") return;
+  throw InputError(path.string() +
+                   ": is of a binary model of COLMAP; expected its text: colmap model_converter "
+                   "--input_path FOLDER --output_path FOLDER --output_type TXT");
+}
+
 LensCamera ReadColmapCamera(const std::filesystem::path& path) {
+  RefuseColmapBinary(path);
   std::optional<LensCamera> read;
   for (const TextLine& line : ReadTextLines(path)) {
     const LensCamera camera = ParseCamera(line);
@@ -127,6 +135,7 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path) {
 }
 
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
+  RefuseColmapBinary(path);
   std::vector<NamedPose> poses;
   bool is_points = false;
   for (const TextLine& line : ReadRawLines(path)) {

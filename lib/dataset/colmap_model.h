@@ -9,8 +9,9 @@
 
 namespace soslam {
 
-// COLMAP's model as text. Its binary files become text by
-// `colmap model_converter --output_type TXT`. The readers throw InputError naming the line.
+// COLMAP's model as text. The readers throw InputError naming the line; RefuseColmapBinary for its
+// binary files (.bin), with the command that makes text of them.
+void RefuseColmapBinary(const std::filesystem::path& path);
 
 // The camera of cameras.txt, lines "CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]". Of several cameras, all
 // have to be the same. Models: SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV.

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "dataset/colmap_model.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/euroc_trajectory.h"
@@ -170,6 +171,16 @@ ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const Import
   }
 }
 
+// EuRoC's images lie in the folder "data" beside their list, which does not say so.
+void NameInDataFolder(const fs::path& dataset, const fs::path& list,
+                      std::vector<ListedImage>* images) {
+  const fs::path data = list.parent_path() / "data";
+  if (!IsFolder(data)) return;
+  for (ListedImage& image : *images) {
+    image.image = (data.lexically_relative(dataset) / image.image).string();
+  }
+}
+
 // Moves all estimates together so that the first one with a true pose is that.
 void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* estimates) {
   for (size_t i = 0; i < truth.size(); ++i) {
@@ -208,6 +219,7 @@ std::vector<ListedImage> ListImages(const fs::path& folder, const DatasetFiles& 
     images = ReadNerfstudioImages(*files.images);
   } else if (options.format == DatasetFormat::kSoslam) {
     images = ReadImageList(*files.images);
+    if (files.images->extension() == ".csv") NameInDataFolder(folder, *files.images, &images);
   } else {
     images = ReadPairedImageList(*files.images,
                                  is_icl_nuim ? PairOrder::kImageSecond : PairOrder::kImageFirst);

@@ -35,11 +35,30 @@ bool IsSamePose(const Rigid3d& a, const Rigid3d& b) {
          a.rotation.angularDistance(b.rotation) <= kRadians;
 }
 
+// A row "timestamp,filename"; none for another one, also with a decimal comma.
+std::optional<ListedImage> EurocImage(const TextLine& line) {
+  constexpr double kSecondsPerUnit = 1e-9;
+  const auto fields = SplitFields(line.text);
+  if (fields.size() != 2 || SplitWords(fields[1]).size() != 1) return std::nullopt;
+  const double timestamp = ParseReal(fields[0], line.place, "timestamp");
+  if (timestamp != std::floor(timestamp)) {
+    throw InputError(
+        fmt::format("{}: timestamp is {}; expected nanoseconds, an integer, before a "
+                    "comma, or seconds before a blank",
+                    line.place, fields[0]));
+  }
+  return ListedImage{timestamp * kSecondsPerUnit, std::string(fields[1])};
+}
+
 }  // namespace
 
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path) {
   std::vector<ListedImage> images;
   for (const TextLine& line : ReadTextLines(path)) {
+    if (const auto image = EurocImage(line)) {
+      images.push_back(*image);
+      continue;
+    }
     const std::string_view timestamp = SplitWords(line.text).front();
     const std::string_view image = Trimmed(std::string_view(line.text).substr(timestamp.size()));
     const double seconds = ParseReal(timestamp, line.place, "timestamp");

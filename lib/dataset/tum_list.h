@@ -18,7 +18,8 @@ struct ListedImage {
   std::string image;  // path relative to the dataset folder
 };
 
-// The rows in the order of the file. Throws InputError naming the line; also when there is no row.
+// The rows in the order of the file; also rows "timestamp,filename" with nanoseconds, as EuRoC has
+// them. Throws InputError naming the line; also when there is no row.
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path);
 
 // Rows as above, or "timestamp filename timestamp filename" as tools write them that associate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/calibration_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -95,6 +96,28 @@ distortion_model: radial-tangential
 distortion_coefficients: [0.1, -0.2, 0.003, -0.004]
 )";
 
+constexpr const char* kKalibr = R"(cam0:
+  T_cam_imu:
+  - [0.0, 1.0, 0.0, 0.06]
+  - [-1.0, 0.0, 0.0, -0.02]
+  - [0.0, 0.0, 1.0, -0.01]
+  - [0.0, 0.0, 0.0, 1.0]
+  cam_overlaps: [1]
+  camera_model: pinhole
+  distortion_coeffs: [0.1, -0.2, 0.003, -0.004]
+  distortion_model: radtan
+  intrinsics: [500, 510, 319.5, 239.5]
+  resolution: [640, 480]
+  rostopic: /cam0/image_raw
+  timeshift_cam_imu: 0.01
+cam1:
+  camera_model: omni
+  distortion_coeffs: [0.5, 0.5, 0.5, 0.5]
+  distortion_model: equidistant
+  intrinsics: [1.5, 300, 300, 100, 100]
+  resolution: [320, 240]
+)";
+
 constexpr const char* kOrbSlam = R"(%YAML:1.0
 Camera.type: "PinHole"
 Camera1.fx: 500
@@ -148,6 +171,7 @@ TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
            {kRosMessage, "info.yml", {1, 2, 3, 4, 5, 6, 7, 8}},
            {kOpenCv, "opencv.yml", lens},
            {kOpenCvXml, "opencv.xml", lens},
+           {kKalibr, "camchain.yaml", lens_of_four},
            {kEuroc, "sensor.yaml", lens_of_four},
            {kOrbSlam, "orb.yaml", lens_of_four}}) {
     const LensCamera read = Read(text, name).camera;
@@ -156,12 +180,27 @@ TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
   }
 }
 
-TEST_F(CalibrationFileTest, EurocSaysWhereTheCameraIs) {
+TEST_F(CalibrationFileTest, EurocAndKalibrSayWhereTheCameraIs) {
   EXPECT_FALSE(Read(kRos).body_from_camera);
-  const auto body_from_camera = Read(kEuroc).body_from_camera;
-  ASSERT_TRUE(body_from_camera);
-  EXPECT_TRUE(
-      (*body_from_camera * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(-0.02, 0.94, 0.01)));
+  for (const char* text : {kEuroc, kKalibr}) {
+    const auto body_from_camera = Read(text).body_from_camera;
+    ASSERT_TRUE(body_from_camera) << text;
+    EXPECT_TRUE(
+        (*body_from_camera * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(-0.02, 0.94, 0.01)))
+        << text;
+  }
+}
+
+// The model is named before the numbers that it alone has.
+TEST_F(CalibrationFileTest, WideLensesOfKalibrAreNamed) {
+  for (const auto& [from, to] :
+       {std::pair("radtan", "equidistant"), {"pinhole", "omni"}, {"pinhole", "eucm"}}) {
+    std::string text = kKalibr;
+    text.replace(text.find(from), std::string(from).size(), to);
+    text.replace(text.find("[500,"), 5, "[0.5, 500,");
+    ExpectError<InputError>([&] { Read(text); },
+                            {fmt::format("'{}' is not supported", to), "undistort"});
+  }
 }
 
 TEST_F(CalibrationFileTest, BadCalibrationsAreNamed) {

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "base/error.h"
+#include "dataset/camera_file.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -57,6 +60,15 @@ TEST_F(ColmapModelTest, CamerasThatAreNotReadAreNamed) {
   refused("1 PINHOLE 640 480 500 320 240\n", {"3 parameters; expected 4 of PINHOLE"});
   refused("1 PINHOLE 640 0 500 500 320 240\n", {"above 0"});
   refused("", {"cameras.txt", "no camera"});
+}
+
+TEST_F(ColmapModelTest, BinaryModelsAreNamed) {
+  for (const auto& read : std::vector<std::function<void(const std::filesystem::path&)>>{
+           [](const auto& path) { ReadColmapPoses(path); },
+           [](const auto& path) { ReadCameraFile(path); }}) {
+    ExpectError<InputError>([&] { read(folder_ / "cameras.bin"); },
+                            {"cameras.bin", "binary", "colmap model_converter", "TXT"});
+  }
 }
 
 // A camera at (1, 2, 3) that looks along the world's x axis: its z is the world's x, its x the

@@ -194,6 +194,21 @@ TEST_F(FolderFormatsTest, NerfstudioIsListTrajectoryAndCamera) {
   ExpectError<SettingsError>([&] { Import(); }, {"camera_file", "both"});
 }
 
+TEST_F(FolderFormatsTest, EurocsListOfImages) {
+  options_.format = DatasetFormat::kSoslam;
+  options_.folder.images = "cam0/data.csv";
+  Write("cam0/data.csv", "#timestamp [ns],filename\r\n1000000000,1.png\r\n2000000000, 2.png\r\n");
+  Write("detections.csv", "frame,label,score,x1,y1,x2,y2\n1,cup,0.9,100,100,200,200\n");
+  EXPECT_EQ(Import().frames.at(1).image, "2.png");
+  EXPECT_EQ(Import().frames.at(1).timestamp, 2.0);
+  Write("cam0/data/1.png", "an image");
+  EXPECT_EQ(Import().frames.at(1).image, "cam0/data/2.png");
+  Write("cam0/data.csv", "1.5,1.png\n");
+  ExpectError<InputError>([&] { Import(); }, {"data.csv:1", "timestamp is 1.5", "nanoseconds"});
+  Write("cam0/data.csv", "1,5 1.png\n");
+  ExpectError<InputError>([&] { Import(); }, {"timestamp is '1,5'", "decimal point"});
+}
+
 TEST_F(FolderFormatsTest, EurocsBodyIsNotItsCamera) {
   options_.folder.groundtruth = "data.csv";
   options_.folder.trajectory_format = TrajectoryFormat::kEuroc;
