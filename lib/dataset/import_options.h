@@ -62,7 +62,7 @@ struct FolderOptions {
     visit.Group("Files of a folder of images (format = soslam, tum_rgbd, icl_nuim)");
     visit.Text(
         "images", &images,
-        "the list of images, lines \"timestamp filename\"; of "
+        "the list of images, lines \"timestamp filename\" (or EuRoC's, with a comma); of "
         "the latter two also pairs of colour and depth images; a *.json: nerfstudio's frames; "
         "empty: the images are those that the detections name by their timestamps");
     visit.Text("odometry", &odometry, "the file with the pose estimates");
@@ -80,7 +80,8 @@ struct FolderOptions {
     visit.Text("camera", &camera,
                "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
     visit.Text("camera_file", &camera_file,
-               "the file with the camera: camera.json, ROS' or OpenCV's calibration (.yaml, .xml), "
+               "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
+               "(.yaml, .xml), "
                "COLMAP's cameras.txt, nerfstudio's transforms.json; empty: camera.json");
     visit.Text("distortion", &distortion,
                "soslam, tum_rgbd: what the lens did to images and boxes: \"k1 k2 p1 p2 k3\" as "
