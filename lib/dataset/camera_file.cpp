@@ -18,7 +18,8 @@ Calibration ReadCameraFile(const std::filesystem::path& path) {
   if (extension == ".txt" || extension == ".bin") {
     read.camera = ReadColmapCamera(path);
   } else {
-    read.camera = IsNerfstudio(path) ? ReadNerfstudioCamera(path) : ReadCamera(path);
+    const auto of_nerfstudio = ReadNerfstudioCamera(path);
+    read.camera = of_nerfstudio ? *of_nerfstudio : ReadCamera(path);
   }
   return read;
 }

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "dataset/dataset_checks.h"
 #include "evaluation/statistics.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr size_t kFewest = 10;  // boxes that say something
 constexpr double kCutPx = 2.0;  // from the border: boxes that the image cuts
 
@@ -55,9 +53,8 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
 std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
   std::vector<double> angles;
   for (const auto& [box, camera, landmark] : pairs) {
-    const Eigen::Vector3d ray = camera.Ray(box.Centre());
-    const Eigen::Vector3d& centre = landmark.frame_from_object.translation;
-    angles.push_back(kDegPerRad * std::atan2(ray.cross(centre).norm(), ray.dot(centre)));
+    angles.push_back(
+        AngleBetweenDeg(camera.Ray(box.Centre()), landmark.frame_from_object.translation));
   }
   return angles.size() < kFewest ? std::nullopt : MedianOf(angles);
 }
@@ -120,7 +117,7 @@ std::vector<Finding> CheckTrueAxes(const ImportView& view) {
     const Eigen::Vector3d z = object.ground_truth->landmark_in_world.frame_from_object.rotation *
                               Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d& normal = view.content.planes.at(plane).plane_in_world.normal;
-    angles.push_back(kDegPerRad * std::atan2(z.cross(normal).norm(), z.dot(normal)));
+    angles.push_back(AngleBetweenDeg(z, normal));
   }
   if (angles.size() < kFewestObjects || *MedianOf(angles) <= kSteepestDeg) return {};
   return {{"object_axes", Severity::kWarning,

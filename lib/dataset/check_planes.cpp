@@ -3,15 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <vector>
 
 #include "dataset/dataset_checks.h"
 #include "dataset/tracked_rays.h"
 #include "evaluation/statistics.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -45,7 +44,6 @@ std::string PlaneInWords(const SupportPlane& plane) {
                      n.z(), plane.plane_in_world.offset);
 }
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr const char* kWall =
     "a wall given as the floor, another axis of the world up, or cameras that were rolled";
 
@@ -53,8 +51,7 @@ constexpr const char* kWall =
 double AngleToImagesUpDeg(const std::vector<const Detection*>& detections) {
   std::vector<double> angles;
   for (const Detection* detection : detections) {
-    const double up = -detection->plane_in_camera.normal.y();
-    angles.push_back(kDegPerRad * std::acos(std::clamp(up, -1.0, 1.0)));
+    angles.push_back(AngleBetweenDeg(detection->plane_in_camera.normal, -Eigen::Vector3d::UnitY()));
   }
   return *MedianOf(angles);
 }

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "dataset/dataset_checks.h"
 #include "dataset/pose_readings.h"
 #include "dataset/tracked_rays.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -35,15 +35,14 @@ bool IsComparable(const std::optional<RayError>& error, const RayError& as_read)
 
 // Whether the cameras turn so far that no motion of things can look like another reading of poses.
 bool DoCamerasTurn(const ImportView& view) {
-  constexpr double kFar = 10.0 * std::numbers::pi / 180.0;
+  constexpr double kFarDeg = 10.0;
   const Frame* first = nullptr;
   for (const ListedFrame& listed : view.content.frames) {
     if (!listed.has_pose) continue;
     if (first == nullptr) first = &listed.frame;
-    if (listed.frame.world_from_camera.rotation.angularDistance(first->world_from_camera.rotation) >
-        kFar) {
-      return true;
-    }
+    const Eigen::Quaterniond& rotation = listed.frame.world_from_camera.rotation;
+    const double angle = rotation.angularDistance(first->world_from_camera.rotation);
+    if (kDegPerRad * angle > kFarDeg) return true;
   }
   return false;
 }

@@ -3,12 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 #include <vector>
 
 #include "dataset/dataset_checks.h"
 #include "dataset/pose_readings.h"
 #include "evaluation/statistics.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -39,8 +39,7 @@ struct Gap {
 Gap GapOf(const std::vector<PosePair>& pairs) {
   std::vector<double> rotations, translations;
   for (const auto& [estimated, truth] : pairs) {
-    rotations.push_back(estimated.rotation.angularDistance(truth.rotation) * 180.0 /
-                        std::numbers::pi);
+    rotations.push_back(kDegPerRad * estimated.rotation.angularDistance(truth.rotation));
     translations.push_back((estimated.translation - truth.translation).norm());
   }
   return {*MedianOf(rotations), *MedianOf(translations)};

@@ -65,11 +65,18 @@ std::optional<Distortion> LensOf(const JsonEntry& entry) {
   return distortion;
 }
 
+std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
+  const json& frames = all.List("frames");
+  std::vector<JsonEntry> entries;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    entries.emplace_back(frames[i], fmt::format("{}#/frames/{}", all.place(), i));
+  }
+  return entries;
+}
+
 // A frame that names a camera key has to say what all do.
 void RefuseOtherCameras(const JsonEntry& all) {
-  const json& frames = all.List("frames");
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const JsonEntry frame(frames[i], fmt::format("{}#/frames/{}", all.place(), i));
+  for (const JsonEntry& frame : FramesOf(all)) {
     for (const char* key : kCameraKeys) {
       if (!frame.Has(key) || (all.Has(key) && frame.Field(key) == all.Field(key))) continue;
       frame.Refuse(key, "one camera for all frames, in the file's own " + std::string(key));
@@ -98,23 +105,23 @@ NamedPose ParsePose(const JsonEntry& frame) {
 
 }  // namespace
 
-LensCamera ReadNerfstudioCamera(const std::filesystem::path& path) {
+std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path) {
   const json document = ParseJsonFile(path);
+  if (!document.is_object()) return std::nullopt;
   const JsonEntry entry(document, path.string());
+  if (!entry.Has("frames") && !entry.Has("fl_x") && !entry.Has("camera_angle_x")) {
+    return std::nullopt;
+  }
   if (entry.Has("frames")) RefuseOtherCameras(entry);
-  return {ParseCamera(entry), LensOf(entry)};
+  return LensCamera{ParseCamera(entry), LensOf(entry)};
 }
 
 std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
                                            std::vector<Finding>* findings) {
   const json document = ParseJsonFile(path);
   const JsonEntry entry(document, path.string());
-  const json& frames = entry.List("frames");
   std::vector<NamedPose> poses;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    poses.push_back(
-        ParsePose(JsonEntry(frames[i], fmt::format("{}#/frames/{}", path.string(), i))));
-  }
+  for (const JsonEntry& frame : FramesOf(entry)) poses.push_back(ParsePose(frame));
   if (poses.empty()) entry.Refuse("frames", "at least one frame");
   const double scale = entry.Has("applied_scale") ? entry.Positive("applied_scale") : 1.0;
   if (scale == 1.0) return poses;
@@ -132,10 +139,8 @@ std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
 
 std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path) {
   const json document = ParseJsonFile(path);
-  const json& frames = JsonEntry(document, path.string()).List("frames");
   std::vector<ListedImage> images;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const JsonEntry frame(frames[i], fmt::format("{}#/frames/{}", path.string(), i));
+  for (const JsonEntry& frame : FramesOf(JsonEntry(document, path.string()))) {
     images.push_back({0.0, frame.Text("file_path")});
   }
   std::ranges::stable_sort(
@@ -143,12 +148,6 @@ std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path)
   for (size_t i = 0; i < images.size(); ++i) images[i].timestamp = static_cast<double>(i);
   if (images.empty()) throw InputError(path.string() + ": lists no image");
   return images;
-}
-
-bool IsNerfstudio(const std::filesystem::path& path) {
-  const json document = ParseJsonFile(path);
-  return document.is_object() && (document.contains("frames") || document.contains("fl_x") ||
-                                  document.contains("camera_angle_x"));
 }
 
 }  // namespace soslam

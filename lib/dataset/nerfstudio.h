@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@ namespace soslam {
 // The camera: w, h, fl_x, fl_y (that of x when absent; camera_angle_x in place of both), cx, cy
 // (the middle when absent), k1, k2, k3, p1, p2, camera_model; k4, k5, k6 have to be 0. What a frame
 // says of its own has to be the same. Pixel (0, 0) is the outer corner of the top-left one: half a
-// pixel is taken off cx, cy.
-LensCamera ReadNerfstudioCamera(const std::filesystem::path& path);
+// pixel is taken off cx, cy. None for a file that is not one of these, as a camera.json.
+std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path);
 
 // The poses of "frames": "transform_matrix", 4 x 4, is world_from_camera with the camera axes of
 // OpenGL (x right, y up, z backward), which become x right, y down, z forward here. The image is
@@ -31,8 +32,5 @@ std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
 // Its frames as a list of images, by their names, as nerfstudio itself sorts them, a second apart:
 // the order in the file is of no meaning.
 std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path);
-
-// Whether a JSON file is one of these, not a camera.json.
-bool IsNerfstudio(const std::filesystem::path& path);
 
 }  // namespace soslam

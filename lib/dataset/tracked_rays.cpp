@@ -3,13 +3,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 
 #include "evaluation/statistics.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -94,10 +93,7 @@ std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
     for (const TrackedRay& ray : thing.rays) {
       const auto pose = world_from_camera(ray.frame);
       if (!pose) continue;
-      const Eigen::Vector3d towards = pose->Inverse() * *point_in_world;
-      errors_deg.push_back(
-          std::atan2(ray.ray_in_camera.cross(towards).norm(), ray.ray_in_camera.dot(towards)) *
-          180.0 / std::numbers::pi);
+      errors_deg.push_back(AngleBetweenDeg(ray.ray_in_camera, pose->Inverse() * *point_in_world));
     }
   }
   if (errors_deg.empty()) return std::nullopt;

@@ -15,10 +15,6 @@
 namespace soslam {
 namespace {
 
-constexpr size_t kMaxDepth = 10;
-constexpr size_t kMaxValues = 100000;
-constexpr size_t kMaxPath = 200;  // characters of the names of elements in each other
-
 class XmlReader {
  public:
   XmlReader(std::string text, std::string place)
@@ -62,15 +58,16 @@ class XmlReader {
     const std::string name(
         tag.substr(is_end ? 2 : 1).substr(0, tag.substr(is_end ? 2 : 1).find_first_of(" \t\r\n/")));
     if (!is_end) {
-      if (++elements_ > kMaxValues) Refuse(fmt::format("has more than {} elements", kMaxValues));
+      if (++elements_ > kMaxFieldValues)
+        Refuse(fmt::format("has more than {} elements", kMaxFieldValues));
       open_.push_back(name);
-      if (name.size() > kMaxPath || Path().size() > kMaxPath) {
+      if (name.size() > kMaxFieldPath || Path().size() > kMaxFieldPath) {
         Refuse(
             fmt::format("has an element whose name, with those around it, has more than {} "
                         "characters",
-                        kMaxPath));
+                        kMaxFieldPath));
       }
-      if (open_.size() > kMaxDepth) Refuse("is nested too deep");
+      if (open_.size() > kMaxFieldDepth) Refuse("is nested too deep");
       if (open_.size() > 1 && !fields_.try_emplace(Path()).second) {
         Refuse(fmt::format("has <{}> twice; expected once", Path()));
       }
@@ -89,7 +86,8 @@ class XmlReader {
     if (open_.size() < 2) return;
     std::vector<std::string>& values = fields_.at(Path());
     for (std::string_view word : SplitWords(text)) {
-      if (++values_ > kMaxValues) Refuse(fmt::format("has more than {} values", kMaxValues));
+      if (++values_ > kMaxFieldValues)
+        Refuse(fmt::format("has more than {} values", kMaxFieldValues));
       if (word.size() >= 2 && word.front() == '"' && word.back() == '"') {
         word = word.substr(1, word.size() - 2);
       }

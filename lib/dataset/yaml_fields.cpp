@@ -13,10 +13,6 @@
 namespace soslam {
 namespace {
 
-constexpr size_t kMaxDepth = 10;
-constexpr size_t kMaxValues = 100000;
-constexpr size_t kMaxPath = 200;  // characters of the keys around a value
-
 // Where `found` is first true of text outside of quotes; npos when it never is.
 template <typename Found>
 size_t FindUnquoted(std::string_view text, const Found& found) {
@@ -98,10 +94,10 @@ class YamlReader {
 
   // The path of a key that is read now.
   std::string Join(const std::string& path, std::string_view key) {
-    if (++keys_ > kMaxValues) Refuse(fmt::format("has more than {} keys", kMaxValues));
-    if (path.size() + key.size() > kMaxPath) {
+    if (++keys_ > kMaxFieldValues) Refuse(fmt::format("has more than {} keys", kMaxFieldValues));
+    if (path.size() + key.size() > kMaxFieldPath) {
       Refuse(fmt::format("has a key of {} characters, with those around it; expected at most {}",
-                         path.size() + key.size(), kMaxPath));
+                         path.size() + key.size(), kMaxFieldPath));
     }
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
   }
@@ -118,7 +114,7 @@ class YamlReader {
     if (fields_.contains(path)) Refuse(fmt::format("has key {} twice; expected once", path));
     if (value.empty()) {
       open_.push_back({indent, path});
-      if (open_.size() > kMaxDepth) Refuse("is nested too deep");
+      if (open_.size() > kMaxFieldDepth) Refuse("is nested too deep");
     } else if (value.front() == '|' || value.front() == '>') {
       SkipBlock(indent);
     } else {
@@ -161,7 +157,7 @@ class YamlReader {
   }
 
   void AddFlow(const std::string& path, std::string_view text, size_t depth) {
-    if (depth > kMaxDepth) Refuse("is nested too deep");
+    if (depth > kMaxFieldDepth) Refuse("is nested too deep");
     const bool is_list = text.starts_with('[') && text.ends_with(']');
     const bool is_map = text.starts_with('{') && text.ends_with('}');
     if (!is_list && !is_map) return AddValue(path, Unquoted(text));
@@ -196,7 +192,8 @@ class YamlReader {
     if (value.starts_with('&') || value.starts_with('*')) {
       Refuse(fmt::format("has the anchor '{}'; expected a value", value));
     }
-    if (++values_ > kMaxValues) Refuse(fmt::format("has more than {} values", kMaxValues));
+    if (++values_ > kMaxFieldValues)
+      Refuse(fmt::format("has more than {} values", kMaxFieldValues));
     fields_[path].emplace_back(value);
   }
 

@@ -13,6 +13,11 @@ namespace soslam {
 // "camera_matrix.data".
 using NamedFields = std::map<std::string, std::vector<std::string>>;
 
+// How deep and how many such files have them, and characters of all keys around a value.
+inline constexpr size_t kMaxFieldDepth = 10;
+inline constexpr size_t kMaxFieldValues = 100000;
+inline constexpr size_t kMaxFieldPath = 200;
+
 // The part of YAML that cameras, calibrations and names of classes are written in, OpenCV's
 // included: maps, lists of scalars, both also in brackets and over several lines, quotes, comments;
 // of several documents the first one. Tags are ignored, and blocks of text (| and >) left out.

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
 
 namespace soslam {
 namespace {
 
 cv::Matx33d Intrinsics(const Camera& camera) {
-  return {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+  cv::Matx33d intrinsics;
+  cv::eigen2cv(camera.Intrinsics(), intrinsics);
+  return intrinsics;
 }
 
 // In OpenCV's order.

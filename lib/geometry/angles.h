@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+namespace soslam {
+
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+// Between two directions, of any length above 0: 0 to 180.
+inline double AngleBetweenDeg(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  return kDegPerRad * std::atan2(one.cross(other).norm(), one.dot(other));
+}
+
+}  // namespace soslam
