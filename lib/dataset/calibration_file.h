@@ -12,8 +12,8 @@ namespace soslam {
 // What a calibration says of a camera. Pixel (0, 0) is the centre of the top-left one, as here.
 struct Calibration {
   LensCamera camera;
-  std::optional<Rigid3d> body_from_camera;  // EuRoC's T_BS or Kalibr's T_cam_imu; the body is what
-                                            // EuRoC's poses are of
+  // EuRoC's T_BS, or the inverse of Kalibr's T_cam_imu. The body is what EuRoC's poses are of.
+  std::optional<Rigid3d> body_from_camera;
 };
 
 // A camera in YAML (.yaml, .yml) or XML (.xml), by the names of the fields, in which capitals and

@@ -109,17 +109,17 @@ NamedPose ParsePose(const TextLine& line) {
           camera_from_world.Inverse()};
 }
 
-}  // namespace
-
-void RefuseColmapBinary(const std::filesystem::path& path) {
+void RefuseBinary(const std::filesystem::path& path) {
   if (path.extension() != ".bin") return;
   throw InputError(path.string() +
                    ": is of a binary model of COLMAP; expected its text: colmap model_converter "
                    "--input_path FOLDER --output_path FOLDER --output_type TXT");
 }
 
+}  // namespace
+
 LensCamera ReadColmapCamera(const std::filesystem::path& path) {
-  RefuseColmapBinary(path);
+  RefuseBinary(path);
   std::optional<LensCamera> read;
   for (const TextLine& line : ReadTextLines(path)) {
     const LensCamera camera = ParseCamera(line);
@@ -135,7 +135,7 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path) {
 }
 
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
-  RefuseColmapBinary(path);
+  RefuseBinary(path);
   std::vector<NamedPose> poses;
   bool is_points = false;
   for (const TextLine& line : ReadRawLines(path)) {

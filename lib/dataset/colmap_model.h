@@ -9,9 +9,8 @@
 
 namespace soslam {
 
-// COLMAP's model as text. The readers throw InputError naming the line; RefuseColmapBinary for its
-// binary files (.bin), with the command that makes text of them.
-void RefuseColmapBinary(const std::filesystem::path& path);
+// COLMAP's model as text. The readers throw InputError naming the line; for its binary files (.bin)
+// with the command that makes text of them.
 
 // The camera of cameras.txt, lines "CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]". Of several cameras, all
 // have to be the same. Models: SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV.

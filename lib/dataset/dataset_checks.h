@@ -26,7 +26,7 @@ struct ImportView {
 
 // Intrinsics against themselves: normalised, in millimetres, of another image size.
 std::vector<Finding> CheckCamera(const ImportView& view);
-// The camera's image size against the headers of the image files.
+// The camera's image size against the headers of the image files, and images that EXIF turns.
 std::vector<Finding> CheckImages(const ImportView& view);
 // Boxes as another convention or another image size would have them.
 std::vector<Finding> CheckBoxes(const ImportView& view);
@@ -38,7 +38,7 @@ std::vector<Finding> CheckLabels(const ImportView& view);
 std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.
 std::vector<Finding> CheckTruth(const ImportView& view);
-// The poses against the boxes: the same (kPoseConvention), and frames counted from 1.
+// The poses against the boxes: the same (kPoseConvention), poses of an IMU, frames counted from 1.
 inline constexpr const char* kPoseConvention = "pose_convention";
 std::vector<Finding> CheckPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids

@@ -69,7 +69,7 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   const std::string& name = std::get<std::string>(key);
   auto found = rows_by_name_.find(name);
   if (found == rows_by_name_.end()) {
-    found = rows_by_name_.find(std::filesystem::path(name).filename().string());
+    found = rows_by_name_.find(fs::path(name).filename().string());
   }
   if (found == rows_by_name_.end()) return std::nullopt;
   const std::vector<int>& rows = found->second;

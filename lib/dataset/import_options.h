@@ -81,8 +81,8 @@ struct FolderOptions {
                "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
     visit.Text("camera_file", &camera_file,
                "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
-               "(.yaml, .xml), "
-               "COLMAP's cameras.txt, nerfstudio's transforms.json; empty: camera.json");
+               "(.yaml, .xml), COLMAP's cameras.txt, nerfstudio's transforms.json; empty: "
+               "camera.json");
     visit.Text("distortion", &distortion,
                "soslam, tum_rgbd: what the lens did to images and boxes: \"k1 k2 p1 p2 k3\" as "
                "OpenCV has them, or 4, 8, 12 or 14 of its coefficients; empty: the camera "
