@@ -23,7 +23,7 @@ namespace {
 using nlohmann::json;
 
 // [major, minor] of every kind's schema. A reader reads all versions up to its own.
-const std::vector<int> kSchemaVersion = {1, 6};
+const std::vector<int> kSchemaVersion = {1, 7};
 
 // A parser callback. nlohmann keeps the last of several equal keys without a word, and what walks a
 // document calls itself for each level, so that deep nesting exhausts the stack.

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "artefact/findings_json.h"
 #include "artefact/ids.h"
@@ -86,6 +89,74 @@ json ObjectToJson(const Object& object, const Sequence& sequence) {
           {"is_static", object.is_static}};
 }
 
+json TrueObjectToJson(const TrueObject& object) {
+  return {{"object", object.id},
+          {"label", object.label},
+          {"segment", object.segment},
+          {"is_static", object.is_static},
+          {"ground_truth", GroundTruthToJson(object.truth)}};
+}
+
+TrueObject TrueObjectFromJson(const json& json) {
+  return {json.at("object").get<int>(), json.at("label").get<std::string>(),
+          GroundTruthFromJson(json.at("ground_truth")), json.at("segment").get<int>(),
+          json.at("is_static").get<bool>()};
+}
+
+// Before version 1.7 what is true was said of the objects that are detected.
+void SayWhatIsTrueOfObjects(Sequence* sequence) {
+  for (const Object& object : sequence->objects) {
+    if (!object.ground_truth) continue;
+    sequence->true_objects.push_back(
+        {object.id, object.label, *object.ground_truth, 0, object.is_static});
+  }
+  for (Detection& detection : sequence->detections) {
+    const int id = sequence->ObjectOf(detection).id;
+    const auto found = std::ranges::find(sequence->true_objects, id, &TrueObject::id);
+    if (found == sequence->true_objects.end()) continue;
+    detection.true_object_id = id;
+    found->segment = sequence->FrameOf(detection).segment;
+  }
+}
+
+// A row of numbers: frame, object, rotation (x, y, z, w), translation, half axes.
+json TruthInFrameToJson(const TruthInFrame& truth, const Sequence& sequence) {
+  const auto& [rotation, translation] = truth.landmark_in_camera.frame_from_object;
+  const Eigen::Vector3d& half_axes = truth.landmark_in_camera.half_axes;
+  json row = {sequence.frames.at(static_cast<size_t>(truth.frame_index)).id, truth.true_object_id};
+  for (const double number : rotation.coeffs()) row.push_back(number);
+  for (const double number : translation) row.push_back(number);
+  for (const double number : half_axes) row.push_back(number);
+  return row;
+}
+
+TruthInFrame TruthInFrameFromJson(const json& row, const IdTable<Frame>& frames) {
+  const json pose = {{"rotation_xyzw", {row.at(2), row.at(3), row.at(4), row.at(5)}},
+                     {"translation", {row.at(6), row.at(7), row.at(8)}}};
+  Landmark landmark;
+  landmark.frame_from_object = pose.get<Rigid3d>();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    row.at(static_cast<size_t>(9 + axis)).get_to(landmark.half_axes[axis]);
+  }
+  return {frames.IndexOf(row.at(0).get<int>()), row.at(1).get<int>(), landmark};
+}
+
+json IgnoredToJson(const IgnoredThings& things) {
+  json fields = json::object();
+  if (things.label) fields["label"] = *things.label;
+  if (things.volume_in_world) fields["landmark"] = LandmarkToJson(*things.volume_in_world, "world");
+  return fields;
+}
+
+IgnoredThings IgnoredFromJson(const json& json) {
+  IgnoredThings things;
+  if (json.contains("label")) things.label = json["label"].get<std::string>();
+  if (json.contains("landmark")) {
+    things.volume_in_world = LandmarkFromJson(json["landmark"], "world");
+  }
+  return things;
+}
+
 Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   Object object;
   json.at("object").get_to(object.id);
@@ -139,6 +210,7 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
   if (detection.true_landmark_in_camera) {
     fields["true_landmark"] = LandmarkToJson(*detection.true_landmark_in_camera, "camera");
   }
+  if (detection.true_object_id) fields["true_object"] = *detection.true_object_id;
   return fields;
 }
 
@@ -159,6 +231,9 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   if (json.contains("true_landmark")) {  // since version 1.2
     detection.true_landmark_in_camera = LandmarkFromJson(json["true_landmark"], "camera");
   }
+  if (json.contains("true_object")) {  // since version 1.7
+    detection.true_object_id = json["true_object"].get<int>();
+  }
   return detection;
 }
 
@@ -177,6 +252,69 @@ HeldOutFrame HeldOutFromJson(const json& json) {
                               box.at("box").get<Box>()});
   }
   return held_out;
+}
+
+// Rows of numbers, as there may be many: frame, row of `reasons`, row of `labels`, true object or
+// null, score, box.
+json RejectedToJson(const Sequence& sequence) {
+  std::map<std::pair<RejectingStage, std::string>, size_t> reasons;
+  std::map<std::string, size_t> labels;
+  for (const RejectedDetection& rejected : sequence.rejected) {
+    reasons.try_emplace({rejected.stage, rejected.reason});
+    labels.try_emplace(rejected.label);
+  }
+  json fields = {{"reasons", json::array()}, {"labels", json::array()}, {"rows", json::array()}};
+  for (auto& [reason, row] : reasons) {
+    row = fields["reasons"].size();
+    fields["reasons"].push_back({{"stage", kRejectingStageNames[static_cast<size_t>(reason.first)]},
+                                 {"reason", reason.second}});
+  }
+  for (auto& [label, row] : labels) {
+    row = fields["labels"].size();
+    fields["labels"].push_back(label);
+  }
+  for (const RejectedDetection& rejected : sequence.rejected) {
+    const Box& box = rejected.box;
+    fields["rows"].push_back({sequence.frames.at(static_cast<size_t>(rejected.frame_index)).id,
+                              reasons.at({rejected.stage, rejected.reason}),
+                              labels.at(rejected.label), OrNull(rejected.true_object_id),
+                              rejected.score, box.x_min, box.y_min, box.x_max, box.y_max});
+  }
+  return fields;
+}
+
+// The element of a list that a row of rejected detections names.
+const json& Named(const json& list, const json& row, size_t field, size_t place) {
+  const auto index = row.at(field).get<size_t>();
+  if (index >= list.size()) {
+    throw InputError(fmt::format("/rejected/rows/{}/{} is {}; expected less than {}", place, field,
+                                 index, list.size()));
+  }
+  return list[index];
+}
+
+RejectingStage StageFromJson(const json& json) {
+  const auto found = std::ranges::find(kRejectingStageNames, json.at("stage").get<std::string>());
+  return static_cast<RejectingStage>(found - std::begin(kRejectingStageNames));
+}
+
+std::vector<RejectedDetection> RejectedFromJson(const json& json, const IdTable<Frame>& frames) {
+  std::vector<RejectedDetection> all;
+  const auto& rows = json.at("rows");
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto& row = rows[i];
+    const auto& reason = Named(json.at("reasons"), row, 1, i);
+    RejectedDetection rejected;
+    rejected.frame_index = frames.IndexOf(row.at(0).get<int>());
+    rejected.stage = StageFromJson(reason);
+    reason.at("reason").get_to(rejected.reason);
+    Named(json.at("labels"), row, 2, i).get_to(rejected.label);
+    if (!row.at(3).is_null()) rejected.true_object_id = row[3].get<int>();
+    row.at(4).get_to(rejected.score);
+    rejected.box = {row.at(5), row.at(6), row.at(7), row.at(8)};
+    all.push_back(std::move(rejected));
+  }
+  return all;
 }
 
 void CheckOrder(const std::vector<Detection>& detections) {
@@ -263,6 +401,30 @@ ImageOrientation OrientationFromJson(const json& json) {
   return static_cast<ImageOrientation>(found - std::begin(kImageOrientationNames));
 }
 
+// What is true, apart from what is detected; said since version 1.7.
+void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* sequence) {
+  if (!json.contains("true_objects")) SayWhatIsTrueOfObjects(sequence);
+  for (const auto& object : json.value("true_objects", nlohmann::json::array())) {
+    sequence->true_objects.push_back(TrueObjectFromJson(object));
+  }
+  const auto& objects = sequence->true_objects;
+  const auto unordered = std::ranges::adjacent_find(
+      objects, [](const TrueObject& a, const TrueObject& b) { return a.id >= b.id; });
+  if (unordered != objects.end()) {
+    throw InputError(fmt::format("/true_objects/{}/object is {}; expected ascending ids",
+                                 unordered - objects.begin() + 1, std::next(unordered)->id));
+  }
+  for (const auto& row : json.value("truth_in_frames", nlohmann::json::array())) {
+    sequence->truth_in_frames.push_back(TruthInFrameFromJson(row, frames));
+  }
+  for (const auto& things : json.value("ignored", nlohmann::json::array())) {
+    sequence->ignored.push_back(IgnoredFromJson(things));
+  }
+  const auto world =
+      std::ranges::find(kOdometryWorldNames, json.value("odometry_world", "of_truth"));
+  sequence->odometry_world = static_cast<OdometryWorld>(world - std::begin(kOdometryWorldNames));
+}
+
 Sequence SequenceFromJson(const json& json) {
   Sequence sequence;
   json.at("name").get_to(sequence.name);
@@ -301,6 +463,10 @@ Sequence SequenceFromJson(const json& json) {
   }
   CheckHeldOut(sequence);
   json.at("rejected_detections").get_to(sequence.rejected_detections);
+  TruthFromJson(json, frames, &sequence);
+  if (json.contains("rejected")) {  // since version 1.7
+    sequence.rejected = RejectedFromJson(json["rejected"], frames);
+  }
   sequence.findings = FindingsFromJson(json);
   return sequence;
 }
@@ -320,15 +486,18 @@ Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need) {
 
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info) {
-  json body = {{"name", sequence.name},
-               {"camera", sequence.camera},
-               {"image_orientation",
-                kImageOrientationNames[static_cast<size_t>(sequence.image_orientation)]},
-               {"frames", json::array()},
-               {"planes", json::array()},
-               {"objects", json::array()},
-               {"detections", json::array()},
-               {"rejected_detections", sequence.rejected_detections}};
+  json body = {
+      {"name", sequence.name},
+      {"camera", sequence.camera},
+      {"image_orientation",
+       kImageOrientationNames[static_cast<size_t>(sequence.image_orientation)]},
+      {"frames", json::array()},
+      {"planes", json::array()},
+      {"objects", json::array()},
+      {"detections", json::array()},
+      {"rejected_detections", sequence.rejected_detections},
+      {"true_objects", json::array()},
+      {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]}};
   if (sequence.image_distortion)
     body["image_distortion"] = DistortionCoefficients(*sequence.image_distortion);
   for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
@@ -344,6 +513,16 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
   for (const HeldOutFrame& held_out : sequence.held_out) {
     body["held_out"].push_back(HeldOutToJson(held_out));
   }
+  for (const TruthInFrame& truth : sequence.truth_in_frames) {
+    body["truth_in_frames"].push_back(TruthInFrameToJson(truth, sequence));
+  }
+  for (const TrueObject& object : sequence.true_objects) {
+    body["true_objects"].push_back(TrueObjectToJson(object));
+  }
+  for (const IgnoredThings& things : sequence.ignored) {
+    body["ignored"].push_back(IgnoredToJson(things));
+  }
+  if (!sequence.rejected.empty()) body["rejected"] = RejectedToJson(sequence);
   ArtefactInfo with_findings = info;
   with_findings.findings = sequence.findings;
   WriteArtefact(path, "sequence", with_findings, std::move(body));

@@ -101,7 +101,10 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
       associated.detections.push_back(sequence.detections[i]);
       associated.detections.back().object_index = decision.object;
     } else {
-      ++associated.rejected_detections[ReasonNotUsed(association, decision)];
+      const char* reason = ReasonNotUsed(association, decision);
+      ++associated.rejected_detections[reason];
+      associated.rejected.push_back(
+          Rejected(sequence, sequence.detections[i], RejectingStage::kAssociate, reason));
     }
   }
   std::ranges::stable_sort(associated.detections, {}, [](const Detection& detection) {

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <vector>
 
 #include "dataset/dataset_checks.h"
 #include "dataset/pose_readings.h"
-#include "evaluation/statistics.h"
-#include "geometry/angles.h"
+#include "evaluation/trajectory_gap.h"
 
 namespace soslam {
 namespace {
-
-// An estimated and a true pose of one frame, world_from_camera.
-struct PosePair {
-  Rigid3d estimated;
-  Rigid3d truth;
-};
 
 // Those of the first segment, as each has a world of its own.
 std::vector<PosePair> Pairs(const ImportView& view) {
@@ -30,48 +21,8 @@ std::vector<PosePair> Pairs(const ImportView& view) {
   return pairs;
 }
 
-// How far apart two trajectories are, medians over frames.
-struct Gap {
-  double rotation_deg = 0.0;
-  double translation_m = 0.0;
-};
-
-Gap GapOf(const std::vector<PosePair>& pairs) {
-  std::vector<double> rotations, translations;
-  for (const auto& [estimated, truth] : pairs) {
-    rotations.push_back(kDegPerRad * estimated.rotation.angularDistance(truth.rotation));
-    translations.push_back((estimated.translation - truth.translation).norm());
-  }
-  return {*MedianOf(rotations), *MedianOf(translations)};
-}
-
-std::string InWords(const Gap& gap) {
+std::string InWords(const TrajectoryGap& gap) {
   return fmt::format("{:.2f} m and {:.1f} degrees", gap.translation_m, gap.rotation_deg);
-}
-
-// How far a camera moves (m): the diagonal of the box around its path.
-double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
-  Eigen::AlignedBox3d around;
-  for (const PosePair& pair : pairs) around.extend((pair.*pose).translation);
-  return around.diagonal().norm();
-}
-
-// Whether both cameras move about as far.
-bool IsSameScale(const std::vector<PosePair>& pairs) {
-  constexpr double kLargestRatio = 1.5;
-  constexpr double kLeastM = 0.3;
-  const double truth = std::max(kLeastM, ExtentOf(pairs, &PosePair::truth));
-  const double estimated = std::max(kLeastM, ExtentOf(pairs, &PosePair::estimated));
-  return std::max(truth, estimated) <= kLargestRatio * std::min(truth, estimated);
-}
-
-// Whether the gap is what odometry drifts.
-bool IsDrift(const Gap& gap, double extent_m) {
-  constexpr double kMostDeg = 20.0;
-  constexpr double kMostShare = 0.3;
-  constexpr double kLeastM = 0.1;
-  return gap.rotation_deg <= kMostDeg &&
-         gap.translation_m <= std::max(kLeastM, kMostShare * extent_m);
 }
 
 std::vector<PosePair> ReadAs(const PoseReading& reading, std::vector<PosePair> pairs) {
@@ -88,7 +39,7 @@ std::vector<PosePair> AlignedAtFirst(std::vector<PosePair> pairs) {
 
 void Explain(const std::vector<PosePair>& pairs, double extent_m, Finding* finding) {
   const auto fits = [&](const std::vector<PosePair>& read) {
-    return IsDrift(GapOf(read), extent_m) && IsSameScale(read);
+    return IsDrift(GapOf(read), extent_m) && HaveSameScale(read);
   };
   for (const PoseReading& reading : PoseReadings()) {
     const auto read = ReadAs(reading, pairs);
@@ -122,9 +73,9 @@ std::vector<Finding> CheckTruth(const ImportView& view) {
   constexpr size_t kFewest = 3;
   const std::vector<PosePair> pairs = Pairs(view);
   if (pairs.size() < kFewest) return {};
-  const Gap gap = GapOf(pairs);
+  const TrajectoryGap gap = GapOf(pairs);
   const double extent_m = ExtentOf(pairs, &PosePair::truth);
-  if (IsDrift(gap, extent_m) && IsSameScale(pairs)) return {};
+  if (AreInOneWorld(pairs)) return {};
   Finding finding{
       "trajectory_against_truth",
       Severity::kWarning,

@@ -25,7 +25,7 @@ struct DatasetContent {
   std::vector<SupportPlane> planes;  // none: not known
   std::vector<Object> objects;
   std::vector<DetectionRow> rows;  // of these frames and objects
-  RejectionCounts rejected;        // detections of which there is no row
+  Rejections rejected;             // by the reader
   RejectionCounts mended;  // those that are used otherwise than as they stand, by what was done
   bool has_true_poses = false;  // of some frames at least
   bool has_object_ids = true;   // otherwise each row is of an object of its own
@@ -38,6 +38,14 @@ struct DatasetContent {
   std::vector<std::string> class_names = {};
   std::optional<std::filesystem::path> class_names_file = std::nullopt;
   std::vector<Finding> findings = {};  // of the files themselves
+  std::vector<TrueObject> true_objects = {};
+  struct LabelInFrame {
+    int frame_id;
+    int true_object_id;
+    Landmark landmark_in_camera;
+  };
+  std::vector<LabelInFrame> labels_in_frames = {};
+  std::vector<IgnoredThings> ignored = {};
 };
 
 }  // namespace soslam

@@ -19,20 +19,28 @@ namespace {
 using nlohmann::json;
 using Entry = JsonEntry;
 
-// Parses each entry of a list; sorted by id, which may not come twice.
+// Parses each entry of a list, which has a name for error messages.
 template <typename Item>
-std::vector<Item> ReadList(const std::filesystem::path& path, Item (*parse)(const Entry&)) {
-  const json list = ParseJsonFile(path);
-  if (!list.is_array()) throw InputError(path.string() + ": is not a list");
+std::vector<Item> ParseList(const json& list, const std::string& name,
+                            Item (*parse)(const Entry&)) {
+  if (!list.is_array()) throw InputError(name + ": is not a list");
   std::vector<Item> items;
   for (size_t i = 0; i < list.size(); ++i) {
-    items.push_back(parse(Entry(list[i], fmt::format("{}[{}]", path.string(), i))));
+    items.push_back(parse(Entry(list[i], fmt::format("{}[{}]", name, i))));
   }
+  return items;
+}
+
+// The same, sorted by id, which may not come twice.
+template <typename Item>
+std::vector<Item> ParseListWithIds(const json& list, const std::string& name,
+                                   Item (*parse)(const Entry&)) {
+  std::vector<Item> items = ParseList(list, name, parse);
   std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.id < b.id; });
   const auto twice = std::adjacent_find(items.begin(), items.end(),
                                         [](const Item& a, const Item& b) { return a.id == b.id; });
   if (twice != items.end()) {
-    throw InputError(fmt::format("{}: id {} twice; expected once", path.string(), twice->id));
+    throw InputError(fmt::format("{}: id {} twice; expected once", name, twice->id));
   }
   return items;
 }
@@ -46,14 +54,22 @@ SupportPlane ParsePlane(const Entry& entry) {
   return {entry.Integer("id"), {normal / length, entry.Real("d") / length}};
 }
 
-GroundTruth ParseGroundTruth(const Entry& entry) {
+Landmark ParseLandmark(const Entry& entry) {
   Landmark landmark;
   landmark.frame_from_object = {UnitQuaternion(entry.Vector<4>("quaternion_xyzw"), entry.place()),
                                 entry.Vector<3>("center")};
   landmark.half_axes = entry.Vector<3>("half_axes");
   if (!(landmark.half_axes.minCoeff() > 0.0)) entry.Refuse("half_axes", "3 numbers above 0");
-  return {landmark, entry.Flag("mirror_symmetric", true), entry.Flag("mirror_symmetric_yz", false),
-          entry.Flag("rotationally_symmetric", false)};
+  return landmark;
+}
+
+bool HasLandmark(const Entry& entry) {
+  return entry.Has("center") || entry.Has("quaternion_xyzw") || entry.Has("half_axes");
+}
+
+GroundTruth ParseGroundTruth(const Entry& entry) {
+  return {ParseLandmark(entry), entry.Flag("mirror_symmetric", true),
+          entry.Flag("mirror_symmetric_yz", false), entry.Flag("rotationally_symmetric", false)};
 }
 
 ListedObject ParseObject(const Entry& entry) {
@@ -62,10 +78,20 @@ ListedObject ParseObject(const Entry& entry) {
   object.id = entry.Integer("id");
   object.label = entry.Text("label");
   if (entry.Has("support_plane")) object.plane_id = entry.Integer("support_plane");
-  if (entry.Has("center") || entry.Has("quaternion_xyzw") || entry.Has("half_axes")) {
-    object.ground_truth = ParseGroundTruth(entry);
-  }
+  if (HasLandmark(entry)) object.ground_truth = ParseGroundTruth(entry);
   return object;
+}
+
+IgnoredThings ParseIgnored(const Entry& entry) {
+  entry.RefuseUnknownKeys(IgnoredKeys());
+  IgnoredThings things;
+  if (entry.Has("label")) things.label = entry.Text("label");
+  if (HasLandmark(entry)) things.volume_in_world = ParseLandmark(entry);
+  if (!things.label && !things.volume_in_world) {
+    throw InputError(entry.place() +
+                     ": says nothing; expected a label, or center, quaternion_xyzw and half_axes");
+  }
+  return things;
 }
 
 std::optional<Distortion> LensOf(const Entry& entry) {
@@ -107,13 +133,23 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
 }
 
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path) {
-  std::vector<SupportPlane> planes = ReadList(path, &ParsePlane);
+  std::vector<SupportPlane> planes =
+      ParseListWithIds(ParseJsonFile(path), path.string(), &ParsePlane);
   if (planes.empty()) throw InputError(path.string() + ": has no plane; expected at least one");
   return planes;
 }
 
-std::vector<ListedObject> ReadObjects(const std::filesystem::path& path) {
-  return ReadList(path, &ParseObject);
+ListedObjects ReadObjects(const std::filesystem::path& path) {
+  const json document = ParseJsonFile(path);
+  const std::string file = path.string();
+  if (!document.is_object()) return {ParseListWithIds(document, file, &ParseObject)};
+  const Entry entry(document, file);
+  entry.RefuseUnknownKeys(ObjectsFileKeys());
+  ListedObjects read = {ParseListWithIds(entry.Field("objects"), file + "#/objects", &ParseObject)};
+  if (entry.Has("ignored")) {
+    read.ignored = ParseList(entry.Field("ignored"), file + "#/ignored", &ParseIgnored);
+  }
+  return read;
 }
 
 }  // namespace soslam

@@ -33,17 +33,25 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis = Ca
 // Sorted by id; at least one.
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path);
 
-// [{"id", "label", "support_plane" (may be absent), and, all or none: "center", "quaternion_xyzw"
-// (world from object), "half_axes"}], with optional "mirror_symmetric" (default true),
-// "mirror_symmetric_yz" and "rotationally_symmetric" (default false). For people only: "model",
-// "name", "description", "comment", "source".
+// What objects.json says of one object.
 struct ListedObject {
   int id = 0;
   std::string label;
   std::optional<int> plane_id;
   std::optional<GroundTruth> ground_truth;
 };
-// Sorted by id.
-std::vector<ListedObject> ReadObjects(const std::filesystem::path& path);
+
+struct ListedObjects {
+  std::vector<ListedObject> objects = {};  // sorted by id
+  std::vector<IgnoredThings> ignored = {};
+};
+
+// [{"id", "label", "support_plane" (may be absent), and, all or none: "center", "quaternion_xyzw"
+// (world from object), "half_axes"}], with optional "mirror_symmetric" (default true),
+// "mirror_symmetric_yz" and "rotationally_symmetric" (default false). For people only: "model",
+// "name", "description", "comment", "source".
+// Or {"objects": such a list, "ignored": [{"label", or the volume "center", "quaternion_xyzw",
+// "half_axes", or both}]}, for people only: "name", "description", "comment", "source".
+ListedObjects ReadObjects(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -15,6 +15,25 @@ constexpr const char* kQuaternion =
     "the orientation is read as \"quaternion_xyzw\"; that of a yaw about z is "
     "[0, 0, sin(yaw / 2), cos(yaw / 2)]";
 
+// What a place, a size and a label are called elsewhere, after these.
+std::vector<KeyHint> WithPlaceHints(std::vector<KeyHint> hints) {
+  hints.insert(hints.end(), {{"position", kCenter},
+                             {"translation", kCenter},
+                             {"location", kCenter},
+                             {"size", kHalfAxes},
+                             {"dimensions", kHalfAxes},
+                             {"extent", kHalfAxes},
+                             {"scale", kHalfAxes},
+                             {"yaw", kQuaternion},
+                             {"rotation", kQuaternion},
+                             {"orientation", kQuaternion},
+                             {"quaternion", kQuaternion},
+                             {"quaternion_wxyz", kQuaternion},
+                             {"category", "the category is read as \"label\""},
+                             {"class", "the category is read as \"label\""}});
+  return hints;
+}
+
 }  // namespace
 
 const KnownKeys& CameraKeys() {
@@ -57,22 +76,24 @@ const KnownKeys& ObjectKeys() {
       {"id", "label", "support_plane", "center", "quaternion_xyzw", "half_axes", "mirror_symmetric",
        "mirror_symmetric_yz", "rotationally_symmetric", "model", "name", "description", "comment",
        "source"},
-      {{"position", kCenter},
-       {"translation", kCenter},
-       {"location", kCenter},
-       {"size", kHalfAxes},
-       {"dimensions", kHalfAxes},
-       {"extent", kHalfAxes},
-       {"scale", kHalfAxes},
-       {"yaw", kQuaternion},
-       {"rotation", kQuaternion},
-       {"orientation", kQuaternion},
-       {"quaternion", kQuaternion},
-       {"quaternion_wxyz", kQuaternion},
-       {"plane", "the plane is read as \"support_plane\", an id of planes.json"},
-       {"category", "the category is read as \"label\""},
-       {"class", "the category is read as \"label\""},
-       {"object_id", "the id is read as \"id\""}}};
+      WithPlaceHints({{"plane", "the plane is read as \"support_plane\", an id of planes.json"},
+                      {"object_id", "the id is read as \"id\""},
+                      {"ignored",
+                       "what is not to be judged is listed beside the objects: "
+                       "{\"objects\": [...], \"ignored\": [...]}"}})};
+  return known;
+}
+
+const KnownKeys& IgnoredKeys() {
+  static const KnownKeys known = {{"label", "center", "quaternion_xyzw", "half_axes", "name",
+                                   "description", "comment", "source"},
+                                  WithPlaceHints({})};
+  return known;
+}
+
+const KnownKeys& ObjectsFileKeys() {
+  static const KnownKeys known = {
+      {"objects", "ignored", "name", "description", "comment", "source"}};
   return known;
 }
 

@@ -7,8 +7,10 @@ namespace soslam {
 
 // The keys of the JSON files of a dataset folder, and what other programs call them.
 
-const KnownKeys& CameraKeys();  // of camera.json
-const KnownKeys& PlaneKeys();   // of an entry of planes.json
-const KnownKeys& ObjectKeys();  // of an entry of objects.json
+const KnownKeys& CameraKeys();       // of camera.json
+const KnownKeys& PlaneKeys();        // of an entry of planes.json
+const KnownKeys& ObjectKeys();       // of an object of objects.json
+const KnownKeys& IgnoredKeys();      // of what is ignored there
+const KnownKeys& ObjectsFileKeys();  // of the whole file, where it is no list
 
 }  // namespace soslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,9 @@
 #include "geometry/plane.h"
 
 namespace soslam {
+
+// DetectionRow::object_id of a row that is not used, as it is of no object; nobody's id.
+inline constexpr int kNoObject = std::numeric_limits<int>::min();
 
 // A 2D box of one object in one frame, as a dataset has it.
 struct DetectionRow {

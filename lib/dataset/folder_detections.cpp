@@ -100,6 +100,17 @@ FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options
   throw std::logic_error("format without a reader");
 }
 
+std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxes,
+                                            const std::vector<ListedImage>& images) {
+  FrameLookup lookup(images);
+  std::vector<DetectionRow> rows;
+  for (const LabelledBox& box : boxes) {
+    const auto frame = lookup.Find(box.frame, box.place);
+    if (frame) rows.push_back({box.place, *frame, kNoObject, box.label, box.score, box.box});
+  }
+  return rows;
+}
+
 std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const DatasetFiles& files,
                                       const std::vector<ListedImage>& images, int first_free_id,

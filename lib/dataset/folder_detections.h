@@ -35,6 +35,10 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const std::vector<ListedImage>& images, int first_free_id,
                                       RejectionCounts* rejected);
 
+// The boxes of listed images as rows of no object.
+std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxes,
+                                            const std::vector<ListedImage>& images);
+
 // Turns boxes in images that a lens took into those of a pinhole camera (UndistortBox). Boxes
 // without such a counterpart are counted in `rejected`.
 std::vector<DetectionRow> Undistorted(std::vector<DetectionRow> rows, const Camera& camera,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <utility>
 
 #include "dataset/text_file.h"
 #include "geometry/box.h"
@@ -30,6 +31,11 @@ const char* RejectReasonName(RejectReason reason) {
                                  "near_border",        "duplicate",       "too_few_observations",
                                  "without_object_id",  "matches_no_label"};
   return kNames.at(static_cast<size_t>(reason));
+}
+
+void Rejections::Add(const DetectionRow& row, RejectReason reason) {
+  ++counts[RejectReasonName(reason)];
+  rows.push_back({row.frame_id, row.object_id, row.label, row.score, row.box, reason});
 }
 
 std::string DescribeRejections(const RejectionCounts& rejected) {
@@ -77,8 +83,7 @@ std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camer
   return std::nullopt;
 }
 
-std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
-                                            RejectionCounts* rejected) {
+std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Rejections* rejected) {
   const auto best_first = [](const DetectionRow& a, const DetectionRow& b) {
     return std::tuple(a.frame_id, a.object_id, -a.score) <
            std::tuple(b.frame_id, b.object_id, -b.score);
@@ -87,24 +92,26 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
     return a.frame_id == b.frame_id && a.object_id == b.object_id;
   };
   std::stable_sort(rows.begin(), rows.end(), best_first);
-  const auto end = std::unique(rows.begin(), rows.end(), same);
-  if (end != rows.end()) {
-    (*rejected)[RejectReasonName(RejectReason::kDuplicate)] += static_cast<int>(rows.end() - end);
+  std::vector<DetectionRow> kept;
+  for (DetectionRow& row : rows) {
+    if (!kept.empty() && same(kept.back(), row)) {
+      rejected->Add(row, RejectReason::kDuplicate);
+    } else {
+      kept.push_back(std::move(row));
+    }
   }
-  rows.erase(end, rows.end());
-  return rows;
+  return kept;
 }
 
 std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
-                                                 int min_observations, RejectionCounts* rejected) {
+                                                 int min_observations, Rejections* rejected) {
   std::map<int, int> observations;
   for (const DetectionRow& row : rows) ++observations[row.object_id];
-  const auto dropped = std::erase_if(rows, [&](const DetectionRow& row) {
-    return observations[row.object_id] < min_observations;
+  std::erase_if(rows, [&](const DetectionRow& row) {
+    if (observations[row.object_id] >= min_observations) return false;
+    rejected->Add(row, RejectReason::kTooFewObservations);
+    return true;
   });
-  if (dropped > 0) {
-    (*rejected)[RejectReasonName(RejectReason::kTooFewObservations)] += static_cast<int>(dropped);
-  }
   return rows;
 }
 

@@ -35,6 +35,23 @@ enum class RejectReason {
 const char* RejectReasonName(RejectReason reason);
 
 using RejectionCounts = std::map<std::string, int>;
+
+// Rows that are not used, and how many there are with those of which there is no row.
+struct Rejections {
+  struct RejectedRow {
+    int frame_id;
+    int object_id;
+    std::string label;
+    double score;
+    Box box;
+    RejectReason reason;
+  };
+  RejectionCounts counts;
+  std::vector<RejectedRow> rows;
+
+  void Add(const DetectionRow& row, RejectReason reason);
+};
+
 // "12 detections rejected: duplicate 2, near_border 10".
 std::string DescribeRejections(const RejectionCounts& rejected);
 
@@ -47,11 +64,10 @@ std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camer
 
 // Keeps one row of each object in each frame, the one with the highest score (the first of equals),
 // sorted by frame, then object.
-std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows,
-                                            RejectionCounts* rejected);
+std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Rejections* rejected);
 
 // Drops all rows of objects that have fewer than `min_observations`.
 std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
-                                                 int min_observations, RejectionCounts* rejected);
+                                                 int min_observations, Rejections* rejected);
 
 }  // namespace soslam

@@ -13,6 +13,20 @@ struct Destination {
   size_t index;  // into Sequence::held_out or Sequence::frames
 };
 
+// What is of frames that are not held out.
+template <typename OfFrame>
+std::vector<OfFrame> InKeptFrames(std::vector<OfFrame> all,
+                                  const std::vector<Destination>& destinations) {
+  std::vector<OfFrame> kept;
+  for (OfFrame& one : all) {
+    const auto [is_held_out, index] = destinations[static_cast<size_t>(one.frame_index)];
+    if (is_held_out) continue;
+    one.frame_index = static_cast<int>(index);
+    kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
 }  // namespace
 
 Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out) {
@@ -41,6 +55,8 @@ Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out) {
       sequence.detections.push_back(std::move(detection));
     }
   }
+  sequence.rejected = InKeptFrames(std::move(sequence.rejected), destinations);
+  sequence.truth_in_frames = InKeptFrames(std::move(sequence.truth_in_frames), destinations);
   return sequence;
 }
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -77,10 +79,12 @@ class Importer {
         slots_(ChooseFrames(content.frames, options, &sequence->frames)),
         object_ids_("object", content.objects),
         planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
-                           content.has_true_poses) {}
+                           content.has_true_poses) {
+    for (const TrueObject& object : content.true_objects) true_object_ids_.insert(object.id);
+  }
 
   void Import() {
-    RejectionCounts* rejected = &sequence_->rejected_detections;
+    Rejections rejected;
     std::vector<DetectionRow> usable, in_view;
     usable.reserve(content_.rows.size());
     in_view.reserve(content_.rows.size());
@@ -88,19 +92,22 @@ class Importer {
       const auto reason = Gate(row);
       if (!reason) usable.push_back(row);
       if (!reason || IsInView(*reason)) in_view.push_back(row);
-      if (reason) ++(*rejected)[RejectReasonName(*reason)];
+      if (reason) rejected.Add(row, *reason);
     }
     Sequence all_in_view = *sequence_;
-    usable = WithoutDuplicates(std::move(usable), rejected);
+    usable = WithoutDuplicates(std::move(usable), &rejected);
     if (content_.has_object_ids) {
-      usable = WithEnoughObservations(std::move(usable), options_.min_observations, rejected);
+      usable = WithEnoughObservations(std::move(usable), options_.min_observations, &rejected);
     }
     sequence_->detections = Detections(std::move(usable));
 
-    RejectionCounts not_reported;
+    Rejections not_reported;
     all_in_view.detections = Detections(WithoutDuplicates(std::move(in_view), &not_reported));
     ListBoxesInView(all_in_view, sequence_);
     MarkHiddenEdges(options_, sequence_);
+    Keep(rejected);
+    Keep(content_.rejected);
+    ListTruthInFrames();
   }
 
  private:
@@ -119,6 +126,37 @@ class Importer {
     return GateRow(row, sequence_->CameraOf(frame), options_);
   }
 
+  // The counts of all, and those that are of used frames.
+  void Keep(const Rejections& rejected) {
+    for (const auto& [reason, count] : rejected.counts) {
+      sequence_->rejected_detections[reason] += count;
+    }
+    for (const Rejections::RejectedRow& row : rejected.rows) {
+      const auto* frame_index = std::get_if<int>(&slots_.at(row.frame_id));
+      if (frame_index == nullptr) continue;
+      sequence_->rejected.push_back({*frame_index, row.label, row.score, row.box,
+                                     TrueObjectId(row.object_id), RejectingStage::kImport,
+                                     RejectReasonName(row.reason)});
+    }
+  }
+
+  void ListTruthInFrames() {
+    for (const auto& label : content_.labels_in_frames) {
+      const auto* frame_index = std::get_if<int>(&slots_.at(label.frame_id));
+      if (frame_index == nullptr) continue;
+      sequence_->truth_in_frames.push_back(
+          {*frame_index, label.true_object_id, label.landmark_in_camera});
+    }
+    std::ranges::sort(sequence_->truth_in_frames, {}, [](const TruthInFrame& truth) {
+      return std::pair(truth.frame_index, truth.true_object_id);
+    });
+  }
+
+  std::optional<int> TrueObjectId(int object_id) const {
+    const bool is_known = content_.has_object_ids && true_object_ids_.contains(object_id);
+    return is_known ? std::optional(object_id) : std::nullopt;
+  }
+
   std::vector<Detection> Detections(std::vector<DetectionRow> rows) const {
     std::vector<Detection> detections;
     detections.reserve(rows.size());
@@ -135,6 +173,7 @@ class Importer {
       detection.is_bound =
           EdgesCutByBorder(row.box_in_image_file.value_or(row.box), sequence_->CameraOf(detection));
       detection.true_landmark_in_camera = row.true_landmark_in_camera;
+      detection.true_object_id = TrueObjectId(row.object_id);
       detections.push_back(detection);
     }
     return detections;
@@ -152,8 +191,14 @@ class Importer {
   Sequence* sequence_;
   std::map<int, FrameSlot> slots_;
   IdTable<Object> object_ids_;
+  std::set<int> true_object_ids_;
   bool planes_from_truth_;
 };
+
+OdometryWorld WorldOfOdometry(const ImportOptions& options) {
+  if (options.folder.odometry_has_own_scale) return OdometryWorld::kOwnWithScale;
+  return options.folder.align_odometry ? OdometryWorld::kOwn : OdometryWorld::kOfTruth;
+}
 
 // Where each detection is an object of its own, those that are not used are no objects either, nor
 // is what objects.json lists, of which no detection is known to be.
@@ -207,7 +252,10 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.image_orientation = options.image_orientation;
   sequence.planes = content.planes;
   sequence.objects = content.objects;
-  sequence.rejected_detections = content.rejected;
+  sequence.true_objects = content.true_objects;
+  std::ranges::sort(sequence.true_objects, {}, &TrueObject::id);
+  sequence.ignored = content.ignored;
+  sequence.odometry_world = WorldOfOdometry(options);
   Importer(content, options, &sequence).Import();
   sequence.findings = CheckDataset({folder, options, content, sequence});
   RefuseErrors(folder, sequence.findings);

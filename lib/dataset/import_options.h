@@ -52,6 +52,7 @@ struct FolderOptions {
   TrajectoryFormat trajectory_format = TrajectoryFormat::kTum;
   TrajectoryFormat groundtruth_format = TrajectoryFormat::kSame;
   bool align_odometry = false;
+  bool odometry_has_own_scale = false;
   std::string camera;
   std::string camera_file;
   std::string distortion;
@@ -77,6 +78,9 @@ struct FolderOptions {
     visit.Flag("align_odometry", &align_odometry,
                "the odometry has a world of its own: it is moved as a "
                "whole so that its first pose that has a true one is that");
+    visit.Flag("odometry_has_own_scale", &odometry_has_own_scale,
+               "the unit of the odometry is not the metre, as that of a single camera: maps are "
+               "compared with the truth at the scale that fits best");
     visit.Text("camera", &camera,
                "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
     visit.Text("camera_file", &camera_file,

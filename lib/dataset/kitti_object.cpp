@@ -41,6 +41,7 @@ void AddObject(const KittiLabel& label, const DetectionRow& row, DatasetContent*
   object.plane_index = static_cast<int>(content->planes.size());
   object.ground_truth.emplace().landmark_in_world = *row.true_landmark_in_camera;
   content->planes.push_back({object.id, *row.plane_in_camera});
+  content->true_objects.push_back({object.id, object.label, *object.ground_truth, row.frame_id});
   content->objects.push_back(object);
 }
 

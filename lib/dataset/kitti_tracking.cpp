@@ -145,8 +145,9 @@ class Recording {
           throw InputError(fmt::format("{}: type of track {} is '{}'; expected '{}', as before",
                                        label->place, track, label->type, labels.front()->type));
         }
-        views.push_back(
-            {poses_[static_cast<size_t>(label->frame)], LandmarkInCamera(*label, calibration_)});
+        const Landmark landmark_in_camera = LandmarkInCamera(*label, calibration_);
+        views.push_back({poses_[static_cast<size_t>(label->frame)], landmark_in_camera});
+        content_->labels_in_frames.push_back({Id(label->frame), Id(track), landmark_in_camera});
       }
       const TrackTruth truth = SummariseTrack(views, options_);
       Object object;
@@ -156,6 +157,8 @@ class Recording {
       object.ground_truth.emplace().landmark_in_world = truth.landmark_in_world;
       object.is_static = truth.is_static;
       content_->planes.push_back({object.id, truth.plane_in_world});
+      content_->true_objects.push_back(
+          {object.id, object.label, *object.ground_truth, number_, object.is_static});
       content_->objects.push_back(object);
     }
   }
@@ -192,10 +195,12 @@ class Recording {
     for (const KittiLabel& label : labels_) {
       if (label.type == type) labels_by_frame[label.frame].push_back(&label);
     }
-    for (const auto& [frame, found] : found_by_frame) AddMatches(found, labels_by_frame[frame]);
+    for (const auto& [frame, found] : found_by_frame) {
+      AddMatches(LabelOfType(type), found, labels_by_frame[frame]);
+    }
   }
 
-  void AddMatches(const std::vector<FoundBox>& found,
+  void AddMatches(const std::string& label_of_type, const std::vector<FoundBox>& found,
                   const std::vector<const KittiLabel*>& labels) {
     std::vector<ScoredBox> boxes;
     for (const FoundBox& box : found) boxes.push_back(box.box);
@@ -206,8 +211,19 @@ class Recording {
       if (matches[i]) {
         AddRow(*labels[*matches[i]], boxes[i].box, boxes[i].score);
       } else {
-        ++content_->rejected[RejectReasonName(RejectReason::kMatchesNoLabel)];
+        Reject(label_of_type, found[i]);
       }
+    }
+  }
+
+  void Reject(const std::string& label, const FoundBox& found) {
+    const bool has_frame = found.frame >= 0 && found.frame < static_cast<int>(poses_.size());
+    if (has_frame) {
+      content_->rejected.Add(
+          {found.place, Id(found.frame), kNoObject, label, found.box.score, found.box.box},
+          RejectReason::kMatchesNoLabel);
+    } else {
+      ++content_->rejected.counts[RejectReasonName(RejectReason::kMatchesNoLabel)];
     }
   }
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -35,7 +36,7 @@ bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
 std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
                                              const std::vector<ListedObject>& objects,
                                              const std::filesystem::path& file,
-                                             RejectionCounts* rejected,
+                                             std::vector<LabelledBox>* left_out,
                                              std::vector<Finding>* findings) {
   if (!HaveObjectIds(boxes)) return boxes;
   std::set<int> listed;
@@ -62,10 +63,12 @@ std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
          "leave object_id away, and let association be estimated (setting of soslam-associate)"});
     return boxes;
   }
-  const size_t without =
-      std::erase_if(boxes, [](const LabelledBox& box) { return !box.object_id.has_value(); });
+  const auto first_without = std::stable_partition(
+      boxes.begin(), boxes.end(), [](const LabelledBox& box) { return box.object_id.has_value(); });
+  left_out->assign(std::make_move_iterator(first_without), std::make_move_iterator(boxes.end()));
+  boxes.erase(first_without, boxes.end());
+  const size_t without = left_out->size();
   if (without == 0) return boxes;
-  (*rejected)[RejectReasonName(RejectReason::kWithoutObjectId)] += static_cast<int>(without);
   fmt::print("{}: {} of {} boxes have {}, that of no track, and are not used\n",
              file.filename().string(), without, without + boxes.size(), which);
   return boxes;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "dataset/dataset_json.h"
-#include "dataset/gate.h"
 #include "dataset/labelled_box.h"
 #include "model/finding.h"
 
@@ -15,12 +14,12 @@ namespace soslam {
 // below 0 are taken for that; 0 where it is of several boxes of one image in at least two images
 // (one, when no box has another id), as no other id ever is. Ids that objects.json lists are real.
 //
-// Returns the boxes with ids. Those that are left out are counted in `rejected`, and said on stdout
+// Returns the boxes with ids. Those that are left out become `left_out`, which is said on stdout
 // with the name of the `file`. When no box has an id, all are returned without, which is a finding.
 std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
                                              const std::vector<ListedObject>& objects,
                                              const std::filesystem::path& file,
-                                             RejectionCounts* rejected,
+                                             std::vector<LabelledBox>* left_out,
                                              std::vector<Finding>* findings);
 
 // Whether any box says which object it is of.

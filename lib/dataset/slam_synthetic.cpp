@@ -121,6 +121,7 @@ class Problem {
       object.label = kLabel;
       object.plane_index = plane_index;
       object.ground_truth.emplace().landmark_in_world = landmark;
+      content_->true_objects.push_back({object.id, object.label, *object.ground_truth, number_});
       content_->objects.push_back(std::move(object));
     }
   }

@@ -33,6 +33,30 @@ void MendLabels(const std::vector<ListedObject>& listed, DatasetContent* content
   if (changed > 0) content->mended["label_of_object"] = changed;
 }
 
+// All of them are counted; those of listed images that the lens can have put where they are have
+// rows.
+void RejectBoxesOfNoTrack(const std::vector<LabelledBox>& boxes,
+                          const std::vector<ListedImage>& images, const LensCamera& camera,
+                          Rejections* rejected) {
+  if (boxes.empty()) return;
+  std::vector<DetectionRow> rows = RowsWithoutObject(boxes, images);
+  if (camera.distortion) {
+    RejectionCounts beyond_lens_model;
+    rows = Undistorted(std::move(rows), camera.camera, *camera.distortion, &beyond_lens_model);
+  }
+  for (const DetectionRow& row : rows) rejected->Add(row, RejectReason::kWithoutObjectId);
+  rejected->counts[RejectReasonName(RejectReason::kWithoutObjectId)] =
+      static_cast<int>(boxes.size());
+}
+
+std::vector<TrueObject> TrueObjects(const std::vector<ListedObject>& listed) {
+  std::vector<TrueObject> objects;
+  for (const ListedObject& object : listed) {
+    if (object.ground_truth) objects.push_back({object.id, object.label, *object.ground_truth});
+  }
+  return objects;
+}
+
 // Boxes that are used otherwise than as they stand: said on stdout, and a finding where they are
 // more than a third.
 void ReportMended(const DatasetFiles& files, size_t boxes, DatasetContent* content) {
@@ -70,11 +94,13 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   }
   const Calibration calibration = ReadFolderCamera(files.camera, options);
   const LensCamera& camera = calibration.camera;
-  const auto listed = files.objects ? ReadObjects(*files.objects) : std::vector<ListedObject>();
+  const ListedObjects given = files.objects ? ReadObjects(*files.objects) : ListedObjects();
+  const std::vector<ListedObject>& listed = given.objects;
   DatasetContent content;
   FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &content.mended);
+  std::vector<LabelledBox> of_no_track;
   const std::vector<LabelledBox> boxes = WithoutIdsOfNoTrack(
-      std::move(read.boxes), listed, files.detections, &content.rejected, &content.findings);
+      std::move(read.boxes), listed, files.detections, &of_no_track, &content.findings);
   const auto images = ListImages(folder, files, options, boxes);
   content.class_names = std::move(read.class_names);
   if (!content.class_names.empty()) content.class_names_file = files.class_names;
@@ -83,13 +109,16 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   if (files.planes) content.planes = ReadPlanes(*files.planes);
   content.frames = ReadFolderFrames(folder, files, options, images, calibration.body_from_camera,
                                     &content.findings);
-  content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected);
+  content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected.counts);
   content.has_object_ids = HaveObjectIds(boxes);
   if (content.has_object_ids) MendLabels(listed, &content);
   if (camera.distortion) {
-    content.rows =
-        Undistorted(std::move(content.rows), camera.camera, *camera.distortion, &content.rejected);
+    content.rows = Undistorted(std::move(content.rows), camera.camera, *camera.distortion,
+                               &content.rejected.counts);
   }
+  RejectBoxesOfNoTrack(of_no_track, images, camera, &content.rejected);
+  content.true_objects = TrueObjects(listed);
+  content.ignored = given.ignored;
   content.objects = ListObjects(files, listed, content.rows, content.planes);
   ReportMended(files, boxes.size(), &content);
   content.has_true_poses = files.groundtruth.has_value();

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -17,6 +18,8 @@
 #include "geometry/rigid3.h"
 #include "model/finding.h"
 #include "model/image_orientation.h"
+#include "model/rejected_detection.h"
+#include "model/truth.h"
 
 namespace soslam {
 
@@ -45,15 +48,6 @@ struct SupportPlane {
   // cost half n^T information n (1 / rad^2). None: the plane is given, and exact. Estimated planes
   // of one normal are parallel.
   std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
-};
-
-// Exact values of an object: for evaluation, and as a prior where a setting asks for it. Of an
-// object that moves, the landmark is where it was seen first.
-struct GroundTruth {
-  Landmark landmark_in_world;
-  bool mirror_symmetric = true;
-  bool mirror_symmetric_yz = false;
-  bool rotationally_symmetric = false;
 };
 
 // Object::plane_index where nobody has said yet what there is to stand on.
@@ -87,6 +81,8 @@ struct Detection {
   std::vector<Box> nearer_boxes = {};  // those beside, of files before version 1.6
   // Where the dataset says for each frame where the object is: exact, also while it moves.
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
+  // Which of Sequence::true_objects it is of, where the dataset says so.
+  std::optional<int> true_object_id = std::nullopt;
 };
 
 // A frame that no estimate may use, and what was detected there: to judge landmarks by. Boxes pass
@@ -116,6 +112,12 @@ struct Sequence {
   std::vector<Detection> detections;
   std::vector<HeldOutFrame> held_out;              // by frame id; none of them in `frames`
   std::map<std::string, int> rejected_detections;  // reason -> how many
+  // Those of them that are of a frame above, and have a place in its image.
+  std::vector<RejectedDetection> rejected = {};
+  std::vector<TrueObject> true_objects = {};       // by id
+  std::vector<TruthInFrame> truth_in_frames = {};  // by frame, then by object
+  std::vector<IgnoredThings> ignored = {};
+  OdometryWorld odometry_world = OdometryWorld::kOfTruth;
   // What does not fit what it should be, of the data and of the stages so far.
   std::vector<Finding> findings = {};
 
@@ -128,6 +130,14 @@ struct Sequence {
   const Camera& CameraOf(const Frame& frame) const { return frame.camera ? *frame.camera : camera; }
   const Camera& CameraOf(const Detection& detection) const { return CameraOf(FrameOf(detection)); }
 };
+
+// What becomes of a detection that a stage leaves out.
+inline RejectedDetection Rejected(const Sequence& sequence, const Detection& detection,
+                                  RejectingStage stage, std::string reason) {
+  return {detection.frame_index, sequence.ObjectOf(detection).label, detection.score,
+          detection.box,         detection.true_object_id,           stage,
+          std::move(reason)};
+}
 
 // The exact landmark of a detection's object as its camera sees it: as its frame's labels say, or
 // else the object's, seen from the true pose (or the estimated one, where there is no true pose).

@@ -17,11 +17,14 @@ Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate) {
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     sequence.objects[i].plane_index = estimate.objects[i].plane_index;
   }
+  constexpr const char* kReason = "no_support";
   const auto left_out = std::erase_if(sequence.detections, [&](const Detection& detection) {
-    return estimate.objects[static_cast<size_t>(detection.object_index)].reason ==
-           SupportReason::kNone;
+    const auto& support = estimate.objects[static_cast<size_t>(detection.object_index)];
+    if (support.reason != SupportReason::kNone) return false;
+    sequence.rejected.push_back(Rejected(sequence, detection, RejectingStage::kPlanes, kReason));
+    return true;
   });
-  if (left_out > 0) sequence.rejected_detections["no_support"] += static_cast<int>(left_out);
+  if (left_out > 0) sequence.rejected_detections[kReason] += static_cast<int>(left_out);
   for (Detection& detection : sequence.detections) {
     const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];

@@ -140,6 +140,7 @@ Sequence SyntheticSequence(const Scene& scene, bool noise) {
   for (const SceneObject& object : scene.objects) {
     sequence.objects.push_back(
         {object.id, object.label, object.plane_index, ObjectGroundTruth(scene, object)});
+    sequence.true_objects.push_back({object.id, object.label, ObjectGroundTruth(scene, object)});
   }
   for (const SimulatedBox& detection : simulation.detections) {
     const int plane_index = scene.objects[detection.object_index].plane_index;
@@ -152,6 +153,7 @@ Sequence SyntheticSequence(const Scene& scene, bool noise) {
          Transform(world_from_camera.Inverse(), scene.planes[plane_index].plane_in_world),
          {},
          {}});
+    sequence.detections.back().true_object_id = scene.objects[detection.object_index].id;
   }
   return sequence;
 }

@@ -142,8 +142,8 @@ TEST_F(EdgesFileTest, OtherKindsAndNewerVersionsAreRefused) {
     ExpectError<InputError>([&] { EdgesReader reader(WriteHeader(header)); }, words);
   };
   expect_refused(R"({"kind": "symmetry", "schema_version": [1, 0]})", {"symmetry", "edges"});
-  expect_refused(R"({"kind": "edges", "schema_version": [1, 7]})", {"edges", "[1, 7]", "[1, 6]"});
-  expect_refused(R"({"kind": "edges", "schema_version": [2, 0]})", {"edges", "[2, 0]", "[1, 6]"});
+  expect_refused(R"({"kind": "edges", "schema_version": [1, 8]})", {"edges", "[1, 8]", "[1, 7]"});
+  expect_refused(R"({"kind": "edges", "schema_version": [2, 0]})", {"edges", "[2, 0]", "[1, 7]"});
   expect_refused(R"({"kind": "edges", "schema_version": "1.0"})", {"schema_version", "1.0"});
   expect_refused(R"({"kind": "edges"})", {"header"});
   expect_refused("", {"header"});

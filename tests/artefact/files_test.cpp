@@ -107,6 +107,74 @@ TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
   EXPECT_EQ(read.held_out[0].boxes[0].box, held_out.boxes[0].box);
 }
 
+TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
+  GroundTruth truth{RandomLandmarkInCamera(), false, true, true};
+  sequence.true_objects = {{-3, "cup", truth, 0, true}, {7, "car", truth, 2, false}};
+  sequence.ignored = {{"mouse", std::nullopt}, {std::nullopt, RandomLandmarkInCamera()}};
+  sequence.odometry_world = OdometryWorld::kOwnWithScale;
+  sequence.detections[0].true_object_id = 7;
+  sequence.truth_in_frames = {{1, 7, RandomLandmarkInCamera()}};
+  sequence.rejected = {
+      {1, "cup", 0.25, {1, 2, 3, 4.5}, -3, RejectingStage::kImport, "near_border"},
+      {0, "bed", 0.5, {1, 2, 3, 4}, std::nullopt, RejectingStage::kAssociate, "near_border"},
+      {0, "cup", 0.5, {9, 2, 10, 4}, std::nullopt, RejectingStage::kPlanes, "no_support"}};
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file);
+  WriteSequence(again, read, {});
+  EXPECT_EQ(ReadText(file), ReadText(again));
+  ASSERT_EQ(read.true_objects.size(), 2u);
+  EXPECT_EQ(read.true_objects[1].id, 7);
+  EXPECT_EQ(read.true_objects[1].segment, 2);
+  EXPECT_FALSE(read.true_objects[1].is_static);
+  EXPECT_TRUE(read.true_objects[0].truth.rotationally_symmetric);
+  EXPECT_EQ(read.ignored.at(0).label, "mouse");
+  EXPECT_EQ(read.ignored.at(1).volume_in_world->half_axes,
+            sequence.ignored[1].volume_in_world->half_axes);
+  EXPECT_EQ(read.odometry_world, OdometryWorld::kOwnWithScale);
+  EXPECT_EQ(read.detections[0].true_object_id, 7);
+  ASSERT_EQ(read.truth_in_frames.size(), 1u);
+  EXPECT_EQ(read.truth_in_frames[0].frame_index, 1);
+  EXPECT_EQ(read.truth_in_frames[0].true_object_id, 7);
+  ExpectSame(read.truth_in_frames[0].landmark_in_camera,
+             sequence.truth_in_frames[0].landmark_in_camera);
+  ASSERT_EQ(read.rejected.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) {
+    const RejectedDetection &a = read.rejected[i], &b = sequence.rejected[i];
+    EXPECT_EQ(
+        std::tie(a.frame_index, a.label, a.score, a.box, a.true_object_id, a.stage, a.reason),
+        std::tie(b.frame_index, b.label, b.score, b.box, b.true_object_id, b.stage, b.reason));
+  }
+}
+
+TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
+  sequence.rejected = {{0, "cup", 0.5, {1, 2, 3, 4}, {}, RejectingStage::kImport, "low_box"}};
+  WriteSequence(file, sequence, {});
+  const nlohmann::json good = ParseJsonFile(file);
+  const auto refused = [&](size_t field, int value, std::vector<std::string> words) {
+    nlohmann::json edited = good;
+    edited["rejected"]["rows"][0][field] = value;
+    std::ofstream(file) << edited;
+    ExpectError<InputError>([&] { ReadSequence(file); }, words);
+  };
+  refused(0, 99999, {"frame", "99999"});
+  refused(1, 1, {"/rejected/rows/0/1 is 1; expected less than 1"});
+  refused(2, 7, {"/rejected/rows/0/2 is 7"});
+}
+
+TEST_F(ArtefactFilesTest, BeforeVersion17ObjectsSaidWhatIsTrue) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json edited = ParseJsonFile(file);
+  edited.erase("true_objects");
+  edited.erase("odometry_world");
+  std::ofstream(file) << edited;
+  const Sequence read = ReadSequence(file);
+  size_t with_truth = 0;
+  for (const Object& object : sequence.objects) with_truth += object.ground_truth ? 1 : 0;
+  ASSERT_GT(with_truth, 0u);
+  EXPECT_EQ(read.true_objects.size(), with_truth);
+  EXPECT_EQ(read.odometry_world, OdometryWorld::kOfTruth);
+}
+
 TEST_F(ArtefactFilesTest, SequenceComesBack) {
   WriteSequence(file, sequence, {});
   const Sequence read = ReadSequence(file);

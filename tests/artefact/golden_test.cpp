@@ -33,6 +33,9 @@ TEST(GoldenTest, Sequence10) {
     EXPECT_FALSE(frame.camera);
   }
   for (const Object& object : sequence.objects) EXPECT_TRUE(object.is_static);
+  EXPECT_EQ(sequence.true_objects.size(), 2u);  // of four objects
+  EXPECT_EQ(sequence.detections[0].true_object_id, sequence.ObjectOf(sequence.detections[0]).id);
+  EXPECT_TRUE(sequence.rejected.empty());
 }
 
 TEST(GoldenTest, Landmarks10) {
@@ -121,6 +124,25 @@ TEST(GoldenTest, Sequence12Segments) {
   EXPECT_FALSE(sequence.objects[1].is_static);
   ASSERT_EQ(sequence.detections.size(), 6u);
   EXPECT_EQ(sequence.detections[3].true_landmark_in_camera->Centre().z(), 12.01);
+}
+
+TEST(GoldenTest, Sequence17) {
+  const Sequence sequence = ReadSequence(kGolden / "sequence-1.7.json");
+  ASSERT_EQ(sequence.true_objects.size(), 3u);
+  EXPECT_EQ(sequence.true_objects[2].segment, 7);
+  EXPECT_FALSE(sequence.true_objects[1].is_static);
+  ASSERT_EQ(sequence.truth_in_frames.size(), 6u);
+  EXPECT_EQ(sequence.truth_in_frames[3].landmark_in_camera.Centre().z(), 12.01);
+  ASSERT_EQ(sequence.rejected.size(), 2u);
+  EXPECT_EQ(sequence.rejected[0].reason, "near_border");
+  EXPECT_FALSE(sequence.rejected[0].true_object_id);
+  EXPECT_EQ(sequence.rejected[1].stage, RejectingStage::kAssociate);
+  EXPECT_EQ(sequence.rejected[1].frame_index, 2);
+  EXPECT_EQ(sequence.rejected[1].true_object_id, 30000);
+  EXPECT_EQ(sequence.ignored.at(0).label, "van");
+  EXPECT_TRUE(sequence.ignored.at(1).volume_in_world);
+  EXPECT_EQ(sequence.odometry_world, OdometryWorld::kOwn);
+  EXPECT_EQ(sequence.detections[0].true_object_id, 30000);
 }
 
 TEST(GoldenTest, Run14) {

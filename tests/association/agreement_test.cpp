@@ -108,6 +108,10 @@ TEST(AssociatedSequenceTest, ObjectsAreTheFoundOnesWithTheGroundTruthOfTheGiven)
   EXPECT_EQ(associated.detections[0].object_index, 1);
   EXPECT_EQ(associated.detections[5].object_index, 0);
   EXPECT_EQ(associated.rejected_detections.at("too_few_detections"), 1);
+  ASSERT_EQ(associated.rejected.size(), 1u);
+  EXPECT_EQ(associated.rejected[0].stage, RejectingStage::kAssociate);
+  EXPECT_EQ(associated.rejected[0].reason, "too_few_detections");
+  EXPECT_EQ(associated.rejected[0].frame_index, given.detections[6].frame_index);
 }
 
 TEST(AssociatedSequenceTest, MovingObjectsAreNotCountedAndGiveNoGroundTruth) {

@@ -78,5 +78,24 @@ TEST_F(CameraJsonTest, UnknownKeysOfPlanesAndObjectsAreRefused) {
   }
 }
 
+TEST_F(CameraJsonTest, IgnoredThingsSayWhatTheyAre) {
+  const auto refused = [&](const std::string& text, std::vector<std::string> words) {
+    WriteBytes(folder_ / "objects.json", text);
+    ExpectError<InputError>([&] { ReadObjects(folder_ / "objects.json"); }, words);
+  };
+  refused(R"({"objects": [], "ignored": [{"comment": "?"}]})",
+          {"objects.json#/ignored[0]: says nothing", "a label, or center"});
+  refused(R"({"objects": [], "ignored": [{"label": "cup", "center": [0, 0, 0]}]})",
+          {"objects.json#/ignored[0]: quaternion_xyzw is missing"});
+  refused(R"({"objects": [], "ignored": [{"label": "cup", "size": 3}]})",
+          {"#/ignored[0]: unknown key \"size\"", "half_axes"});
+  refused(R"({"objects": [], "ignored": {"label": "cup"}})", {"#/ignored: is not a list"});
+  refused(R"({"ignored": []})", {"objects is missing"});
+  refused(R"({"objects": [], "ignore": []})", {"unknown key \"ignore\"", "\"ignored\"?"});
+  refused(R"({"objects": [{"id": 0}]})", {"objects.json#/objects[0]: label is missing"});
+  refused(R"([{"id": 0, "label": "cup", "ignored": true}])", {"listed beside the objects"});
+  refused(R"("cup")", {"objects.json: is not a list"});
+}
+
 }  // namespace
 }  // namespace soslam

@@ -296,6 +296,74 @@ TEST_F(ImportTest, BoxesThatAreNotUsedHideLowerEdgesUnlessTheyMayNotBeReal) {
   EXPECT_EQ(Import().detections[1].is_bound, lower_edge);
 }
 
+TEST_F(ImportTest, WhatIsTrueStaysWithoutIds) {
+  const Sequence with_ids = Import();
+  ASSERT_EQ(with_ids.true_objects.size(), 1u);
+  EXPECT_EQ(with_ids.detections[0].true_object_id, 1);
+  EXPECT_FALSE(with_ids.detections[1].true_object_id);  // box 2 is not in objects.json
+  dataset.files["detections.csv"] =
+      "frame,label,score,x1,y1,x2,y2\n0,cup,0.9,100,100,200,200\n1,cup,0.9,100,100,200,200\n";
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.true_objects.size(), 1u);
+  EXPECT_EQ(sequence.true_objects[0].id, 1);
+  EXPECT_EQ(sequence.true_objects[0].label, "cup");
+  EXPECT_EQ(sequence.true_objects[0].truth.landmark_in_world.Centre(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(sequence.objects.at(0).ground_truth);
+  EXPECT_FALSE(sequence.detections.at(0).true_object_id);
+}
+
+TEST_F(ImportTest, RejectedDetectionsOfUsedFramesStay) {
+  dataset.files["detections.csv"] +=
+      "0,1,cup,0.95,110,100,200,200\n2,1,cup,0.7,10,100,200,200\n3,,sofa,0.2,50,100,200,200\n";
+  options.first_frame = 1;
+  const Sequence sequence = Import();
+  EXPECT_THAT(sequence.rejected_detections,
+              ElementsAre(Pair("frame_not_used", 3), Pair("near_border", 1),
+                          Pair("too_few_observations", 2), Pair("without_object_id", 1)));
+  ASSERT_EQ(sequence.rejected.size(), 4u);
+  const auto of_reason = [&](const std::string& reason) {
+    return *std::ranges::find(sequence.rejected, reason, &RejectedDetection::reason);
+  };
+  const RejectedDetection border = of_reason("near_border");
+  EXPECT_EQ(border.frame_index, 1);
+  EXPECT_EQ(border.score, 0.7);
+  EXPECT_EQ(border.box.x_min, 10.0);
+  EXPECT_EQ(border.true_object_id, 1);
+  EXPECT_EQ(border.stage, RejectingStage::kImport);
+  const RejectedDetection of_no_track = of_reason("without_object_id");
+  EXPECT_EQ(of_no_track.label, "sofa");
+  EXPECT_FALSE(of_no_track.true_object_id);
+}
+
+TEST_F(ImportTest, HeldOutFramesKeepNoRejectedDetections) {
+  dataset.files["detections.csv"] += "1,1,cup,0.7,10,100,200,200\n2,1,cup,0.7,10,100,200,200\n";
+  options.held_out = HeldOutFrames::kOdd;
+  const Sequence sequence = Import();
+  ASSERT_EQ(sequence.rejected.size(), 1u);
+  EXPECT_EQ(sequence.frames.at(static_cast<size_t>(sequence.rejected[0].frame_index)).id, 2);
+}
+
+TEST_F(ImportTest, WhatNobodyMeasuredIsIgnored) {
+  std::string& objects = dataset.files["objects.json"];
+  objects = R"({"objects": )" + objects + R"(, "ignored": [{"label": "mouse"},
+      {"label": "cup", "center": [1, 0, 0], "quaternion_xyzw": [0, 0, 0, 1],
+       "half_axes": [1, 2, 3]}]})";
+  const Sequence sequence = Import();
+  EXPECT_EQ(sequence.true_objects.size(), 1u);
+  ASSERT_EQ(sequence.ignored.size(), 2u);
+  EXPECT_EQ(sequence.ignored[0].label, "mouse");
+  EXPECT_FALSE(sequence.ignored[0].volume_in_world);
+  EXPECT_EQ(sequence.ignored[1].volume_in_world->half_axes, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST_F(ImportTest, TheWorldOfTheOdometryIsWhatTheSettingsSay) {
+  EXPECT_EQ(Import().odometry_world, OdometryWorld::kOfTruth);
+  options.folder.align_odometry = true;
+  EXPECT_EQ(Import().odometry_world, OdometryWorld::kOwn);
+  options.folder.odometry_has_own_scale = true;
+  EXPECT_EQ(Import().odometry_world, OdometryWorld::kOwnWithScale);
+}
+
 TEST_F(ImportTest, NothingUsableSaysWhy) {
   options.border_px = 150.0;
   try {

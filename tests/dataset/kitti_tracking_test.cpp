@@ -104,6 +104,23 @@ TEST_F(KittiTrackingTest, DetectionsAreTheLabelsWithTheTruthOfTheirFrame) {
   EXPECT_NEAR(driving.plane_in_camera.offset, 1.7 - 0.02, 1e-9);
 }
 
+TEST_F(KittiTrackingTest, WhatIsTrueDoesNotDependOnWhatIsDetected) {
+  const Sequence all = Import();
+  EXPECT_EQ(all.true_objects.size(), all.objects.size());
+  EXPECT_EQ(all.true_objects.back().segment, 7);
+  EXPECT_EQ(all.truth_in_frames.size(), all.detections.size());  // a label each
+  for (const Detection& detection : all.detections) {
+    EXPECT_EQ(detection.true_object_id, all.ObjectOf(detection).id);
+  }
+  options.max_occlusion = 0;
+  options.labels = "car, van";
+  const Sequence some = Import();
+  EXPECT_EQ(some.truth_in_frames.size(), all.truth_in_frames.size());
+  ASSERT_EQ(some.rejected.size(), 1u);
+  EXPECT_EQ(some.rejected[0].reason, "other_label");
+  EXPECT_TRUE(some.rejected[0].true_object_id);
+}
+
 TEST_F(KittiTrackingTest, SomeRecordingsOnly) {
   options.kitti.sequences = "0005-0009";
   EXPECT_EQ(Import().frames.size(), 4u);
@@ -151,6 +168,9 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
   EXPECT_NEAR(detection.box.y_max, parked.y_max + 2, 1e-3);
   EXPECT_NEAR(detection.true_landmark_in_camera->Centre().z(), 12.01, 1e-9);
   EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("matches_no_label", 3)));
+  ASSERT_EQ(sequence.rejected.size(), 3u);
+  EXPECT_EQ(sequence.rejected[0].label, "car");
+  EXPECT_EQ(sequence.frames[static_cast<size_t>(sequence.rejected[0].frame_index)].id, 30001);
 
   fixture.files["rrc/Car/0007.txt"] = "0,1,2,3\n";
   ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt:1", "4 fields"});

@@ -193,6 +193,9 @@ TEST_F(RunPlanesTest, WhatIsOnAWallIsLeftOutAndCounted) {
     const auto left_out =
         std::ranges::count(sequence_.detections, first.object_index, &Detection::object_index);
     EXPECT_EQ(output.rejected_detections.at("no_support"), left_out);
+    EXPECT_EQ(
+        std::ranges::count(output.rejected, RejectingStage::kPlanes, &RejectedDetection::stage),
+        left_out);
     EXPECT_EQ(output.detections.size() + static_cast<size_t>(left_out),
               sequence_.detections.size());
     EXPECT_EQ(std::ranges::count(output.detections, first.object_index, &Detection::object_index),
