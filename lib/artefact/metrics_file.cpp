@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/metrics_file.h"
 
+#include "artefact/map_quality_json.h"
+
 namespace soslam {
 namespace {
 
@@ -68,7 +70,12 @@ void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
                           {"odometry_ate_rmse_m", metrics.trajectory->odometry_ate_rmse_m}};
   }
   if (metrics.held_out) body["held_out"] = ToJson(*metrics.held_out, sequence);
-  WriteArtefact(path, "metrics", info, std::move(body));
+  ArtefactInfo with_findings = info;
+  if (const auto& quality = metrics.map_quality) {
+    body["map_quality"] = MapQualityToJson(*quality, sequence);
+    with_findings.findings = quality->alignments.findings;
+  }
+  WriteArtefact(path, "metrics", with_findings, std::move(body));
 }
 
 }  // namespace soslam

@@ -2,26 +2,13 @@
 #include "evaluation/metrics.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 
-#include "evaluation/iou.h"
-#include "evaluation/rotation_error.h"
 #include "evaluation/statistics.h"
 #include "evaluation/trajectory_error.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-// The landmark turned about its z axis until its x axis points as the estimate's does.
-Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
-  const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
-                                (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());
-  return Turned(landmark, std::atan2(front.y(), front.x()));
-}
 
 // Means over an object's observations (or its one landmark of the map): one that gave no landmark
 // has IoU 0 and no angles.
@@ -106,25 +93,16 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
   return objects;
 }
 
-}  // namespace
-
-LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
-                                const Landmark& truth_in_frame) {
-  LandmarkErrors errors;
-  errors.centre_m = (estimate.Centre() - truth_in_frame.Centre()).norm();
-  if (truth.rotationally_symmetric) {
-    errors.iou = BoxIou(estimate, WithYawOf(estimate, truth_in_frame));
-    return errors;
-  }
-  const Eigen::Quaterniond& estimated = estimate.frame_from_object.rotation;
-  const Eigen::Quaterniond& exact = truth_in_frame.frame_from_object.rotation;
-  errors.iou = BoxIou(estimate, truth_in_frame);
-  errors.rotation_deg = kDegPerRad * RotationError(estimated, exact);
-  errors.yaw_deg = kDegPerRad * YawError(estimated, exact);
-  return errors;
+std::vector<Rigid3d> Odometry(const Sequence& sequence) {
+  std::vector<Rigid3d> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  return poses;
 }
 
-Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates) {
+}  // namespace
+
+Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
+                          AlignmentChoice alignment) {
   Metrics metrics;
   if (estimates.observations.empty()) {
     metrics.objects = EvaluateObjects(sequence, estimates.objects);
@@ -147,29 +125,31 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
     held_out_poses.push_back(held_out.frame.world_from_camera);
   }
   metrics.held_out = EvaluateHeldOut(sequence, estimates.objects, held_out_poses);
+  std::vector<Plane> planes;
+  for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
+  metrics.map_quality =
+      EvaluateMapQuality(sequence, estimates.objects, Odometry(sequence), planes, alignment);
   return metrics;
 }
 
-Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map) {
+Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentChoice alignment) {
   Metrics metrics;
   metrics.objects = EvaluateObjects(sequence, map.objects);
   metrics.summary = Summarise(metrics.objects);
   metrics.held_out =
       EvaluateHeldOut(sequence, map.objects, HeldOutPoses(sequence, map.world_from_camera));
+  metrics.map_quality = EvaluateMapQuality(sequence, map.objects, map.world_from_camera,
+                                           map.planes_in_world, alignment);
 
   // Segments have worlds of their own.
   if (!sequence.frames.empty() &&
       sequence.frames.front().segment != sequence.frames.back().segment) {
     return metrics;
   }
-  std::vector<Rigid3d> odometry;
   std::vector<std::optional<Rigid3d>> truth;
-  for (const Frame& frame : sequence.frames) {
-    odometry.push_back(frame.world_from_camera);
-    truth.push_back(frame.true_world_from_camera);
-  }
+  for (const Frame& frame : sequence.frames) truth.push_back(frame.true_world_from_camera);
   const auto optimised_error = AbsoluteTrajectoryError(map.world_from_camera, truth);
-  const auto odometry_error = AbsoluteTrajectoryError(odometry, truth);
+  const auto odometry_error = AbsoluteTrajectoryError(Odometry(sequence), truth);
   if (optimised_error && odometry_error) metrics.trajectory = {*optimised_error, *odometry_error};
   return metrics;
 }

@@ -5,19 +5,12 @@
 #include <vector>
 
 #include "evaluation/held_out.h"
+#include "evaluation/landmark_errors.h"
+#include "evaluation/map_quality.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
 
 namespace soslam {
-
-// Errors of one landmark. Rotation and yaw are absent for rotationally symmetric objects, whose yaw
-// has no meaning; IoU then takes the estimate's yaw for the truth.
-struct LandmarkErrors {
-  double iou = 0.0;
-  double centre_m = 0.0;
-  std::optional<double> rotation_deg;  // RotationError
-  std::optional<double> yaw_deg;       // YawError
-};
 
 // One ground-truth object: means over its observations (single frame), or its landmark's errors. An
 // observation or object without estimate counts with IoU 0 and has no angles.
@@ -51,16 +44,17 @@ struct Metrics {
   std::optional<MetricsSummary> first_observation;  // single-frame estimates only
   std::optional<TrajectoryMetrics> trajectory;      // maps only, where the true poses are known
   std::optional<HeldOutMetrics> held_out;           // where frames were held out
+  std::optional<MapQuality> map_quality;            // maps only, with true objects
 };
-
-LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
-                                const Landmark& truth_in_frame);
 
 // Single-frame estimates are compared in the frame of their camera, so that the trajectory's error
 // does not count, with the truth of that frame where there is one; estimates over several frames in
 // the world, where objects that move do not count. Neither do objects without ground truth, or with
-// fewer detections than one. The trajectory error is that of sequences in one segment.
-Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates);
-Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map);
+// fewer detections than one. The trajectory error is that of sequences in one segment. The
+// alignment is that of map_quality.
+Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
+                          AlignmentChoice alignment = AlignmentChoice::kAuto);
+Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map,
+                    AlignmentChoice alignment = AlignmentChoice::kAuto);
 
 }  // namespace soslam

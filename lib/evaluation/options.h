@@ -5,9 +5,22 @@
 
 namespace soslam {
 
-// The protocol of evaluation has no settings: numbers from different runs stay comparable.
+enum class AlignmentChoice { kAuto, kNone, kRigid, kSimilarity };
+inline constexpr const char* kAlignmentChoiceNames[] = {"auto", "none", "rigid", "similarity"};
+
+// The paper's protocol has no settings: numbers from different runs stay comparable.
 struct EvaluateOptions {
-  void Describe(OptionVisitor&) {}
+  AlignmentChoice alignment = AlignmentChoice::kAuto;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Comparison of maps");
+    visit.Choice(
+        "alignment", &alignment, kAlignmentChoiceNames,
+        "how a map is moved, for map_quality only, so that its camera centres fit the true "
+        "ones best: as a whole (rigid), also scaled (similarity), not at all (none); auto: "
+        "none where odometry and truth are in one world, rigid where the odometry has a "
+        "world of its own, similarity where it has a scale of its own");
+  }
 };
 
 }  // namespace soslam

@@ -11,11 +11,11 @@
 
 namespace soslam {
 
-double RotationError(const Eigen::Quaterniond& frame_from_estimate,
-                     const Eigen::Quaterniond& frame_from_truth) {
+NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
+                          const Eigen::Quaterniond& frame_from_truth) {
   const Eigen::Matrix3d truth_from_estimate =
       (frame_from_truth.conjugate() * frame_from_estimate).toRotationMatrix();
-  double smallest = std::numbers::pi;
+  NearestAxes nearest{Eigen::Matrix3d::Identity(), std::numbers::pi};
   std::array<int, 3> axes = {0, 1, 2};
   do {
     for (int signs = 0; signs < 8; ++signs) {
@@ -25,10 +25,16 @@ double RotationError(const Eigen::Quaterniond& frame_from_estimate,
       }
       if (cube.determinant() < 0.0) continue;
       const Eigen::Quaterniond difference(Eigen::Matrix3d(truth_from_estimate * cube));
-      smallest = std::min(smallest, LogRotation(difference.normalized()).norm());
+      const double angle = LogRotation(difference.normalized()).norm();
+      if (angle < nearest.angle) nearest = {cube, angle};
     }
   } while (std::next_permutation(axes.begin(), axes.end()));
-  return smallest;
+  return nearest;
+}
+
+double RotationError(const Eigen::Quaterniond& frame_from_estimate,
+                     const Eigen::Quaterniond& frame_from_truth) {
+  return NearestAxesOf(frame_from_estimate, frame_from_truth).angle;
 }
 
 double YawError(const Eigen::Quaterniond& frame_from_estimate,

@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace soslam {
+
+// Axes of a box named anew: the rotation (one of the 24 of the cube) from the new names to the old
+// ones that leaves the smallest angle (rad) to the axes of the truth.
+struct NearestAxes {
+  Eigen::Matrix3d old_from_new;
+  double angle = 0.0;
+};
+NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
+                          const Eigen::Quaterniond& frame_from_truth);
 
 // The paper's Rot, rad: the smallest rotation that brings the estimate's three axes onto any axes
 // of the truth, over the 24 rotations of the cube. It hides quarter turns.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Metrics: rows are objects.
+// Metrics: rows are objects, or landmarks where nobody says which object is which.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "artefact/json_file.h"
 #include "inspection/kinds.h"
+#include "inspection/map_quality_in_words.h"
 
 namespace soslam {
 namespace {
@@ -93,6 +96,10 @@ Inspection InspectMetrics(const std::filesystem::path& file) {
     add("trajectory", "trajectory", TrajectoryInWords);
     add("held out", "held_out", HeldOutInWords);
     inspection.table = ObjectTable(document);
+    if (const json quality = document.value("map_quality", json()); !quality.is_null()) {
+      std::ranges::move(MapQualityFacts(quality), std::back_inserter(inspection.facts));
+      if (inspection.table.rows.empty()) inspection.table = MapQualityTable(quality);
+    }
     return inspection;
   });
 }

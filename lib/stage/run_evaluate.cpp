@@ -9,6 +9,7 @@
 #include "artefact/metrics_file.h"
 #include "artefact/sequence_file.h"
 #include "evaluation/metrics.h"
+#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {
@@ -19,14 +20,27 @@ bool IsMap(const std::filesystem::path& path) {
          json["artefact"].contains("kind") && json["artefact"]["kind"] == "map";
 }
 
+void PrintQuality(const MapQuality& quality) {
+  for (const MapScore& score : quality.scores) {
+    fmt::print(
+        "IoU of at least {:g}: {} of {} true objects found ({} of {} detectable), {} of {} "
+        "landmarks right, {} ignored; mean IoU of the found {:.3f}\n",
+        score.min_iou, score.found, score.true_objects, score.found_detectable, score.detectable,
+        score.found, score.landmarks - score.ignored, score.ignored,
+        score.of_found.iou_mean.value_or(0.0));
+  }
+  ReportFindings("soslam-evaluate", quality.alignments.findings);
+}
+
 }  // namespace
 
 void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*threads*/) {
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const std::filesystem::path& landmarks = files.at("landmarks");
-  const Metrics metrics = IsMap(landmarks)
-                              ? EvaluateMap(sequence, ReadMap(landmarks, sequence))
-                              : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence));
+  const Metrics metrics =
+      IsMap(landmarks)
+          ? EvaluateMap(sequence, ReadMap(landmarks, sequence), options.alignment)
+          : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence), options.alignment);
   WriteMetrics(files.at("output"), metrics, sequence,
                {OptionsToJson(options), {files.at("sequence"), landmarks}});
   if (const auto& held_out = metrics.held_out) {
@@ -34,7 +48,10 @@ void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*
                held_out->detections_matched, held_out->detections,
                held_out->iou_mean.value_or(0.0));
   }
-  if (metrics.summary.objects == 0) {
+  if (metrics.map_quality) PrintQuality(*metrics.map_quality);
+  if (metrics.summary.objects == 0 && metrics.map_quality) {
+    fmt::print("no observed object has ground truth of its own id\n");
+  } else if (metrics.summary.objects == 0) {
     fmt::print("no observed object has ground truth: nothing to compare with\n");
   } else {
     fmt::print("{} objects, mean IoU {:.3f}\n", metrics.summary.objects,

@@ -143,6 +143,47 @@ TEST_F(InspectionTest, MetricsHaveARowPerObject) {
   EXPECT_EQ(At(inspection, 1, "held_out_iou"), 0.9);
 }
 
+TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
+  sequence_.true_objects = {{40, "cup", {}, 0, true}, {41, "mouse", {}, 0, true}};
+  Metrics metrics;
+  MapQuality& quality = metrics.map_quality.emplace();
+  quality.alignments.of_segment[0] = {
+      AlignmentKind::kSimilarity, CameraPath::kLine, 2.5, {}, 9, 0.0125};
+  quality.scores[0].min_iou = 0.25;
+  quality.scores[0].true_objects = 2;
+  quality.scores[0].landmarks = 3;
+  quality.scores[0].ignored = 1;
+  quality.scores[0].found = 1;
+  quality.scores[0].of_found.log_scale_mean = std::log(1.5);
+  quality.scores[1].min_iou = 0.5;
+  quality.objects = {{0, 5, true, 0},
+                     {1, 4, true, std::nullopt, Explanation{MapReason::kGated, "near_border 4"}}};
+  quality.misses[MapReason::kGated] = 1;
+  quality.landmarks.resize(3);
+  quality.landmarks[0].fate = LandmarkRow::Fate::kFound;
+  quality.landmarks[0].true_index = 0;
+  quality.landmarks[0].errors.emplace().iou = 0.75;
+  quality.landmarks[1].object_index = 1;
+  quality.landmarks[1].why_false = Explanation{MapReason::kBackground, ""};
+  quality.landmarks[2].object_index = 2;
+  quality.landmarks[2].fate = LandmarkRow::Fate::kIgnored;
+  WriteMetrics(File(), metrics, sequence_, {});
+  const Inspection inspection = Read();
+  EXPECT_EQ(Said(inspection, "alignment"),
+            "similarity, scale 2.5; cameras 0.0125 m from the true ones (9 frames, path: line)");
+  EXPECT_THAT(Said(inspection, "IoU >= 0.25"),
+              HasSubstr("1 of 2 objects found (0 of 0 detectable), 1 of 2 landmarks right, 1 "
+                        "ignored"));
+  EXPECT_THAT(Said(inspection, "found"), HasSubstr("size factor 1.500"));
+  EXPECT_EQ(Said(inspection, "missed"), "41 (mouse): gated; near_border 4");
+  EXPECT_THAT(Said(inspection, "false"), HasSubstr("background"));
+  ASSERT_EQ(inspection.table.rows.size(), 3u);
+  EXPECT_EQ(At(inspection, 0, "true_object"), 40);
+  EXPECT_EQ(At(inspection, 0, "iou"), 0.75);
+  EXPECT_EQ(At(inspection, 1, "reason"), "background");
+  EXPECT_EQ(At(inspection, 2, "fate"), "ignored");
+}
+
 TEST_F(InspectionTest, PlanesSayWhatStandsOnThem) {
   PlanesEstimate estimate;
   estimate.planes.resize(2);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "evaluation/map_quality.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// What metrics.json holds as "map_quality".
+nlohmann::json MapQualityToJson(const MapQuality& quality, const Sequence& sequence);
+
+}  // namespace soslam

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/alignment.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace soslam {
+namespace {
+
+// Below this root mean square distance from their mean, true camera centres are those of a camera
+// that stands still.
+constexpr double kStillM = 0.005;
+// Centres are on a line, as far as they can tell, when the second singular value of their
+// covariance is below this share of the first.
+constexpr double kLineShare = 1e-3;
+
+// Camera centres, and their means taken off.
+struct Centres {
+  Eigen::Matrix3Xd estimated, truth;
+  Eigen::Vector3d mean_estimated, mean_truth;
+
+  explicit Centres(const std::vector<PosePair>& pairs)
+      : estimated(3, pairs.size()), truth(3, pairs.size()) {
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      estimated.col(column) = pairs[i].estimated.translation;
+      truth.col(column) = pairs[i].truth.translation;
+    }
+    mean_estimated = estimated.rowwise().mean();
+    mean_truth = truth.rowwise().mean();
+  }
+  Eigen::Matrix3Xd CentredEstimated() const { return estimated.colwise() - mean_estimated; }
+  Eigen::Matrix3Xd CentredTruth() const { return truth.colwise() - mean_truth; }
+};
+
+CameraPath PathOf(const Centres& centres) {
+  if (centres.truth.cols() < 2) return CameraPath::kFewPoses;
+  const double root_count = std::sqrt(static_cast<double>(centres.truth.cols()));
+  const Eigen::Matrix3d covariance =
+      centres.CentredTruth() * centres.CentredEstimated().transpose();
+  const Eigen::Vector3d singular_values = covariance.jacobiSvd().singularValues();
+  if (centres.CentredTruth().norm() < kStillM * root_count || singular_values[0] <= 0.0) {
+    return CameraPath::kStill;
+  }
+  return singular_values[1] < kLineShare * singular_values[0] ? CameraPath::kLine
+                                                              : CameraPath::kGeneral;
+}
+
+// The rotation nearest to all that lead from an estimated to a true camera (chordal mean).
+Eigen::Matrix3d MeanRotation(const std::vector<PosePair>& pairs) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const auto& [estimated, truth] : pairs) {
+    sum += (truth.rotation * estimated.rotation.conjugate()).toRotationMatrix();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs(1.0, 1.0, 1.0);
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) signs.z() = -1.0;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+// The scale with the smallest squared distances after this rotation.
+double BestScale(const Centres& centres, const Eigen::Matrix3d& rotation) {
+  const Eigen::Matrix3Xd estimated = centres.CentredEstimated();
+  return centres.CentredTruth().cwiseProduct(rotation * estimated).sum() / estimated.squaredNorm();
+}
+
+double Rmse(const std::vector<PosePair>& pairs, const Alignment& alignment) {
+  double sum = 0.0;
+  for (const auto& [estimated, truth] : pairs) {
+    sum += (alignment.Apply(estimated.translation) - truth.translation).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(pairs.size()));
+}
+
+AlignmentKind ChosenKind(AlignmentChoice choice, const Sequence& sequence,
+                         const std::vector<PosePair>& odometry) {
+  constexpr size_t kFewest = 3;
+  switch (choice) {
+    case AlignmentChoice::kNone:
+      return AlignmentKind::kNone;
+    case AlignmentChoice::kRigid:
+      return AlignmentKind::kRigid;
+    case AlignmentChoice::kSimilarity:
+      return AlignmentKind::kSimilarity;
+    case AlignmentChoice::kAuto:
+      break;
+  }
+  if (odometry.size() < kFewest) return AlignmentKind::kNone;
+  if (sequence.odometry_world == OdometryWorld::kOwnWithScale) return AlignmentKind::kSimilarity;
+  if (sequence.odometry_world == OdometryWorld::kOwn) return AlignmentKind::kRigid;
+  if (AreInOneWorld(odometry)) return AlignmentKind::kNone;
+  return HaveSameScale(odometry) ? AlignmentKind::kRigid : AlignmentKind::kSimilarity;
+}
+
+Finding NotAsAsked(const Alignment& alignment, AlignmentKind asked, int segment) {
+  return {"alignment",
+          Severity::kWarning,
+          fmt::format("the map of segment {} is aligned as {}, not {}: {} frames with a true pose, "
+                      "path of the camera: {}",
+                      segment, kAlignmentKindNames[static_cast<size_t>(alignment.kind)],
+                      kAlignmentKindNames[static_cast<size_t>(asked)], alignment.frames,
+                      kCameraPathNames[static_cast<size_t>(alignment.path)]),
+          "true poses of a camera that moves",
+          "no ground truth of the trajectory, or a camera that stands still, which tells no scale",
+          "give groundtruth.txt of a camera that moves, or choose another alignment"};
+}
+
+}  // namespace
+
+Rigid3d Alignment::Apply(const Rigid3d& world_from_camera) const {
+  return truth_from_scaled *
+         Rigid3d{world_from_camera.rotation, scale * world_from_camera.translation};
+}
+
+Landmark Alignment::Apply(const Landmark& landmark_in_world) const {
+  Landmark moved = landmark_in_world;
+  moved.half_axes *= scale;
+  moved.frame_from_object = Apply(landmark_in_world.frame_from_object);
+  return moved;
+}
+
+Plane Alignment::Apply(const Plane& plane_in_world) const {
+  return Transform(truth_from_scaled, Plane{plane_in_world.normal, scale * plane_in_world.offset});
+}
+
+Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
+  Alignment alignment;
+  alignment.frames = static_cast<int>(pairs.size());
+  if (pairs.empty()) return alignment;
+  const Centres centres(pairs);
+  alignment.path = PathOf(centres);
+  if (kind != AlignmentKind::kNone) {
+    const bool is_general = alignment.path == CameraPath::kGeneral;
+    const bool has_scale = is_general || alignment.path == CameraPath::kLine;
+    const Eigen::Matrix3d rotation =
+        is_general
+            ? Eigen::Matrix3d(
+                  Eigen::umeyama(centres.estimated, centres.truth, false).topLeftCorner<3, 3>())
+            : MeanRotation(pairs);
+    alignment.kind = AlignmentKind::kRigid;
+    if (kind == AlignmentKind::kSimilarity && has_scale) {
+      const double scale = BestScale(centres, rotation);
+      if (scale > 0.0) {
+        alignment.kind = kind;
+        alignment.scale = scale;
+      }
+    }
+    alignment.truth_from_scaled = {
+        Eigen::Quaterniond(rotation).normalized(),
+        centres.mean_truth - alignment.scale * (rotation * centres.mean_estimated)};
+  }
+  alignment.rmse_m = Rmse(pairs, alignment);
+  return alignment;
+}
+
+Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
+                         AlignmentChoice choice) {
+  struct Segment {
+    std::vector<PosePair> odometry, estimated;
+  };
+  std::map<int, Segment> segments;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const Frame& frame = sequence.frames[i];
+    Segment& segment = segments[frame.segment];
+    if (!frame.true_world_from_camera) continue;
+    segment.odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
+    segment.estimated.push_back({world_from_camera[i], *frame.true_world_from_camera});
+  }
+  Alignments alignments;
+  for (const auto& [segment, poses] : segments) {
+    const AlignmentKind asked = ChosenKind(choice, sequence, poses.odometry);
+    const Alignment alignment = Align(poses.estimated, asked);
+    alignments.of_segment[segment] = alignment;
+    if (alignment.kind != asked) {
+      alignments.findings.push_back(NotAsAsked(alignment, asked, segment));
+    }
+  }
+  return alignments;
+}
+
+}  // namespace soslam

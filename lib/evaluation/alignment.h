@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "evaluation/options.h"
+#include "evaluation/trajectory_gap.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+#include "model/finding.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+enum class AlignmentKind { kNone, kRigid, kSimilarity };
+inline constexpr const char* kAlignmentKindNames[] = {"none", "rigid", "similarity"};
+
+// What the camera centres of two trajectories, compared, determine of a motion.
+enum class CameraPath {
+  kGeneral,   // all of it
+  kLine,      // all but the rotation about a line
+  kStill,     // neither rotation nor scale
+  kFewPoses,  // nothing: there is none, or one
+};
+inline constexpr const char* kCameraPathNames[] = {"general", "line", "still", "few_poses"};
+
+// How estimates are moved onto the truth: x -> truth_from_scaled * (scale * x).
+struct Alignment {
+  AlignmentKind kind = AlignmentKind::kNone;
+  CameraPath path = CameraPath::kFewPoses;
+  double scale = 1.0;
+  Rigid3d truth_from_scaled;
+  int frames = 0;  // with an estimated and a true pose
+  std::optional<double> rmse_m =
+      std::nullopt;  // of the camera centres, aligned; none without frames
+
+  Eigen::Vector3d Apply(const Eigen::Vector3d& point) const {
+    return truth_from_scaled * (scale * point);
+  }
+  Rigid3d Apply(const Rigid3d& world_from_camera) const;
+  Landmark Apply(const Landmark& landmark_in_world) const;
+  Plane Apply(const Plane& plane_in_world) const;
+};
+
+// The alignment with the smallest root mean square distance of camera centres (Umeyama). Where
+// these do not determine the rotation, it is the mean of what the cameras' rotations say. A
+// similarity whose scale they do not determine is refused: it becomes rigid.
+Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind);
+
+// By segment: each has a world of its own. `world_from_camera`: the estimates, one per
+// Sequence::frames. Why an alignment is not as asked for becomes a finding.
+struct Alignments {
+  std::map<int, Alignment> of_segment;
+  std::vector<Finding> findings = {};
+};
+Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
+                         AlignmentChoice choice);
+
+}  // namespace soslam

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/body_errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "evaluation/landmark_errors.h"
+#include "evaluation/rotation_error.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+Eigen::Vector3d Up(const Landmark& landmark) {
+  return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+}
+
+// The middle of what it stands on.
+Eigen::Vector3d Foot(const Landmark& landmark) {
+  return landmark.Centre() - landmark.half_axes.z() * Up(landmark);
+}
+
+Landmark WithFootAt(Landmark landmark, const Eigen::Vector3d& foot) {
+  landmark.frame_from_object.translation = foot + landmark.half_axes.z() * Up(landmark);
+  return landmark;
+}
+
+Landmark WithSizeOf(const Landmark& truth, const Landmark& estimate) {
+  Landmark corrected = estimate;
+  corrected.half_axes = truth.half_axes;
+  return WithFootAt(corrected, Foot(estimate));
+}
+
+Landmark WithYawOf(const Landmark& truth, const Landmark& estimate) {
+  const Eigen::Vector3d front = estimate.frame_from_object.rotation.conjugate() *
+                                (truth.frame_from_object.rotation * Eigen::Vector3d::UnitX());
+  return Turned(estimate, std::atan2(front.y(), front.x()));
+}
+
+Landmark WithPlaceOf(const Landmark& truth, const Landmark& estimate) {
+  const Eigen::Vector3d up = Up(truth);
+  const Eigen::Vector3d shift = Foot(truth) - Foot(estimate);
+  return WithFootAt(estimate, Foot(estimate) + shift - up.dot(shift) * up);
+}
+
+Landmark Upright(const Landmark& truth, const Landmark& estimate) {
+  Landmark corrected = estimate;
+  corrected.frame_from_object.rotation =
+      (Eigen::Quaterniond::FromTwoVectors(Up(estimate), Up(truth)) *
+       estimate.frame_from_object.rotation)
+          .normalized();
+  return WithFootAt(corrected, Foot(estimate));
+}
+
+Landmark StraightOntoPlane(const Landmark& truth, const Landmark& estimate) {
+  const double height = PlaneUnder(truth).SignedDistance(Foot(estimate));
+  return WithFootAt(Upright(truth, estimate), Foot(estimate) - height * Up(truth));
+}
+
+// None where the line of sight does not lead there.
+std::optional<Landmark> AlongSightOntoPlane(const Landmark& truth, const Landmark& estimate,
+                                            const Eigen::Vector3d& camera_centre) {
+  const Plane plane = PlaneUnder(truth);
+  const double camera_height = plane.SignedDistance(camera_centre);
+  const double factor = camera_height / (camera_height - plane.SignedDistance(Foot(estimate)));
+  if (!std::isfinite(factor) || factor <= 0.0) return std::nullopt;
+  Landmark corrected = Upright(truth, estimate);
+  corrected.half_axes *= factor;
+  return WithFootAt(corrected, camera_centre + factor * (Foot(estimate) - camera_centre));
+}
+
+}  // namespace
+
+Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
+  const Eigen::Quaterniond& rotation = estimate.frame_from_object.rotation;
+  const Eigen::Matrix3d old_from_new =
+      NearestAxesOf(rotation, truth.frame_from_object.rotation).old_from_new;
+  Landmark named = estimate;
+  named.frame_from_object.rotation = (rotation * Eigen::Quaterniond(old_from_new)).normalized();
+  named.half_axes = old_from_new.cwiseAbs().transpose() * estimate.half_axes;
+  return named;
+}
+
+BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
+                         const Landmark& truth_in_frame) {
+  const Landmark named = NamedLike(estimate, truth_in_frame);
+  const LandmarkErrors own = CompareLandmarks(estimate, truth, truth_in_frame);
+  BodyErrors errors;
+  errors.iou = own.iou;
+  errors.centre_m = own.centre_m;
+  errors.centre_relative = own.centre_m / (2.0 * std::cbrt(truth_in_frame.half_axes.prod()));
+  errors.log_size = named.half_axes.cwiseQuotient(truth_in_frame.half_axes).array().log();
+  errors.log_scale = errors.log_size.mean();
+  const Eigen::Vector3d up_in_truth =
+      truth_in_frame.frame_from_object.rotation.conjugate() * Up(named);
+  errors.up_deg = kDegPerRad * std::atan2(up_in_truth.head<2>().norm(), up_in_truth.z());
+  if (truth.rotationally_symmetric) return errors;
+  errors.yaw_deg = kDegPerRad * YawError(named.frame_from_object.rotation,
+                                         truth_in_frame.frame_from_object.rotation);
+  const Eigen::Vector3d front = named.frame_from_object.rotation.conjugate() *
+                                (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());
+  errors.is_quarter_turned = std::abs(front.y()) > 0.5;
+  return errors;
+}
+
+WrongPart FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
+                        const Landmark& truth_in_frame, const Eigen::Vector3d& camera_centre) {
+  const Landmark named = NamedLike(estimate, truth_in_frame);
+  const auto iou = [&](const Landmark& corrected) {
+    return CompareLandmarks(corrected, truth, truth_in_frame).iou;
+  };
+  double on_plane = iou(StraightOntoPlane(truth_in_frame, named));
+  if (const auto along = AlongSightOntoPlane(truth_in_frame, named, camera_centre)) {
+    on_plane = std::max(on_plane, iou(*along));
+  }
+  const std::array candidates = {
+      WrongPart{BodyPart::kPlane, on_plane},
+      WrongPart{BodyPart::kSize, iou(WithSizeOf(truth_in_frame, named))},
+      WrongPart{BodyPart::kYaw, iou(WithYawOf(truth_in_frame, named))},
+      WrongPart{BodyPart::kPlace, iou(WithPlaceOf(truth_in_frame, named))}};
+  return *std::ranges::max_element(candidates, {}, &WrongPart::iou);
+}
+
+}  // namespace soslam

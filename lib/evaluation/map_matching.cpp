@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/map_matching.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/assignment.h"
+#include "evaluation/landmark_errors.h"
+
+namespace soslam {
+namespace {
+
+// Its centre, and so about half of it at least.
+bool IsInside(const Landmark& volume, const Landmark& landmark) {
+  const Eigen::Vector3d centre = volume.frame_from_object.Inverse() * landmark.Centre();
+  return (centre.cwiseAbs().array() <= volume.half_axes.array()).all();
+}
+
+}  // namespace
+
+Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map) {
+  Eigen::MatrixXd ious =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(map.landmarks.size()),
+                            static_cast<Eigen::Index>(sequence.true_objects.size()));
+  for (Eigen::Index row = 0; row < ious.rows(); ++row) {
+    const AlignedLandmark& landmark = map.landmarks[static_cast<size_t>(row)];
+    for (Eigen::Index column = 0; column < ious.cols(); ++column) {
+      const TrueObject& object = sequence.true_objects[static_cast<size_t>(column)];
+      if (!object.is_static || object.segment != landmark.segment) continue;
+      const Landmark& truth = object.truth.landmark_in_world;
+      const double reach = landmark.landmark_in_world.half_axes.norm() + truth.half_axes.norm();
+      if ((landmark.landmark_in_world.Centre() - truth.Centre()).norm() > reach) continue;
+      ious(row, column) = CompareLandmarks(landmark.landmark_in_world, object.truth, truth).iou;
+    }
+  }
+  return ious;
+}
+
+std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou) {
+  const Eigen::MatrixXd costs = ious.unaryExpr([&](double iou) {
+    return iou >= min_iou ? 1.0 - iou : std::numeric_limits<double>::infinity();
+  });
+  return Assign(costs, Eigen::VectorXd::Ones(ious.rows()));
+}
+
+bool IsIgnored(const std::vector<IgnoredThings>& ignored, const std::string& label,
+               const Landmark& landmark_in_world) {
+  return std::ranges::any_of(ignored, [&](const IgnoredThings& things) {
+    if (things.label && *things.label != label) return false;
+    return !things.volume_in_world || IsInside(*things.volume_in_world, landmark_in_world);
+  });
+}
+
+}  // namespace soslam

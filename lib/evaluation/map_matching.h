@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "evaluation/aligned_map.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Intersections over unions of boxes in the world: rows are the map's landmarks, columns the true
+// objects that stand still, others and those of other segments have 0. Bodies of rotation take the
+// landmark's yaw.
+Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map);
+
+// The true object of each landmark, or kUnassigned: one to one, so that the sum of their IoUs is
+// largest, among pairs with at least this IoU. Labels and ids are not looked at.
+std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou);
+
+// Whether a landmark that matches no true object is neither right nor wrong: its label is ignored,
+// or its centre is in an ignored volume (as that of any landmark is of which more than half is).
+bool IsIgnored(const std::vector<IgnoredThings>& ignored, const std::string& label,
+               const Landmark& landmark_in_world);
+
+}  // namespace soslam

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "evaluation/aligned_map.h"
+#include "evaluation/body_errors.h"
+#include "evaluation/map_reasons.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// A map against all that is truly there, whoever says which detections are of which object.
+
+// The intersections over unions from which on a landmark is the true object that it is matched
+// with. Rows and reasons are those of the first.
+inline constexpr std::array kMapIous = {0.25, 0.5};
+
+// A landmark and its true object as the cameras see them that observed it, means over these
+// observations: estimated landmark by estimated pose against true landmark by true pose, or as the
+// dataset says of the frame.
+struct InFrames {
+  int observations = 0;
+  double iou = 0.0;
+  double centre_m = 0.0;
+};
+
+// A true object that stands still.
+struct TrueObjectRow {
+  int true_index = 0;       // into Sequence::true_objects
+  int detected_frames = 0;  // with a raw detection at its place
+  bool is_detectable = false;
+  std::optional<int> landmark = std::nullopt;      // that it matches, into AlignedMap::landmarks
+  std::optional<Explanation> miss = std::nullopt;  // why there is none
+};
+
+// A landmark of the map, with what it is compared with, if anything.
+struct LandmarkRow {
+  int object_index = 0;  // into Sequence::objects
+  enum class Fate { kFound, kIgnored, kFalse } fate = Fate::kFalse;
+  std::optional<int> true_index = std::nullopt;     // of found ones, and of false ones to blame
+  std::optional<BodyErrors> errors = std::nullopt;  // against that
+  std::optional<WrongPart> wrong = std::nullopt;    // of found ones
+  // Of the plane it stands on against that of the true object: the distance (m) of the true foot
+  // from it, and the angle.
+  std::optional<double> plane_offset_m = std::nullopt, plane_tilt_deg = std::nullopt;
+  bool label_agrees = false;
+  std::optional<bool> id_agrees = std::nullopt;  // of most of its boxes, where the dataset says it
+  std::optional<InFrames> in_frames = std::nullopt;
+  std::optional<Explanation> why_false = std::nullopt;
+};
+inline constexpr const char* kLandmarkFateNames[] = {"found", "ignored", "false"};
+
+// Over the found of one threshold.
+struct FoundSummary {
+  std::optional<double> iou_mean, centre_m_mean, centre_relative_mean;
+  std::array<std::optional<double>, 3> log_size_mean, log_size_abs_mean;
+  std::optional<double> log_scale_mean, log_scale_abs_mean;
+  std::optional<double> yaw_deg_mean, up_deg_mean;
+  int quarter_turned = 0;
+  int labels_agree = 0;
+  int ids_known = 0;
+  int ids_agree = 0;
+};
+
+struct MapScore {
+  double min_iou = 0.0;
+  int true_objects = 0;
+  int detectable = 0;
+  int landmarks = 0;  // ignored ones included
+  int ignored = 0;
+  int found = 0;
+  int found_detectable = 0;
+  std::optional<double> precision, recall, f1;                   // of all true objects
+  std::optional<double> recall_of_detectable, f1_of_detectable;  // the others as if ignored
+  FoundSummary of_found;
+};
+
+// Means over the landmarks that are compared in frames: the found ones, and those of an object's
+// boxes that are wrong in the world, as drift makes them.
+struct DriftSummary {
+  int landmarks = 0;
+  std::optional<double> iou_in_frames, iou_in_world;
+  std::optional<double> centre_m_in_frames, centre_m_in_world;
+};
+
+struct MapQuality {
+  Alignments alignments;
+  std::array<MapScore, kMapIous.size()> scores;
+  DriftSummary in_frames;
+  std::vector<TrueObjectRow> objects;
+  std::vector<LandmarkRow> landmarks;  // as AlignedMap::landmarks
+  std::map<MapReason, int> misses, false_landmarks;
+};
+
+// None without true objects that stand still, and for estimates that are no map, as none is of an
+// object. `world_from_camera` and `planes_in_world` as in MapEstimate.
+std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
+                                             const std::vector<ObjectEstimate>& estimates,
+                                             const std::vector<Rigid3d>& world_from_camera,
+                                             const std::vector<Plane>& planes_in_world,
+                                             AlignmentChoice alignment);
+
+}  // namespace soslam

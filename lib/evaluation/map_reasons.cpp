@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/map_reasons.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace soslam {
+namespace {
+
+// How many of each kind of thing there are; ordered, so that equals have a first one.
+template <typename Kind>
+using Counts = std::map<Kind, int>;
+
+// The first of those that there are most of; none of nothing.
+template <typename Kind>
+std::optional<std::pair<Kind, int>> Most(const Counts<Kind>& counts) {
+  const auto most = std::ranges::max_element(
+      counts, {}, [](const auto& kind_and_count) { return kind_and_count.second; });
+  return most == counts.end() ? std::nullopt : std::optional<std::pair<Kind, int>>(*most);
+}
+
+template <typename Kind>
+int Sum(const Counts<Kind>& counts) {
+  int sum = 0;
+  for (const auto& [kind, count] : counts) sum += count;
+  return sum;
+}
+
+std::optional<int> LandmarkOfObject(const AlignedMap& map, int object_index) {
+  const auto found = std::ranges::find(map.landmarks, object_index, &AlignedLandmark::object_index);
+  if (found == map.landmarks.end()) return std::nullopt;
+  return static_cast<int>(found - map.landmarks.begin());
+}
+
+std::optional<int> LandmarkOfTruth(const ReasonInput& input, int true_index) {
+  const auto found = std::ranges::find(input.truth_of_landmark, true_index);
+  if (found == input.truth_of_landmark.end()) return std::nullopt;
+  return static_cast<int>(found - input.truth_of_landmark.begin());
+}
+
+// Whose boxes an object's are, by Sequence::true_objects.
+struct Owners {
+  int boxes = 0;
+  Counts<int> of_truth;
+
+  // Whose more than half of them are.
+  std::optional<int> Majority() const {
+    const auto most = Most(of_truth);
+    return most && 2 * most->second > boxes ? std::optional(most->first) : std::nullopt;
+  }
+  bool AreMixed() const { return !Majority() && 2 * Sum(of_truth) > boxes; }
+};
+
+Owners OwnersOf(const ReasonInput& input, int object_index) {
+  Owners owners;
+  for (size_t i = 0; i < input.sequence.detections.size(); ++i) {
+    if (input.sequence.detections[i].object_index != object_index) continue;
+    ++owners.boxes;
+    if (const auto owner = input.views.object_of_detection[i]) ++owners.of_truth[*owner];
+  }
+  return owners;
+}
+
+std::string InWords(const Sequence& sequence, const Counts<int>& of_truth) {
+  std::vector<std::string> words;
+  for (const auto& [index, count] : of_truth) {
+    const TrueObject& object = sequence.true_objects[static_cast<size_t>(index)];
+    words.push_back(fmt::format("{} of {} ({})", count, object.id, object.label));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+MapReason ReasonOf(BodyPart part) {
+  switch (part) {
+    case BodyPart::kPlane:
+      return MapReason::kWrongPlane;
+    case BodyPart::kSize:
+      return MapReason::kWrongSize;
+    case BodyPart::kYaw:
+      return MapReason::kWrongYaw;
+    default:
+      return MapReason::kWrongPlace;
+  }
+}
+
+Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
+  const WrongPart wrong = PartToBlame(input.sequence, input.map, landmark, true_index);
+  const TrueObject& object = input.sequence.true_objects[static_cast<size_t>(true_index)];
+  const BodyErrors errors =
+      CompareBodies(input.map.landmarks[static_cast<size_t>(landmark)].landmark_in_world,
+                    object.truth, object.truth.landmark_in_world);
+  return {ReasonOf(wrong.part),
+          fmt::format("IoU {:.3f}, {:.3f} with the true {}; centre {:.3f} m, size {:+.0f} %, up "
+                      "{:.1f} deg, yaw {}",
+                      errors.iou, wrong.iou, kBodyPartNames[static_cast<size_t>(wrong.part)],
+                      errors.centre_m, 100.0 * std::expm1(errors.log_scale), errors.up_deg,
+                      errors.yaw_deg ? fmt::format("{:.1f} deg", *errors.yaw_deg) : "-"),
+          true_index};
+}
+
+// The boxes at the place of a true object: by object of those in use, by reason of the others.
+struct Fates {
+  std::set<int> frames, frames_in_use;
+  Counts<int> by_object;
+  Counts<std::pair<bool, std::string>> by_reason;  // whether by association; reason
+};
+
+Fates FatesOf(const ReasonInput& input, int true_index) {
+  Fates fates;
+  for (const TrueView& view : input.views.of_object[static_cast<size_t>(true_index)]) {
+    fates.frames.insert(view.frame_index);
+    if (view.detection_index) {
+      const auto index = static_cast<size_t>(*view.detection_index);
+      ++fates.by_object[input.sequence.detections[index].object_index];
+      fates.frames_in_use.insert(view.frame_index);
+    } else {
+      const RejectedDetection& rejected =
+          input.sequence.rejected[static_cast<size_t>(*view.rejected_index)];
+      ++fates.by_reason[{rejected.stage == RejectingStage::kAssociate, rejected.reason}];
+    }
+  }
+  return fates;
+}
+
+Explanation ExplainLeftOut(const Fates& fates) {
+  Counts<bool> by_stage;
+  std::vector<std::string> words;
+  for (const auto& [reason, count] : fates.by_reason) {
+    by_stage[reason.first] += count;
+    words.push_back(fmt::format("{} {}", reason.second, count));
+  }
+  const auto most = Most(by_stage);
+  return {most && most->first ? MapReason::kLostInAssociation : MapReason::kGated,
+          fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
+                      fmt::join(words, ", "))};
+}
+
+std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_index) {
+  const auto found = std::ranges::find(estimates, object_index, &ObjectEstimate::object_index);
+  return found == estimates.end() || found->failure.empty() ? "not estimated" : found->failure;
+}
+
+}  // namespace
+
+WrongPart PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
+                      int true_index) {
+  const AlignedLandmark& estimate = map.landmarks[static_cast<size_t>(landmark)];
+  const TrueObject& object = sequence.true_objects[static_cast<size_t>(true_index)];
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int views = 0;
+  for (const Detection& detection : sequence.detections) {
+    if (detection.object_index != estimate.object_index) continue;
+    sum += map.world_from_camera[static_cast<size_t>(detection.frame_index)].translation;
+    ++views;
+  }
+  return FindWrongPart(estimate.landmark_in_world, object.truth, object.truth.landmark_in_world,
+                       sum / std::max(views, 1));
+}
+
+Explanation ExplainMiss(const ReasonInput& input, int true_index) {
+  const Fates fates = FatesOf(input, true_index);
+  const int in_use = Sum(fates.by_object);
+  const auto most = Most(fates.by_object);
+  const std::optional<int> object =
+      most && 2 * most->second > in_use ? std::optional(most->first) : std::nullopt;
+  const Owners owners = object ? OwnersOf(input, *object) : Owners();
+  const bool is_own = owners.Majority() == true_index;
+  const auto landmark = object ? LandmarkOfObject(input.map, *object) : std::nullopt;
+  if (is_own && landmark) return ExplainWrong(input, *landmark, true_index);
+  if (static_cast<int>(fates.frames.size()) < kFewestViews) {
+    return {MapReason::kNotDetected, fmt::format("boxes in {} frames", fates.frames.size())};
+  }
+  if (static_cast<int>(fates.frames_in_use.size()) < kFewestViews) return ExplainLeftOut(fates);
+  if (!object) {
+    return {MapReason::kSplit,
+            fmt::format("{} boxes are of {} objects", in_use, fates.by_object.size())};
+  }
+  if (!is_own) {
+    return {MapReason::kJoined, fmt::format("its object has boxes of several: {}",
+                                            InWords(input.sequence, owners.of_truth))};
+  }
+  return {MapReason::kNoLandmark, FailureOf(input.estimates, *object)};
+}
+
+Explanation ExplainFalse(const ReasonInput& input, int landmark) {
+  Eigen::Index nearest = 0;
+  const double best_iou = input.ious.cols() > 0 ? input.ious.row(landmark).maxCoeff(&nearest) : 0.0;
+  const auto nearest_index = static_cast<int>(nearest);
+  if (best_iou >= input.min_iou) {
+    return {MapReason::kDuplicate, fmt::format("IoU {:.3f}", best_iou), nearest_index};
+  }
+  const Owners owners =
+      OwnersOf(input, input.map.landmarks[static_cast<size_t>(landmark)].object_index);
+  if (const auto owner = owners.Majority()) {
+    const TrueObject& object = input.sequence.true_objects[static_cast<size_t>(*owner)];
+    if (!object.is_static) return {MapReason::kMoving, "", *owner};
+    if (!LandmarkOfTruth(input, *owner)) return ExplainWrong(input, landmark, *owner);
+    return {MapReason::kSplit, "another landmark matches the object of its boxes", *owner};
+  }
+  if (owners.AreMixed()) {
+    return {MapReason::kJoined, InWords(input.sequence, owners.of_truth)};
+  }
+  if (best_iou > 0.0 && !LandmarkOfTruth(input, nearest_index)) {
+    return ExplainWrong(input, landmark, nearest_index);
+  }
+  return {MapReason::kBackground, fmt::format("{} of {} boxes are at the place of a true object",
+                                              Sum(owners.of_truth), owners.boxes)};
+}
+
+}  // namespace soslam

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/aligned_map.h"
+#include "evaluation/body_errors.h"
+#include "evaluation/true_views.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Why a true object has no landmark, or a landmark no true object.
+enum class MapReason {
+  kNotDetected,        // boxes in fewer than kFewestViews frames
+  kGated,              // so many boxes, but most were left out before association
+  kLostInAssociation,  // most were left out by association
+  kSplit,              // boxes are spread over several objects, or another landmark has it already
+  kJoined,             // boxes of several true objects are one object
+  kNoLandmark,         // the object has boxes enough, and no estimate
+  kWrongPlane,         // a landmark of its boxes is elsewhere, for its plane mostly
+  kWrongSize,
+  kWrongYaw,
+  kWrongPlace,
+  kDuplicate,   // a landmark at the place of one that matches better
+  kMoving,      // its boxes are of an object that moves
+  kBackground,  // its boxes are of no true object
+};
+inline constexpr std::array kMapReasonNames = {
+    "not_detected", "gated",       "lost_in_association", "split",     "joined",
+    "no_landmark",  "wrong_plane", "wrong_size",          "wrong_yaw", "wrong_place",
+    "duplicate",    "moving",      "background"};
+
+struct Explanation {
+  MapReason reason = MapReason::kNotDetected;
+  std::string detail;                             // with its numbers, for a person
+  std::optional<int> true_object = std::nullopt;  // of a false landmark: into true_objects
+};
+
+// What a map and its sequence say, looked through backwards. `truth_of_landmark` is MatchByIou's.
+struct ReasonInput {
+  const Sequence& sequence;
+  const std::vector<ObjectEstimate>& estimates;
+  const AlignedMap& map;
+  const ViewsOfTruth& views;
+  const Eigen::MatrixXd& ious;
+  const std::vector<int>& truth_of_landmark;
+  double min_iou = 0.0;
+};
+
+// Of a true object that matches no landmark.
+Explanation ExplainMiss(const ReasonInput& input, int true_index);
+// Of a landmark that matches no true object and is not ignored.
+Explanation ExplainFalse(const ReasonInput& input, int landmark);
+
+// Of a landmark against a true object of its segment.
+WrongPart PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
+                      int true_index);
+
+}  // namespace soslam

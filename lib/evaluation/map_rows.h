@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "evaluation/map_quality.h"
+
+namespace soslam {
+
+// Makes the rows of MapQuality.
+class RowMaker {
+ public:
+  // All of these have to outlive it.
+  RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views);
+
+  // One for each landmark of a matching, without explanations.
+  std::vector<LandmarkRow> Rows(const std::vector<int>& truth_of_landmark) const;
+
+  // Compares the row's landmark with its true object in the world.
+  void CompareInWorld(size_t landmark, LandmarkRow* row) const;
+  // And in the frames of its observations, where the true object's place there is known.
+  void CompareInFrames(size_t landmark, LandmarkRow* row) const;
+
+ private:
+  std::optional<bool> MostIdsAgree(const LandmarkRow& row) const;
+
+  const Sequence& sequence_;
+  const AlignedMap& map_;
+  const TrueViews& views_;
+  std::vector<std::vector<int>> detections_;  // by object
+};
+
+}  // namespace soslam

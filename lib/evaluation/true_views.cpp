@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/true_views.h"
+
+#include <algorithm>
+
+namespace soslam {
+namespace {
+
+// What is not said of the shape of true objects: between a cuboid and an ellipsoid, as most things
+// are.
+constexpr double kOutlineShapeExponent = 1.25;
+
+// A raw detection, used or not.
+struct RawBox {
+  TrueView view;
+  Box box;
+};
+
+std::vector<std::vector<RawBox>> RawBoxesByFrame(const Sequence& sequence) {
+  std::vector<std::vector<RawBox>> by_frame(sequence.frames.size());
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[i];
+    if (detection.score < kMinViewScore) continue;
+    by_frame[static_cast<size_t>(detection.frame_index)].push_back(
+        {{detection.frame_index, static_cast<int>(i), std::nullopt}, detection.box});
+  }
+  for (size_t i = 0; i < sequence.rejected.size(); ++i) {
+    const RejectedDetection& rejected = sequence.rejected[i];
+    if (rejected.score < kMinViewScore) continue;
+    by_frame[static_cast<size_t>(rejected.frame_index)].push_back(
+        {{rejected.frame_index, std::nullopt, static_cast<int>(i)}, rejected.box});
+  }
+  return by_frame;
+}
+
+// What of the box is in the image; none where nothing is.
+std::optional<Box> CutToImage(const Box& box, const Camera& camera) {
+  const Box cut = {std::max(box.x_min, -0.5), std::max(box.y_min, -0.5),
+                   std::min(box.x_max, camera.width - 0.5),
+                   std::min(box.y_max, camera.height - 0.5)};
+  return cut.Width() > 0.0 && cut.Height() > 0.0 ? std::optional(cut) : std::nullopt;
+}
+
+// The outline boxes of all true objects in a frame.
+std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueViews& views,
+                                         int frame_index) {
+  const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(frame_index)]);
+  std::vector<std::optional<Box>> outlines(sequence.true_objects.size());
+  for (size_t i = 0; i < outlines.size(); ++i) {
+    auto landmark = views.InCamera(frame_index, static_cast<int>(i));
+    if (!landmark) continue;
+    landmark->shape_exponent = kOutlineShapeExponent;
+    if (const auto box = OutlineBox(camera, *landmark)) outlines[i] = CutToImage(*box, camera);
+  }
+  return outlines;
+}
+
+}  // namespace
+
+TrueViews::TrueViews(const Sequence& sequence, const AlignedMap& map)
+    : sequence_(sequence), map_(map) {
+  for (const TruthInFrame& truth : sequence.truth_in_frames) {
+    of_frame_[{truth.frame_index, truth.true_object_id}] = &truth.landmark_in_camera;
+  }
+}
+
+std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index) const {
+  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
+  const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
+  const auto known = of_frame_.find({frame_index, object.id});
+  if (known != of_frame_.end()) return *known->second;
+  const bool is_there = object.is_static && object.segment == frame.segment;
+  if (!is_there || !frame.true_world_from_camera) return std::nullopt;
+  return Transform(frame.true_world_from_camera->Inverse(), object.truth.landmark_in_world);
+}
+
+std::optional<Landmark> TrueViews::InCamera(int frame_index, int true_index) const {
+  if (const auto known = KnownInCamera(frame_index, true_index)) return known;
+  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
+  const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
+  if (!object.is_static || object.segment != frame.segment) return std::nullopt;
+  return Transform(map_.world_from_camera[static_cast<size_t>(frame_index)].Inverse(),
+                   object.truth.landmark_in_world);
+}
+
+ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {
+  ViewsOfTruth found;
+  found.of_object.resize(sequence.true_objects.size());
+  found.detected_frames.resize(sequence.true_objects.size());
+  found.object_of_detection.resize(sequence.detections.size());
+  const auto raw_boxes = RawBoxesByFrame(sequence);
+  for (size_t frame = 0; frame < raw_boxes.size(); ++frame) {
+    if (raw_boxes[frame].empty()) continue;
+    const auto outlines = Outlines(sequence, views, static_cast<int>(frame));
+    std::vector<bool> is_detected(outlines.size());
+    for (const RawBox& raw : raw_boxes[frame]) {
+      double best = kMinViewIou;
+      std::optional<size_t> object;
+      for (size_t i = 0; i < outlines.size(); ++i) {
+        const double overlap = outlines[i] ? BoxOverlap(raw.box, *outlines[i]) : 0.0;
+        if (overlap >= kMinViewIou) is_detected[i] = true;
+        if (overlap < best || (object && overlap == best)) continue;
+        best = overlap;
+        object = i;
+      }
+      if (!object) continue;
+      found.of_object[*object].push_back(raw.view);
+      if (raw.view.detection_index) {
+        found.object_of_detection[static_cast<size_t>(*raw.view.detection_index)] =
+            static_cast<int>(*object);
+      }
+    }
+    for (size_t i = 0; i < outlines.size(); ++i) found.detected_frames[i] += is_detected[i] ? 1 : 0;
+  }
+  return found;
+}
+
+}  // namespace soslam

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "evaluation/aligned_map.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Where true objects are in the frames: as the dataset says of the frame, or else where the object
+// is in the world, seen from the true pose, or else from the aligned estimate.
+class TrueViews {
+ public:
+  // Both have to outlive it.
+  TrueViews(const Sequence& sequence, const AlignedMap& map);
+
+  // None where nobody says: of an object that moves or is of another segment.
+  std::optional<Landmark> InCamera(int frame_index, int true_index) const;
+  // The same, where it does not depend on the map.
+  std::optional<Landmark> KnownInCamera(int frame_index, int true_index) const;
+
+ private:
+  const Sequence& sequence_;
+  const AlignedMap& map_;
+  std::map<std::pair<int, int>, const Landmark*> of_frame_;  // by frame and true object id
+};
+
+// A box, used or not, at the place of a true object.
+struct TrueView {
+  int frame_index = 0;
+  std::optional<int> detection_index = std::nullopt;  // into Sequence::detections,
+  std::optional<int> rejected_index = std::nullopt;   // or Sequence::rejected
+};
+
+// A box is of the true object whose outline box, cut to the image, it overlaps most, with at least
+// this intersection over union, when its score is at least that.
+inline constexpr double kMinViewIou = 0.5;
+inline constexpr double kMinViewScore = 0.25;
+// An object can be found when there is a box of it in at least so many frames.
+inline constexpr int kFewestViews = 3;
+
+struct ViewsOfTruth {
+  std::vector<std::vector<TrueView>> of_object;  // by Sequence::true_objects, frames ascending
+  std::vector<int> detected_frames;  // the frames with a box that overlaps it so, if not most
+  std::vector<std::optional<int>> object_of_detection;  // by Sequence::detections
+};
+ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views);
+
+}  // namespace soslam

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+// Poses of a camera whose centres are these, and as another world and unit have them.
+std::vector<PosePair> Moved(const std::vector<Eigen::Vector3d>& centres,
+                            const Rigid3d& truth_from_scaled, double scale) {
+  std::vector<PosePair> pairs;
+  for (const Eigen::Vector3d& centre : centres) {
+    const Rigid3d truth{RandomRotation(), centre};
+    Rigid3d estimated = truth_from_scaled.Inverse() * truth;
+    estimated.translation /= scale;
+    pairs.push_back({estimated, truth});
+  }
+  return pairs;
+}
+
+std::vector<Eigen::Vector3d> RandomCentres(int count) {
+  std::vector<Eigen::Vector3d> centres;
+  for (int i = 0; i < count; ++i) centres.push_back(RandomVector(-2.0, 2.0));
+  return centres;
+}
+
+void ExpectTrue(const Alignment& alignment, const std::vector<PosePair>& pairs) {
+  EXPECT_NEAR(alignment.rmse_m.value(), 0.0, 1e-9);
+  for (const auto& [estimated, truth] : pairs) {
+    const Rigid3d aligned = alignment.Apply(estimated);
+    EXPECT_LT((aligned.translation - truth.translation).norm(), 1e-9);
+    EXPECT_LT(aligned.rotation.angularDistance(truth.rotation), 1e-7);
+  }
+}
+
+TEST(AlignTest, UndoesAnyMotionAndScale) {
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto rigid = Moved(RandomCentres(6), RandomRigid(), 1.0);
+    ExpectTrue(Align(rigid, AlignmentKind::kRigid), rigid);
+    const double scale = RandomUniform(0.1, 10.0);
+    const auto scaled = Moved(RandomCentres(6), RandomRigid(), scale);
+    const Alignment alignment = Align(scaled, AlignmentKind::kSimilarity);
+    EXPECT_EQ(alignment.kind, AlignmentKind::kSimilarity);
+    EXPECT_EQ(alignment.path, CameraPath::kGeneral);
+    EXPECT_NEAR(alignment.scale, scale, 1e-9 * scale);
+    ExpectTrue(alignment, scaled);
+  }
+}
+
+TEST(AlignTest, NoneLeavesAllAsItIs) {
+  const auto pairs = Moved(RandomCentres(5), {Eigen::Quaterniond::Identity(), {3, 4, 0}}, 1.0);
+  const Alignment alignment = Align(pairs, AlignmentKind::kNone);
+  EXPECT_EQ(alignment.Apply(pairs[2].estimated).translation, pairs[2].estimated.translation);
+  EXPECT_NEAR(alignment.rmse_m.value(), 5.0, 1e-12);
+  EXPECT_EQ(alignment.frames, 5);
+}
+
+// The rotation about the line is that of the cameras; the scale is that of the centres.
+TEST(AlignTest, CentresOnALineTakeTheRotationOfTheCameras) {
+  const Eigen::Vector3d direction = RandomVector(-1.0, 1.0);
+  for (const std::vector<double>& ways : {std::vector{0.0, 0.4}, std::vector{0.0, 0.4, 1.0, 1.7}}) {
+    std::vector<Eigen::Vector3d> centres;
+    for (const double way : ways) centres.emplace_back(way * direction);
+    const auto pairs = Moved(centres, RandomRigid(), 2.5);
+    const Alignment alignment = Align(pairs, AlignmentKind::kSimilarity);
+    EXPECT_EQ(alignment.path, CameraPath::kLine);
+    EXPECT_NEAR(alignment.scale, 2.5, 1e-9);
+    ExpectTrue(alignment, pairs);
+  }
+}
+
+TEST(AlignTest, ACameraThatStandsStillTellsNoScale) {
+  const auto pairs = Moved(std::vector<Eigen::Vector3d>(4, {1, 2, 3}), RandomRigid(), 1.0);
+  const Alignment alignment = Align(pairs, AlignmentKind::kSimilarity);
+  EXPECT_EQ(alignment.kind, AlignmentKind::kRigid);
+  EXPECT_EQ(alignment.path, CameraPath::kStill);
+  EXPECT_EQ(alignment.scale, 1.0);
+  ExpectTrue(alignment, pairs);
+}
+
+TEST(AlignTest, FewPoses) {
+  EXPECT_EQ(Align({}, AlignmentKind::kRigid).kind, AlignmentKind::kNone);
+  EXPECT_FALSE(Align({}, AlignmentKind::kRigid).rmse_m);
+  const auto one = Moved(RandomCentres(1), RandomRigid(), 1.0);
+  const Alignment alignment = Align(one, AlignmentKind::kRigid);
+  EXPECT_EQ(alignment.path, CameraPath::kFewPoses);
+  ExpectTrue(alignment, one);
+}
+
+TEST(AlignTest, MovesPlanesWithTheirPoints) {
+  const Alignment alignment{AlignmentKind::kSimilarity, CameraPath::kGeneral, 3.0, RandomRigid()};
+  const Plane plane = RandomPlane();
+  const Eigen::Vector3d on_plane =
+      plane.normal.cross(RandomVector(-1, 1)) - plane.offset * plane.normal;
+  EXPECT_NEAR(alignment.Apply(plane).SignedDistance(alignment.Apply(on_plane)), 0.0, 1e-12);
+  EXPECT_NEAR(alignment.Apply(plane).SignedDistance(
+                  alignment.Apply(Eigen::Vector3d(on_plane + 2.0 * plane.normal))),
+              6.0, 1e-12);
+}
+
+class AlignSegmentsTest : public testing::Test {
+ protected:
+  // A sequence whose odometry is this motion of the truth away.
+  static Sequence Make(const Rigid3d& truth_from_scaled, double scale) {
+    Sequence sequence;
+    for (const auto& [estimated, truth] : Moved(RandomCentres(8), truth_from_scaled, scale)) {
+      Frame frame;
+      frame.world_from_camera = estimated;
+      frame.true_world_from_camera = truth;
+      sequence.frames.push_back(frame);
+    }
+    return sequence;
+  }
+  static Alignments Of(const Sequence& sequence, AlignmentChoice choice) {
+    std::vector<Rigid3d> poses;
+    for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+    return AlignSegments(sequence, poses, choice);
+  }
+  static AlignmentKind AutoKind(const Sequence& sequence) {
+    return Of(sequence, AlignmentChoice::kAuto).of_segment.at(0).kind;
+  }
+  const Rigid3d drift_{ExpRotation({0.02, -0.01, 0.03}), {0.1, 0.0, -0.1}};
+};
+
+TEST_F(AlignSegmentsTest, AutoTellsOneWorldFromAnother) {
+  EXPECT_EQ(AutoKind(Make(drift_, 1.0)), AlignmentKind::kNone);
+  EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0)), AlignmentKind::kRigid);
+  EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 4.0)), AlignmentKind::kSimilarity);
+}
+
+TEST_F(AlignSegmentsTest, SettingsOfTheDatasetGoFirst) {
+  Sequence sequence = Make(drift_, 1.0);
+  sequence.odometry_world = OdometryWorld::kOwn;
+  EXPECT_EQ(AutoKind(sequence), AlignmentKind::kRigid);
+  sequence.odometry_world = OdometryWorld::kOwnWithScale;
+  EXPECT_EQ(AutoKind(sequence), AlignmentKind::kSimilarity);
+}
+
+TEST_F(AlignSegmentsTest, WithoutTruthNothingIsAlignedAndWhoAskedIsTold) {
+  Sequence sequence = Make(drift_, 1.0);
+  for (Frame& frame : sequence.frames) frame.true_world_from_camera.reset();
+  const Alignments automatic = Of(sequence, AlignmentChoice::kAuto);
+  EXPECT_EQ(automatic.of_segment.at(0).kind, AlignmentKind::kNone);
+  EXPECT_TRUE(automatic.findings.empty());
+  const Alignments asked = Of(sequence, AlignmentChoice::kSimilarity);
+  EXPECT_EQ(asked.of_segment.at(0).kind, AlignmentKind::kNone);
+  ASSERT_EQ(asked.findings.size(), 1u);
+  EXPECT_EQ(asked.findings[0].check, "alignment");
+}
+
+TEST_F(AlignSegmentsTest, EachSegmentHasItsOwn) {
+  Sequence sequence = Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0);
+  const Sequence other = Make({ExpRotation({1, 0, 0}), {0, 5, 0}}, 1.0);
+  for (Frame frame : other.frames) {
+    frame.segment = 3;
+    sequence.frames.push_back(frame);
+  }
+  const auto of_segment = Of(sequence, AlignmentChoice::kRigid).of_segment;
+  ASSERT_EQ(of_segment.size(), 2u);
+  EXPECT_NEAR(of_segment.at(0).rmse_m.value(), 0.0, 1e-9);
+  EXPECT_NEAR(of_segment.at(3).rmse_m.value(), 0.0, 1e-9);
+  EXPECT_NEAR(of_segment.at(3).truth_from_scaled.translation.y(), 5.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/body_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// On the plane z = 0.
+Landmark Standing(double x, double y, double yaw_deg, const Eigen::Vector3d& half_axes) {
+  Landmark landmark;
+  landmark.frame_from_object = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(kRadPerDeg * yaw_deg, Eigen::Vector3d::UnitZ())),
+      {x, y, half_axes.z()}};
+  landmark.half_axes = half_axes;
+  return landmark;
+}
+
+const Eigen::Vector3d kCamera(0.0, -4.0, 1.5);
+
+class BodyErrorsTest : public testing::Test {
+ protected:
+  BodyErrors Compare(const Landmark& estimate) const {
+    return CompareBodies(estimate, truth_, truth_.landmark_in_world);
+  }
+  WrongPart Wrong(const Landmark& estimate) const {
+    return FindWrongPart(estimate, truth_, truth_.landmark_in_world, kCamera);
+  }
+  GroundTruth truth_{Standing(1.0, 2.0, 20.0, {0.4, 0.2, 0.3})};
+};
+
+TEST_F(BodyErrorsTest, NominalNumbers) {
+  const BodyErrors errors = Compare(Standing(1.0, 2.3, 30.0, {0.8, 0.2, 0.3}));
+  EXPECT_NEAR(errors.centre_m, 0.3, 1e-12);
+  EXPECT_NEAR(errors.centre_relative, 0.3 / (2.0 * std::cbrt(0.024)), 1e-12);
+  EXPECT_NEAR(errors.log_size.x(), std::log(2.0), 1e-12);
+  EXPECT_NEAR(errors.log_size.tail<2>().norm(), 0.0, 1e-12);
+  EXPECT_NEAR(errors.log_scale, std::log(2.0) / 3.0, 1e-12);
+  EXPECT_NEAR(errors.yaw_deg.value(), 10.0, 1e-9);
+  EXPECT_NEAR(errors.up_deg, 0.0, 1e-6);
+  EXPECT_FALSE(errors.is_quarter_turned);
+}
+
+TEST_F(BodyErrorsTest, ABodyWithOtherNamesOfItsAxesIsTheSame) {
+  const BodyErrors turned = Compare(Standing(1.0, 2.0, 110.0, {0.2, 0.4, 0.3}));
+  EXPECT_NEAR(turned.iou, 1.0, 1e-9);
+  EXPECT_NEAR(turned.log_size.norm(), 0.0, 1e-12);
+  EXPECT_NEAR(turned.yaw_deg.value(), 0.0, 1e-6);
+  EXPECT_TRUE(turned.is_quarter_turned);
+  EXPECT_NEAR(Compare(Standing(1.0, 2.0, 200.0, {0.4, 0.2, 0.3})).yaw_deg.value(), 0.0, 1e-6);
+  // Its z axis is the true y axis.
+  Landmark lying = truth_.landmark_in_world;
+  lying.frame_from_object.rotation =
+      lying.frame_from_object.rotation *
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX()));
+  lying.half_axes = {0.4, 0.3, 0.2};
+  EXPECT_NEAR(Compare(lying).iou, 1.0, 1e-9);
+  EXPECT_NEAR(Compare(lying).log_size.norm(), 0.0, 1e-12);
+  EXPECT_NEAR(Compare(lying).up_deg, 0.0, 1e-6);
+}
+
+TEST_F(BodyErrorsTest, ABodyOfRotationHasNoYaw) {
+  truth_.rotationally_symmetric = true;
+  truth_.landmark_in_world.half_axes = {0.2, 0.2, 0.3};
+  const BodyErrors errors = Compare(Standing(1.0, 2.0, 65.0, {0.2, 0.2, 0.3}));
+  EXPECT_NEAR(errors.iou, 1.0, 1e-9);
+  EXPECT_FALSE(errors.yaw_deg);
+}
+
+TEST_F(BodyErrorsTest, ThePartThatIsWrongIsFound) {
+  struct Case {
+    BodyPart part;
+    Landmark estimate;
+  };
+  Landmark tilted = truth_.landmark_in_world;
+  tilted.frame_from_object.rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY())) *
+      tilted.frame_from_object.rotation;
+  tilted.frame_from_object.translation =
+      Eigen::Vector3d(1.0, 2.0, 0.0) +
+      tilted.frame_from_object.rotation * Eigen::Vector3d(0.0, 0.0, 0.3);
+  Landmark high = truth_.landmark_in_world;
+  high.frame_from_object.translation.z() += 0.4;
+  const std::vector<Case> cases = {{BodyPart::kPlane, high},
+                                   {BodyPart::kPlane, tilted},
+                                   {BodyPart::kSize, Standing(1.0, 2.0, 20.0, {0.5, 0.5, 0.6})},
+                                   {BodyPart::kYaw, Standing(1.0, 2.0, 60.0, {0.4, 0.2, 0.3})},
+                                   {BodyPart::kPlace, Standing(1.3, 2.2, 20.0, {0.4, 0.2, 0.3})}};
+  for (const auto& [part, estimate] : cases) {
+    const WrongPart wrong = Wrong(estimate);
+    EXPECT_EQ(wrong.part, part);
+    EXPECT_NEAR(wrong.iou, 1.0, 1e-6);
+    EXPECT_GT(wrong.iou, Compare(estimate).iou);
+  }
+}
+
+// A plane that is too low puts what stands on it farther away and makes it larger.
+TEST_F(BodyErrorsTest, APlaneThatIsTooLowIsSeenInDistanceAndSize) {
+  constexpr double kFactor = 1.3;
+  Landmark estimate = truth_.landmark_in_world;
+  estimate.half_axes *= kFactor;
+  estimate.frame_from_object.translation = kCamera + kFactor * (estimate.Centre() - kCamera);
+  const WrongPart wrong = Wrong(estimate);
+  EXPECT_EQ(wrong.part, BodyPart::kPlane);
+  EXPECT_NEAR(wrong.iou, 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace soslam
