@@ -106,6 +106,12 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
   return errors;
 }
 
+PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {
+  const Eigen::Vector3d up = Up(truth);
+  return {-plane.SignedDistance(Foot(truth)),
+          kDegPerRad * std::atan2(plane.normal.cross(up).norm(), plane.normal.dot(up))};
+}
+
 WrongPart FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
                         const Landmark& truth_in_frame, const Eigen::Vector3d& camera_centre) {
   const Landmark named = NamedLike(estimate, truth_in_frame);

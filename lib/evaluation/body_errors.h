@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "geometry/landmark.h"
+#include "geometry/plane.h"
 #include "model/truth.h"
 
 namespace soslam {
@@ -28,6 +29,13 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
 
 // The estimate with its axes named as above.
 Landmark NamedLike(const Landmark& estimate, const Landmark& truth);
+
+// The plane that a landmark stands on against that of the true body.
+struct PlaneErrors {
+  double offset_m = 0.0;  // its height over the true foot, along its own normal
+  double tilt_deg = 0.0;
+};
+PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
 
 // The parts that make up a body on its plane.
 enum class BodyPart {

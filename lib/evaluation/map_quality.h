@@ -45,9 +45,7 @@ struct LandmarkRow {
   std::optional<int> true_index = std::nullopt;     // of found ones, and of false ones to blame
   std::optional<BodyErrors> errors = std::nullopt;  // against that
   std::optional<WrongPart> wrong = std::nullopt;    // of found ones
-  // Of the plane it stands on against that of the true object: the distance (m) of the true foot
-  // from it, and the angle.
-  std::optional<double> plane_offset_m = std::nullopt, plane_tilt_deg = std::nullopt;
+  std::optional<PlaneErrors> plane = std::nullopt;  // where there are planes
   bool label_agrees = false;
   std::optional<bool> id_agrees = std::nullopt;  // of most of its boxes, where the dataset says it
   std::optional<InFrames> in_frames = std::nullopt;

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -87,19 +88,28 @@ MapReason ReasonOf(BodyPart part) {
   }
 }
 
+std::string InWords(const BodyErrors& errors, const std::optional<PlaneErrors>& plane) {
+  std::string text = fmt::format("centre {:.3f} m, size {:+.0f} %, up {:.1f} deg", errors.centre_m,
+                                 100.0 * std::expm1(errors.log_scale), errors.up_deg);
+  if (errors.yaw_deg) text += fmt::format(", yaw {:.1f} deg", *errors.yaw_deg);
+  if (!plane) return text;
+  return text + fmt::format("; its plane {:+.3f} m, {:.1f} deg", plane->offset_m, plane->tilt_deg);
+}
+
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
   const WrongPart wrong = PartToBlame(input.sequence, input.map, landmark, true_index);
-  const TrueObject& object = input.sequence.true_objects[static_cast<size_t>(true_index)];
+  const GroundTruth& truth = input.sequence.true_objects[static_cast<size_t>(true_index)].truth;
+  const auto index = static_cast<size_t>(landmark);
   const BodyErrors errors =
-      CompareBodies(input.map.landmarks[static_cast<size_t>(landmark)].landmark_in_world,
-                    object.truth, object.truth.landmark_in_world);
-  return {ReasonOf(wrong.part),
-          fmt::format("IoU {:.3f}, {:.3f} with the true {}; centre {:.3f} m, size {:+.0f} %, up "
-                      "{:.1f} deg, yaw {}",
-                      errors.iou, wrong.iou, kBodyPartNames[static_cast<size_t>(wrong.part)],
-                      errors.centre_m, 100.0 * std::expm1(errors.log_scale), errors.up_deg,
-                      errors.yaw_deg ? fmt::format("{:.1f} deg", *errors.yaw_deg) : "-"),
-          true_index};
+      CompareBodies(input.map.landmarks[index].landmark_in_world, truth, truth.landmark_in_world);
+  const auto& plane = input.map.plane_of_landmark[index];
+  std::optional<PlaneErrors> plane_errors;
+  if (plane) plane_errors = ComparePlane(*plane, truth.landmark_in_world);
+  return {
+      ReasonOf(wrong.part),
+      fmt::format("IoU {:.3f}, {:.3f} with the true {}; {}", errors.iou, wrong.iou,
+                  kBodyPartNames[static_cast<size_t>(wrong.part)], InWords(errors, plane_errors)),
+      true_index};
 }
 
 // The boxes at the place of a true object: by object of those in use, by reason of the others.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/map_rows.h"
 
-#include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -56,14 +54,8 @@ void RowMaker::CompareInWorld(size_t landmark, LandmarkRow* row) const {
   row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
   row->label_agrees =
       sequence_.objects[static_cast<size_t>(row->object_index)].label == object.label;
-  if (const auto& plane = map_.plane_of_landmark[landmark]) {
-    const Plane under = PlaneUnder(truth);
-    const Eigen::Vector3d foot = truth.Centre() - truth.half_axes.z() * under.normal;
-    row->plane_offset_m = plane->SignedDistance(foot);
-    row->plane_tilt_deg =
-        180.0 / std::numbers::pi *
-        std::atan2(plane->normal.cross(under.normal).norm(), plane->normal.dot(under.normal));
-  }
+  if (const auto& plane = map_.plane_of_landmark[landmark])
+    row->plane = ComparePlane(*plane, truth);
 }
 
 std::vector<LandmarkRow> RowMaker::Rows(const std::vector<int>& truth_of_landmark) const {

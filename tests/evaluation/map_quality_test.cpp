@@ -233,8 +233,8 @@ void ExpectSameFigures(const MapQuality& one, const MapQuality& other) {
     if (!a.errors) continue;
     EXPECT_NEAR(a.errors->iou, b.errors->iou, 1e-9);
     EXPECT_NEAR(a.errors->centre_m, b.errors->centre_m, 1e-9);
-    EXPECT_NEAR(a.plane_offset_m.value(), b.plane_offset_m.value(), 1e-9);
-    EXPECT_NEAR(a.plane_tilt_deg.value(), b.plane_tilt_deg.value(), 1e-5);
+    EXPECT_NEAR(a.plane->offset_m, b.plane->offset_m, 1e-9);
+    EXPECT_NEAR(a.plane->tilt_deg, b.plane->tilt_deg, 1e-5);
   }
 }
 
@@ -329,10 +329,9 @@ TEST_F(MapQualityTest, ThePlaneOfALandmarkIsComparedWithTheTrueOne) {
   sequence_.planes[0].plane_in_world = {ExpRotation({0.1, 0, 0}) * Eigen::Vector3d::UnitZ(), 0.0};
   sequence_.planes[0].plane_in_world.offset = -0.3;
   const LandmarkRow& row = Evaluate().landmarks[0];
-  EXPECT_NEAR(row.plane_tilt_deg.value(), 18.0 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(row.plane->tilt_deg, 18.0 / std::numbers::pi, 1e-9);
   const Eigen::Vector3d foot = Truth(0).Centre() - Eigen::Vector3d(0, 0, 0.2);
-  EXPECT_NEAR(row.plane_offset_m.value(), sequence_.planes[0].plane_in_world.SignedDistance(foot),
-              1e-12);
+  EXPECT_NEAR(row.plane->offset_m, -sequence_.planes[0].plane_in_world.SignedDistance(foot), 1e-12);
 }
 
 TEST_F(MapQualityTest, ObjectsThatMoveAreNotLookedFor) {
