@@ -61,26 +61,34 @@ TrueViews::TrueViews(const Sequence& sequence, const AlignedMap& map)
     : sequence_(sequence), map_(map) {
   for (const TruthInFrame& truth : sequence.truth_in_frames) {
     of_frame_[{truth.frame_index, truth.true_object_id}] = &truth.landmark_in_camera;
+    said_for_each_frame_.insert(truth.true_object_id);
   }
 }
 
-std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index) const {
+std::optional<Landmark> TrueViews::FromPose(const Rigid3d& world_from_camera, int frame_index,
+                                            const TrueObject& object) const {
   const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
+  if (!object.is_static || object.segment != frame.segment) return std::nullopt;
+  return Transform(world_from_camera.Inverse(), object.truth.landmark_in_world);
+}
+
+std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index) const {
   const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
-  const auto known = of_frame_.find({frame_index, object.id});
-  if (known != of_frame_.end()) return *known->second;
-  const bool is_there = object.is_static && object.segment == frame.segment;
-  if (!is_there || !frame.true_world_from_camera) return std::nullopt;
-  return Transform(frame.true_world_from_camera->Inverse(), object.truth.landmark_in_world);
+  if (said_for_each_frame_.contains(object.id)) {
+    const auto known = of_frame_.find({frame_index, object.id});
+    return known == of_frame_.end() ? std::nullopt : std::optional(*known->second);
+  }
+  const auto& pose = sequence_.frames[static_cast<size_t>(frame_index)].true_world_from_camera;
+  return pose ? FromPose(*pose, frame_index, object) : std::nullopt;
 }
 
 std::optional<Landmark> TrueViews::InCamera(int frame_index, int true_index) const {
-  if (const auto known = KnownInCamera(frame_index, true_index)) return known;
-  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
+  const auto index = static_cast<size_t>(frame_index);
   const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
-  if (!object.is_static || object.segment != frame.segment) return std::nullopt;
-  return Transform(map_.world_from_camera[static_cast<size_t>(frame_index)].Inverse(),
-                   object.truth.landmark_in_world);
+  const bool is_known = said_for_each_frame_.contains(object.id) ||
+                        sequence_.frames[index].true_world_from_camera.has_value();
+  if (is_known) return KnownInCamera(frame_index, true_index);
+  return FromPose(map_.world_from_camera[index], frame_index, object);
 }
 
 ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {

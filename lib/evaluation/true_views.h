@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -11,14 +12,15 @@
 
 namespace soslam {
 
-// Where true objects are in the frames: as the dataset says of the frame, or else where the object
-// is in the world, seen from the true pose, or else from the aligned estimate.
+// Where true objects are in the frames. Where the dataset says it for each frame, as it says: an
+// object is not seen in the frames of which it does not. Otherwise where the object is in the
+// world, seen from the true pose, or else from the aligned estimate.
 class TrueViews {
  public:
   // Both have to outlive it.
   TrueViews(const Sequence& sequence, const AlignedMap& map);
 
-  // None where nobody says: of an object that moves or is of another segment.
+  // None where nobody says, as of an object that moves or is of another segment.
   std::optional<Landmark> InCamera(int frame_index, int true_index) const;
   // The same, where it does not depend on the map.
   std::optional<Landmark> KnownInCamera(int frame_index, int true_index) const;
@@ -26,7 +28,12 @@ class TrueViews {
  private:
   const Sequence& sequence_;
   const AlignedMap& map_;
+  // None of an object that is not in the frame's world.
+  std::optional<Landmark> FromPose(const Rigid3d& world_from_camera, int frame_index,
+                                   const TrueObject& object) const;
+
   std::map<std::pair<int, int>, const Landmark*> of_frame_;  // by frame and true object id
+  std::set<int> said_for_each_frame_;                        // true object ids
 };
 
 // A box, used or not, at the place of a true object.

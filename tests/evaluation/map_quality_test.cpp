@@ -324,6 +324,20 @@ TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   EXPECT_NEAR(quality.in_frames.iou_in_world.value(), 1.0, 1e-9);
 }
 
+// Boxes in frames of which the dataset does not say that the object is seen are not of it.
+TEST_F(MapQualityTest, AnObjectIsNotSeenWhereTheDatasetSaysItOfOtherFramesAlone) {
+  const int truth = AddFound();
+  EXPECT_EQ(Evaluate().objects[0].detected_frames, kFrames);
+  SayInFrames(truth, Truth(truth));
+  sequence_.truth_in_frames.resize(2);
+  const MapQuality quality = Evaluate();
+  EXPECT_EQ(quality.objects[0].detected_frames, 2);
+  EXPECT_FALSE(quality.objects[0].is_detectable);
+  EXPECT_EQ(quality.scores[0].found_detectable, 0);
+  EXPECT_EQ(quality.scores[0].found, 1);
+  EXPECT_EQ(quality.landmarks[0].in_frames->observations, 2);
+}
+
 TEST_F(MapQualityTest, ThePlaneOfALandmarkIsComparedWithTheTrueOne) {
   AddFound();
   sequence_.planes[0].plane_in_world = {ExpRotation({0.1, 0, 0}) * Eigen::Vector3d::UnitZ(), 0.0};
