@@ -22,7 +22,8 @@ using nlohmann::json;
 
 // In the order in which stages write them.
 constexpr std::array kArtefacts = {"sequence.json", "associations.json", "planes.json",
-                                   "initial.json",  "refined.json",      "map.json"};
+                                   "initial.json",  "refined.json",      "map.json",
+                                   "metrics.json"};
 constexpr std::array kTexts = {"severity", "check", "found", "expected", "cause", "remedy"};
 
 // None in what cannot be read, which the page names elsewhere.

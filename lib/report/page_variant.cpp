@@ -194,7 +194,7 @@ json PageVariant(const VariantResult& result, const Sequence& sequence,
                  const PageSelection& selection) {
   json variant = {{"name", result.name}, {"metrics", result.metrics}, {"trajectory", nullptr},
                   {"solver", nullptr},   {"planes", nullptr},         {"grids", nullptr}};
-  variant["metrics"].erase("artefact");
+  for (const char* key : {"artefact", "findings"}) variant["metrics"].erase(key);
   AddEstimates(result, sequence, selection, &variant);
   return variant;
 }

@@ -12,7 +12,7 @@ namespace soslam {
 // What a page shows of one variant with metrics; `sequence` is the one that it has.
 //   name; kind: "map", "views" (one landmark from all frames, without a back end) or "frames" (one
 //     for each observation), as the stages say that it is made of
-//   metrics: metrics.json without its header
+//   metrics: metrics.json without its header and findings
 //   objects, one per object of the sequence: landmark in the world (of kind "frames" that of its
 //     first observation) or null, failure, observations; with a covariance also centre_covariance
 //     (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg (about the landmark's z)
