@@ -70,6 +70,7 @@ void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
                           {"odometry_ate_rmse_m", metrics.trajectory->odometry_ate_rmse_m}};
   }
   if (metrics.held_out) body["held_out"] = ToJson(*metrics.held_out, sequence);
+  if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
   ArtefactInfo with_findings = info;
   if (const auto& quality = metrics.map_quality) {
     body["map_quality"] = MapQualityToJson(*quality, sequence);

@@ -429,6 +429,7 @@ Sequence SequenceFromJson(const json& json) {
   Sequence sequence;
   json.at("name").get_to(sequence.name);
   json.at("camera").get_to(sequence.camera);
+  sequence.odometry_source = json.value("odometry_source", "");  // since version 1.7
   if (json.contains("image_distortion")) {  // since version 1.3
     sequence.image_distortion = DistortionFromJson(json["image_distortion"]);
   }
@@ -498,6 +499,7 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
       {"rejected_detections", sequence.rejected_detections},
       {"true_objects", json::array()},
       {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]}};
+  if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
   if (sequence.image_distortion)
     body["image_distortion"] = DistortionCoefficients(*sequence.image_distortion);
   for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));

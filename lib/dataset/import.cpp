@@ -248,6 +248,7 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   Sequence sequence;
   sequence.name = std::filesystem::canonical(folder).filename().string();
   sequence.camera = content.camera;
+  sequence.odometry_source = options.odometry_source;
   sequence.image_distortion = content.image_distortion;
   sequence.image_orientation = options.image_orientation;
   sequence.planes = content.planes;

@@ -144,6 +144,7 @@ struct KittiOptions {
 struct ImportOptions {
   DatasetFormat format = DatasetFormat::kSoslam;
   TrajectorySource trajectory = TrajectorySource::kOdometry;
+  std::string odometry_source;
   PlanePoses camera_planes = PlanePoses::kGroundTruth;
   std::string detections;
   ImageOrientation image_orientation = ImageOrientation::kUpright;
@@ -169,6 +170,9 @@ struct ImportOptions {
     visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
                  "soslam, tum_rgbd, icl_nuim, slam_synthetic: which poses are the estimates; the "
                  "others when a folder does not have them");
+    visit.Text("odometry_source", &odometry_source,
+               "whose the pose estimates are, as tables of maps say it: ORB-SLAM2, COLMAP, "
+               "simulated; empty: not said");
     visit.Choice("camera_planes", &camera_planes, kPlanePosesNames,
                  "the poses that carry annotated world planes into each frame; the trajectory when "
                  "there is no ground truth");

@@ -102,6 +102,8 @@ struct HeldOutFrame {
 struct Sequence {
   std::string name;
   Camera camera;
+  // Whose the pose estimates are, "ORB-SLAM2" or "simulated", say; empty: nobody has said.
+  std::string odometry_source = {};
   // Of the image files, whose frames have no cameras of their own; boxes are those of a camera
   // without it. None: the images are, too.
   std::optional<Distortion> image_distortion = std::nullopt;

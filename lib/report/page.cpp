@@ -168,6 +168,9 @@ json OverviewData(const std::vector<json>& pages) {
     for (const json& variant : page.at("variants")) {
       json metrics = variant.at("metrics");
       metrics.erase("objects");
+      if (metrics.contains("map_quality")) {
+        for (const char* rows : {"objects", "landmarks"}) metrics["map_quality"].erase(rows);
+      }
       dataset["variants"].push_back(
           {{"name", variant.at("name")}, {"kind", variant.at("kind")}, {"metrics", metrics}});
     }

@@ -15,6 +15,7 @@
 #include "base/table.h"
 #include "report/page_findings.h"
 #include "report/page_html.h"
+#include "report/quality_tables.h"
 #include "report/results_tree.h"
 
 namespace soslam {
@@ -123,6 +124,42 @@ std::string NumbersSection(const json& page) {
                        "onto any of the other. Yaw error: modulo half a turn. ATE: root mean "
                        "square error of the camera's positions.") +
                      tables);
+}
+
+// The maps of a dataset against all that is true, however their ids are; nothing without such.
+std::string QualityHtml(const std::string& dataset, const std::vector<json>& variants) {
+  std::vector<NamedMetrics> named;
+  for (const json& variant : variants) {
+    named.emplace_back(variant.at("name").get<std::string>(), variant.at("metrics"));
+  }
+  const Table table = QualityTable(dataset, named);
+  std::string html = table.rows.empty() ? "" : HtmlTable(table);
+  for (const std::string& note : table.notes) html += Faint(note);
+  return html;
+}
+
+// What each map misses and what is false in it, and why.
+std::string Mistakes(const std::vector<json>& variants) {
+  std::string html;
+  for (const json& variant : variants) {
+    const Table table = MistakesTable(variant.at("metrics"));
+    if (table.rows.empty()) continue;
+    html += fmt::format(
+        "<details><summary>{}: what is missed or false, and why</summary>\n{}</details>\n",
+        HtmlText(variant.at("name").get<std::string>()), HtmlTable(table));
+  }
+  return html;
+}
+
+std::string QualitySection(const json& page) {
+  const std::string table = QualityHtml(page.at("dataset"), page.at("variants"));
+  if (table.empty()) return "";
+  return Section("quality", "Maps against all that is true",
+                 Faint("Landmarks and true objects are matched by overlap, whatever their ids and "
+                       "labels, once the map is aligned with the true poses. Means are over what "
+                       "is right at IoU 0.25. In frames: by the poses that saw it; the gap to the "
+                       "world is drift.") +
+                     table + Mistakes(page.at("variants")));
 }
 
 // An object of a variant; its metrics are null where it has none.
@@ -339,7 +376,8 @@ std::string DatasetTables(const json& page) {
          Faint(counts) + Remarks(page) +
          "<noscript><p class=\"faint\">Map, frames, charts and figures need JavaScript; all else "
          "is here.</p></noscript>\n" +
-         NumbersSection(page) + ObjectsSection(page) + AblationSection(page) + StagesSection(page);
+         NumbersSection(page) + QualitySection(page) + ObjectsSection(page) +
+         AblationSection(page) + StagesSection(page);
 }
 
 size_t PageBytes(const json& page) { return PageText(page).size() + DatasetTables(page).size(); }
@@ -355,7 +393,10 @@ std::string OverviewTables(const json& overview) {
           CountsText(dataset.at("counts")), HtmlText(url));
     }
     content += Remarks(dataset);
-    if (!dataset.at("variants").empty()) content += MetricsTable(dataset.at("variants"));
+    if (!dataset.at("variants").empty()) {
+      content += MetricsTable(dataset.at("variants")) +
+                 QualityHtml(dataset.at("dataset"), dataset.at("variants"));
+    }
     sections += Section(url, dataset.at("dataset").get<std::string>(), content);
   }
   return "<h1>Results</h1>\n" + sections;

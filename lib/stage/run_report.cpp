@@ -14,6 +14,7 @@
 #include "report/paired_differences.h"
 #include "report/paper_tables.h"
 #include "report/published.h"
+#include "report/quality_tables.h"
 #include "report/results_tree.h"
 #include "report/timing_table.h"
 
@@ -60,7 +61,10 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   for (const Quantity& quantity : {kIou, kRotation, kYawError}) {
     tables.push_back(DifferencesTable(datasets, comparisons, quantity));
   }
-  for (const DatasetResult& dataset : datasets) tables.push_back(DatasetTable(dataset));
+  for (const DatasetResult& dataset : datasets) {
+    tables.push_back(DatasetTable(dataset));
+    tables.push_back(QualityTable(dataset));
+  }
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   return tables;
 }

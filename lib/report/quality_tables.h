@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/table.h"
+#include "report/results_tree.h"
+
+namespace soslam {
+
+// A variant's name and its metrics.json.
+using NamedMetrics = std::pair<std::string, nlohmann::json>;
+
+// Maps against all that is true (map_quality of metrics.json): a row for each variant that has it.
+Table QualityTable(const std::string& dataset, const std::vector<NamedMetrics>& variants);
+Table QualityTable(const DatasetResult& dataset);
+
+// The true objects that a map misses and its false landmarks, each with the reason.
+Table MistakesTable(const nlohmann::json& metrics);
+
+}  // namespace soslam
