@@ -34,8 +34,8 @@ struct Alignment {
   double scale = 1.0;
   Rigid3d truth_from_scaled;
   int frames = 0;  // with an estimated and a true pose
-  std::optional<double> rmse_m =
-      std::nullopt;  // of the camera centres, aligned; none without frames
+  // Root mean square distance of the camera centres, aligned; none without frames.
+  std::optional<double> rmse_m = std::nullopt;
 
   Eigen::Vector3d Apply(const Eigen::Vector3d& point) const {
     return truth_from_scaled * (scale * point);
@@ -50,7 +50,7 @@ struct Alignment {
 // similarity whose scale they do not determine is refused: it becomes rigid.
 Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 
-// By segment: each has a world of its own. `world_from_camera`: the estimates, one per
+// One for each segment, as each has a world of its own. `world_from_camera`: the estimates, one per
 // Sequence::frames. Why an alignment is not as asked for becomes a finding.
 struct Alignments {
   std::map<int, Alignment> of_segment;

@@ -52,12 +52,12 @@ struct ReasonInput {
   double min_iou = 0.0;
 };
 
-// Of a true object that matches no landmark.
+// Why a true object matches no landmark.
 Explanation ExplainMiss(const ReasonInput& input, int true_index);
-// Of a landmark that matches no true object and is not ignored.
+// Why a landmark, which is not ignored, matches no true object.
 Explanation ExplainFalse(const ReasonInput& input, int landmark);
 
-// Of a landmark against a true object of its segment.
+// FindWrongPart of a landmark and a true object of its segment.
 WrongPart PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
                       int true_index);
 

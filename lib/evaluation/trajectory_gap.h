@@ -18,7 +18,7 @@ struct TrajectoryGap {
   double rotation_deg = 0.0;
   double translation_m = 0.0;
 };
-// Of one pair at least.
+// There has to be one pair at least.
 TrajectoryGap GapOf(const std::vector<PosePair>& pairs);
 
 // How far a camera moves (m): the diagonal of the box around its path.

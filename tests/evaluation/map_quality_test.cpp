@@ -313,7 +313,7 @@ TEST_F(MapQualityTest, WhatDriftHasCarriedAwayIsComparedInFrames) {
   EXPECT_NEAR(quality.in_frames.iou_in_world.value(), 1.0 / 7.0, 1e-9);
 }
 
-// As KITTI has it: without true poses, with the truth of each frame.
+// Without true poses, with the truth of each frame, as KITTI has it.
 TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   const int truth = AddFound();
   for (Frame& frame : sequence_.frames) frame.true_world_from_camera.reset();
