@@ -112,7 +112,7 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view, const Things& thi
   return {};
 }
 
-// Poses of an IMU that are taken for those of the camera; boxes that fit them say that they are.
+// Poses of an IMU that are taken for those of the camera, unless boxes fit them.
 std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayError>& as_read) {
   constexpr double kFitsDeg = 1.0;
   if (!view.content.may_have_poses_of_body) return {};
@@ -126,7 +126,8 @@ std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayEr
            "the camera's place in the body (T_BS), and things to within a degree where they are "
            "seen",
            "poses of a body that is not the camera, as an IMU",
-           "camera_file: the camera's sensor.yaml, with T_BS"}};
+           std::string("camera_file: the camera's sensor.yaml, with T_BS") +
+               (as_read ? "" : "; nothing where the poses are those of the camera")}};
 }
 
 }  // namespace
@@ -136,9 +137,10 @@ std::vector<Finding> CheckPoses(const ImportView& view) {
   const Things things = TrackedThings(view);
   auto as_read = MedianRayError(things, [&](size_t frame) { return PoseAt(view, frame); });
   if (as_read && as_read->rays < kFewestRays) as_read.reset();
-  std::vector<Finding> findings = CheckBody(view, as_read);
-  if (findings.empty() && as_read) findings = CheckReadings(view, things, *as_read);
+  std::vector<Finding> findings;
+  if (as_read) findings = CheckReadings(view, things, *as_read);
   if (findings.empty() && as_read) findings = CheckFrameNumbers(view, things, *as_read);
+  if (findings.empty()) findings = CheckBody(view, as_read);
   return findings;
 }
 

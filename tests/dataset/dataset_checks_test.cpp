@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numbers>
 
 #include "base/error.h"
@@ -20,6 +21,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class DatasetChecksTest : public testing::Test {
  protected:
@@ -74,12 +76,12 @@ class DatasetChecksTest : public testing::Test {
     options.folder.detections_format = DetectionsFormat::kCoco;
   }
 
-  // The poses of a body, as EuRoC has them.
-  void WriteEuroc(const Rigid3d& camera_from_body) {
+  // Poses in EuRoC's format, by default those of the camera.
+  void WriteEuroc(const std::function<Rigid3d(const Rigid3d&)>& written = std::identity()) {
     std::filesystem::create_directories(folder);
     std::ofstream file(folder / "data.csv");
     for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-      const Rigid3d pose = dataset.WorldFromCamera(frame) * camera_from_body;
+      const Rigid3d pose = written(dataset.WorldFromCamera(frame));
       const Eigen::Quaterniond& q = pose.rotation;
       file << fmt::format("{}00000000,{},{},{},{},{},{},{}\n", 1000 + 5 * frame,
                           pose.translation.x(), pose.translation.y(), pose.translation.z(), q.w(),
@@ -429,14 +431,30 @@ TEST_F(DatasetChecksTest, FramesThatBeginOneImageLate) {
 }
 
 TEST_F(DatasetChecksTest, EurocsPosesOfTheCamera) {
-  WriteEuroc(Rigid3d());
+  WriteEuroc();
   EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, EurocsPosesThatNoBoxesTellOf) {
+  WriteEuroc();
+  dataset.has_object_ids = false;
+  dataset.label = [](size_t) { return "ball"; };
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("pose_convention: EuRoC's poses"),
+                                HasSubstr("nothing where the poses are those of the camera"))));
+}
+
+// Other mistakes than those of an IMU are told as in any format.
+TEST_F(DatasetChecksTest, EurocsPosesTheOtherWayRound) {
+  WriteEuroc([](const Rigid3d& pose) { return pose.Inverse(); });
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("if the poses are"), Not(HasSubstr("T_BS"))));
 }
 
 // An IMU that is turned by a quarter against the camera about its optical axis.
 TEST_F(DatasetChecksTest, EurocsPosesOfAnImu) {
   const double half = std::sqrt(0.5);
-  WriteEuroc({Eigen::Quaterniond(half, 0, 0, -half), {0.1, 0, 0}});
+  const Rigid3d camera_from_imu(Eigen::Quaterniond(half, 0, 0, -half), {0.1, 0, 0});
+  WriteEuroc([&](const Rigid3d& pose) { return pose * camera_from_imu; });
   EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("pose_convention: EuRoC's poses"),
                                             HasSubstr("sensor.yaml, with T_BS"))));
   std::ofstream(folder / "sensor.yaml")
@@ -513,7 +531,7 @@ TEST_F(DatasetChecksTest, NormalThatPointsDown) {
   EXPECT_THAT(Refusal(), AllOf(HasSubstr("from below"), HasSubstr("sign of the normal")));
 }
 
-// Of one label without ids, boxes do not tell where the balls are.
+// Boxes of one label and without ids do not tell where the balls are.
 TEST_F(DatasetChecksTest, NormalThatPointsDownWhereBoxesDoNotTell) {
   dataset.has_object_ids = false;
   dataset.label = [](size_t) { return "ball"; };
