@@ -19,11 +19,9 @@ struct UpEstimate {
   // Of the rotation vector that turns it to where it really is (rad^2, world axes); zero about
   // itself.
   Eigen::Matrix3d covariance;
-  // How cameras are held, of the ways that lead to different ups, and how much the others leave
-  // open (rad^2); zero where that is clear.
-  CameraHolding holding = CameraHolding::kLevel;
-  std::vector<TriedHolding> holdings = {};
-  double holding_tilt_variance = 0.0;
+  CameraHolding holding = CameraHolding::kLevel;  // the most probable way to hold cameras
+  std::vector<TriedHolding> holdings = {};        // one for each direction of up that was tried
+  double holding_tilt_variance = 0.0;             // rad^2, by the others; 0 where one is clear
 };
 
 // Of a label's objects, with a height also where the table has none.

@@ -28,7 +28,8 @@ struct Calibration {
 //               Camera.k1, .k2, .p1, .p2, .k3
 //   its model   distortion_model, camera_model, Camera.type (ParseLens)
 //
-// Of a rig the first camera: cam0 of Kalibr's camchain.yaml, Camera1 of ORB-SLAM3's settings.
+// The camera is the first one of a rig: cam0 of Kalibr's camchain.yaml, Camera1 of ORB-SLAM3's
+// settings.
 // Other fields are of no matter to the camera. Throws InputError, naming the field, for what is
 // missing, for a skew or a transposed matrix, for a fisheye_model, for coefficients of distortion
 // by other names, and for ROS' binning and roi.

@@ -26,7 +26,6 @@ struct DatasetContent {
   std::vector<Object> objects;
   std::vector<DetectionRow> rows;  // of these frames and objects
   Rejections rejected;             // by the reader
-  RejectionCounts mended;  // those that are used otherwise than as they stand, by what was done
   bool has_true_poses = false;  // of some frames at least
   bool has_object_ids = true;   // otherwise each row is of an object of its own
   // Poses are those of the camera only if the body that they are of is the camera.

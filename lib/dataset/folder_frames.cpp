@@ -171,12 +171,13 @@ ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const Import
   }
 }
 
-// EuRoC's images lie in the folder "data" beside their list, which does not say so.
+// EuRoC's images lie in the folder "data" beside their list, which has only their file names.
 void NameInDataFolder(const fs::path& dataset, const fs::path& list,
                       std::vector<ListedImage>* images) {
   const fs::path data = list.parent_path() / "data";
   if (!IsFolder(data)) return;
   for (ListedImage& image : *images) {
+    if (fs::path(image.image).has_parent_path()) continue;
     image.image = (data.lexically_relative(dataset) / image.image).string();
   }
 }

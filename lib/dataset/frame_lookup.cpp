@@ -29,7 +29,12 @@ std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
   return {};
 }
 
-// The name of a folder without what tells the cameras of a rig apart.
+std::string InLowerCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// The name of a folder, in lower case, without what tells the cameras of a rig apart.
 std::string RigOf(std::string folder) {
   for (const std::string side : {"left", "right"}) {
     const size_t found = folder.find(side);
@@ -45,7 +50,8 @@ std::string RigOf(std::string folder) {
 }
 
 bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
-  const auto [name, other_name] = Difference(folder, other);
+  const auto names = Difference(folder, other);
+  const std::string name = InLowerCase(names.first), other_name = InLowerCase(names.second);
   return name != other_name && RigOf(name) == RigOf(other_name);
 }
 

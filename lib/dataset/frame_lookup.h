@@ -26,7 +26,8 @@ class FrameLookup {
  private:
   std::vector<std::filesystem::path> folders_;  // by row
   std::map<std::string, std::vector<int>> rows_by_name_;
-  std::map<int, std::filesystem::path> named_folders_;  // by row: of the first name
+  std::map<int, std::filesystem::path>
+      named_folders_;  // by row, of the first name that was looked up
 };
 
 }  // namespace soslam

@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "dataset/dataset_files.h"
 #include "dataset/dataset_json.h"
@@ -27,11 +26,19 @@ int FirstFreeId(const std::vector<ListedObject>& objects) {
   return id;
 }
 
-// Gives the rows of one object one label.
-void MendLabels(const std::vector<ListedObject>& listed, DatasetContent* content) {
-  const int changed = UnifyLabels(listed, &content->rows);
-  if (changed > 0) content->mended["label_of_object"] = changed;
-}
+const Finding kCut = {"boxes_cut",
+                      Severity::kWarning,
+                      "reach a little beyond the image and are cut to it",
+                      "boxes in the image",
+                      "boxes of whole objects, or of images of another size",
+                      "give boxes as fractions of the image that the camera takes"};
+const Finding kRelabelled = {
+    "labels_of_objects",
+    Severity::kWarning,
+    "have another label than their object has, and get that",
+    "one label for each object",
+    "ids that are of several things, or a detector that calls one thing by several names",
+    "give each thing an id of its own, or no ids and estimated association"};
 
 // All of them are counted; those of listed images that the lens can have put where they are have
 // rows.
@@ -57,29 +64,18 @@ std::vector<TrueObject> TrueObjects(const std::vector<ListedObject>& listed) {
   return objects;
 }
 
-// Boxes that are used otherwise than as they stand: said on stdout, and a finding where they are
-// more than a third.
-void ReportMended(const DatasetFiles& files, size_t boxes, DatasetContent* content) {
+// `count` of the boxes are used otherwise than as they stand: said on stdout, and a finding where
+// that is more than a third.
+void ReportMended(const DatasetFiles& files, int count, size_t boxes, Finding finding,
+                  std::vector<Finding>* findings) {
   constexpr size_t kFewest = 10;
-  const std::map<std::string, Finding> kinds = {
-      {"cut_to_image",
-       {"boxes_cut", Severity::kWarning, "reach a little beyond the image and are cut to it",
-        "boxes in the image", "boxes of whole objects, or of images of another size",
-        "give boxes as fractions of the image that the camera takes"}},
-      {"label_of_object",
-       {"labels_of_objects", Severity::kWarning,
-        "have another label than their object has, and get that", "one label for each object",
-        "ids that are of several things, or a detector that calls one thing by several names",
-        "give each thing an id of its own, or no ids and estimated association"}}};
-  for (const auto& [name, count] : content->mended) {
-    Finding finding = kinds.at(name);
-    finding.found = fmt::format("{}: {} of {} boxes {}", files.detections.filename().string(),
-                                count, boxes, finding.found);
-    if (boxes < kFewest || 3 * static_cast<size_t>(count) <= boxes) {
-      fmt::print("{}\n", finding.found);
-    } else {
-      content->findings.push_back(std::move(finding));
-    }
+  if (count == 0) return;
+  finding.found = fmt::format("{}: {} of {} boxes {}", files.detections.filename().string(), count,
+                              boxes, finding.found);
+  if (boxes < kFewest || 3 * static_cast<size_t>(count) <= boxes) {
+    fmt::print("{}\n", finding.found);
+  } else {
+    findings->push_back(std::move(finding));
   }
 }
 
@@ -97,7 +93,9 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   const ListedObjects given = files.objects ? ReadObjects(*files.objects) : ListedObjects();
   const std::vector<ListedObject>& listed = given.objects;
   DatasetContent content;
-  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &content.mended);
+  RejectionCounts mended;
+  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &mended);
+  ReportMended(files, mended["cut_to_image"], read.boxes.size(), kCut, &content.findings);
   std::vector<LabelledBox> of_no_track;
   const std::vector<LabelledBox> boxes = WithoutIdsOfNoTrack(
       std::move(read.boxes), listed, files.detections, &of_no_track, &content.findings);
@@ -111,7 +109,10 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
                                     &content.findings);
   content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected.counts);
   content.has_object_ids = HaveObjectIds(boxes);
-  if (content.has_object_ids) MendLabels(listed, &content);
+  if (content.has_object_ids) {
+    ReportMended(files, UnifyLabels(listed, &content.rows), boxes.size(), kRelabelled,
+                 &content.findings);
+  }
   if (camera.distortion) {
     content.rows = Undistorted(std::move(content.rows), camera.camera, *camera.distortion,
                                &content.rejected.counts);
@@ -120,7 +121,6 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   content.true_objects = TrueObjects(listed);
   content.ignored = given.ignored;
   content.objects = ListObjects(files, listed, content.rows, content.planes);
-  ReportMended(files, boxes.size(), &content);
   content.has_true_poses = files.groundtruth.has_value();
   content.may_have_poses_of_body =
       !calibration.body_from_camera && options.folder.trajectory_format == TrajectoryFormat::kEuroc;

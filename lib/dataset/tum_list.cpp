@@ -35,11 +35,12 @@ bool IsSamePose(const Rigid3d& a, const Rigid3d& b) {
          a.rotation.angularDistance(b.rotation) <= kRadians;
 }
 
-// A row "timestamp,filename"; none for another one, also with a decimal comma.
+// A row "timestamp,filename"; none for another one, also for commas in numbers and file names.
 std::optional<ListedImage> EurocImage(const TextLine& line) {
   constexpr double kSecondsPerUnit = 1e-9;
   const auto fields = SplitFields(line.text);
-  if (fields.size() != 2 || SplitWords(fields[1]).size() != 1) return std::nullopt;
+  const auto is_word = [](std::string_view field) { return SplitWords(field).size() == 1; };
+  if (fields.size() != 2 || !std::ranges::all_of(fields, is_word)) return std::nullopt;
   const double timestamp = ParseReal(fields[0], line.place, "timestamp");
   if (timestamp != std::floor(timestamp)) {
     throw InputError(

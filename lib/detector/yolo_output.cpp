@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// The output as one row per candidate: cx cy w h, the objectness but of layout v8, the class
+// The output as one row per candidate: cx cy w h, the objectness (not of layout v8), the class
 // scores.
 cv::Mat CandidateRows(const cv::Mat& output, YoloLayout layout, int classes,
                       const std::string& network) {
@@ -42,13 +42,26 @@ int YoloxCells(const cv::Size& input) {
   return cells;
 }
 
+double LargestSide(const cv::Mat& rows) {
+  double largest = 0.0;
+  if (!rows.empty()) cv::minMaxLoc(rows.colRange(2, 4), nullptr, &largest);
+  return largest;
+}
+
 // The rows with boxes in pixels, for boxes in cells of YOLOX's grids: each grid row by row, the
-// finest first.
+// finest first. Throws InputError for boxes that are in pixels already.
 cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
   if (rows.rows != YoloxCells(input)) {
     throw InputError(fmt::format(
         "{}: output has {} candidates; expected {} of layout yolox for an input of {} x {} pixels",
         network, rows.rows, YoloxCells(input), input.width, input.height));
+  }
+  constexpr double kMostLogCells = 20.0;
+  if (LargestSide(rows) > kMostLogCells) {
+    throw InputError(fmt::format(
+        "{}: the largest side of a box in the output is {:.2f}; expected logarithms, of at most {} "
+        "(YOLOX that was exported with --decode_in_inference has pixels: output_layout = v5)",
+        network, LargestSide(rows), kMostLogCells));
   }
   cv::Mat decoded = rows.clone();
   int index = 0;
@@ -72,13 +85,11 @@ cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::st
 // Throws InputError for YOLOX's candidates in cells, which would pass for tiny boxes: logarithms of
 // widths and heights are small, and among that many boxes in pixels some are not.
 void CheckInPixels(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
-  if (rows.rows != YoloxCells(input) || rows.empty()) return;
-  double largest = 0.0;
-  cv::minMaxLoc(rows.colRange(2, 4), nullptr, &largest);
-  if (largest >= kYoloxStrides[0]) return;
+  const double largest = LargestSide(rows);
+  if (rows.rows != YoloxCells(input) || rows.empty() || largest >= kYoloxStrides[0]) return;
   throw InputError(fmt::format(
-      "{}: the largest box of the output is {:.2f} pixels; expected boxes in pixels (YOLOX as it "
-      "is published has other ones: output_layout = yolox)",
+      "{}: the largest side of a box in the output is {:.2f}; expected pixels (YOLOX as it is "
+      "published has logarithms: output_layout = yolox)",
       network, largest));
 }
 

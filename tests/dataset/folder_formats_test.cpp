@@ -203,6 +203,8 @@ TEST_F(FolderFormatsTest, EurocsListOfImages) {
   EXPECT_EQ(Import().frames.at(1).timestamp, 2.0);
   Write("cam0/data/1.png", "an image");
   EXPECT_EQ(Import().frames.at(1).image, "cam0/data/2.png");
+  Write("cam0/data.csv", "1 rgb/a,1.png\n2 rgb/2.png\n");
+  EXPECT_EQ(Import().frames.at(1).image, "rgb/2.png");
   Write("cam0/data.csv", "1.5,1.png\n");
   ExpectError<InputError>([&] { Import(); }, {"data.csv:1", "timestamp is 1.5", "nanoseconds"});
   Write("cam0/data.csv", "1,5 1.png\n");

@@ -40,6 +40,7 @@ TEST_F(FrameLookupTest, AFolderOfAnotherNameMayBeTheSame) {
   EXPECT_EQ(lookup_.Find("images/12.50.png", ""), 0);
   EXPECT_EQ(lookup_.Find("/data/images/12.50.png", ""), 0);
   EXPECT_EQ(lookup_.Find("./images/12.51.png", ""), 1);
+  EXPECT_EQ(FrameLookup({{1.0, "RGB/1.png"}}).Find("rgb/1.png", ""), 0);
 }
 
 TEST_F(FrameLookupTest, ImagesOfAnotherCameraAreNotListed) {
@@ -47,7 +48,8 @@ TEST_F(FrameLookupTest, ImagesOfAnotherCameraAreNotListed) {
        std::vector<std::pair<const char*, const char*>>{{"cam0/1.jpg", "cam1/1.jpg"},
                                                         {"mav0/cam0/data/1.jpg", "cam1/data/1.jpg"},
                                                         {"image_02/1.jpg", "/kitti/image_3/1.jpg"},
-                                                        {"left/1.jpg", "right/1.jpg"}}) {
+                                                        {"left/1.jpg", "right/1.jpg"},
+                                                        {"Left/1.jpg", "Right/1.jpg"}}) {
     FrameLookup lookup({{1.0, listed}});
     EXPECT_EQ(lookup.Find(named, ""), std::nullopt) << named;
     EXPECT_EQ(lookup.Find(listed, ""), 0) << listed;

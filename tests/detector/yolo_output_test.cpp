@@ -86,9 +86,19 @@ TEST(YoloOutputTest, BoxesInCellsAreNotTakenForPixels) {
       [&] {
         Read(Output({1, 42, 7}, values), YoloLayout::kV5);
       },
-      {"net.onnx", "7.50 pixels", "output_layout = yolox"});
+      {"net.onnx", "7.50; expected pixels", "output_layout = yolox"});
   values[3] = 8.0F;
   EXPECT_EQ(Read(Output({1, 42, 7}, values), YoloLayout::kV5).size(), 42u);
+}
+
+TEST(YoloOutputTest, BoxesInPixelsAreNotTakenForCells) {
+  std::vector<float> values(42 * 7, 0.5F);
+  values[2] = 30.0F;
+  ExpectError<InputError>(
+      [&] {
+        Read(Output({1, 42, 7}, values), YoloLayout::kYolox);
+      },
+      {"net.onnx", "30.00; expected logarithms", "output_layout = v5"});
 }
 
 TEST(YoloOutputTest, ScoreAtTheThresholdIsKept) {
