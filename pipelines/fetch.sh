@@ -35,7 +35,8 @@ sum_of() { if [[ -f $1 ]]; then sha256sum < "$1" | cut -d ' ' -f 1; else echo no
 reason() {
   case $1 in
     6 | 7 | 28 | 35 | 52) echo 'no answer; expected a network (behind a proxy: https_proxy)' ;;
-    9 | 19 | 22 | 37 | 78) echo 'the address has no such file; likely its publisher moved it' ;;
+    22) echo 'refused with the error above; after 404 likely its publisher moved it' ;;
+    9 | 19 | 37 | 78) echo 'the address has no such file; likely its publisher moved it' ;;
     18 | 56 | 92) echo 'the connection ended before the file did; the same command goes on with it' ;;
     23) echo "cannot write; likely the disk of $folder is full" ;;
     60 | 77) echo 'the certificate of the server is not valid here; likely the clock, or ca-certificates' ;;
@@ -86,12 +87,15 @@ unpack() {
 # All wanted files are right, in this folder.
 is_whole() { (cd "$1" 2> /dev/null && wanted | sha256sum --check --status 2> /dev/null); }
 
-if [[ -e $target && ! -e $target/SHA256SUMS ]]; then
+mkdir -p "$folder/.downloads" 2> /dev/null || fail 2 "$folder cannot be written to; expected a folder of your own"
+exec 9> "$work.lock"
+flock --nonblock 9 || {
+  echo "fetch: waiting for another command that fetches $name"
+  flock 9
+}
+if [[ -n $(ls -A "$target" 2> /dev/null) && ! -e $target/SHA256SUMS ]]; then
   fail 2 "$target is there and was not made by this command; expected another folder, or it moved away"
 fi
-mkdir -p "$work" 2> /dev/null || fail 2 "$folder cannot be written to; expected a folder of your own"
-exec 9> "$work.lock"
-flock 9
 mkdir -p "$work"
 
 if ! is_whole "$target"; then
@@ -112,18 +116,19 @@ if ! is_whole "$target"; then
   while read -r sum path; do
     found=$(sum_of "$work/files/$path")
     [[ $found == "$sum" ]] || fail 3 "$path of $name: found SHA-256 $found; expected $sum; $target is as it was; what \
-came is in $work (removed, it is fetched anew); likely its publisher changed it"
+came is in $work, and is fetched anew once that is removed; likely its publisher changed it"
   done < <(wanted)
 fi
 
 mkdir -p "$target"
-install -m 644 -t "$target" "$own/SHA256SUMS"
+install --compare -m 644 -t "$target" "$own/SHA256SUMS"
 if ! is_whole "$target"; then
   while read -r _ path; do
     mkdir -p "$(dirname "$target/$path")"
     mv -f "$work/files/$path" "$target/$path"
   done < <(wanted)
 fi
-find "$own" -maxdepth 1 -type f ! -name prepare.sh -exec install -m 644 -t "$target" {} +
+# Files of ours: one that is the same keeps its time, one that the user has changed stays as FILE~.
+find "$own" -maxdepth 1 -type f ! -name prepare.sh -exec install --compare --backup -m 644 -t "$target" {} +
 rm -rf "$work"
 echo "fetch: $target is whole: $(wanted | wc -l) files fetched and checked"

@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/hash.h"
@@ -25,6 +28,7 @@ using testing::IsEmpty;
 class FetchTest : public testing::Test {
  protected:
   FetchTest() {
+    ::setenv("no_proxy", "127.0.0.1", 1);
     for (const char* name : {"published/top/rgb", "published/top/other", "own/desk", "data"}) {
       fs::create_directories(folder_ / name);
     }
@@ -145,9 +149,42 @@ TEST_F(FetchTest, WhatIsWholeIsNotFetchedAgainButItsAnnotationIsLaid) {
   Fetch(server.Address());
   WriteBytes(folder_ / "own/desk/objects.json", "[1]");
   const size_t requests = server.Requests().size();
-  ExpectWhole(Fetch(server.Address()));
+  EXPECT_EQ(Fetch(server.Address()).exit_code, 0);
   EXPECT_EQ(server.Requests().size(), requests);
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "[1]");
+}
+
+// Also over a third run, which finds nothing to do.
+TEST_F(FetchTest, AnnotationThatTheUserChangedIsKeptBesideOurs) {
+  HttpServer server(Files());
+  Fetch(server.Address());
+  WriteBytes(Target() / "objects.json", "mine");
+  for (int run = 0; run < 2; ++run) EXPECT_EQ(Fetch(server.Address()).exit_code, 0);
+  EXPECT_EQ(FileBytes(Target() / "objects.json"), "[]");
+  EXPECT_EQ(FileBytes(Target() / "objects.json~"), "mine");
+}
+
+TEST_F(FetchTest, FilesThatAreTheSameKeepTheirTime) {
+  HttpServer server(Files());
+  Fetch(server.Address());
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  for (const char* name : {"objects.json", "SHA256SUMS"}) {
+    fs::last_write_time(Target() / name, long_ago);
+  }
+  Fetch(server.Address());
+  for (const char* name : {"objects.json", "SHA256SUMS"}) {
+    EXPECT_EQ(fs::last_write_time(Target() / name), long_ago) << name;
+  }
+}
+
+TEST_F(FetchTest, TwoAtOnceAreOneAfterTheOther) {
+  HttpServer server(Files());
+  CommandResult other;
+  std::thread at_once([&] { other = Fetch(server.Address()); });
+  ExpectWhole(Fetch(server.Address()));
+  at_once.join();
+  ExpectWhole(other);
+  EXPECT_THAT(server.Requests(), ElementsAre("/desk.tgz", "/poses.csv"));
 }
 
 TEST_F(FetchTest, AFileThatWasLostIsFetchedAgain) {
@@ -249,7 +286,7 @@ TEST_F(FetchTest, ADamagedArchiveIsRemovedAndFetchedAnew) {
 
 TEST_F(FetchTest, AnAddressWithoutTheFile) {
   HttpServer server(HttpServer::Contents{});
-  ExpectFailed(Fetch(server.Address()), 4, {"desk.tgz: the address has no such file"});
+  ExpectFailed(Fetch(server.Address()), 4, {"error: 404", "desk.tgz: refused", "publisher moved"});
   ExpectFailed(Fetch("file://" + (folder_ / "nowhere").string()), 4, {"has no such file"});
 }
 
@@ -280,6 +317,13 @@ TEST_F(FetchTest, AFolderOfSomebodyElseStaysAsItIs) {
   EXPECT_THAT(fetched.errors, HasSubstr("was not made by this command"));
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "mine");
   EXPECT_THAT(server.Requests(), IsEmpty());
+}
+
+// Killed between making it and the first file.
+TEST_F(FetchTest, AnEmptyFolderIsNobodys) {
+  fs::create_directory(Target());
+  HttpServer server(Files());
+  ExpectWhole(Fetch(server.Address()));
 }
 
 TEST_F(FetchTest, AFolderThatCannotBeWrittenTo) {
