@@ -164,7 +164,7 @@ void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<Sh
   hypothesis->planes = std::move(held);
 }
 
-// Verticals are not doubted where they leave bodies at least as probable as their doubt does.
+// Whether the same way to hold cameras, with its vertical edges, explains bodies at no higher cost.
 bool IsDoubtedInVain(const std::vector<TriedHolding>& tried, CameraHolding holding, double cost) {
   return std::ranges::any_of(tried, [&](const TriedHolding& other) {
     return other.verticals && other.holding == holding && other.cost <= cost;
