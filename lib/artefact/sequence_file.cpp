@@ -430,7 +430,7 @@ Sequence SequenceFromJson(const json& json) {
   json.at("name").get_to(sequence.name);
   json.at("camera").get_to(sequence.camera);
   sequence.odometry_source = json.value("odometry_source", "");  // since version 1.7
-  if (json.contains("image_distortion")) {  // since version 1.3
+  if (json.contains("image_distortion")) {                       // since version 1.3
     sequence.image_distortion = DistortionFromJson(json["image_distortion"]);
   }
   sequence.image_orientation = OrientationFromJson(json);

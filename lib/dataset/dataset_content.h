@@ -26,8 +26,8 @@ struct DatasetContent {
   std::vector<Object> objects;
   std::vector<DetectionRow> rows;  // of these frames and objects
   Rejections rejected;             // by the reader
-  bool has_true_poses = false;  // of some frames at least
-  bool has_object_ids = true;   // otherwise each row is of an object of its own
+  bool has_true_poses = false;     // of some frames at least
+  bool has_object_ids = true;      // otherwise each row is of an object of its own
   // Poses are those of the camera only if the body that they are of is the camera.
   bool may_have_poses_of_body = false;
   std::optional<Distortion> image_distortion = std::nullopt;  // see Sequence
