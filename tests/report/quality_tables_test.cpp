@@ -53,8 +53,8 @@ json Metrics(const json& alignments) {
 
 TEST(QualityTable, HasARowForEachMapWithWhatAlignedIt) {
   const Table table = QualityTable(
-      "room",
-      {{"InitP", json::object()}, {"OursS", Metrics({Alignment("similarity", 2.0, 9, 0.25)})}});
+      "room", {{"InitP", json::object()},
+               {"OursS", Metrics(json::array({Alignment("similarity", 2.0, 9, 0.25)}))}});
   EXPECT_EQ(table.name, "map_quality_room");
   EXPECT_THAT(
       CellTexts(table),
@@ -65,9 +65,9 @@ TEST(QualityTable, HasARowForEachMapWithWhatAlignedIt) {
 }
 
 TEST(QualityTable, ResidualsOfSegmentsCountByFrames) {
-  const Table table = QualityTable(
-      "road",
-      {{"OursS", Metrics({Alignment("none", 1.0, 3, 0.1), Alignment("none", 1.0, 1, 0.5)})}});
+  const Table table =
+      QualityTable("road", {{"OursS", Metrics(json::array({Alignment("none", 1.0, 3, 0.1),
+                                                           Alignment("none", 1.0, 1, 0.5)}))}});
   EXPECT_EQ(table.rows.front()[1].text, "none");
   EXPECT_EQ(table.rows.front()[2].text, "0.2646");  // sqrt((3 * 0.01 + 0.25) / 4)
 }
