@@ -164,11 +164,18 @@ void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<Sh
   hypothesis->planes = std::move(held);
 }
 
-// Whether the same way to hold cameras, with its vertical edges, explains bodies at no higher cost.
-bool IsDoubtedInVain(const std::vector<TriedHolding>& tried, CameraHolding holding, double cost) {
-  return std::ranges::any_of(tried, [&](const TriedHolding& other) {
-    return other.verticals && other.holding == holding && other.cost <= cost;
-  });
+// Whether the same way to hold cameras, with its vertical edges, leads to planes and explains
+// bodies at no higher cost.
+bool IsDoubtedInVain(const std::vector<Hypothesis>& hypotheses, size_t doubting,
+                     const std::vector<double>& costs_of_bodies) {
+  const HoldingEvidence& evidence = hypotheses[doubting].evidence;
+  if (!evidence.doubts_verticals) return false;
+  for (size_t i = 0; i < doubting; ++i) {
+    const HoldingEvidence& other = hypotheses[i].evidence;
+    if (other.holding != evidence.holding || other.doubts_verticals) continue;
+    return hypotheses[i].planes && costs_of_bodies[i] <= costs_of_bodies[doubting];
+  }
+  return false;
 }
 
 // Boxes may lead ways to hold cameras to one up although they began at different ones.
@@ -217,11 +224,9 @@ HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<Segmen
     tried.push_back({evidence.holding, !views.empty() && !evidence.doubts_verticals,
                      by_bodies.costs[i], 0.0, std::nullopt});
     if (by_bodies.costs[i] > kHopeless) continue;
-    if (evidence.doubts_verticals && IsDoubtedInVain(tried, evidence.holding, by_bodies.costs[i])) {
-      continue;
-    }
+    if (IsDoubtedInVain(hypotheses, i, by_bodies.costs)) continue;
     FollowToPlanes(sequence, priors, options, threads, &hypotheses[i]);
-    if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(std::move(hypotheses[i]));
+    if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(hypotheses[i]);
   }
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });

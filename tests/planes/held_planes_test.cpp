@@ -93,6 +93,49 @@ TEST(EstimateHeldPlanes, SaysWhatWasTried) {
   EXPECT_GT(level->cost, 10.0);
 }
 
+// Each camera sees edges that are vertical where `up` is.
+std::vector<SegmentView> ViewsWithVerticals(const Sequence& sequence, const Eigen::Vector3d& up) {
+  std::vector<SegmentView> views;
+  for (const Frame& frame : sequence.frames) {
+    SegmentView view{sequence.camera, {}, frame.world_from_camera};
+    const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
+    for (const Object& object : sequence.objects) {
+      const Eigen::Vector3d foot = object.ground_truth->landmark_in_world.Centre();
+      const auto begin = sequence.camera.Project(camera_from_world * foot);
+      const auto end = sequence.camera.Project(camera_from_world * (foot + 0.3 * up));
+      if (begin && end) view.segments.push_back({*begin, *end});
+    }
+    views.push_back(view);
+  }
+  return views;
+}
+
+HeldPlanes EstimateWithVerticals(const Sequence& sequence, const Eigen::Vector3d& up) {
+  return EstimateHeldPlanes(sequence, ViewsWithVerticals(sequence, up),
+                            TrueCuboidPriors(sequence, kLogSigma), ModelOptions(), 2);
+}
+
+// Planes are looked for without them only where bodies are explained better so.
+TEST(EstimateHeldPlanes, VerticalsAreNotDoubtedInVain) {
+  const Sequence sequence = NoisySequence(2, 5);
+  const HeldPlanes held = EstimateWithVerticals(sequence, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(held.estimate.verticals);
+  for (const TriedHolding& tried : held.estimate.holdings) {
+    if (tried.holding != CameraHolding::kLevel) continue;
+    EXPECT_EQ(tried.planes.has_value(), tried.verticals);
+  }
+}
+
+TEST(EstimateHeldPlanes, VerticalsThatBodiesContradictAreDoubted) {
+  const Sequence sequence = NoisySequence(2, 5);
+  const Eigen::Vector3d tilted(std::sin(10.0 * kDegrees), 0.0, std::cos(10.0 * kDegrees));
+  const HeldPlanes held = EstimateWithVerticals(sequence, tilted);
+  EXPECT_FALSE(held.estimate.verticals);
+  const auto error = CompareWithGiven(sequence, held.estimate, 0);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->angle, 3.0 * kDegrees);
+}
+
 // As long and wide as high: it may lie on any side, but its camera is not below what it stands on.
 TEST(EstimateHeldPlanes, ACubeLeavesItOpen) {
   Scene scene = RandomScene(3, 1, 20, {Shape::kBox});
