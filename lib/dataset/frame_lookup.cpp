@@ -29,9 +29,20 @@ std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
   return {};
 }
 
-std::string InLowerCase(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
+// In lower case, numbers without leading zeros: image_02 and image_2 are one folder.
+std::string PlainName(const std::string& name) {
+  std::string plain;
+  for (size_t i = 0; i < name.size(); ++i) {
+    const auto is_digit = [&](size_t at) {
+      return at < name.size() && std::isdigit(static_cast<unsigned char>(name[at])) != 0;
+    };
+    const bool begins_number = is_digit(i) && (i == 0 || !is_digit(i - 1));
+    if (begins_number) {
+      while (name[i] == '0' && is_digit(i + 1)) ++i;
+    }
+    plain += static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
+  }
+  return plain;
 }
 
 // The name of a folder, in lower case, without what tells the cameras of a rig apart.
@@ -51,7 +62,7 @@ std::string RigOf(std::string folder) {
 
 bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
   const auto names = Difference(folder, other);
-  const std::string name = InLowerCase(names.first), other_name = InLowerCase(names.second);
+  const std::string name = PlainName(names.first), other_name = PlainName(names.second);
   return name != other_name && RigOf(name) == RigOf(other_name);
 }
 

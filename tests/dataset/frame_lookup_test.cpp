@@ -41,6 +41,7 @@ TEST_F(FrameLookupTest, AFolderOfAnotherNameMayBeTheSame) {
   EXPECT_EQ(lookup_.Find("/data/images/12.50.png", ""), 0);
   EXPECT_EQ(lookup_.Find("./images/12.51.png", ""), 1);
   EXPECT_EQ(FrameLookup({{1.0, "RGB/1.png"}}).Find("rgb/1.png", ""), 0);
+  EXPECT_EQ(FrameLookup({{1.0, "image_02/000/1.png"}}).Find("image_2/0/1.png", ""), 0);
 }
 
 TEST_F(FrameLookupTest, ImagesOfAnotherCameraAreNotListed) {

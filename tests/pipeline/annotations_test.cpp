@@ -117,7 +117,7 @@ TEST_F(PrepareTest, BoxesOfImagesBecomeATable) {
             "2,0,cabinet,0.9,11,21,31,41\n");
 }
 
-TEST_F(PrepareTest, BoxesGetTheIdsOfTheirObjects) {
+TEST_F(PrepareTest, BoxesGetTheIdsOfTheirObjectsAndPosesTheirDifferences) {
   Write("detections_yolov5.json",
         R"([{"file_name": "1.5.png", "detections": [)"
         R"({"category_id": 7, "detection_score": 0.34721, "bbox": [1.0, 2.0, 3.5, 4.0]}, )"
@@ -128,7 +128,14 @@ TEST_F(PrepareTest, BoxesGetTheIdsOfTheirObjects) {
         R"({"category_id": 7, "detection_score": 0.7, "bbox": [9.0, 10.0, 11.0, 12.0]}]}])");
   Write("own/rgb.txt", "# timestamp filename\n1.5 rgb/1.5.png\n2.5 rgb/2.5.png\n3.5 rgb/3.5.png\n");
   Write("own/ids.csv", "frame,detection,object_id,label\n0,1,12,tape roll\n2,0,3,cup\n");
+  Write("odometry.txt", "1.5 1 2 3 0 0 0 1\n1.7 9 9 9 0 0 0 1\n3.5 1.25 -2 3 0 0 0 1\n");
+  Write("own/groundtruth_from_odometry.txt",
+        "# differences\n1.5 0.5 0 -1 0 0.125 0 0\n3.5 0 0 0 0 0 0 -0.5\n");
   Prepare("fr2_desk_11", folder_ / "own");
+  EXPECT_EQ(FileBytes(folder_ / "groundtruth.txt"),
+            "# timestamp tx ty tz qx qy qz qw   (T_world_camera, metres; see README)\n"
+            "1.5 1.500000 2.000000 2.000000 0.000000 0.125000 0.000000 1.000000\n"
+            "3.5 1.250000 -2.000000 3.000000 0.000000 0.000000 0.000000 0.500000\n");
   EXPECT_EQ(FileBytes(folder_ / "detections.csv"),
             "frame,object_id,label,score,x1,y1,x2,y2\n"
             "0,12,tape roll,0.500,5.0,6.0,7.0,8.0\n"

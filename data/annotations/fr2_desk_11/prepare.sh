@@ -13,3 +13,15 @@ tr '{' '\n' < detections_yolov5.json | awk '
     }
     ++box
   }' "$1/rgb.txt" "$1/ids.csv" - > detections.csv
+# groundtruth.txt: our poses, of which only the differences from the published trajectory are ours to give.
+{
+  echo '# timestamp tx ty tz qx qy qz qw   (T_world_camera, metres; see README)'
+  awk '
+    /^#/ { next }
+    FNR == NR { for (i = 2; i <= 8; ++i) difference[$1, i] = $i; known[$1]; next }
+    $1 in known {
+      printf "%s", $1
+      for (i = 2; i <= 8; ++i) printf " %.6f", $i + difference[$1, i]
+      print ""
+    }' "$1/groundtruth_from_odometry.txt" odometry.txt
+} > groundtruth.txt
