@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "dataset/dataset_checks.h"
+#include "dataset/frame_orders.h"
 #include "dataset/pose_readings.h"
 #include "dataset/tracked_rays.h"
 #include "geometry/angles.h"
@@ -47,33 +49,88 @@ bool DoCamerasTurn(const ImportView& view) {
   return false;
 }
 
-// Poses that mean something else than they are read as make things fly apart; as they are meant,
-// things are to within a degree where they are seen.
-std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
-                                   const RayError& as_read) {
-  constexpr double kFitsDeg = 1.0;
-  constexpr double kMuchBetter = 0.25;
-  const PoseReading* best = nullptr;
-  double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
+// A mistake that explains why things are not where they are seen.
+struct Explanation {
+  std::string name;
+  std::string cause;
+  std::string remedy;
+  bool is_order = false;  // that of the frames
+  RayError error;         // what is left of it without the mistake
+};
+
+Things Mirrored(Things things) {
+  for (TrackedThing& thing : things) {
+    for (TrackedRay& ray : thing.rays) ray.ray_in_camera.x() *= -1.0;
+  }
+  return things;
+}
+
+std::vector<Explanation> ExplanationsByReading(const ImportView& view, const Things& things) {
+  const Things mirrored = Mirrored(things);
+  std::vector<Explanation> explanations;
   for (const PoseReading& reading : PoseReadings()) {
-    const auto error = MedianRayError(things, [&](size_t frame) -> std::optional<Rigid3d> {
+    if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
+    const auto pose_as_meant = [&](size_t frame) -> std::optional<Rigid3d> {
       const auto pose = PoseAt(view, frame);
       return pose ? std::optional(reading.Apply(*pose)) : std::nullopt;
-    });
-    if (!IsComparable(error, as_read) || error->median_deg >= best_deg) continue;
-    best = &reading;
-    best_deg = error->median_deg;
+    };
+    const auto error =
+        MedianRayError(reading.are_boxes_mirrored ? mirrored : things, pose_as_meant);
+    if (!error) continue;
+    explanations.push_back({reading.name, reading.cause, reading.remedy, false, *error});
   }
-  if (as_read.median_deg <= kFitsDeg || best == nullptr) return {};
+  return explanations;
+}
+
+std::vector<Explanation> ExplanationsByOrder(const ImportView& view, const Things& things) {
+  const std::vector<ListedFrame>& frames = view.content.frames;
+  std::vector<Explanation> explanations;
+  for (const FrameOrder& order : FrameOrders(frames.size())) {
+    const auto error = MedianRayError(things, [&](size_t frame) -> std::optional<Rigid3d> {
+      const size_t meant = order.frame_meant[frame];
+      if (frames[meant].frame.segment != frames[frame].frame.segment) return std::nullopt;
+      return PoseAt(view, meant);
+    });
+    if (error) explanations.push_back({order.name, order.cause, order.remedy, true, *error});
+  }
+  return explanations;
+}
+
+// Poses or orders that mean something else than they are read as make things fly apart; as they
+// are meant, things are to within a degree where they are seen.
+std::optional<Explanation> BestExplanation(const ImportView& view, const Things& things,
+                                           const RayError& as_read) {
+  constexpr double kFitsDeg = 1.0;
+  constexpr double kMuchBetter = 0.25;
+  if (as_read.median_deg <= kFitsDeg) return std::nullopt;
+  std::vector<Explanation> explanations = ExplanationsByReading(view, things);
+  std::ranges::move(ExplanationsByOrder(view, things), std::back_inserter(explanations));
+  std::optional<Explanation> best;
+  double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
+  for (Explanation& explanation : explanations) {
+    const RayError& error = explanation.error;
+    if (!IsComparable(error, as_read) || error.median_deg >= best_deg) continue;
+    best_deg = error.median_deg;
+    best = std::move(explanation);
+  }
+  return best;
+}
+
+std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
+                                   const RayError& as_read) {
+  const auto best = BestExplanation(view, things, as_read);
+  if (!best) return {};
   // Rays that meet behind the cameras may be of things that move faster than these.
-  const bool is_certain = as_read.median_deg <= 90.0 || DoCamerasTurn(view);
-  return {
-      {kPoseConvention, is_certain ? Severity::kError : Severity::kWarning,
-       fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
-                   "the poses are {}",
-                   as_read.median_deg, best_deg, best->name),
-       "poses world_from_camera, camera z forward, quaternion qx qy qz qw; things that stand still",
-       best->cause, best->remedy}};
+  const bool is_certain = !best->is_order && (as_read.median_deg <= 90.0 || DoCamerasTurn(view));
+  return {{best->is_order ? kFrameOrder : kPoseConvention,
+           is_certain ? Severity::kError : Severity::kWarning,
+           fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
+                       "{}",
+                       as_read.median_deg, best->error.median_deg, best->name),
+           best->is_order ? "images, poses and boxes in the order in which the camera took them"
+                          : "poses world_from_camera, camera z forward, quaternion qx qy qz qw; "
+                            "things that stand still",
+           best->cause, best->remedy}};
 }
 
 // Boxes that are one image late or early: things are clearly nearer to where they are seen one way,

@@ -38,8 +38,10 @@ std::vector<Finding> CheckLabels(const ImportView& view);
 std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.
 std::vector<Finding> CheckTruth(const ImportView& view);
-// The poses against the boxes: the same (kPoseConvention), poses of an IMU, frames counted from 1.
+// The poses against the boxes: the same and boxes that are mirrored (kPoseConvention), frames in
+// another order, poses of an IMU, frames counted from 1.
 inline constexpr const char* kPoseConvention = "pose_convention";
+inline constexpr const char* kFrameOrder = "frame_order";
 std::vector<Finding> CheckPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids
 // counted from 1, full sizes for half axes, quaternions with qw first.

@@ -21,6 +21,11 @@ bool IsWhole(const Box& box, const Camera& camera) {
          DistanceToBorder(box, camera.width, camera.height) > kCutPx;
 }
 
+double HalfDiagonalDeg(const Camera& camera, const Box& box) {
+  return 0.5 *
+         AngleBetweenDeg(camera.Ray({box.x_min, box.y_min}), camera.Ray({box.x_max, box.y_max}));
+}
+
 // The labels that no frame has twice.
 std::map<std::string, bool> SingleLabels(const std::vector<DetectionRow>& rows) {
   std::map<std::pair<std::string, int>, int> counts;
@@ -54,7 +59,8 @@ std::vector<TrackedThing> TrackedThings(const ImportView& view) {
     const std::string name = content.has_object_ids ? std::to_string(row.object_id) : row.label;
     TrackedThing& thing = by_name[name];
     if (content.has_object_ids) thing.object_id = row.object_id;
-    thing.rays.push_back({frame, camera.Ray(row.box.Centre()).normalized()});
+    thing.rays.push_back(
+        {frame, camera.Ray(row.box.Centre()).normalized(), HalfDiagonalDeg(camera, row.box)});
   }
   std::vector<TrackedThing> things;
   for (auto& [name, thing] : by_name) {
@@ -86,19 +92,22 @@ std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>
 
 std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
                                        const PoseOfFrame& world_from_camera) {
-  std::vector<double> errors_deg;
+  std::vector<double> errors_deg, shares;
+  size_t things_met = 0;
   for (const TrackedThing& thing : things) {
     const auto point_in_world = NearestPointInWorld(thing.rays, world_from_camera);
     if (!point_in_world) continue;
+    ++things_met;
     for (const TrackedRay& ray : thing.rays) {
       const auto pose = world_from_camera(ray.frame);
       if (!pose) continue;
       errors_deg.push_back(AngleBetweenDeg(ray.ray_in_camera, pose->Inverse() * *point_in_world));
+      shares.push_back(errors_deg.back() / ray.half_diagonal_deg);
     }
   }
   if (errors_deg.empty()) return std::nullopt;
   const size_t rays = errors_deg.size();
-  return RayError{*MedianOf(std::move(errors_deg)), rays};
+  return RayError{*MedianOf(std::move(errors_deg)), *MedianOf(std::move(shares)), rays, things_met};
 }
 
 }  // namespace soslam

@@ -14,6 +14,7 @@ namespace soslam {
 struct TrackedRay {
   size_t frame = 0;  // into DatasetContent::frames
   Eigen::Vector3d ray_in_camera;
+  double half_diagonal_deg = 0.0;  // of the box
 };
 
 // A thing of which several boxes are known.
@@ -39,7 +40,9 @@ std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>
 // disagree by.
 struct RayError {
   double median_deg = 0.0;
-  size_t rays = 0;  // of the things that have such a point
+  double median_share = 0.0;  // of the half diagonals of the boxes
+  size_t rays = 0;            // of the things that have such a point
+  size_t things = 0;
 };
 // None when no thing has such a point.
 std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,

@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <numbers>
+#include <numeric>
 
 #include "base/error.h"
 #include "dataset/import.h"
@@ -379,6 +381,11 @@ Eigen::Quaterniond WithScalarFirst(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(/*w=*/q.z(), /*x=*/q.w(), /*y=*/q.x(), /*z=*/q.y());
 }
 
+Rigid3d Turned(const Rigid3d& pose, const Eigen::Vector3d& axis, double degrees) {
+  return {pose.rotation * Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, axis),
+          pose.translation};
+}
+
 class PoseConventionTest : public DatasetChecksTest,
                            public testing::WithParamInterface<WrittenPose> {};
 
@@ -414,8 +421,129 @@ INSTANTIATE_TEST_SUITE_P(
             [](const Rigid3d& pose) {
               return Rigid3d{pose.rotation * Eigen::Quaterniond(0, 1, 0, 0), pose.translation};
             },
-            "OpenGL"}),
+            "OpenGL"},
+        WrittenPose{"OpenGlInverse",
+                    [](const Rigid3d& pose) {
+                      return Rigid3d{pose.rotation * Eigen::Quaterniond(0, 1, 0, 0),
+                                     pose.translation}
+                          .Inverse();
+                    },
+                    "view matrices of OpenGL"},
+        WrittenPose{"OpenGlScalarFirst",
+                    [](const Rigid3d& pose) {
+                      return Rigid3d{
+                          WithScalarFirst(pose.rotation * Eigen::Quaterniond(0, 1, 0, 0)),
+                          pose.translation};
+                    },
+                    "OpenGL, with quaternions qw qx qy qz"},
+        WrittenPose{"InverseRotation",
+                    [](const Rigid3d& pose) {
+                      return Rigid3d{pose.rotation.conjugate(), pose.translation};
+                    },
+                    "rotation matrices that were transposed"},
+        WrittenPose{"InverseTranslation",
+                    [](const Rigid3d& pose) {
+                      return Rigid3d{pose.rotation, pose.Inverse().translation};
+                    },
+                    "translations of camera_from_world"},
+        WrittenPose{"CentreInverted",
+                    [](const Rigid3d& pose) {
+                      return Rigid3d{pose.rotation, -(pose.rotation * pose.translation)};
+                    },
+                    "taken for the translation of camera_from_world"},
+        WrittenPose{"QuarterTurn",
+                    [](const Rigid3d& pose) { return Turned(pose, Eigen::Vector3d::UnitZ(), -90); },
+                    "turn the cameras by 90 degrees"},
+        WrittenPose{"QuarterTurnBack",
+                    [](const Rigid3d& pose) { return Turned(pose, Eigen::Vector3d::UnitZ(), 90); },
+                    "turn the cameras by -90 degrees"},
+        WrittenPose{"RosBody",
+                    [](const Rigid3d& pose) {
+                      Eigen::Matrix3d camera_from_body;
+                      camera_from_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+                      return Rigid3d{pose.rotation * Eigen::Quaterniond(camera_from_body),
+                                     pose.translation};
+                    },
+                    "as ROS has them"},
+        WrittenPose{"MirroredCentre",
+                    [](const Rigid3d& pose) {
+                      const Eigen::Vector3d& t = pose.translation;
+                      return Rigid3d{pose.rotation, {-t.x(), t.y(), t.z()}};
+                    },
+                    "the translations' x"},
+        WrittenPose{"LeftHanded",
+                    [](const Rigid3d& pose) {
+                      const Eigen::DiagonalMatrix<double, 3> mirror(1, -1, 1);
+                      const Eigen::Matrix3d axes = pose.rotation.toRotationMatrix();
+                      return Rigid3d{Eigen::Quaterniond(Eigen::Matrix3d(mirror * axes * mirror)),
+                                     mirror * pose.translation};
+                    },
+                    "as Unity has them"},
+        WrittenPose{"SwappedYAndZ",
+                    [](const Rigid3d& pose) {
+                      const Eigen::Vector3d& t = pose.translation;
+                      return Rigid3d{pose.rotation, {t.x(), t.z(), t.y()}};
+                    },
+                    "y and z swapped"}),
     [](const auto& info) { return info.param.name; });
+
+// While a camera looks at the middle of all things, a half turn hardly shows.
+TEST_F(DatasetChecksTest, CamerasTurnedByHalfATurn) {
+  dataset.sway = 0.3;
+  EXPECT_THAT(Warnings(), IsEmpty());
+  dataset.odometry = [](const Rigid3d& pose) {
+    return Turned(pose, Eigen::Vector3d::UnitZ(), 180.0);
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("by half a turn about the camera's z axis"));
+}
+
+TEST_F(DatasetChecksTest, MirroredBoxes) {
+  dataset.box = [](const Box& b) {
+    return std::array{639 - b.x_max, b.y_min, 639 - b.x_min, b.y_max};
+  };
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("boxes are mirrored left to right"),
+                               HasSubstr("as selfie cameras do")));
+}
+
+TEST_F(DatasetChecksTest, BoxesWithYUp) {
+  dataset.box = [](const Box& b) {
+    return std::array{b.x_min, 479 - b.y_max, b.x_max, 479 - b.y_min};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("boxes with y up"));
+}
+
+TEST_F(DatasetChecksTest, PosesInReversedOrder) {
+  dataset.pose_of_frame = [](int frame) { return PlausibleDataset::kFrames - 1 - frame; };
+  EXPECT_THAT(Warnings(),
+              testing::Contains(AllOf(HasSubstr("frame_order: "), HasSubstr("reversed order"))));
+}
+
+class OrderOfStringsTest : public DatasetChecksTest {
+ protected:
+  // 0, 1, 10, 11, ..., 2, ...
+  static std::vector<int> Order() {
+    std::vector<int> order(PlausibleDataset::kFrames);
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, {}, [](int frame) { return std::to_string(frame); });
+    return order;
+  }
+};
+
+TEST_F(OrderOfStringsTest, OfPoses) {
+  dataset.pose_of_frame = [](int frame) { return Order()[static_cast<size_t>(frame)]; };
+  EXPECT_THAT(Warnings(),
+              testing::Contains(AllOf(HasSubstr("frame_order: "),
+                                      HasSubstr("the poses are in the order of strings"))));
+}
+
+TEST_F(OrderOfStringsTest, OfBoxes) {
+  dataset.pose_of_frame = [](int frame) {
+    const std::vector<int> order = Order();
+    return static_cast<int>(std::ranges::find(order, frame) - order.begin());
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(AllOf(HasSubstr("frame_order: "),
+                                                  HasSubstr("boxes are in the order of strings"))));
+}
 
 TEST_F(DatasetChecksTest, FramesFromOne) {
   dataset.first_row = 1;

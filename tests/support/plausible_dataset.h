@@ -29,12 +29,14 @@ struct PlausibleDataset {
   double height_of_floor = 0.0;
   double camera_height = 1.4;  // over the floor
   double roll_rad = 0.0;       // of the camera
+  double sway = 0.0;           // of the point that it looks at (m)
   bool drive = false;          // along x, looking ahead, in place of the arc
   double ball_moves = 0.0;     // how many times as fast as the camera, along x
 
   // What the files say.
   Camera written_camera = camera;
   std::function<Rigid3d(const Rigid3d&)> odometry = [](const Rigid3d& pose) { return pose; };
+  std::function<int(int)> pose_of_frame = [](int frame) { return frame; };
   std::function<std::array<double, 4>(const Box&)> box = [](const Box& b) {
     return std::array<double, 4>{b.x_min, b.y_min, b.x_max, b.y_max};
   };
@@ -60,7 +62,8 @@ struct PlausibleDataset {
     const Eigen::Vector3d centre(3.0 * std::cos(angle), 3.0 * std::sin(angle),
                                  height_of_floor + camera_height + 0.1 * std::sin(5.0 * angle));
     const Eigen::Vector3d forward =
-        (Eigen::Vector3d(0.1, 0.0, height_of_floor + 0.3) - centre).normalized();
+        (Eigen::Vector3d(0.1 + sway * std::sin(5.0 * angle), 0.0, height_of_floor + 0.3) - centre)
+            .normalized();
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
     Eigen::Matrix3d axes;
     axes << right, forward.cross(right), forward;
@@ -114,7 +117,7 @@ struct PlausibleDataset {
     for (int frame = 0; frame < kFrames; ++frame) {
       const double time = 100.0 + 0.5 * frame;
       images += fmt::format("{} rgb/{:06}.png\n", image_time(time), frame);
-      poses += PoseLine(pose_time(time), odometry(WorldFromCamera(frame)));
+      poses += PoseLine(pose_time(time), odometry(WorldFromCamera(pose_of_frame(frame))));
       truth += PoseLine(image_time(time), WorldFromCamera(frame));
     }
     write("rgb.txt", images);
