@@ -106,8 +106,10 @@ std::vector<Finding> CheckTrueSizes(const ImportView& view) {
            "give half of the object's depth, width and height as half_axes"}};
 }
 
+}  // namespace
+
 // The z axes of upright objects against the normals of their planes.
-std::vector<Finding> CheckTrueAxes(const ImportView& view) {
+std::vector<Finding> CheckObjectAxes(const ImportView& view) {
   constexpr double kSteepestDeg = 30.0;
   constexpr size_t kFewestObjects = 2;
   std::vector<double> angles;
@@ -130,14 +132,10 @@ std::vector<Finding> CheckTrueAxes(const ImportView& view) {
            "give quaternion_xyzw of world from object, z away from the support plane"}};
 }
 
-}  // namespace
-
 std::vector<Finding> CheckObjects(const ImportView& view) {
-  std::vector<Finding> findings;
-  if (view.content.has_object_ids) findings = CheckCentres(view);
-  if (view.content.has_object_ids && findings.empty()) findings = CheckTrueSizes(view);
-  const std::vector<Finding> of_axes = CheckTrueAxes(view);
-  findings.insert(findings.end(), of_axes.begin(), of_axes.end());
+  if (!view.content.has_object_ids) return {};
+  std::vector<Finding> findings = CheckCentres(view);
+  if (findings.empty()) findings = CheckTrueSizes(view);
   return findings;
 }
 

@@ -14,6 +14,17 @@ void Append(const Check& check, const ImportView& view, std::vector<Finding>* fi
   findings->insert(findings->end(), more.begin(), more.end());
 }
 
+// What objects and planes are found to be through poses or orders of frames that are wrong.
+void AppendThroughWrongPoses(const ImportView& view, std::vector<Finding>* findings) {
+  for (const Check check : {&CheckObjects, &CheckPlanes}) {
+    for (Finding finding : check(view)) {
+      finding.cause = "what contradicts the boxes, rather than objects or planes";
+      finding.remedy = "mend poses, order of frames or ids first";
+      findings->push_back(std::move(finding));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> CheckDataset(const ImportView& view) {
@@ -27,7 +38,12 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   };
   if (!has(&Finding::severity, Severity::kError)) Append(&CheckPoses, view, &findings);
   if (!has(&Finding::severity, Severity::kError) && !has(&Finding::check, kPoseConvention)) {
-    for (const Check check : {&CheckObjects, &CheckPlanes}) Append(check, view, &findings);
+    if (has(&Finding::check, kBoxesAgainstPoses) || has(&Finding::check, kFrameOrder)) {
+      AppendThroughWrongPoses(view, &findings);
+    } else {
+      for (const Check check : {&CheckObjects, &CheckPlanes}) Append(check, view, &findings);
+    }
+    Append(&CheckObjectAxes, view, &findings);
   }
   for (const Check check : {&CheckTruth, &CheckScores, &CheckLabels, &CheckRejections}) {
     Append(check, view, &findings);

@@ -39,13 +39,16 @@ std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.
 std::vector<Finding> CheckTruth(const ImportView& view);
 // The poses against the boxes: the same and boxes that are mirrored (kPoseConvention), frames in
-// another order, poses of an IMU, frames counted from 1.
+// another order (kFrameOrder), poses of an IMU, frames counted from 1; or poses, frames or ids that
+// contradict the boxes in another way (kBoxesAgainstPoses).
 inline constexpr const char* kPoseConvention = "pose_convention";
 inline constexpr const char* kFrameOrder = "frame_order";
+inline constexpr const char* kBoxesAgainstPoses = "boxes_against_poses";
 std::vector<Finding> CheckPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids
-// counted from 1, full sizes for half axes, quaternions with qw first.
+// counted from 1, full sizes for half axes; quaternions with qw first.
 std::vector<Finding> CheckObjects(const ImportView& view);
+std::vector<Finding> CheckObjectAxes(const ImportView& view);
 // The support plane of most objects against cameras and objects.
 std::vector<Finding> CheckPlanes(const ImportView& view);
 

@@ -545,6 +545,22 @@ TEST_F(OrderOfStringsTest, OfBoxes) {
                                                   HasSubstr("boxes are in the order of strings"))));
 }
 
+// Poses that were shuffled: no order or reading explains them.
+TEST_F(DatasetChecksTest, PosesThatContradictTheBoxes) {
+  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("boxes_against_poses: 5 things are"),
+                                HasSubstr("poses, the order of frames, or ids contradict"))));
+}
+
+TEST_F(DatasetChecksTest, PlanesThroughPosesThatContradictTheBoxes) {
+  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
+  dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("from below"), HasSubstr("mend poses"),
+                               Not(HasSubstr("sign of the normal"))));
+}
+
 TEST_F(DatasetChecksTest, FramesFromOne) {
   dataset.first_row = 1;
   EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("frame_numbers"), HasSubstr("counted from 1"),
