@@ -86,24 +86,33 @@ std::vector<Finding> CheckCentres(const ImportView& view) {
   return {finding};
 }
 
+// The height (px) that a landmark looks, by its distance where it has no outline, as where the
+// camera is within it.
+double HeightPx(const Camera& camera, const Landmark& landmark_in_camera) {
+  const auto outline = OutlineBox(camera, landmark_in_camera);
+  if (outline) return outline->Height();
+  return 2.0 * camera.fy * landmark_in_camera.half_axes.z() / landmark_in_camera.Centre().norm();
+}
+
 // Heights of outlines against those of the boxes.
 std::vector<Finding> CheckTrueSizes(const ImportView& view) {
   constexpr double kLargestFactor = 1.6;
+  constexpr double kFactorOfUnit = 5.0;
   std::vector<double> log_factors;
   for (const auto& [box, camera, landmark] : BoxesAndTruth(view, 0)) {
-    const auto outline = OutlineBox(camera, landmark);
-    if (outline && box.Height() > 0.0) {
-      log_factors.push_back(std::log(outline->Height() / box.Height()));
-    }
+    if (box.Height() <= 0.0) continue;
+    log_factors.push_back(std::log(HeightPx(camera, landmark) / box.Height()));
   }
   if (log_factors.size() < kFewest) return {};
   const double factor = std::exp(*MedianOf(log_factors));
   if (factor < kLargestFactor && factor > 1.0 / kLargestFactor) return {};
+  const bool is_of_unit = factor > kFactorOfUnit || factor < 1.0 / kFactorOfUnit;
   return {{"object_half_axes", Severity::kWarning,
            fmt::format("true objects look {:.2g} times as high as their boxes (median)", factor),
            "true objects as large as their boxes",
-           "full sizes in place of half_axes, or the reverse",
-           "give half of the object's depth, width and height as half_axes"}};
+           is_of_unit ? "half_axes in another unit than metres, as centimetres"
+                      : "full sizes in place of half_axes, or the reverse",
+           "give half of the object's depth, width and height in metres as half_axes"}};
 }
 
 }  // namespace

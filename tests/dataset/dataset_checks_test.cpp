@@ -656,6 +656,21 @@ TEST_F(DatasetChecksTest, FullSizesForHalfAxes) {
               ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("full sizes"))));
 }
 
+// Cameras are within such objects, which have no outline then.
+TEST_F(DatasetChecksTest, HalfAxesInCentimetres) {
+  dataset.true_radius *= 100.0;
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("centimetres"))));
+}
+
+TEST_F(DatasetChecksTest, HalfAxesInKilometres) {
+  dataset.true_radius *= 1e-3;
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("another unit"))));
+}
+
 // The rotation by 40 degrees about z with qw first.
 TEST_F(DatasetChecksTest, TrueQuaternionsWithScalarFirst) {
   dataset.true_quaternion = "0.94, 0, 0, 0.342";
