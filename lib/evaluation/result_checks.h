@@ -25,6 +25,8 @@ std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequen
 // The landmarks of objects that are flat or needles, as views alone make them that do not determine
 // all axes. Which of these is the height they do not say.
 std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates);
+// Landmarks that shrank to a point.
+std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates);
 
 // The cost that is left of boxes whose edges have a standard deviation, against what such boxes
 // leave by chance.

@@ -86,6 +86,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                         ? CheckDegenerate(estimates)
                         : CheckSizes(estimates, sequence, table),
                     std::back_inserter(findings));
+  std::ranges::move(CheckCollapsed(estimates), std::back_inserter(findings));
   ReportFindings("initialise", findings);
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), {files.at("sequence"), files.at("table")}, findings});

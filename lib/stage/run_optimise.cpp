@@ -121,6 +121,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   const MapEstimate map = OptimiseMap(input, options, threads);
   const LandmarkEstimates found = {{}, map.objects};
   info.findings = options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found);
+  std::ranges::move(CheckCollapsed(found), std::back_inserter(info.findings));
   if (options.detection_model == DetectionModel::kTangency) {
     std::ranges::move(CheckCost(map.solver), std::back_inserter(info.findings));
   }

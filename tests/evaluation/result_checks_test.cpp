@@ -91,6 +91,21 @@ TEST(CheckDegenerateTest, LandmarksThatViewsDoNotDetermine) {
   EXPECT_THAT(CheckDegenerate(estimates), IsEmpty());
 }
 
+TEST(CheckCollapsedTest, LandmarksThatShrankToAPoint) {
+  LandmarkEstimates estimates;
+  for (const double size : {0.1, 1e-4, 1.0}) {
+    ObjectEstimate estimate;
+    estimate.landmark_in_world = Landmark();
+    estimate.landmark_in_world->half_axes = {2e-4, 3e-4, size};
+    if (size > 0.5) estimate.landmark_in_world->half_axes = {size, size, size};
+    estimates.objects.push_back(estimate);
+  }
+  ASSERT_EQ(CheckCollapsed(estimates).size(), 1u);
+  EXPECT_THAT(CheckCollapsed(estimates)[0].found, HasSubstr("1 of 3 landmarks"));
+  estimates.objects.erase(estimates.objects.begin() + 1);
+  EXPECT_THAT(CheckCollapsed(estimates), IsEmpty());
+}
+
 TEST(CheckFailuresTest, MovingObjectsAreNoFailures) {
   LandmarkEstimates estimates;
   for (int i = 0; i < 3; ++i) {
