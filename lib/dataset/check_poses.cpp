@@ -188,16 +188,22 @@ std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayEr
 }
 
 // Things that are far from where they are seen, by the size of their boxes, whatever the reading.
-std::vector<Finding> CheckContradiction(const RayError& as_read) {
+// Where they are seen right from the true poses, the estimates drift, and CheckTruth tells how far.
+std::vector<Finding> CheckContradiction(const ImportView& view, const Things& things,
+                                        const RayError& as_read) {
   constexpr double kLargestShare = 0.2;
   constexpr size_t kFewestThings = 3;
   if (as_read.median_share <= kLargestShare || as_read.things < kFewestThings) return {};
+  const auto from_truth = MedianRayError(things, [&](size_t frame) {
+    return view.content.frames[frame].frame.true_world_from_camera;
+  });
+  if (IsComparable(from_truth, as_read) && from_truth->median_share <= kLargestShare) return {};
   return {{kBoxesAgainstPoses, Severity::kWarning,
            fmt::format("{} things are {:.2f} degrees from where they are seen, {:.2g} times half "
                        "the diagonal of their boxes (medians)",
                        as_read.things, as_read.median_deg, as_read.median_share),
            fmt::format("at most {:g} times; things that stand still", kLargestShare),
-           "poses, the order of frames, or ids contradict the boxes",
+           "poses, the order of frames, or ids contradict the boxes; or poses that drift far",
            "look at the boxes of one id in several images: soslam-inspect; then at poses and time "
            "stamps"}};
 }
@@ -213,7 +219,7 @@ std::vector<Finding> CheckPoses(const ImportView& view) {
   if (as_read) findings = CheckReadings(view, things, *as_read);
   if (findings.empty() && as_read) findings = CheckFrameNumbers(view, things, *as_read);
   if (findings.empty()) findings = CheckBody(view, as_read);
-  if (findings.empty() && as_read) findings = CheckContradiction(*as_read);
+  if (findings.empty() && as_read) findings = CheckContradiction(view, things, *as_read);
   return findings;
 }
 

@@ -554,6 +554,24 @@ TEST_F(DatasetChecksTest, PosesThatContradictTheBoxes) {
                                 HasSubstr("poses, the order of frames, or ids contradict"))));
 }
 
+TEST_F(DatasetChecksTest, PosesThatContradictTheBoxesAndTheTruth) {
+  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
+  dataset.has_truth = true;
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("trajectory_against_truth")));
+}
+
+// It turns about z while the camera goes around.
+TEST_F(DatasetChecksTest, PosesThatDrift) {
+  dataset.odometry = [](const Rigid3d& pose) {
+    const double turn_rad = 0.1 * std::atan2(pose.translation.y(), pose.translation.x());
+    const Eigen::AngleAxisd turn(turn_rad, Eigen::Vector3d::UnitZ());
+    return Rigid3d{Eigen::Quaterniond(turn), {0.0, 0.0, 5.0 * turn_rad}} * pose;
+  };
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("poses that drift far")));
+  dataset.has_truth = true;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
 TEST_F(DatasetChecksTest, PlanesThroughPosesThatContradictTheBoxes) {
   dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
   dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
