@@ -59,8 +59,8 @@ json InFramesToJson(const DriftSummary& summary) {
   return {{"landmarks", summary.landmarks},
           {"iou_mean", OrNull(summary.iou_in_frames)},
           {"iou_mean_in_world", OrNull(summary.iou_in_world)},
-          {"centre_m_mean", OrNull(summary.centre_m_in_frames)},
-          {"centre_m_mean_in_world", OrNull(summary.centre_m_in_world)}};
+          {"centre_m_median", OrNull(summary.centre_m_in_frames)},
+          {"centre_m_median_in_world", OrNull(summary.centre_m_in_world)}};
 }
 
 // Adds why a row is missed or false; null where it is not.

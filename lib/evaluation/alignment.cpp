@@ -87,9 +87,9 @@ AlignmentKind ChosenKind(AlignmentChoice choice, const Sequence& sequence,
     case AlignmentChoice::kAuto:
       break;
   }
-  if (odometry.size() < kFewest) return AlignmentKind::kNone;
   if (sequence.odometry_world == OdometryWorld::kOwnWithScale) return AlignmentKind::kSimilarity;
   if (sequence.odometry_world == OdometryWorld::kOwn) return AlignmentKind::kRigid;
+  if (odometry.size() < kFewest) return AlignmentKind::kNone;
   if (AreInOneWorld(odometry)) return AlignmentKind::kNone;
   return HaveSameScale(odometry) ? AlignmentKind::kRigid : AlignmentKind::kSimilarity;
 }

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "evaluation/landmark_errors.h"
 #include "evaluation/rotation_error.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+// What a corrected part has to gain in IoU to be to blame.
+constexpr double kLeastGain = 1e-6;
 
 Eigen::Vector3d Up(const Landmark& landmark) {
   return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
@@ -112,8 +113,9 @@ PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {
           kDegPerRad * std::atan2(plane.normal.cross(up).norm(), plane.normal.dot(up))};
 }
 
-WrongPart FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
-                        const Landmark& truth_in_frame, const Eigen::Vector3d& camera_centre) {
+std::optional<WrongPart> FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
+                                       const Landmark& truth_in_frame,
+                                       const Eigen::Vector3d& camera_centre) {
   const Landmark named = NamedLike(estimate, truth_in_frame);
   const auto iou = [&](const Landmark& corrected) {
     return CompareLandmarks(corrected, truth, truth_in_frame).iou;
@@ -127,7 +129,8 @@ WrongPart FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
       WrongPart{BodyPart::kSize, iou(WithSizeOf(truth_in_frame, named))},
       WrongPart{BodyPart::kYaw, iou(WithYawOf(truth_in_frame, named))},
       WrongPart{BodyPart::kPlace, iou(WithPlaceOf(truth_in_frame, named))}};
-  return *std::ranges::max_element(candidates, {}, &WrongPart::iou);
+  const WrongPart& best = *std::ranges::max_element(candidates, {}, &WrongPart::iou);
+  return best.iou > iou(named) + kLeastGain ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace soslam

@@ -53,8 +53,9 @@ struct WrongPart {
 };
 // `camera_centre`: from where it was seen, about. A body whose plane is corrected goes straight
 // onto it, or along the line of sight, with its size, as a body would whose boxes had been put onto
-// that plane: whichever helps more.
-WrongPart FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
-                        const Landmark& truth_in_frame, const Eigen::Vector3d& camera_centre);
+// that plane: whichever helps more. None where no part alone helps.
+std::optional<WrongPart> FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
+                                       const Landmark& truth_in_frame,
+                                       const Eigen::Vector3d& camera_centre);
 
 }  // namespace soslam

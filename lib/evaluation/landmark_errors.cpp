@@ -2,15 +2,13 @@
 #include "evaluation/landmark_errors.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "evaluation/iou.h"
 #include "evaluation/rotation_error.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // The landmark turned about its z axis until its x axis points as the estimate's does.
 Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {

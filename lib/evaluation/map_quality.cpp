@@ -115,15 +115,22 @@ DriftSummary SummariseInFrames(const std::vector<LandmarkRow>& rows) {
       rows, [](const LandmarkRow& row) { return row.in_frames.has_value(); }));
   summary.iou_in_frames = mean([](const LandmarkRow& row) { return row.in_frames->iou; });
   summary.iou_in_world = mean([](const LandmarkRow& row) { return row.errors->iou; });
-  summary.centre_m_in_frames = mean([](const LandmarkRow& row) { return row.in_frames->centre_m; });
-  summary.centre_m_in_world = mean([](const LandmarkRow& row) { return row.errors->centre_m; });
+  std::vector<double> in_frames, in_world;
+  for (const LandmarkRow& row : rows) {
+    if (!row.in_frames) continue;
+    in_frames.push_back(row.in_frames->centre_m);
+    in_world.push_back(row.errors->centre_m);
+  }
+  summary.centre_m_in_frames = MedianOf(in_frames);
+  summary.centre_m_in_world = MedianOf(in_world);
   return summary;
 }
 
 // Whether the landmark is that of the true object, at another place.
 bool IsWrong(MapReason reason) {
   return reason == MapReason::kWrongPlane || reason == MapReason::kWrongSize ||
-         reason == MapReason::kWrongYaw || reason == MapReason::kWrongPlace;
+         reason == MapReason::kWrongYaw || reason == MapReason::kWrongPlace ||
+         reason == MapReason::kWrongInSeveral;
 }
 
 void Explain(const ReasonInput& input, const RowMaker& maker, MapQuality* quality) {
@@ -152,7 +159,7 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<Plane>& planes_in_world,
                                              AlignmentChoice alignment) {
   const bool has_truth = std::ranges::any_of(sequence.true_objects, &TrueObject::is_static);
-  if (!has_truth || estimates.empty()) return std::nullopt;
+  if (!has_truth) return std::nullopt;
   MapQuality quality;
   quality.alignments = AlignSegments(sequence, world_from_camera, alignment);
   const AlignedMap map =

@@ -95,8 +95,8 @@ struct MapQuality {
   std::map<MapReason, int> misses, false_landmarks;
 };
 
-// None without true objects that stand still, and for estimates that are no map, as none is of an
-// object. `world_from_camera` and `planes_in_world` as in MapEstimate.
+// None without true objects that stand still. A map without landmarks misses them all.
+// `world_from_camera` and `planes_in_world` as in MapEstimate.
 std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<ObjectEstimate>& estimates,
                                              const std::vector<Rigid3d>& world_from_camera,

@@ -97,7 +97,7 @@ std::string InWords(const BodyErrors& errors, const std::optional<PlaneErrors>& 
 }
 
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
-  const WrongPart wrong = PartToBlame(input.sequence, input.map, landmark, true_index);
+  const auto wrong = PartToBlame(input.sequence, input.map, landmark, true_index);
   const GroundTruth& truth = input.sequence.true_objects[static_cast<size_t>(true_index)].truth;
   const auto index = static_cast<size_t>(landmark);
   const BodyErrors errors =
@@ -105,11 +105,13 @@ Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index)
   const auto& plane = input.map.plane_of_landmark[index];
   std::optional<PlaneErrors> plane_errors;
   if (plane) plane_errors = ComparePlane(*plane, truth.landmark_in_world);
-  return {
-      ReasonOf(wrong.part),
-      fmt::format("IoU {:.3f}, {:.3f} with the true {}; {}", errors.iou, wrong.iou,
-                  kBodyPartNames[static_cast<size_t>(wrong.part)], InWords(errors, plane_errors)),
-      true_index};
+  std::string detail = fmt::format("IoU {:.3f}", errors.iou);
+  if (wrong) {
+    detail += fmt::format(", {:.3f} with the true {}", wrong->iou,
+                          kBodyPartNames[static_cast<size_t>(wrong->part)]);
+  }
+  return {wrong ? ReasonOf(wrong->part) : MapReason::kWrongInSeveral,
+          detail + "; " + InWords(errors, plane_errors), true_index};
 }
 
 // The boxes at the place of a true object: by object of those in use, by reason of the others.
@@ -156,8 +158,8 @@ std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_i
 
 }  // namespace
 
-WrongPart PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
-                      int true_index) {
+std::optional<WrongPart> PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
+                                     int true_index) {
   const AlignedLandmark& estimate = map.landmarks[static_cast<size_t>(landmark)];
   const TrueObject& object = sequence.true_objects[static_cast<size_t>(true_index)];
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -26,14 +26,16 @@ enum class MapReason {
   kWrongSize,
   kWrongYaw,
   kWrongPlace,
-  kDuplicate,   // a landmark at the place of one that matches better
-  kMoving,      // its boxes are of an object that moves
-  kBackground,  // its boxes are of no true object
+  kWrongInSeveral,  // so that no part alone helps
+  kDuplicate,       // a landmark at the place of one that matches better
+  kMoving,          // its boxes are of an object that moves
+  kBackground,      // its boxes are of no true object
 };
 inline constexpr std::array kMapReasonNames = {
-    "not_detected", "gated",       "lost_in_association", "split",     "joined",
-    "no_landmark",  "wrong_plane", "wrong_size",          "wrong_yaw", "wrong_place",
-    "duplicate",    "moving",      "background"};
+    "not_detected", "gated",       "lost_in_association", "split",
+    "joined",       "no_landmark", "wrong_plane",         "wrong_size",
+    "wrong_yaw",    "wrong_place", "wrong_in_several",    "duplicate",
+    "moving",       "background"};
 
 struct Explanation {
   MapReason reason = MapReason::kNotDetected;
@@ -58,7 +60,7 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index);
 Explanation ExplainFalse(const ReasonInput& input, int landmark);
 
 // FindWrongPart of a landmark and a true object of its segment.
-WrongPart PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
-                      int true_index);
+std::optional<WrongPart> PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
+                                     int true_index);
 
 }  // namespace soslam

@@ -127,8 +127,10 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
   metrics.held_out = EvaluateHeldOut(sequence, estimates.objects, held_out_poses);
   std::vector<Plane> planes;
   for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
-  metrics.map_quality =
-      EvaluateMapQuality(sequence, estimates.objects, Odometry(sequence), planes, alignment);
+  if (estimates.observations.empty()) {
+    metrics.map_quality =
+        EvaluateMapQuality(sequence, estimates.objects, Odometry(sequence), planes, alignment);
+  }
   return metrics;
 }
 

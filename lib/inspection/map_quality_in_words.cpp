@@ -51,11 +51,11 @@ std::string FoundInWords(const json& score) {
 }
 
 std::string InFramesInWords(const json& in_frames) {
-  return fmt::format("{} landmarks: mean IoU {}, in the world {}; centre {} m, in the world {} m",
-                     in_frames.at("landmarks").get<int>(), OrDash(in_frames.at("iou_mean"), 3),
-                     OrDash(in_frames.at("iou_mean_in_world"), 3),
-                     OrDash(in_frames.at("centre_m_mean"), 3),
-                     OrDash(in_frames.at("centre_m_mean_in_world"), 3));
+  return fmt::format(
+      "{} landmarks: mean IoU {}, in the world {}; median centre {} m, in the world {} m",
+      in_frames.at("landmarks").get<int>(), OrDash(in_frames.at("iou_mean"), 3),
+      OrDash(in_frames.at("iou_mean_in_world"), 3), OrDash(in_frames.at("centre_m_median"), 3),
+      OrDash(in_frames.at("centre_m_median_in_world"), 3));
 }
 
 // One line for each row that has a reason, if they are few.

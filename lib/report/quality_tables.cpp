@@ -51,7 +51,7 @@ std::vector<Cell> QualityRow(const std::string& name, const json& quality) {
   const json& strict = quality.at("scores").back();
   const json& found = score.at("of_found");
   const json& in_frames = quality.at("in_frames");
-  const json& log_scale = found.at("log_scale_mean");
+  const json& log_scale = found.at("log_scale_abs_mean");
   const auto count = [&](const char* key) { return score.at(key).get<int>(); };
   return {
       name,
@@ -101,7 +101,7 @@ Table QualityTable(const std::string& dataset, const std::vector<NamedMetrics>& 
                   "mean IoU",
                   "centre m",
                   "centre / size",
-                  "size factor",
+                  "size off by factor",
                   "yaw deg",
                   "up deg",
                   "labels right",

@@ -145,6 +145,8 @@ TEST_F(AlignSegmentsTest, WithoutTruthNothingIsAlignedAndWhoAskedIsTold) {
   const Alignments automatic = Of(sequence, AlignmentChoice::kAuto);
   EXPECT_EQ(automatic.of_segment.at(0).kind, AlignmentKind::kNone);
   EXPECT_TRUE(automatic.findings.empty());
+  sequence.odometry_world = OdometryWorld::kOwn;
+  EXPECT_EQ(Of(sequence, AlignmentChoice::kAuto).findings.size(), 1u);
   const Alignments asked = Of(sequence, AlignmentChoice::kSimilarity);
   EXPECT_EQ(asked.of_segment.at(0).kind, AlignmentKind::kNone);
   ASSERT_EQ(asked.findings.size(), 1u);

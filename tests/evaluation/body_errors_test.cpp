@@ -30,7 +30,7 @@ class BodyErrorsTest : public testing::Test {
   BodyErrors Compare(const Landmark& estimate) const {
     return CompareBodies(estimate, truth_, truth_.landmark_in_world);
   }
-  WrongPart Wrong(const Landmark& estimate) const {
+  std::optional<WrongPart> Wrong(const Landmark& estimate) const {
     return FindWrongPart(estimate, truth_, truth_.landmark_in_world, kCamera);
   }
   GroundTruth truth_{Standing(1.0, 2.0, 20.0, {0.4, 0.2, 0.3})};
@@ -94,11 +94,19 @@ TEST_F(BodyErrorsTest, ThePartThatIsWrongIsFound) {
                                    {BodyPart::kYaw, Standing(1.0, 2.0, 60.0, {0.4, 0.2, 0.3})},
                                    {BodyPart::kPlace, Standing(1.3, 2.2, 20.0, {0.4, 0.2, 0.3})}};
   for (const auto& [part, estimate] : cases) {
-    const WrongPart wrong = Wrong(estimate);
-    EXPECT_EQ(wrong.part, part);
-    EXPECT_NEAR(wrong.iou, 1.0, 1e-6);
-    EXPECT_GT(wrong.iou, Compare(estimate).iou);
+    const auto wrong = Wrong(estimate);
+    ASSERT_TRUE(wrong);
+    EXPECT_EQ(wrong->part, part);
+    EXPECT_NEAR(wrong->iou, 1.0, 1e-6);
+    EXPECT_GT(wrong->iou, Compare(estimate).iou);
   }
+}
+
+TEST_F(BodyErrorsTest, NoPartIsToBlameWhereNoneAloneHelps) {
+  EXPECT_FALSE(Wrong(truth_.landmark_in_world));
+  Landmark far_and_high = Standing(7.0, 2.0, 20.0, {0.4, 0.2, 0.3});
+  far_and_high.frame_from_object.translation.z() += 5.0;
+  EXPECT_FALSE(Wrong(far_and_high));
 }
 
 // A plane that is too low puts what stands on it farther away and makes it larger.
@@ -107,9 +115,10 @@ TEST_F(BodyErrorsTest, APlaneThatIsTooLowIsSeenInDistanceAndSize) {
   Landmark estimate = truth_.landmark_in_world;
   estimate.half_axes *= kFactor;
   estimate.frame_from_object.translation = kCamera + kFactor * (estimate.Centre() - kCamera);
-  const WrongPart wrong = Wrong(estimate);
-  EXPECT_EQ(wrong.part, BodyPart::kPlane);
-  EXPECT_NEAR(wrong.iou, 1.0, 1e-9);
+  const auto wrong = Wrong(estimate);
+  ASSERT_TRUE(wrong);
+  EXPECT_EQ(wrong->part, BodyPart::kPlane);
+  EXPECT_NEAR(wrong->iou, 1.0, 1e-9);
 }
 
 }  // namespace

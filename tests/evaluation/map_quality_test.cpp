@@ -360,10 +360,20 @@ TEST_F(MapQualityTest, ObjectsThatMoveAreNotLookedFor) {
   EXPECT_THAT(quality.false_landmarks, ElementsAre(Pair(MapReason::kMoving, 1)));
 }
 
-TEST_F(MapQualityTest, WhatIsNoMapHasNone) {
+TEST_F(MapQualityTest, AMapWithoutLandmarksMissesAll) {
   AddFound();
   const std::vector<Rigid3d> poses(kFrames);
-  EXPECT_FALSE(EvaluateMapQuality(sequence_, {}, poses, {}, AlignmentChoice::kNone));
+  const auto empty = EvaluateMapQuality(sequence_, {}, poses, {}, AlignmentChoice::kNone);
+  ASSERT_TRUE(empty);
+  EXPECT_EQ(empty->scores[0].found, 0);
+  EXPECT_EQ(empty->scores[0].recall, 0.0);
+  EXPECT_FALSE(empty->scores[0].precision);
+  EXPECT_EQ(empty->misses.at(MapReason::kNoLandmark), 1);
+}
+
+TEST_F(MapQualityTest, ThereIsNoneWithoutTruth) {
+  AddFound();
+  const std::vector<Rigid3d> poses(kFrames);
   sequence_.true_objects[0].is_static = false;
   EXPECT_FALSE(EvaluateMapQuality(sequence_, estimates_, poses, {}, AlignmentChoice::kNone));
 }

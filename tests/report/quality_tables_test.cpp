@@ -31,7 +31,7 @@ json Score(int found, double f1) {
            {{"iou_mean", 0.5},
             {"centre_m_mean", 0.125},
             {"centre_relative_mean", 0.25},
-            {"log_scale_mean", std::log(0.5)},
+            {"log_scale_abs_mean", std::log(1.25)},
             {"yaw_error_deg_mean", nullptr},
             {"up_error_deg_mean", 1.5},
             {"labels_agree", 2}}}};
@@ -59,7 +59,7 @@ TEST(QualityTable, HasARowForEachMapWithWhatAlignedIt) {
   EXPECT_THAT(
       CellTexts(table),
       ElementsAre("OursS similarity 2 0.2500 4 (3) 5 (1) 3, 0.750 2, 0.500 0.750 0.500 0.125 "
-                  "0.25 0.500 - 1.5 2 of 3 0.625 0.500"));
+                  "0.25 1.250 - 1.5 2 of 3 0.625 0.500"));
   EXPECT_THAT(table.notes, ElementsAre("Odometry: ORB-SLAM2."));
   EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
