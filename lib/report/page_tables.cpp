@@ -394,8 +394,9 @@ std::string OverviewTables(const json& overview) {
     }
     content += Remarks(dataset);
     if (!dataset.at("variants").empty()) {
-      content += MetricsTable(dataset.at("variants")) +
-                 QualityHtml(dataset.at("dataset"), dataset.at("variants"));
+      const std::string quality = QualityHtml(dataset.at("dataset"), dataset.at("variants"));
+      content += MetricsTable(dataset.at("variants"));
+      if (!quality.empty()) content += "<h3>Maps against all that is true</h3>\n" + quality;
     }
     sections += Section(url, dataset.at("dataset").get<std::string>(), content);
   }
