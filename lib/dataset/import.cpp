@@ -99,7 +99,7 @@ class Importer {
     if (content_.has_object_ids) {
       usable = WithEnoughObservations(std::move(usable), options_.min_observations, &rejected);
     }
-    sequence_->detections = Detections(std::move(usable));
+    sequence_->detections = Detections(usable);
 
     Rejections not_reported;
     all_in_view.detections = Detections(WithoutDuplicates(std::move(in_view), &not_reported));
@@ -157,7 +157,7 @@ class Importer {
     return is_known ? std::optional(object_id) : std::nullopt;
   }
 
-  std::vector<Detection> Detections(std::vector<DetectionRow> rows) const {
+  std::vector<Detection> Detections(const std::vector<DetectionRow>& rows) const {
     std::vector<Detection> detections;
     detections.reserve(rows.size());
     for (const DetectionRow& row : rows) {
