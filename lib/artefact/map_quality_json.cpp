@@ -33,6 +33,8 @@ json FoundToJson(const FoundSummary& found) {
           {"log_scale_abs_mean", OrNull(found.log_scale_abs_mean)},
           {"yaw_error_deg_mean", OrNull(found.yaw_deg_mean)},
           {"up_error_deg_mean", OrNull(found.up_deg_mean)},
+          {"plane_offset_m_abs_mean", OrNull(found.plane_offset_m_abs_mean)},
+          {"plane_tilt_deg_mean", OrNull(found.plane_tilt_deg_mean)},
           {"quarter_turned", found.quarter_turned},
           {"labels_agree", found.labels_agree},
           {"ids_known", found.ids_known},

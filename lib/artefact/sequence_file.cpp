@@ -90,17 +90,22 @@ json ObjectToJson(const Object& object, const Sequence& sequence) {
 }
 
 json TrueObjectToJson(const TrueObject& object) {
-  return {{"object", object.id},
-          {"label", object.label},
-          {"segment", object.segment},
-          {"is_static", object.is_static},
-          {"ground_truth", GroundTruthToJson(object.truth)}};
+  json fields = {{"object", object.id},
+                 {"label", object.label},
+                 {"segment", object.segment},
+                 {"is_static", object.is_static},
+                 {"ground_truth", GroundTruthToJson(object.truth)}};
+  if (object.is_ignored) fields["is_ignored"] = true;
+  return fields;
 }
 
 TrueObject TrueObjectFromJson(const json& json) {
-  return {json.at("object").get<int>(), json.at("label").get<std::string>(),
-          GroundTruthFromJson(json.at("ground_truth")), json.at("segment").get<int>(),
-          json.at("is_static").get<bool>()};
+  return {json.at("object").get<int>(),
+          json.at("label").get<std::string>(),
+          GroundTruthFromJson(json.at("ground_truth")),
+          json.at("segment").get<int>(),
+          json.at("is_static").get<bool>(),
+          json.value("is_ignored", false)};
 }
 
 // Before version 1.7 what is true was said of the objects that are detected.

@@ -58,6 +58,9 @@ std::string DescribeRejections(const RejectionCounts& rejected);
 // Whether what a rejected row shows is there all the same, and may hide other objects.
 bool IsInView(RejectReason reason);
 
+// Whether the label is one of the option `labels`, or that lists none.
+bool IsWanted(const std::string& label, const ImportOptions& options);
+
 // What is wrong with the row by itself, apart from its frame; none when it is usable.
 std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camera,
                                     const ImportOptions& options);

@@ -255,6 +255,9 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.objects = content.objects;
   sequence.true_objects = content.true_objects;
   std::ranges::sort(sequence.true_objects, {}, &TrueObject::id);
+  for (TrueObject& object : sequence.true_objects) {
+    object.is_ignored = !IsWanted(object.label, options);
+  }
   sequence.ignored = content.ignored;
   sequence.odometry_world = WorldOfOdometry(options);
   Importer(content, options, &sequence).Import();

@@ -5,15 +5,16 @@
 #include <limits>
 
 #include "base/assignment.h"
+#include "evaluation/iou.h"
 #include "evaluation/landmark_errors.h"
 
 namespace soslam {
 namespace {
 
-// Its centre, and so about half of it at least.
-bool IsInside(const Landmark& volume, const Landmark& landmark) {
-  const Eigen::Vector3d centre = volume.frame_from_object.Inverse() * landmark.Centre();
-  return (centre.cwiseAbs().array() <= volume.half_axes.array()).all();
+bool IsIn(const Landmark& volume, const Landmark& landmark) {
+  const double landmark_m3 = 8.0 * landmark.half_axes.prod();
+  return 2.0 * IntersectionVolume(volume, landmark) >= landmark_m3 ||
+         BoxIou(volume, landmark) >= kMapIous.front();
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ bool IsIgnored(const std::vector<IgnoredThings>& ignored, const std::string& lab
                const Landmark& landmark_in_world) {
   return std::ranges::any_of(ignored, [&](const IgnoredThings& things) {
     if (things.label && *things.label != label) return false;
-    return !things.volume_in_world || IsInside(*things.volume_in_world, landmark_in_world);
+    return !things.volume_in_world || IsIn(*things.volume_in_world, landmark_in_world);
   });
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/map_matching.h"
 #include "evaluation/map_rows.h"
 #include "evaluation/statistics.h"
 
@@ -17,7 +16,7 @@ std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const ViewsOfTru
                                       const std::vector<int>& truth_of_landmark) {
   std::vector<TrueObjectRow> rows;
   for (size_t i = 0; i < sequence.true_objects.size(); ++i) {
-    if (!sequence.true_objects[i].is_static) continue;
+    if (!sequence.true_objects[i].IsWanted()) continue;
     TrueObjectRow row{static_cast<int>(i), views.detected_frames[i],
                       views.detected_frames[i] >= kFewestViews};
     const auto landmark = std::ranges::find(truth_of_landmark, row.true_index);
@@ -62,6 +61,15 @@ FoundSummary Summarise(const std::vector<LandmarkRow>& rows) {
       mean([](const BodyErrors& errors) { return std::abs(errors.log_scale); });
   summary.yaw_deg_mean = mean([](const BodyErrors& errors) { return errors.yaw_deg; });
   summary.up_deg_mean = mean([](const BodyErrors& errors) { return errors.up_deg; });
+  const auto plane_mean = [&](const auto& of_errors) {
+    return MeanOver(rows, [&](const LandmarkRow& row) -> std::optional<double> {
+      if (row.fate != Fate::kFound || !row.plane) return std::nullopt;
+      return of_errors(*row.plane);
+    });
+  };
+  summary.plane_offset_m_abs_mean =
+      plane_mean([](const PlaneErrors& plane) { return std::abs(plane.offset_m); });
+  summary.plane_tilt_deg_mean = plane_mean([](const PlaneErrors& plane) { return plane.tilt_deg; });
   for (const LandmarkRow& row : rows) {
     if (row.fate != Fate::kFound) continue;
     summary.quarter_turned += row.errors->is_quarter_turned ? 1 : 0;
@@ -158,7 +166,7 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<Rigid3d>& world_from_camera,
                                              const std::vector<Plane>& planes_in_world,
                                              AlignmentChoice alignment) {
-  const bool has_truth = std::ranges::any_of(sequence.true_objects, &TrueObject::is_static);
+  const bool has_truth = std::ranges::any_of(sequence.true_objects, &TrueObject::IsWanted);
   if (!has_truth) return std::nullopt;
   MapQuality quality;
   quality.alignments = AlignSegments(sequence, world_from_camera, alignment);

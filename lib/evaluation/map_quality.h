@@ -8,6 +8,7 @@
 
 #include "evaluation/aligned_map.h"
 #include "evaluation/body_errors.h"
+#include "evaluation/map_matching.h"
 #include "evaluation/map_reasons.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
@@ -15,10 +16,6 @@
 namespace soslam {
 
 // A map against all that is truly there, whoever says which detections are of which object.
-
-// The intersections over unions from which on a landmark is the true object that it is matched
-// with. Rows and reasons are those of the first.
-inline constexpr std::array kMapIous = {0.25, 0.5};
 
 // A landmark and its true object as the cameras see them that observed it, means over these
 // observations: estimated landmark by estimated pose against true landmark by true pose, or as the
@@ -29,7 +26,7 @@ struct InFrames {
   double centre_m = 0.0;
 };
 
-// A true object that stands still.
+// A true object that is looked for: it stands still, and its label is one of those asked for.
 struct TrueObjectRow {
   int true_index = 0;       // into Sequence::true_objects
   int detected_frames = 0;  // with a raw detection at its place
@@ -59,6 +56,7 @@ struct FoundSummary {
   std::array<std::optional<double>, 3> log_size_mean, log_size_abs_mean;
   std::optional<double> log_scale_mean, log_scale_abs_mean;
   std::optional<double> yaw_deg_mean, up_deg_mean;
+  std::optional<double> plane_offset_m_abs_mean, plane_tilt_deg_mean;
   int quarter_turned = 0;
   int labels_agree = 0;
   int ids_known = 0;
@@ -95,7 +93,7 @@ struct MapQuality {
   std::map<MapReason, int> misses, false_landmarks;
 };
 
-// None without true objects that stand still. A map without landmarks misses them all.
+// None without true objects that are looked for. A map without landmarks misses them all.
 // `world_from_camera` and `planes_in_world` as in MapEstimate.
 std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<ObjectEstimate>& estimates,

@@ -183,8 +183,14 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
   const bool is_own = owners.Majority() == true_index;
   const auto landmark = object ? LandmarkOfObject(input.map, *object) : std::nullopt;
   if (is_own && landmark) return ExplainWrong(input, *landmark, true_index);
+  const int detected_frames = input.views.detected_frames[static_cast<size_t>(true_index)];
+  if (detected_frames < kFewestViews) {
+    return {MapReason::kNotDetected, fmt::format("boxes in {} frames", detected_frames)};
+  }
   if (static_cast<int>(fates.frames.size()) < kFewestViews) {
-    return {MapReason::kNotDetected, fmt::format("boxes in {} frames", fates.frames.size())};
+    return {MapReason::kJoined,
+            fmt::format("boxes in {} frames; in {} of them another object is nearer",
+                        detected_frames, detected_frames - static_cast<int>(fates.frames.size()))};
   }
   if (static_cast<int>(fates.frames_in_use.size()) < kFewestViews) return ExplainLeftOut(fates);
   if (!object) {
@@ -201,9 +207,8 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
 Explanation ExplainFalse(const ReasonInput& input, int landmark) {
   Eigen::Index nearest = 0;
   const double best_iou = input.ious.cols() > 0 ? input.ious.row(landmark).maxCoeff(&nearest) : 0.0;
-  const auto nearest_index = static_cast<int>(nearest);
   if (best_iou >= input.min_iou) {
-    return {MapReason::kDuplicate, fmt::format("IoU {:.3f}", best_iou), nearest_index};
+    return {MapReason::kDuplicate, fmt::format("IoU {:.3f}", best_iou), static_cast<int>(nearest)};
   }
   const Owners owners =
       OwnersOf(input, input.map.landmarks[static_cast<size_t>(landmark)].object_index);
@@ -215,9 +220,6 @@ Explanation ExplainFalse(const ReasonInput& input, int landmark) {
   }
   if (owners.AreMixed()) {
     return {MapReason::kJoined, InWords(input.sequence, owners.of_truth)};
-  }
-  if (best_iou > 0.0 && !LandmarkOfTruth(input, nearest_index)) {
-    return ExplainWrong(input, landmark, nearest_index);
   }
   return {MapReason::kBackground, fmt::format("{} of {} boxes are at the place of a true object",
                                               Sum(owners.of_truth), owners.boxes)};

@@ -16,11 +16,11 @@ namespace soslam {
 
 // Why a true object has no landmark, or a landmark no true object.
 enum class MapReason {
-  kNotDetected,        // boxes in fewer than kFewestViews frames
+  kNotDetected,        // boxes overlap it in fewer than kFewestViews frames
   kGated,              // so many boxes, but most were left out before association
   kLostInAssociation,  // most were left out by association
   kSplit,              // boxes are spread over several objects, or another landmark has it already
-  kJoined,             // boxes of several true objects are one object
+  kJoined,             // boxes are, or are taken for, those of several true objects
   kNoLandmark,         // the object has boxes enough, and no estimate
   kWrongPlane,         // a landmark of its boxes is elsewhere, for its plane mostly
   kWrongSize,

@@ -65,9 +65,12 @@ std::vector<LandmarkRow> RowMaker::Rows(const std::vector<int>& truth_of_landmar
     const std::string& label = sequence_.objects[static_cast<size_t>(landmark.object_index)].label;
     LandmarkRow row;
     row.object_index = landmark.object_index;
-    if (truth_of_landmark[i] != kUnassigned) {
+    const int truth = truth_of_landmark[i];
+    if (truth != kUnassigned && sequence_.true_objects[static_cast<size_t>(truth)].is_ignored) {
+      row.fate = LandmarkRow::Fate::kIgnored;
+    } else if (truth != kUnassigned) {
       row.fate = LandmarkRow::Fate::kFound;
-      row.true_index = truth_of_landmark[i];
+      row.true_index = truth;
       CompareInWorld(i, &row);
       CompareInFrames(i, &row);
       row.wrong = PartToBlame(sequence_, map_, static_cast<int>(i), *row.true_index);

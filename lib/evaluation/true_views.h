@@ -36,23 +36,24 @@ class TrueViews {
   std::set<int> said_for_each_frame_;                        // true object ids
 };
 
-// A box, used or not, at the place of a true object.
+// A box, used or not, that is of a true object.
 struct TrueView {
   int frame_index = 0;
   std::optional<int> detection_index = std::nullopt;  // into Sequence::detections,
   std::optional<int> rejected_index = std::nullopt;   // or Sequence::rejected
 };
 
-// A box is of the true object whose outline box, cut to the image, it overlaps most, with at least
-// this intersection over union, when its score is at least that.
+// A box overlaps a true object whose outline box, cut to the image, has at least this intersection
+// over union with it. Of those that it overlaps, it is of the one with the largest. Boxes with
+// lower scores are not looked at.
 inline constexpr double kMinViewIou = 0.5;
 inline constexpr double kMinViewScore = 0.25;
-// An object can be found when there is a box of it in at least so many frames.
+// An object is detectable when boxes overlap it in at least so many frames.
 inline constexpr int kFewestViews = 3;
 
 struct ViewsOfTruth {
   std::vector<std::vector<TrueView>> of_object;  // by Sequence::true_objects, frames ascending
-  std::vector<int> detected_frames;  // the frames with a box that overlaps it so, if not most
+  std::vector<int> detected_frames;              // how many frames have a box that overlaps it
   std::vector<std::optional<int>> object_of_detection;  // by Sequence::detections
 };
 ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views);

@@ -25,6 +25,11 @@ struct TrueObject {
   GroundTruth truth;
   int segment = 0;        // whose world that is
   bool is_static = true;  // otherwise it has no place in a map
+  // Its label is none of those that the import was asked for: a landmark of it is neither right nor
+  // wrong, and that there is none is no miss.
+  bool is_ignored = false;
+
+  bool IsWanted() const { return is_static && !is_ignored; }
 };
 
 // Where a dataset says for each frame where an object is: exact, also while it moves.

@@ -109,7 +109,7 @@ TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
 
 TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
   GroundTruth truth{RandomLandmarkInCamera(), false, true, true};
-  sequence.true_objects = {{-3, "cup", truth, 0, true}, {7, "car", truth, 2, false}};
+  sequence.true_objects = {{-3, "cup", truth, 0, true, true}, {7, "car", truth, 2, false, false}};
   sequence.ignored = {{"mouse", std::nullopt}, {std::nullopt, RandomLandmarkInCamera()}};
   sequence.odometry_world = OdometryWorld::kOwnWithScale;
   sequence.detections[0].true_object_id = 7;
@@ -126,6 +126,8 @@ TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
   EXPECT_EQ(read.true_objects[1].id, 7);
   EXPECT_EQ(read.true_objects[1].segment, 2);
   EXPECT_FALSE(read.true_objects[1].is_static);
+  EXPECT_TRUE(read.true_objects[0].is_ignored);
+  EXPECT_FALSE(read.true_objects[1].is_ignored);
   EXPECT_TRUE(read.true_objects[0].truth.rotationally_symmetric);
   EXPECT_EQ(read.ignored.at(0).label, "mouse");
   EXPECT_EQ(read.ignored.at(1).volume_in_world->half_axes,

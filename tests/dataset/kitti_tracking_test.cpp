@@ -119,6 +119,11 @@ TEST_F(KittiTrackingTest, WhatIsTrueDoesNotDependOnWhatIsDetected) {
   ASSERT_EQ(some.rejected.size(), 1u);
   EXPECT_EQ(some.rejected[0].reason, "other_label");
   EXPECT_TRUE(some.rejected[0].true_object_id);
+  for (const TrueObject& object : some.true_objects) {
+    EXPECT_EQ(object.is_ignored, object.label != "car" && object.label != "van");
+  }
+  EXPECT_TRUE(std::ranges::any_of(some.true_objects, &TrueObject::is_ignored));
+  EXPECT_FALSE(std::ranges::any_of(all.true_objects, &TrueObject::is_ignored));
 }
 
 TEST_F(KittiTrackingTest, SomeRecordingsOnly) {

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 
 #include "evaluation/map_matching.h"
 #include "support/random.h"
@@ -133,6 +135,7 @@ class MapQualityTest : public testing::Test {
     return *std::ranges::find(quality.objects, truth, &TrueObjectRow::true_index);
   }
   void MakeAWallOfMistakes();
+  void Shuffle();
 
   Sequence sequence_;
   std::vector<ObjectEstimate> estimates_;
@@ -211,8 +214,8 @@ TEST_F(MapQualityTest, AWallOfMistakesHasItsCountsAndReasons) {
   EXPECT_EQ(RowOf(quality, 11).miss->detail, "too_few_views");
 }
 
-// What does not depend on how the estimates lie in their world.
-void ExpectSameFigures(const MapQuality& one, const MapQuality& other) {
+// What does not depend on how the estimates lie in their world, nor on any order.
+void ExpectSameSummary(const MapQuality& one, const MapQuality& other) {
   EXPECT_EQ(one.misses, other.misses);
   EXPECT_EQ(one.false_landmarks, other.false_landmarks);
   for (size_t i = 0; i < one.scores.size(); ++i) {
@@ -224,8 +227,20 @@ void ExpectSameFigures(const MapQuality& one, const MapQuality& other) {
     EXPECT_NEAR(a.of_found.centre_m_mean.value(), b.of_found.centre_m_mean.value(), 1e-9);
     EXPECT_NEAR(a.of_found.log_scale_mean.value(), b.of_found.log_scale_mean.value(), 1e-9);
     EXPECT_NEAR(a.of_found.up_deg_mean.value(), b.of_found.up_deg_mean.value(), 1e-5);
+    EXPECT_NEAR(a.of_found.yaw_deg_mean.value(), b.of_found.yaw_deg_mean.value(), 1e-5);
+    EXPECT_NEAR(a.precision.value(), b.precision.value(), 1e-12);
+    EXPECT_NEAR(a.f1_of_detectable.value(), b.f1_of_detectable.value(), 1e-12);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(a.of_found.log_size_mean[axis].value(), b.of_found.log_size_mean[axis].value(),
+                  1e-9);
+    }
   }
   EXPECT_NEAR(one.in_frames.iou_in_frames.value(), other.in_frames.iou_in_frames.value(), 1e-9);
+}
+
+// The same, landmark by landmark.
+void ExpectSameFigures(const MapQuality& one, const MapQuality& other) {
+  ExpectSameSummary(one, other);
   ASSERT_EQ(one.landmarks.size(), other.landmarks.size());
   for (size_t i = 0; i < one.landmarks.size(); ++i) {
     const LandmarkRow &a = one.landmarks[i], &b = other.landmarks[i];
@@ -265,13 +280,58 @@ TEST_F(MapQualityTest, MotionAndScaleOfAWholeMapChangeNothing) {
   }
 }
 
-TEST_F(MapQualityTest, NamesAndOrderDoNotMatter) {
+// Objects, true objects and detections in another order, with other ids.
+void MapQualityTest::Shuffle() {
+  const auto shuffled = [](size_t count) {
+    std::vector<size_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::shuffle(order, TestRandom());
+    return order;  // old by new
+  };
+  const Sequence old = sequence_;
+  const auto object_order = shuffled(old.objects.size());
+  for (size_t i = 0; i < object_order.size(); ++i) {
+    sequence_.objects[i] = old.objects[object_order[i]];
+    sequence_.objects[i].id = 500 + static_cast<int>(i);
+  }
+  const auto new_index = [&](int index) {
+    return static_cast<int>(std::ranges::find(object_order, static_cast<size_t>(index)) -
+                            object_order.begin());
+  };
+  for (ObjectEstimate& estimate : estimates_)
+    estimate.object_index = new_index(estimate.object_index);
+  for (Detection& detection : sequence_.detections) {
+    detection.object_index = new_index(detection.object_index);
+  }
+  const auto truth_order = shuffled(old.true_objects.size());
+  std::map<int, int> new_id;
+  for (size_t i = 0; i < truth_order.size(); ++i) {
+    sequence_.true_objects[i] = old.true_objects[truth_order[i]];
+    new_id[sequence_.true_objects[i].id] = static_cast<int>(i);
+    sequence_.true_objects[i].id = static_cast<int>(i);
+  }
+  for (Detection& detection : sequence_.detections) {
+    if (detection.true_object_id) detection.true_object_id = new_id.at(*detection.true_object_id);
+  }
+  std::ranges::shuffle(sequence_.detections, TestRandom());
+  std::ranges::shuffle(sequence_.rejected, TestRandom());
+  std::ranges::shuffle(estimates_, TestRandom());
+  std::ranges::reverse(sequence_.ignored);
+}
+
+TEST_F(MapQualityTest, OrderDoesNotMatter) {
   MakeAWallOfMistakes();
   const MapQuality before = Evaluate();
-  std::ranges::reverse(estimates_);
-  std::ranges::reverse(sequence_.rejected);
+  for (int trial = 0; trial < 10; ++trial) {
+    Shuffle();
+    ExpectSameSummary(before, Evaluate());
+  }
+}
+
+TEST_F(MapQualityTest, NamesDoNotMatter) {
+  MakeAWallOfMistakes();
+  const MapQuality before = Evaluate();
   for (Object& object : sequence_.objects) {
-    object.id += 77;
     if (object.label != "mouse") object.label = "thing";
   }
   for (TrueObject& object : sequence_.true_objects) object.label = "other";
@@ -360,6 +420,45 @@ TEST_F(MapQualityTest, ObjectsThatMoveAreNotLookedFor) {
   EXPECT_THAT(quality.false_landmarks, ElementsAre(Pair(MapReason::kMoving, 1)));
 }
 
+// A van where cars are asked for: its landmark is neither right nor wrong.
+TEST_F(MapQualityTest, OtherLabelsThanThoseAskedForAreIgnored) {
+  AddFound();
+  const int van = AddFound();
+  const int missed_van = AddTruth();
+  for (const int index : {van, missed_van}) {
+    sequence_.true_objects[static_cast<size_t>(index)].is_ignored = true;
+  }
+  const MapQuality quality = Evaluate();
+  EXPECT_EQ(quality.scores[0].true_objects, 1);
+  EXPECT_EQ(quality.scores[0].landmarks, 2);
+  EXPECT_EQ(quality.scores[0].ignored, 1);
+  EXPECT_EQ(quality.scores[0].f1, 1.0);
+  EXPECT_TRUE(quality.misses.empty());
+}
+
+// A landmark of things that nobody measured, which touches an object that is missed.
+TEST_F(MapQualityTest, BoxesOfNothingKnownAreBackground) {
+  AddFound();
+  const int missed = AddTruth();
+  DetectNothing(AddLandmark(Shifted(missed, {0.3, 0, 0})));
+  const MapQuality quality = Evaluate();
+  EXPECT_THAT(quality.misses, ElementsAre(Pair(MapReason::kNotDetected, 1)));
+  EXPECT_THAT(quality.false_landmarks, ElementsAre(Pair(MapReason::kBackground, 1)));
+  EXPECT_EQ(quality.in_frames.landmarks, 1);
+}
+
+// A thing inside another: each box of it overlaps that other more.
+TEST_F(MapQualityTest, BoxesThatAreTakenForThoseOfAnotherAreJoined) {
+  const int outer = AddFound();
+  const int inner = AddTruth();
+  Landmark& truth = sequence_.true_objects[static_cast<size_t>(inner)].truth.landmark_in_world;
+  truth = Truth(outer);
+  truth.half_axes *= 0.85;
+  const MapQuality quality = Evaluate();
+  EXPECT_TRUE(RowOf(quality, inner).is_detectable);
+  EXPECT_EQ(RowOf(quality, inner).miss->reason, MapReason::kJoined);
+}
+
 TEST_F(MapQualityTest, AMapWithoutLandmarksMissesAll) {
   AddFound();
   const std::vector<Rigid3d> poses(kFrames);
@@ -411,9 +510,13 @@ TEST(MatchByIou, IsTheBestOfAllWays) {
 }
 
 TEST(IsIgnored, ByLabelOrVolumeOrBoth) {
-  Landmark volume;
-  const Landmark inside{{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {3.0, 3.0, 3.0}};
-  const Landmark outside{{Eigen::Quaterniond::Identity(), {1.5, 0, 0}}, {0.4, 0.4, 0.4}};
+  const Landmark volume{{}, {1.0, 1.0, 1.0}};
+  const Landmark inside{{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {0.4, 0.4, 0.4}};
+  const Landmark outside{{Eigen::Quaterniond::Identity(), {1.1, 0, 0}}, {0.4, 0.4, 0.4}};
+  const Landmark larger{{}, {1.5, 1.5, 1.5}};       // IoU 8 / 27
+  const Landmark much_larger{{}, {1.6, 1.6, 1.6}};  // IoU 0.244
+  EXPECT_TRUE(IsIgnored({{std::nullopt, volume}}, "book", larger));
+  EXPECT_FALSE(IsIgnored({{std::nullopt, volume}}, "book", much_larger));
   EXPECT_TRUE(IsIgnored({{"cup", std::nullopt}}, "cup", outside));
   EXPECT_FALSE(IsIgnored({{"cup", std::nullopt}}, "book", inside));
   EXPECT_TRUE(IsIgnored({{std::nullopt, volume}}, "book", inside));
