@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 
 namespace soslam {
@@ -34,17 +33,19 @@ std::string ScoreInWords(const json& score) {
       OrDash(score.at("f1_of_detectable"), 3));
 }
 
+// Means of absolute values.
 std::string FoundInWords(const json& score) {
   const json& found = score.at("of_found");
+  const json& log_size = found.at("log_size_abs_mean");
   return fmt::format(
-      "mean IoU {}, centre {} m ({} of the size), size factor {}, yaw {} deg, up {} deg; {} of {} "
-      "labels right, {} of {} ids agree, {} turned by a quarter",
+      "mean IoU {}, centre {} m ({} of the size), log scale {}, log size {}, {}, {}, yaw {} deg, "
+      "up {} deg, plane {} m and {} deg; {} of {} labels right, {} of {} ids agree, {} turned by a "
+      "quarter",
       OrDash(found.at("iou_mean"), 3), OrDash(found.at("centre_m_mean"), 3),
-      OrDash(found.at("centre_relative_mean"), 2),
-      found.at("log_scale_mean").is_null()
-          ? "-"
-          : fmt::format("{:.3f}", std::exp(found.at("log_scale_mean").get<double>())),
+      OrDash(found.at("centre_relative_mean"), 2), OrDash(found.at("log_scale_abs_mean"), 3),
+      OrDash(log_size.at(0), 2), OrDash(log_size.at(1), 2), OrDash(log_size.at(2), 2),
       OrDash(found.at("yaw_error_deg_mean"), 2), OrDash(found.at("up_error_deg_mean"), 2),
+      OrDash(found.at("plane_offset_m_abs_mean"), 3), OrDash(found.at("plane_tilt_deg_mean"), 1),
       found.at("labels_agree").get<int>(), score.at("found").get<int>(),
       found.at("ids_agree").get<int>(), found.at("ids_known").get<int>(),
       found.at("quarter_turned").get<int>());

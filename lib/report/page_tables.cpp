@@ -132,9 +132,11 @@ std::string QualityHtml(const std::string& dataset, const std::vector<json>& var
   for (const json& variant : variants) {
     named.emplace_back(variant.at("name").get<std::string>(), variant.at("metrics"));
   }
-  const Table table = QualityTable(dataset, named);
-  std::string html = table.rows.empty() ? "" : HtmlTable(table);
-  for (const std::string& note : table.notes) html += Faint(note);
+  std::string html;
+  for (const Table& table : QualityTables(dataset, named)) {
+    html += fmt::format("<h3>{}</h3>\n{}", HtmlText(table.title), HtmlTable(table));
+    for (const std::string& note : table.notes) html += Faint(note);
+  }
   return html;
 }
 

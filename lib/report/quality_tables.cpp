@@ -6,7 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <set>
+
+#include "evaluation/map_matching.h"
 
 namespace soslam {
 namespace {
@@ -17,20 +21,16 @@ std::string Number(const json& value, int decimals) {
   return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : kNoValue;
 }
 
-// "similarity 2.31": the kind, with the scale where it is estimated; of segments that differ, all.
-std::string AlignmentInWords(const json& alignments) {
-  std::set<std::string> texts;
-  for (const json& alignment : alignments) {
-    const auto kind = alignment.at("kind").get<std::string>();
-    texts.insert(kind == "similarity"
-                     ? fmt::format("{} {:.4g}", kind, alignment.at("scale").get<double>())
-                     : kind);
-  }
-  return fmt::format("{}", fmt::join(texts, ", "));
+// "2.31", or "2.31 to 2.34".
+std::string Range(const std::vector<double>& values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  const std::string first = fmt::format("{:.4g}", least), last = fmt::format("{:.4g}", most);
+  return first == last ? first : first + " to " + last;
 }
 
-// The distance (m) that alignments leave between camera centres: root mean square of all frames.
-std::string ResidualInWords(const json& alignments) {
+// The distance (m) that the alignments of a map leave between camera centres: root mean square over
+// the frames of all segments.
+std::optional<double> ResidualOf(const json& alignments) {
   double squares = 0.0;
   int frames = 0;
   for (const json& alignment : alignments) {
@@ -39,38 +39,79 @@ std::string ResidualInWords(const json& alignments) {
     squares += count * std::pow(alignment.at("rmse_m").get<double>(), 2);
     frames += count;
   }
-  return frames == 0 ? kNoValue : fmt::format("{:.4f}", std::sqrt(squares / frames));
+  return frames == 0 ? std::nullopt : std::optional(std::sqrt(squares / frames));
 }
 
-std::string Found(const json& score) {
-  return fmt::format("{}, {}", score.at("found").get<int>(), Number(score.at("f1"), 3));
+// "alignment similarity, scale 2.31 to 2.34, cameras 0.01 m apart", of the maps of a dataset.
+std::string AlignmentInWords(const std::vector<NamedMetrics>& maps) {
+  std::set<std::string> kinds;
+  std::vector<double> scales, residuals;
+  for (const auto& [name, metrics] : maps) {
+    const json& alignments = metrics["map_quality"].at("alignments");
+    for (const json& alignment : alignments) {
+      kinds.insert(alignment.at("kind").get<std::string>());
+      if (alignment.at("kind") == "similarity") scales.push_back(alignment.at("scale"));
+    }
+    if (const auto residual = ResidualOf(alignments)) residuals.push_back(*residual);
+  }
+  std::string text = fmt::format("alignment {}", fmt::join(kinds, " and "));
+  if (!scales.empty()) text += ", scale " + Range(scales);
+  if (!residuals.empty()) text += ", cameras " + Range(residuals) + " m apart";
+  return text;
+}
+
+std::vector<NamedMetrics> MapsAmong(const std::vector<NamedMetrics>& variants) {
+  std::vector<NamedMetrics> maps;
+  std::ranges::copy_if(variants, std::back_inserter(maps), [](const NamedMetrics& variant) {
+    return variant.second.is_object() && variant.second.contains("map_quality");
+  });
+  return maps;
 }
 
 std::vector<Cell> QualityRow(const std::string& name, const json& quality) {
+  const json& first = quality.at("scores").front();
+  const auto count = [&](const char* key) { return first.at(key).get<int>(); };
+  std::vector<Cell> row = {name, fmt::format("{} ({})", count("true_objects"), count("detectable")),
+                           fmt::format("{} ({})", count("landmarks"), count("ignored"))};
+  for (const json& score : quality.at("scores")) {
+    row.emplace_back(std::to_string(score.at("found").get<int>()));
+    for (const char* share : {"precision", "recall", "recall_of_detectable", "f1"}) {
+      row.emplace_back(Number(score.at(share), 3));
+    }
+    row.emplace_back(Number(score.at("of_found").at("iou_mean"), 3));
+  }
+  return row;
+}
+
+std::vector<Cell> ErrorsRow(const std::string& name, const json& quality) {
   const json& score = quality.at("scores").front();
-  const json& strict = quality.at("scores").back();
   const json& found = score.at("of_found");
   const json& in_frames = quality.at("in_frames");
-  const json& log_scale = found.at("log_scale_abs_mean");
-  const auto count = [&](const char* key) { return score.at(key).get<int>(); };
-  return {
-      name,
-      AlignmentInWords(quality.at("alignments")),
-      ResidualInWords(quality.at("alignments")),
-      fmt::format("{} ({})", count("true_objects"), count("detectable")),
-      fmt::format("{} ({})", count("landmarks"), count("ignored")),
-      Found(score),
-      Found(strict),
-      Number(score.at("recall_of_detectable"), 3),
-      Number(found.at("iou_mean"), 3),
-      Number(found.at("centre_m_mean"), 3),
-      Number(found.at("centre_relative_mean"), 2),
-      log_scale.is_number() ? fmt::format("{:.3f}", std::exp(log_scale.get<double>())) : kNoValue,
-      Number(found.at("yaw_error_deg_mean"), 1),
-      Number(found.at("up_error_deg_mean"), 1),
-      fmt::format("{} of {}", found.at("labels_agree").get<int>(), count("found")),
-      Number(in_frames.at("iou_mean"), 3),
-      Number(in_frames.at("iou_mean_in_world"), 3)};
+  const auto count = [&](const char* key) { return found.at(key).get<int>(); };
+  const json& log_size = found.at("log_size_abs_mean");
+  return {name,
+          Number(found.at("centre_m_mean"), 3),
+          Number(found.at("centre_relative_mean"), 2),
+          fmt::format("{}, {}, {}", Number(log_size.at(0), 2), Number(log_size.at(1), 2),
+                      Number(log_size.at(2), 2)),
+          Number(found.at("log_scale_abs_mean"), 3),
+          Number(found.at("yaw_error_deg_mean"), 1),
+          Number(found.at("up_error_deg_mean"), 1),
+          Number(found.at("plane_offset_m_abs_mean"), 3),
+          Number(found.at("plane_tilt_deg_mean"), 1),
+          fmt::format("{} of {}", count("labels_agree"), score.at("found").get<int>()),
+          fmt::format("{} of {}", count("ids_agree"), count("ids_known")),
+          Number(in_frames.at("iou_mean"), 3),
+          Number(in_frames.at("iou_mean_in_world"), 3)};
+}
+
+// Whose the pose estimates are; empty where nobody says.
+std::vector<std::string> OdometryNote(const std::vector<NamedMetrics>& maps) {
+  std::set<std::string> sources;
+  for (const auto& [name, metrics] : maps) sources.insert(metrics.value("odometry_source", ""));
+  sources.erase("");
+  if (sources.empty()) return {};
+  return {fmt::format("Odometry: {}.", fmt::join(sources, ", "))};
 }
 
 void AddMistakes(const char* kind, const json& rows, const char* id, Table* table) {
@@ -86,46 +127,39 @@ void AddMistakes(const char* kind, const json& rows, const char* id, Table* tabl
 
 }  // namespace
 
-Table QualityTable(const std::string& dataset, const std::vector<NamedMetrics>& variants) {
-  Table table;
-  table.name = "map_quality_" + dataset;
-  table.title = dataset + ": maps against all that is true";
-  table.header = {"variant",
-                  "alignment",
-                  "residual m",
-                  "true (detectable)",
-                  "landmarks (ignored)",
-                  "right at IoU 0.25, F1",
-                  "right at IoU 0.5, F1",
-                  "recall of detectable",
-                  "mean IoU",
-                  "centre m",
-                  "centre / size",
-                  "size off by factor",
-                  "yaw deg",
-                  "up deg",
-                  "labels right",
-                  "IoU in frames",
-                  "IoU in world"};
-  std::set<std::string> odometry;
-  for (const auto& [name, metrics] : variants) {
-    if (!metrics.is_object() || !metrics.contains("map_quality")) continue;
-    table.rows.push_back(QualityRow(name, metrics["map_quality"]));
-    odometry.insert(metrics.value("odometry_source", ""));
+std::vector<Table> QualityTables(const std::string& dataset,
+                                 const std::vector<NamedMetrics>& variants) {
+  const std::vector<NamedMetrics> maps = MapsAmong(variants);
+  if (maps.empty()) return {};
+  Table quality{"map_quality_" + dataset,
+                dataset + ": maps against all that is true, " + AlignmentInWords(maps),
+                {"variant", "true (detectable)", "landmarks (ignored)"}};
+  for (const double min_iou : kMapIous) {
+    for (const char* column : {"right", "precision", "recall", "of detectable", "F1", "mean IoU"}) {
+      quality.header.push_back(fmt::format("{}, IoU {}", column, min_iou));
+    }
   }
-  odometry.erase("");
-  if (!odometry.empty()) {
-    table.notes.push_back(fmt::format("Odometry: {}.", fmt::join(odometry, ", ")));
+  Table errors{
+      "map_errors_" + dataset,
+      fmt::format("{}: errors of what is right at IoU {}, {}", dataset, kMapIous.front(),
+                  AlignmentInWords(maps)),
+      {"variant", "centre m", "centre / size", "log size x, y, z", "log scale", "yaw deg", "up deg",
+       "plane m", "plane deg", "labels right", "ids agree", "IoU in frames", "IoU in world"}};
+  for (const auto& [name, metrics] : maps) {
+    quality.rows.push_back(QualityRow(name, metrics["map_quality"]));
+    errors.rows.push_back(ErrorsRow(name, metrics["map_quality"]));
   }
-  return table;
+  quality.notes = OdometryNote(maps);
+  errors.notes = {"Means of absolute values; logarithms are of estimate over truth."};
+  return {quality, errors};
 }
 
-Table QualityTable(const DatasetResult& dataset) {
+std::vector<Table> QualityTables(const DatasetResult& dataset) {
   std::vector<NamedMetrics> variants;
   for (const VariantResult& variant : dataset.variants) {
     variants.emplace_back(variant.name, variant.metrics);
   }
-  return QualityTable(dataset.name, variants);
+  return QualityTables(dataset.name, variants);
 }
 
 Table MistakesTable(const json& metrics) {

@@ -14,9 +14,11 @@ namespace soslam {
 // A variant's name and its metrics.json.
 using NamedMetrics = std::pair<std::string, nlohmann::json>;
 
-// Maps against all that is true (map_quality of metrics.json): a row for each variant that has it.
-Table QualityTable(const std::string& dataset, const std::vector<NamedMetrics>& variants);
-Table QualityTable(const DatasetResult& dataset);
+// Maps against all that is true (map_quality of metrics.json), a row for each variant that has it:
+// what is found, and the errors of that. No table where none has it.
+std::vector<Table> QualityTables(const std::string& dataset,
+                                 const std::vector<NamedMetrics>& variants);
+std::vector<Table> QualityTables(const DatasetResult& dataset);
 
 // The true objects that a map misses and its false landmarks, each with the reason.
 Table MistakesTable(const nlohmann::json& metrics);

@@ -63,7 +63,7 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   }
   for (const DatasetResult& dataset : datasets) {
     tables.push_back(DatasetTable(dataset));
-    tables.push_back(QualityTable(dataset));
+    std::ranges::move(QualityTables(dataset), std::back_inserter(tables));
   }
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   return tables;

@@ -154,7 +154,7 @@ TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
   quality.scores[0].landmarks = 3;
   quality.scores[0].ignored = 1;
   quality.scores[0].found = 1;
-  quality.scores[0].of_found.log_scale_mean = std::log(1.5);
+  quality.scores[0].of_found.log_scale_abs_mean = 0.375;
   quality.scores[1].min_iou = 0.5;
   quality.objects = {{0, 5, true, 0},
                      {1, 4, true, std::nullopt, Explanation{MapReason::kGated, "near_border 4"}}};
@@ -174,7 +174,7 @@ TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
   EXPECT_THAT(Said(inspection, "IoU >= 0.25"),
               HasSubstr("1 of 2 objects found (0 of 0 detectable), 1 of 2 landmarks right, 1 "
                         "ignored"));
-  EXPECT_THAT(Said(inspection, "found"), HasSubstr("size factor 1.500"));
+  EXPECT_THAT(Said(inspection, "found"), HasSubstr("log scale 0.375"));
   EXPECT_EQ(Said(inspection, "missed"), "41 (mouse): gated; near_border 4");
   EXPECT_THAT(Said(inspection, "false"), HasSubstr("background"));
   ASSERT_EQ(inspection.table.rows.size(), 3u);

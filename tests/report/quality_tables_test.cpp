@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "support/table_cells.h"
 
 namespace soslam {
@@ -25,16 +23,23 @@ json Score(int found, double f1) {
           {"landmarks", 5},
           {"ignored", 1},
           {"found", found},
+          {"precision", 0.875},
+          {"recall", 0.625},
           {"f1", f1},
           {"recall_of_detectable", 0.75},
           {"of_found",
            {{"iou_mean", 0.5},
             {"centre_m_mean", 0.125},
             {"centre_relative_mean", 0.25},
-            {"log_scale_abs_mean", std::log(1.25)},
+            {"log_size_abs_mean", {0.1, 0.2, nullptr}},
+            {"log_scale_abs_mean", 0.0625},
             {"yaw_error_deg_mean", nullptr},
             {"up_error_deg_mean", 1.5},
-            {"labels_agree", 2}}}};
+            {"plane_offset_m_abs_mean", 0.01},
+            {"plane_tilt_deg_mean", 2.5},
+            {"labels_agree", 2},
+            {"ids_known", 3},
+            {"ids_agree", 1}}}};
 }
 
 json Metrics(const json& alignments) {
@@ -51,29 +56,43 @@ json Metrics(const json& alignments) {
          {{{"object", 2}, {"label", "tv"}, {"reason", "background"}, {"detail", ""}}}}}}};
 }
 
-TEST(QualityTable, HasARowForEachMapWithWhatAlignedIt) {
-  const Table table = QualityTable(
-      "room", {{"InitP", json::object()},
-               {"OursS", Metrics(json::array({Alignment("similarity", 2.0, 9, 0.25)}))}});
-  EXPECT_EQ(table.name, "map_quality_room");
-  EXPECT_THAT(
-      CellTexts(table),
-      ElementsAre("OursS similarity 2 0.2500 4 (3) 5 (1) 3, 0.750 2, 0.500 0.750 0.500 0.125 "
-                  "0.25 1.250 - 1.5 2 of 3 0.625 0.500"));
-  EXPECT_THAT(table.notes, ElementsAre("Odometry: ORB-SLAM2."));
-  EXPECT_EQ(table.header.size(), table.rows.front().size());
+TEST(QualityTables, HaveARowForEachMap) {
+  const auto tables =
+      QualityTables("room", {{"InitP", json::object()},
+                             {"OursS", Metrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}});
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].name, "map_quality_room");
+  EXPECT_THAT(CellTexts(tables[0]),
+              ElementsAre("OursS 4 (3) 5 (1) 3 0.875 0.625 0.750 0.750 0.500 2 0.875 0.625 0.750 "
+                          "0.500 0.500"));
+  EXPECT_THAT(tables[0].notes, ElementsAre("Odometry: ORB-SLAM2."));
+  EXPECT_EQ(tables[1].name, "map_errors_room");
+  EXPECT_THAT(CellTexts(tables[1]),
+              ElementsAre("OursS 0.125 0.25 0.10, 0.20, - 0.062 - 1.5 0.010 2.5 2 of 3 1 of 3 "
+                          "0.625 0.500"));
+  for (const Table& table : tables) EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
 
-TEST(QualityTable, ResidualsOfSegmentsCountByFrames) {
-  const Table table =
-      QualityTable("road", {{"OursS", Metrics(json::array({Alignment("none", 1.0, 3, 0.1),
-                                                           Alignment("none", 1.0, 1, 0.5)}))}});
-  EXPECT_EQ(table.rows.front()[1].text, "none");
-  EXPECT_EQ(table.rows.front()[2].text, "0.2646");  // sqrt((3 * 0.01 + 0.25) / 4)
+TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
+  const auto title = [](const std::vector<json>& alignments) {
+    std::vector<NamedMetrics> variants;
+    for (const json& of_map : alignments) variants.emplace_back("OursS", Metrics(of_map));
+    const std::string text = QualityTables("road", variants)[0].title;
+    return text.substr(text.find("alignment"));
+  };
+  // sqrt((3 * 0.01 + 0.25) / 4)
+  EXPECT_EQ(title({{Alignment("none", 1.0, 3, 0.1), Alignment("none", 1.0, 1, 0.5)}}),
+            "alignment none, cameras 0.2646 m apart");
+  EXPECT_EQ(
+      title({{Alignment("similarity", 2.5, 9, 0.25)}, {Alignment("similarity", 2.0, 9, 0.5)}}),
+      "alignment similarity, scale 2 to 2.5, cameras 0.25 to 0.5 m apart");
+  json unknown = Alignment("none", 1.0, 0, 0.0);
+  unknown["rmse_m"] = nullptr;
+  EXPECT_EQ(title({{unknown}}), "alignment none");
 }
 
-TEST(QualityTable, IsEmptyWithoutMaps) {
-  EXPECT_THAT(QualityTable("room", {{"InitP", json::object()}, {"SVD", nullptr}}).rows, IsEmpty());
+TEST(QualityTables, AreNoneWithoutMaps) {
+  EXPECT_THAT(QualityTables("room", {{"InitP", json::object()}, {"SVD", nullptr}}), IsEmpty());
 }
 
 TEST(MistakesTable, HasWhatIsMissedAndWhatIsFalse) {
