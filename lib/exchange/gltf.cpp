@@ -51,6 +51,11 @@ json ExtrasOf(const WorldObject& object) {
   if (object.estimate.covariance) {
     extras["covariance"] = CovarianceToJson(*object.estimate.covariance);
   }
+  if (object.verdict) {
+    extras["fate"] = object.verdict->fate;
+    if (object.verdict->iou) extras["iou"] = *object.verdict->iou;
+    if (!object.verdict->reason.empty()) extras["reason"] = object.verdict->reason;
+  }
   return extras;
 }
 

@@ -38,7 +38,13 @@ constexpr std::array kHeader = {"id",
                                 "sigma_half_axis_b",
                                 "sigma_half_axis_c",
                                 "sigma_yaw_deg",
-                                "failure"};
+                                "failure",
+                                "fate",
+                                "true_object",
+                                "iou",
+                                "reason"};
+// Of what an evaluation says, at the end.
+constexpr size_t kVerdictColumns = 4;
 
 // From centre to shape exponent.
 std::vector<double> LandmarkValues(const WorldObject& object) {
@@ -87,8 +93,16 @@ std::vector<Cell> RowOf(const WorldObject& object) {
     add(LandmarkValues(object));
     if (object.estimate.covariance) add(Sigmas(object));
   }
-  row.resize(kHeader.size() - 1, "");
+  row.resize(kHeader.size() - kVerdictColumns - 1, "");
   row.push_back(object.estimate.failure);
+  if (object.verdict) {
+    const LandmarkVerdict& verdict = *object.verdict;
+    row.push_back(verdict.fate);
+    row.push_back(verdict.true_object ? std::to_string(*verdict.true_object) : "");
+    row.push_back(verdict.iou ? fmt::format("{}", *verdict.iou) : "");
+    row.push_back(verdict.reason);
+  }
+  row.resize(kHeader.size(), "");
   return row;
 }
 

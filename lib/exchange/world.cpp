@@ -81,23 +81,22 @@ std::vector<World> WorldsOfTruth(const Sequence& sequence) {
   for (const Frame& frame : sequence.frames) poses.push_back(frame.true_world_from_camera);
   std::vector<World> worlds = WorldsOfFrames(sequence, poses);
 
-  std::vector<ObjectEstimate> truths;
-  for (size_t i = 0; i < sequence.objects.size(); ++i) {
-    const Object& object = sequence.objects[i];
-    ObjectEstimate truth{static_cast<int>(i), 0, {}, {}, {}};
+  for (const TrueObject& object : sequence.true_objects) {
+    const auto world = std::ranges::find(worlds, object.segment, &World::segment);
+    if (world == worlds.end()) continue;
+    const Landmark& truth = object.truth.landmark_in_world;
+    WorldObject& exported = world->objects.emplace_back();
+    exported.id = object.id;
+    exported.label = object.label;
+    exported.segment = object.segment;
+    exported.support_normal = truth.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
     if (!object.is_static) {
-      truth.failure = "moving";
-    } else if (!object.ground_truth) {
-      truth.failure = "no_ground_truth";
-    } else {
-      truth.landmark_in_world = object.ground_truth->landmark_in_world;
-      truth.landmark_in_world->shape_exponent = kCuboidExponent;
+      exported.estimate.failure = "moving";
+      continue;
     }
-    truths.push_back(truth);
+    exported.estimate.landmark_in_world = truth;
+    exported.estimate.landmark_in_world->shape_exponent = kCuboidExponent;
   }
-  std::vector<Plane> planes_in_world;
-  for (const SupportPlane& plane : sequence.planes) planes_in_world.push_back(plane.plane_in_world);
-  AddObjects(sequence, truths, planes_in_world, &worlds);
   return worlds;
 }
 

@@ -22,6 +22,14 @@ struct WorldFrame {
   Rigid3d world_from_camera;
 };
 
+// What an evaluation says of a landmark (docs/evaluation.md).
+struct LandmarkVerdict {
+  std::string fate;                               // found, ignored, false
+  std::optional<int> true_object = std::nullopt;  // its id
+  std::optional<double> iou = std::nullopt;       // with that
+  std::string reason = {};                        // of a false one
+};
+
 // An object with what is exported of it; it may have no landmark, see `failure` of the estimate.
 struct WorldObject {
   int id = 0;
@@ -30,6 +38,7 @@ struct WorldObject {
   Eigen::Vector3d support_normal;  // in the world, unit length
   double score = 1.0;              // mean of its detections; 1 without any
   ObjectEstimate estimate;
+  std::optional<LandmarkVerdict> verdict = std::nullopt;  // none without an evaluation
 };
 
 // What can be shown together: the frames and objects of one segment, see Frame::segment. Objects of
@@ -44,9 +53,9 @@ struct World {
 std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map);
 // The poses that the sequence has as estimates; no objects.
 std::vector<World> WorldsOfOdometry(const Sequence& sequence);
-// The ground truth: frames that have true poses, all objects. What is known of a true shape are its
-// half axes: landmarks are cuboids. Failures of objects without one: moving, no_ground_truth,
-// unknown_segment.
+// The ground truth: frames that have true poses, all true objects of their segments. What is known
+// of a true shape are its half axes: landmarks are cuboids, with their z axes for support normals.
+// Objects that move have none, and the failure "moving".
 std::vector<World> WorldsOfTruth(const Sequence& sequence);
 
 // The support normal (in the world) that most objects with a landmark share to about 25 degrees;

@@ -8,10 +8,13 @@
 #include <functional>
 
 #include "artefact/atomic_file.h"
+#include "artefact/json_file.h"
 #include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "exchange/coco_boxes.h"
+#include "exchange/evaluated_world.h"
 #include "exchange/gltf.h"
 #include "exchange/landmarks_csv.h"
 #include "exchange/ply.h"
@@ -47,6 +50,9 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
   if (!options.truth && !has_map && !OnlyTrajectory(files)) {
     throw SettingsError("there are no objects; expected --map, or truth = true");
   }
+  if (files.count("metrics") > 0 && !has_map) {
+    throw SettingsError("--metrics is given without --map; expected the map that it evaluates");
+  }
   const auto gltf = files.find("gltf");
   if (gltf == files.end()) return;
   const fs::path extension = gltf->second.extension();
@@ -56,12 +62,32 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
   }
 }
 
+nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
+  const nlohmann::json document = ReadArtefact(metrics, "metrics");
+  const nlohmann::json& inputs = document.at("artefact").at("inputs");
+  if (std::ranges::none_of(inputs, [hash = Sha256OfFile(map)](const nlohmann::json& input) {
+        return input.at("sha256") == hash;
+      })) {
+    throw InputError(fmt::format("{}: was not made of {}; expected metrics of this map",
+                                 metrics.string(), map.string()));
+  }
+  if (!document.contains("map_quality")) {
+    throw NothingUsableError(metrics.string() +
+                             ": has no map_quality; expected metrics of a map whose dataset says "
+                             "what is true (objects.json)");
+  }
+  return document["map_quality"];
+}
+
 std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& files) {
   const PlaneNeed need = OnlyTrajectory(files) ? PlaneNeed::kNotNeeded : PlaneNeed::kNeeded;
   const Sequence sequence = ReadSequence(files.at("sequence"), need);
   if (options.truth) return WorldsOfTruth(sequence);
   if (files.count("map") == 0) return WorldsOfOdometry(sequence);
-  return WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
+  std::vector<World> worlds = WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
+  if (files.count("metrics") > 0)
+    ApplyEvaluation(ReadQuality(files.at("metrics"), files.at("map")), &worlds);
+  return worlds;
 }
 
 bool HasLandmark(const World& world) {

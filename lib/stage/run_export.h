@@ -16,7 +16,8 @@ struct ExportOptions {
   }
 };
 
-// soslam-export: files "sequence" and, unless truth is set, "map" to one or more of "trajectory",
+// soslam-export: files "sequence" and, unless truth is set, "map" (with "metrics", in the world of
+// the truth, and evaluated) to one or more of "trajectory",
 // "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map there are the sequence's own poses
 // to export, and no objects. Of several segments, each a world of its own, "trajectory", "ply" and
 // "gltf" become a file each, see SegmentPath. Throws SettingsError without an output, for objects

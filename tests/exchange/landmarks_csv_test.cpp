@@ -63,7 +63,21 @@ TEST(LandmarksCsvTest, RowsHoldWhatTheMapKnows) {
     EXPECT_NEAR(number("yaw_deg"), YawOf(object) * 180.0 / std::numbers::pi, 1e-9);
     EXPECT_EQ(number("shape_exponent"), landmark.shape_exponent);
     EXPECT_EQ(table[i].at("failure"), "");
+    EXPECT_EQ(table[i].at("fate"), "");
   }
+}
+
+TEST(LandmarksCsvTest, VerdictsOfAnEvaluationAreLast) {
+  World world = ExportedWorld();
+  world.objects[0].verdict = LandmarkVerdict{"found", 7, 0.5};
+  world.objects[1].verdict = LandmarkVerdict{"false", std::nullopt, std::nullopt, "background"};
+  const auto table = ParseCsv(LandmarksCsvText({world}));
+  EXPECT_EQ(table[0].at("fate"), "found");
+  EXPECT_EQ(table[0].at("true_object"), "7");
+  EXPECT_EQ(table[0].at("iou"), "0.5");
+  EXPECT_EQ(table[0].at("reason"), "");
+  EXPECT_EQ(table[1].at("iou"), "");
+  EXPECT_EQ(table[1].at("reason"), "background");
 }
 
 TEST(LandmarksCsvTest, SigmasAreOfMetresAndDegrees) {

@@ -81,8 +81,6 @@ TEST_F(WorldTest, ScoreIsTheMeanOfTheDetections) {
 TEST_F(WorldTest, PlanesOfTheMapAreItsSupports) {
   const World world = WorldsOfMap(sequence_, map_)[0];
   EXPECT_EQ(world.objects[0].support_normal, map_.planes_in_world[0].normal);
-  EXPECT_EQ(WorldsOfTruth(sequence_)[0].objects[0].support_normal,
-            sequence_.planes[0].plane_in_world.normal);
 }
 
 TEST_F(WorldTest, OdometryHasPosesOnly) {
@@ -98,16 +96,19 @@ TEST_F(WorldTest, TruthHasWhatIsKnown) {
   EXPECT_THAT(FrameIds(world), ElementsAre(10, 20));
   EXPECT_EQ(world.frames[1].world_from_camera.translation,
             sequence_.frames[2].true_world_from_camera->translation);
-  sequence_.objects[0].is_static = true;
-  sequence_.objects[2].is_static = false;
+  const Landmark truth = RandomLandmark();
+  sequence_.true_objects = {
+      {5, "cup", {truth}, 0}, {6, "car", {truth}, 0, false}, {7, "tv", {truth}, 1}};
   const World known = WorldsOfTruth(sequence_)[0];
-  ASSERT_THAT(ObjectIds(known), ElementsAre(-3, 4, 11, 18));
-  EXPECT_EQ(known.objects[0].estimate.landmark_in_world->half_axes,
-            sequence_.objects[0].ground_truth->landmark_in_world.half_axes);
+  ASSERT_THAT(ObjectIds(known), ElementsAre(5, 6));
+  EXPECT_EQ(known.objects[0].estimate.landmark_in_world->half_axes, truth.half_axes);
   EXPECT_EQ(known.objects[0].estimate.landmark_in_world->shape_exponent, kCuboidExponent);
-  EXPECT_EQ(known.objects[1].estimate.failure, "no_ground_truth");
-  EXPECT_EQ(known.objects[2].estimate.failure, "moving");
-  EXPECT_FALSE(known.objects[2].estimate.landmark_in_world);
+  EXPECT_NEAR(known.objects[0].support_normal.dot(truth.frame_from_object.rotation *
+                                                  Eigen::Vector3d::UnitZ()),
+              1.0, 1e-12);
+  EXPECT_EQ(known.objects[1].estimate.failure, "moving");
+  EXPECT_FALSE(known.objects[1].estimate.landmark_in_world);
+  EXPECT_THAT(ObjectIds(WorldsOfTruth(sequence_)[1]), ElementsAre(7));
 }
 
 TEST_F(WorldTest, UpIsTheNormalThatMostShare) {

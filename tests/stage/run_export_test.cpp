@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "dataset/coco_results.h"
 #include "dataset/tum_list.h"
+#include "stage/run_evaluate.h"
 #include "support/cuboid_sequence.h"
 #include "support/expect_error.h"
 #include "support/gltf_document.h"
@@ -169,9 +170,36 @@ TEST_F(RunExportTest, TruthIsPosesAndObjects) {
   ExpectError<SettingsError>([&] { Run({"map"}, kAll); }, {"truth", "--map"});
 }
 
+TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
+  for (size_t i = 0; i < sequence_.frames.size(); ++i) {
+    sequence_.frames[i].true_world_from_camera = map_.world_from_camera[i];
+    sequence_.frames[i].true_world_from_camera->translation.y() += 0.5;
+  }
+  Write();
+  const StageFiles evaluated = {{"sequence", File("sequence.json")},
+                                {"landmarks", File("map.json")},
+                                {"output", File("metrics.json")}};
+  testing::internal::CaptureStdout();
+  RunEvaluate({.alignment = AlignmentChoice::kRigid}, evaluated, 1);
+  testing::internal::GetCapturedStdout();
+  Run({"map", "metrics"}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}});
+  EXPECT_NEAR(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation.y(),
+              map_.world_from_camera[3].translation.y() + 0.5, 1e-9);
+  EXPECT_NE(FileBytes(File("l.csv")).find("false"), std::string::npos);
+  map_.world_from_camera[0].translation.x() += 1.0;
+  Write();
+  ExpectError<InputError>(
+      [&] {
+        Run({"map", "metrics"}, {{"csv", "l.csv"}});
+      },
+      {"metrics.json", "map.json"});
+  options_.truth = true;
+  ExpectError<SettingsError>([&] { Run({"metrics"}, {{"csv", "l.csv"}}); }, {"--metrics", "--map"});
+}
+
 TEST_F(RunExportTest, NoTruthIsNothingUsable) {
   for (Frame& frame : sequence_.frames) frame.true_world_from_camera.reset();
-  for (Object& object : sequence_.objects) object.ground_truth.reset();
+  sequence_.true_objects.clear();
   Write();
   options_.truth = true;
   ExpectError<NothingUsableError>(
