@@ -253,7 +253,7 @@ $(BUILD)/build.ninja: | setup
 
 .PHONY: test
 test: $(BUILD)/build.ninja ## Build everything and run all tests
-	@pipelines/install-packages.sh pipelines/data-packages.txt
+	@pipelines/install-packages.sh pipelines/data-packages.txt || echo 'setup: tests of downloads are skipped'
 	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
 	@pipelines/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j2

@@ -22,6 +22,10 @@ rows=$(awk -F'\t' -v name="$name" '$1 == name' "$table")
 [[ -n $rows && -e $own/SHA256SUMS ]] || fail 2 "nothing is known of '$name'; expected one of$(
   cd "$2" && for known in */SHA256SUMS; do echo -n " ${known%/*}"; done)"
 
+if [[ -n ${WITHOUT:-} ]] && ! grep -q "^[0-9a-f]*  ${WITHOUT%/}/" "$own/SHA256SUMS"; then
+  fail 2 "WITHOUT=$WITHOUT: $name has nothing below; expected a folder of it: $(
+    grep -o '  .*/' "$own/SHA256SUMS" | sort -u | tr -s ' \n' ' ')"
+fi
 # Whether a path is to be left out.
 without() { [[ -n ${WITHOUT:-} && $1 == "${WITHOUT%/}"/* ]]; }
 # "sha256  path" of each file that is to be there.
@@ -112,7 +116,8 @@ if ! is_whole "$target"; then
     unpack "$file" "$from" "$to"
   done <<< "$rows"
   [[ ! -e $own/prepare.sh ]] || (cd "$work/files" && bash -euo pipefail "$own/prepare.sh" "$own") ||
-    fail 3 "$own/prepare.sh: fails on what came, in $work/files; expected files as its comment says"
+    fail 3 "$own/prepare.sh: fails on what came, in $work/files; expected files as its comment says${WITHOUT:+; likely \
+it reads what WITHOUT=$WITHOUT leaves out}"
   while read -r sum path; do
     found=$(sum_of "$work/files/$path")
     [[ $found == "$sum" ]] || fail 3 "$path of $name: found SHA-256 $found; expected $sum; $target is as it was; what \

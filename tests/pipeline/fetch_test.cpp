@@ -54,6 +54,12 @@ class FetchTest : public testing::Test {
 
   ~FetchTest() override { ::umount((folder_ / "data").c_str()); }
 
+  void SetUp() override {
+    for (const char* program : {"curl", "bsdtar"}) {
+      if (Run({"which", program}).exit_code != 0) GTEST_SKIP() << "there is no " << program;
+    }
+  }
+
   // The table with these bytes and sum for the archive.
   void WriteTable(const std::string& bytes, const std::string& sum) const {
     WriteBytes(folder_ / "downloads.tsv",
@@ -152,6 +158,21 @@ TEST_F(FetchTest, WhatIsWholeIsNotFetchedAgainButItsAnnotationIsLaid) {
   EXPECT_EQ(Fetch(server.Address()).exit_code, 0);
   EXPECT_EQ(server.Requests().size(), requests);
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "[1]");
+}
+
+TEST_F(FetchTest, AFolderCanBeLeftOut) {
+  HttpServer server(Files());
+  const CommandResult fetched = Fetch(server.Address(), "rgb");
+  EXPECT_EQ(fetched.exit_code, 0) << fetched.errors;
+  EXPECT_TRUE(fs::exists(Target() / "poses.txt"));
+  EXPECT_FALSE(fs::exists(Target() / "rgb"));
+  EXPECT_THAT(server.Requests(), ElementsAre("/poses.csv"));
+}
+
+TEST_F(FetchTest, WhatIsNotThereCannotBeLeftOut) {
+  HttpServer server(Files());
+  ExpectFailed(Fetch(server.Address(), "images"), 2, {"WITHOUT=images", "expected", "rgb/"});
+  EXPECT_THAT(server.Requests(), IsEmpty());
 }
 
 // Also over a third run, which finds nothing to do.
