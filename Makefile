@@ -203,7 +203,8 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	@status=0; found=; for map in $(MAPS); do \
 	  test -e "$$map" || continue; \
 	  found=yes; from=$${map%/map.json}; to=$$from/export; mkdir -p "$$to"; \
-	  $(BIN)/soslam-export --sequence "$$from/sequence.json" --map "$$map" \
+	  evaluated=; test ! -e "$$from/metrics.json" || evaluated=yes; \
+	  $(BIN)/soslam-export --sequence "$$from/sequence.json" --map "$$map" $${evaluated:+--metrics "$$from/metrics.json"} \
 	    --trajectory "$$to/trajectory.txt" --ply "$$to/landmarks.ply" --gltf "$$to/map.glb" \
 	    --coco "$$to/boxes.json" --coco_dataset "$$to/images.json" --csv "$$to/landmarks.csv" || status=$$?; \
 	done; \

@@ -10,17 +10,15 @@ int main(int argc, char** argv) {
            "Writes a map, or the ground truth, in the formats of other programs. Segments of a "
            "sequence have worlds of their own: of several, --trajectory, --ply and --gltf write a "
            "file each, map-3.ply for segment 3 of map.ply.",
-       .inputs =
-           {{"sequence", "sequence.json that the map was made from"},
-            {"map",
-             "map.json of soslam-optimise; without it, --trajectory writes the "
-             "sequence's own poses",
-             false},
-            {"metrics",
-             "metrics.json that soslam-evaluate made of the map: it is written as that aligns "
-             "it, in the world of the ground truth, and tables (.csv) and scenes (.glb) say "
-             "which landmarks are found, ignored or false, and why",
-             false}},
+       .inputs = {{"sequence", "sequence.json that the map was made from"},
+                  {"map",
+                   "map.json of soslam-optimise; without it, --trajectory writes the "
+                   "sequence's own poses",
+                   false},
+                  {"metrics",
+                   "metrics.json that soslam-evaluate made of the map: tables (.csv) and scenes "
+                   "(.glb) say which landmarks are found, ignored or false, and why",
+                   false}},
        .outputs = {{"trajectory",
                     "camera poses to write, world_from_camera as TUM RGB-D has them "
                     "(.txt)",

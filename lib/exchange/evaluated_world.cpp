@@ -44,24 +44,27 @@ LandmarkVerdict VerdictFromJson(const json& row) {
 
 }  // namespace
 
-void ApplyEvaluation(const json& quality, std::vector<World>* worlds) {
+void AddVerdicts(const json& quality, std::vector<World>* worlds) {
+  std::map<int, LandmarkVerdict> of_object;
+  for (const json& row : quality.at("landmarks")) {
+    of_object[row.at("object").get<int>()] = VerdictFromJson(row);
+  }
+  for (World& world : *worlds) {
+    for (WorldObject& object : world.objects) {
+      const auto verdict = of_object.find(object.id);
+      if (verdict != of_object.end()) object.verdict = verdict->second;
+    }
+  }
+}
+
+void AlignWorlds(const json& quality, std::vector<World>* worlds) {
   std::map<int, Alignment> of_segment;
   for (const json& alignment : quality.at("alignments")) {
     Alignment& of_its_segment = of_segment[alignment.at("segment").get<int>()];
     alignment.at("scale").get_to(of_its_segment.scale);
     alignment.at("truth_from_scaled").get_to(of_its_segment.truth_from_scaled);
   }
-  std::map<int, LandmarkVerdict> of_object;
-  for (const json& row : quality.at("landmarks")) {
-    of_object[row.at("object").get<int>()] = VerdictFromJson(row);
-  }
-  for (World& world : *worlds) {
-    Move(of_segment.at(world.segment), &world);
-    for (WorldObject& object : world.objects) {
-      const auto verdict = of_object.find(object.id);
-      if (verdict != of_object.end()) object.verdict = verdict->second;
-    }
-  }
+  for (World& world : *worlds) Move(of_segment.at(world.segment), &world);
 }
 
 }  // namespace soslam

@@ -8,9 +8,12 @@
 
 namespace soslam {
 
-// Worlds of a map as its evaluation sees them: moved into the world of the truth, each by the
-// alignment of its segment, covariances along; landmarks with their verdicts. `quality` is
-// map_quality of the map's metrics.json.
-void ApplyEvaluation(const nlohmann::json& quality, std::vector<World>* worlds);
+// `quality` is map_quality of the metrics.json that was made of the map.
+
+// Gives each landmark what its evaluation says of it.
+void AddVerdicts(const nlohmann::json& quality, std::vector<World>* worlds);
+
+// Moves each world into that of the truth, as the alignment of its segment does; covariances along.
+void AlignWorlds(const nlohmann::json& quality, std::vector<World>* worlds);
 
 }  // namespace soslam

@@ -53,6 +53,9 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
   if (files.count("metrics") > 0 && !has_map) {
     throw SettingsError("--metrics is given without --map; expected the map that it evaluates");
   }
+  if (options.aligned && files.count("metrics") == 0) {
+    throw SettingsError("aligned is true without --metrics; expected metrics.json of the map");
+  }
   const auto gltf = files.find("gltf");
   if (gltf == files.end()) return;
   const fs::path extension = gltf->second.extension();
@@ -62,6 +65,8 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
   }
 }
 
+// What the evaluation of the map says of it as a whole; null where its dataset does not say what is
+// true.
 nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
   const nlohmann::json document = ReadArtefact(metrics, "metrics");
   const nlohmann::json& inputs = document.at("artefact").at("inputs");
@@ -71,12 +76,21 @@ nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
     throw InputError(fmt::format("{}: was not made of {}; expected metrics of this map",
                                  metrics.string(), map.string()));
   }
-  if (!document.contains("map_quality")) {
-    throw NothingUsableError(metrics.string() +
-                             ": has no map_quality; expected metrics of a map whose dataset says "
-                             "what is true (objects.json)");
+  return document.value("map_quality", nlohmann::json());
+}
+
+void ApplyEvaluation(const ExportOptions& options, const StageFiles& files,
+                     std::vector<World>* worlds) {
+  if (files.count("metrics") == 0) return;
+  const nlohmann::json quality = ReadQuality(files.at("metrics"), files.at("map"));
+  if (!quality.is_null()) {
+    AddVerdicts(quality, worlds);
+    if (options.aligned) AlignWorlds(quality, worlds);
+  } else if (options.aligned) {
+    throw NothingUsableError(files.at("metrics").string() +
+                             ": has no map_quality, so no alignment; expected metrics of a map "
+                             "whose dataset says what is true (objects.json)");
   }
-  return document["map_quality"];
 }
 
 std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& files) {
@@ -85,8 +99,7 @@ std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& fi
   if (options.truth) return WorldsOfTruth(sequence);
   if (files.count("map") == 0) return WorldsOfOdometry(sequence);
   std::vector<World> worlds = WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
-  if (files.count("metrics") > 0)
-    ApplyEvaluation(ReadQuality(files.at("metrics"), files.at("map")), &worlds);
+  ApplyEvaluation(options, files, &worlds);
   return worlds;
 }
 

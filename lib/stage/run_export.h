@@ -8,16 +8,19 @@ namespace soslam {
 
 struct ExportOptions {
   bool truth = false;
+  bool aligned = false;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Objects");
     visit.Flag("truth", &truth,
                "Export the ground truth of the sequence, poses and objects, in place of a map");
+    visit.Flag("aligned", &aligned,
+               "Write the map where its evaluation moves it, into the world of the ground truth");
   }
 };
 
-// soslam-export: files "sequence" and, unless truth is set, "map" (with "metrics", in the world of
-// the truth, and evaluated) to one or more of "trajectory",
+// soslam-export: files "sequence" and, unless truth is set, "map" (of which "metrics" say what is
+// right) to one or more of "trajectory",
 // "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map there are the sequence's own poses
 // to export, and no objects. Of several segments, each a world of its own, "trajectory", "ply" and
 // "gltf" become a file each, see SegmentPath. Throws SettingsError without an output, for objects

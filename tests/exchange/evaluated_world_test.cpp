@@ -27,9 +27,9 @@ json Quality(double scale, const Rigid3d& truth_from_scaled) {
              {"reason", "background"}}}}};
 }
 
-TEST(ApplyEvaluation, LandmarksHaveTheirVerdicts) {
+TEST(AddVerdicts, LandmarksHaveTheirVerdicts) {
   std::vector<World> worlds = {ExportedWorld()};
-  ApplyEvaluation(Quality(1.0, {}), &worlds);
+  AddVerdicts(Quality(1.0, {}), &worlds);
   const auto& objects = worlds[0].objects;
   EXPECT_EQ(objects[0].verdict->fate, "found");
   EXPECT_EQ(objects[0].verdict->true_object, 7);
@@ -41,12 +41,12 @@ TEST(ApplyEvaluation, LandmarksHaveTheirVerdicts) {
 }
 
 // Cameras see landmarks where they saw them; standard deviations turn and grow with the world.
-TEST(ApplyEvaluation, WorldsAreMovedAsAWhole) {
+TEST(AlignWorlds, WorldsAreMovedAsAWhole) {
   const World before = ExportedWorld();
   const double scale = 2.5;
   const Rigid3d motion = RandomRigid();
   std::vector<World> worlds = {before};
-  ApplyEvaluation(Quality(scale, motion), &worlds);
+  AlignWorlds(Quality(scale, motion), &worlds);
   for (size_t i = 0; i < 3; ++i) {
     const Landmark& old = *before.objects[i].estimate.landmark_in_world;
     const Landmark& moved = *worlds[0].objects[i].estimate.landmark_in_world;

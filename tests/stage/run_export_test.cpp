@@ -183,9 +183,14 @@ TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
   RunEvaluate({.alignment = AlignmentChoice::kRigid}, evaluated, 1);
   testing::internal::GetCapturedStdout();
   Run({"map", "metrics"}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}});
+  EXPECT_EQ(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation,
+            map_.world_from_camera[3].translation);
+  EXPECT_NE(FileBytes(File("l.csv")).find("false"), std::string::npos);
+  options_.aligned = true;
+  Run({"map", "metrics"}, {{"trajectory", "t.txt"}});
   EXPECT_NEAR(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation.y(),
               map_.world_from_camera[3].translation.y() + 0.5, 1e-9);
-  EXPECT_NE(FileBytes(File("l.csv")).find("false"), std::string::npos);
+  ExpectError<SettingsError>([&] { Run({"map"}, {{"csv", "l.csv"}}); }, {"aligned", "--metrics"});
   map_.world_from_camera[0].translation.x() += 1.0;
   Write();
   ExpectError<InputError>(
