@@ -2,16 +2,14 @@
 #include "artefact/planes_file.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "artefact/json_geometry.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) {
   if (!error) return {};

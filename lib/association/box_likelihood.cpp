@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "constraints/tangency.h"
+#include "geometry/angles.h"
 #include "initialisation/upright.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr double kNoHuber = std::numeric_limits<double>::infinity();
 
 // A box whose edges, but for one, are not within so many standard deviations is explained better by
@@ -97,7 +97,7 @@ bool IsOutOfReach(const Innovation& innovation) {
 BoxLikelihood::BoxLikelihood(const Sequence& sequence, const AssociateOptions& options)
     : sequence_(sequence),
       options_(options),
-      drift_(sequence.frames, options.odometry_rotation_sigma_deg * kRadians,
+      drift_(sequence.frames, options.odometry_rotation_sigma_deg * kRadPerDeg,
              options.odometry_translation_sigma_m) {}
 
 std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int known_frame_index,

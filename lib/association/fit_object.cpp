@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
 #include "initialisation/yaw_sweep.h"
@@ -11,8 +12,6 @@
 
 namespace soslam {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 // UprightVector, and the height of the foot over the plane (m), which is free without a plane.
 constexpr int kMaxParameters = 7;
@@ -69,8 +68,9 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
   // Of the same pose as all other views, while the detection's own may be of a better one.
   observation.plane_in_camera = Transform(frame.world_from_camera.Inverse(), all.plane_in_world);
   const YawObjective objective;
-  const auto optima = LocalOptima(
-      observation, objective, SweepYaw(observation, objective, options.yaw_grid_deg * kRadians), 1);
+  const auto optima =
+      LocalOptima(observation, objective,
+                  SweepYaw(observation, objective, options.yaw_grid_deg * kRadPerDeg), 1);
   if (optima.empty()) return std::nullopt;
   return Transform(frame.world_from_camera, optima.front().landmark);
 }
@@ -81,7 +81,7 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence,
                                         const MultiViewObservation& observation,
                                         const AssociateOptions& options) {
   if (detections.size() > 1) {
-    const auto solution = SolveViews(observation, options.yaw_grid_deg * kRadians);
+    const auto solution = SolveViews(observation, options.yaw_grid_deg * kRadPerDeg);
     if (solution) return solution->landmark;
   }
   for (const int index : detections) {
@@ -102,12 +102,12 @@ std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vecto
                                       const std::optional<UpEstimate>& up) {
   const std::vector<int> used = SpreadOver(detections, static_cast<size_t>(options.max_views));
   MultiViewObservation observation = MakeMultiViewObservation(
-      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadians,
+      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadPerDeg,
       /*height_is_free=*/up.has_value(), /*size_is_known=*/up.has_value());
   std::optional<Landmark> landmark;
   if (up) {
     const auto body =
-        BodyOfFreeHeight(observation, up->up_in_world, options.yaw_grid_deg * kRadians);
+        BodyOfFreeHeight(observation, up->up_in_world, options.yaw_grid_deg * kRadPerDeg);
     if (body) landmark = body->landmark;
     observation.plane_in_world = {up->up_in_world, 0.0};
   } else {

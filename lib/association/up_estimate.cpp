@@ -4,10 +4,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <optional>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "geometry/rigid3.h"
 #include "initialisation/multi_view.h"
 #include "planes/camera_attitude.h"
@@ -16,8 +16,6 @@
 
 namespace soslam {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 // Of each label, evenly over all: as many boxes are looked at.
 constexpr size_t kBoxesOfLabel = 48;
@@ -110,9 +108,9 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   std::vector<HoldingEvidence> evidence;
   for (const CameraHolding holding : kHoldings) {
     const CameraAttitude attitude =
-        AttitudeOf(segment.world_from_camera, options.camera_roll_sigma_deg * kRadians,
-                   options.camera_pitch_sigma_deg * kRadians,
-                   options.view_correlation_deg * kRadians, holding);
+        AttitudeOf(segment.world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
+                   options.camera_pitch_sigma_deg * kRadPerDeg,
+                   options.view_correlation_deg * kRadPerDeg, holding);
     const bool is_known = std::ranges::any_of(attitudes, [&](const CameraAttitude& other) {
       return IsSameUp(other.up_in_world, attitude.up_in_world);
     });

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "artefact/json_geometry.h"
 #include "artefact/object_estimate_json.h"
 #include "base/base64.h"
 #include "exchange/body_mesh.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -46,7 +46,7 @@ json ExtrasOf(const WorldObject& object) {
                  {"label", object.label},
                  {"observations", object.estimate.observations},
                  {"half_axes", VectorToJson(landmark.half_axes)},
-                 {"yaw_deg", YawOf(object) * 180.0 / std::numbers::pi},
+                 {"yaw_deg", YawOf(object) * kDegPerRad},
                  {"shape_exponent", landmark.shape_exponent}};
   if (object.estimate.covariance) {
     extras["covariance"] = CovarianceToJson(*object.estimate.covariance);

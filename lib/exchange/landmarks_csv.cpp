@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/table.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 constexpr std::array kHeader = {"id",
                                 "label",
@@ -62,7 +60,7 @@ std::vector<double> LandmarkValues(const WorldObject& object) {
           half_axes.x(),
           half_axes.y(),
           half_axes.z(),
-          YawOf(object) * kDegrees,
+          YawOf(object) * kDegPerRad,
           landmark.shape_exponent};
 }
 
@@ -79,7 +77,7 @@ std::vector<double> Sigmas(const WorldObject& object) {
           half_axes.x() * sigmas[6],
           half_axes.y() * sigmas[7],
           half_axes.z() * sigmas[8],
-          std::sqrt(std::max(yaw_variance, 0.0)) * kDegrees};
+          std::sqrt(std::max(yaw_variance, 0.0)) * kDegPerRad};
 }
 
 std::vector<Cell> RowOf(const WorldObject& object) {

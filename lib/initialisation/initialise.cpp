@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/initialise.h"
 
-#include <numbers>
-
 #include "base/parallel.h"
+#include "geometry/angles.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/svd.h"
@@ -72,8 +71,7 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
     UprightObservation observation = MakeUprightObservation(sequence, detection, *prior, options);
     if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[static_cast<size_t>(i)];
     const YawObjective objective;
-    const YawSweep sweep =
-        SweepYaw(observation, objective, options.yaw_grid_deg * std::numbers::pi / 180.0);
+    const YawSweep sweep = SweepYaw(observation, objective, options.yaw_grid_deg * kRadPerDeg);
     for (const UprightSolution& optimum :
          LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
       estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
@@ -95,7 +93,6 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     object.observations = static_cast<int>(detections[i].size());
     estimates.objects.push_back(object);
   }
-  constexpr double kRadians = std::numbers::pi / 180.0;
   ParallelFor("objects", static_cast<int>(estimates.objects.size()), threads, [&](int i) {
     ObjectEstimate& object = estimates.objects[static_cast<size_t>(i)];
     const auto index = static_cast<size_t>(object.object_index);
@@ -105,9 +102,9 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     }
     MultiViewObservation observation = MakeMultiViewObservation(
         sequence, detections[index], priors[index], options.upright.detection_sigma_fraction,
-        options.view_correlation_deg * kRadians);
+        options.view_correlation_deg * kRadPerDeg);
     observation.axes_weight = options.upright.axes_weight;
-    if (const auto found = SolveViews(observation, options.upright.yaw_grid_deg * kRadians)) {
+    if (const auto found = SolveViews(observation, options.upright.yaw_grid_deg * kRadPerDeg)) {
       object.landmark_in_world = found->landmark;
     } else {
       object.failure = "not_determined_by_its_views";

@@ -13,12 +13,13 @@
 #include "constraints/manifolds.h"
 #include "constraints/scale_ratio.h"
 #include "constraints/support.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
 // Two solutions closer than this are one, found twice.
-constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
+constexpr double kSameYaw = 0.5 * kRadPerDeg;
 constexpr double kSameRelativeSize = 1e-2;
 
 // A landmark of the prior's shape where the box's lower edge meets the plane, as large as the box

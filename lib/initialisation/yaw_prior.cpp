@@ -3,17 +3,16 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
 #include "base/parallel.h"
+#include "geometry/angles.h"
 #include "initialisation/multi_view.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 // Of a yaw that is exact, but for the labels' own error.
-constexpr double kTrueYawSigma = 0.1 * kDegrees;
+constexpr double kTrueYawSigma = 0.1 * kRadPerDeg;
 constexpr size_t kMinViews = 2;
 
 // In the world. None when the lower edge is not the object's own, or ends above the horizon.
@@ -84,7 +83,7 @@ class MotionPriors {
     if (optima.empty()) return std::nullopt;
     const Eigen::Quaterniond& rotation = optima.front().landmark.frame_from_object.rotation;
     return AlongDirection(sequence_, detection, rotation * Eigen::Vector3d::UnitX(),
-                          options_.standing_sigma_deg * kDegrees);
+                          options_.standing_sigma_deg * kRadPerDeg);
   }
 
  private:

@@ -10,6 +10,7 @@
 
 #include "base/exponential_of_four.h"
 #include "base/wide_loops.h"
+#include "geometry/angles.h"
 #include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
 
@@ -17,7 +18,7 @@ namespace soslam {
 namespace {
 
 // Two optima closer than this are one.
-constexpr double kSameYaw = 0.5 * std::numbers::pi / 180.0;
+constexpr double kSameYaw = 0.5 * kRadPerDeg;
 // Of a sweep's minima, those that may be the best ones when refined.
 constexpr size_t kRefinedMinima = 6;
 // Of the finer grid around a grid point, either way.

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "artefact/json_file.h"
 #include "artefact/json_geometry.h"
 #include "artefact/object_estimate_json.h"
 #include "base/error.h"
+#include "geometry/angles.h"
 #include "inspection/kinds.h"
 #include "model/estimates.h"
 
@@ -19,8 +19,6 @@ namespace soslam {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::vector<ValueColumn> EstimateColumns() {
   return {{"frame", ""},

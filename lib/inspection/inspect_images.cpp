@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <opencv2/core.hpp>
 
 #include "artefact/edges_file.h"
 #include "artefact/symmetry_file.h"
+#include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "inspection/kinds.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::vector<Value> FrameRow(int frame_id, const EdgeMaps& maps) {
   const int edges = cv::countNonZero(maps.edges);

@@ -5,7 +5,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
 #include "base/parallel.h"
 #include "constraints/attitude.h"
@@ -16,6 +15,7 @@
 #include "constraints/standing.h"
 #include "constraints/support.h"
 #include "constraints/tangency.h"
+#include "geometry/angles.h"
 #include "initialisation/view_weights.h"
 #include "mapping/axis_cost_term.h"
 #include "mapping/minimise.h"
@@ -86,7 +86,7 @@ void BackEndProblem::WeighViews() {
     if (!input_.starts[i]) continue;
     const std::vector<int>& detections = detections_by_object_[i];
     const auto weights = ViewWeights(input_.sequence, detections, input_.starts[i]->Centre(),
-                                     options_.view_correlation_deg * std::numbers::pi / 180.0);
+                                     options_.view_correlation_deg * kRadPerDeg);
     for (size_t k = 0; k < weights.size(); ++k) {
       view_weights_[static_cast<size_t>(detections[k])] = weights[k];
     }
@@ -111,8 +111,7 @@ void BackEndProblem::AddOdometry() {
         frames[i - 1].world_from_camera.Inverse() * frames[i].world_from_camera;
     terms_.push_back(TermOf<OdometryResidual, VariableKind::kPose, VariableKind::kPose>(
         {variables_.Pose(i - 1), variables_.Pose(i)}, options_.huber_delta, first_from_second,
-        options_.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
-        options_.odometry_translation_sigma_m));
+        options_.odometry_rotation_sigma_deg * kRadPerDeg, options_.odometry_translation_sigma_m));
     ++summary_.residuals["odometry"];
   }
 }
@@ -126,8 +125,8 @@ void BackEndProblem::AddStanding(size_t object_index) {
   terms_.push_back(TermOf<StandingResidual, VariableKind::kLandmark, VariableKind::kNormal,
                           VariableKind::kOffset>(
       {variables_.Landmark(object_index), normal, offset}, kNoLoss,
-      options_.standing_angle_sigma_deg * std::numbers::pi / 180.0,
-      options_.standing_height_sigma_m, variables_.NormalSide(plane_index)));
+      options_.standing_angle_sigma_deg * kRadPerDeg, options_.standing_height_sigma_m,
+      variables_.NormalSide(plane_index)));
   const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
   if (!attitude || !options_.refine_planes) {
     variables_.Hold(normal);

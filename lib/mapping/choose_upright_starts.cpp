@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <tuple>
 
 #include "base/parallel.h"
+#include "geometry/angles.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
 #include "mapping/choose_starts.h"
@@ -16,10 +16,9 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 // Yaws closer than this lead to the same optimum.
-constexpr double kYawBin = 6.0 * kDegrees;
-constexpr double kYawStep = 3.0 * kDegrees;
+constexpr double kYawBin = 6.0 * kRadPerDeg;
+constexpr double kYawStep = 3.0 * kRadPerDeg;
 constexpr size_t kMinViews = 2;
 // Enough to see an object from all sides that it is seen from.
 constexpr size_t kMaxViews = 16;
@@ -58,7 +57,7 @@ class ObjectFit {
         detections_(views),
         boxes_(MakeMultiViewObservation(input.sequence, views, input.priors[object_index],
                                         options.detection_sigma_fraction,
-                                        options.view_correlation_deg * kDegrees)) {
+                                        options.view_correlation_deg * kRadPerDeg)) {
     boxes_.ratio_is_free = !options.ratio;
     boxes_.axes_weight = options.axes_weight;
     boxes_.huber_delta = options.huber_delta;

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "base/wide_loops.h"
+#include "geometry/angles.h"
 #include "initialisation/residual_batch.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What the points of a batch are where the landmark is.
@@ -116,7 +115,7 @@ EdgeTerm::EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
       options_(options),
       least_cosine_(options.edge_direction_tolerance_deg >= 90.0
                         ? 0.0
-                        : std::cos(options.edge_direction_tolerance_deg * kDegrees)) {
+                        : std::cos(options.edge_direction_tolerance_deg * kRadPerDeg)) {
   std::vector<ModelPoint> points =
       VisibleModelPoints(camera, start_in_camera, options.edge_spacing_px);
   // Of a body that is not in front of the camera no point counts.

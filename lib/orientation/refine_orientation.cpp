@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "initialisation/yaw_sweep.h"
 #include "model/occlusion.h"
 #include "orientation/mirror_planes.h"
@@ -126,9 +126,8 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
   OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
   const YawObjective objective = profile.Objective();
   std::vector<double> texture_costs;
-  const YawSweep sweep =
-      SweepYaw(profile.observation(), objective,
-               options.upright.yaw_grid_deg * std::numbers::pi / 180.0, &texture_costs);
+  const YawSweep sweep = SweepYaw(profile.observation(), objective,
+                                  options.upright.yaw_grid_deg * kRadPerDeg, &texture_costs);
   std::vector<YawSweep::Optimum> optima;
   for (const UprightSolution& optimum :
        LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {

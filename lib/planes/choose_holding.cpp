@@ -5,7 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -17,7 +18,7 @@ const double kWrongVerticals = std::log(100.0);
 const double kFromBelow = std::log(1000.0);
 const double kWrongObject = std::log(1e4);
 
-constexpr double kSameUp = 5.0 * std::numbers::pi / 180.0;
+constexpr double kSameUp = 5.0 * kRadPerDeg;
 
 using Costs = std::vector<double>;
 

@@ -6,11 +6,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/angles.h"
 #include "planes/levels.h"
 #include "planes/mounts.h"
 #include "planes/search_up.h"
@@ -19,15 +19,13 @@
 namespace soslam {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
-
 // For the search of up, of each object.
 constexpr size_t kViewsOfSearch = 12;
 
-constexpr double kYawStep = 3.0 * kRadians;
+constexpr double kYawStep = 3.0 * kRadPerDeg;
 constexpr int kMaxRounds = 10;
 // Either way, of deciding who stands where.
-constexpr double kMaxTilt = 8.0 * kRadians;
+constexpr double kMaxTilt = 8.0 * kRadPerDeg;
 // An object whose height is known no better than to this share of its size does not decide.
 constexpr double kMaxHeightSigmaBySize = 1.0;
 
@@ -89,9 +87,9 @@ class Estimator {
   std::optional<MultiViewObservation> Observe(const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior) const {
     if (detections.empty()) return std::nullopt;
-    MultiViewObservation observation =
-        MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction,
-                                 options_.view_correlation_deg * kRadians, /*height_is_free=*/true);
+    MultiViewObservation observation = MakeMultiViewObservation(
+        sequence_, detections, prior, options_.detection_sigma_fraction,
+        options_.view_correlation_deg * kRadPerDeg, /*height_is_free=*/true);
     observation.huber_delta = options_.huber_delta;
     observation.size_is_known = options_.size_prior;
     return observation;

@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/error.h"
+#include "geometry/angles.h"
 #include "planes/choose_holding.h"
 #include "planes/estimate_planes.h"
 #include "planes/level_trajectory.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 constexpr double kSameAxis = 1e-9;  // one minus a cosine
 // Negative logarithm of how improbable a holding is that is not followed to its planes.
@@ -30,11 +28,11 @@ struct Hypothesis {
 LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
                             const PlanesOptions& options, CameraHolding holding) {
   LevelOptions level;
-  level.roll_sigma = options.camera_roll_sigma_deg * kRadians;
-  level.pitch_sigma = options.camera_pitch_sigma_deg * kRadians;
-  level.vertical_sigma = options.vertical_sigma_deg * kRadians;
-  level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadians;
-  level.correlation_rad = options.view_correlation_deg * kRadians;
+  level.roll_sigma = options.camera_roll_sigma_deg * kRadPerDeg;
+  level.pitch_sigma = options.camera_pitch_sigma_deg * kRadPerDeg;
+  level.vertical_sigma = options.vertical_sigma_deg * kRadPerDeg;
+  level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
+  level.correlation_rad = options.view_correlation_deg * kRadPerDeg;
   level.holding = holding;
   if (!views.empty()) return Level(views, level);
   std::vector<Rigid3d> poses;

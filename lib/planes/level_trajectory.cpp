@@ -4,14 +4,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angles.h"
 #include "geometry/landmark.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kMaxTilt = 12.0 * std::numbers::pi / 180.0;
+constexpr double kMaxTilt = 12.0 * kRadPerDeg;
 constexpr int kMaxRounds = 50;
 constexpr double kSettled = 1e-7;  // rad
 

@@ -3,25 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "base/parallel.h"
+#include "geometry/angles.h"
 #include "geometry/landmark.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
-
 // Where up may be before boxes are looked at: this far (standard deviations) from the cameras' up.
 constexpr double kMaxSigmas = 2.5;
-constexpr double kMaxTiltOfCameras = 45.0 * kRadians;
-constexpr double kTiltStep = 7.5 * kRadians;
+constexpr double kMaxTiltOfCameras = 45.0 * kRadPerDeg;
+constexpr double kTiltStep = 7.5 * kRadPerDeg;
 // Directions that all the rest is tried from, farther apart than neighbours of the grid.
 constexpr size_t kStarts = 4;
 constexpr double kBetweenStarts = 1.6 * kTiltStep;
-constexpr double kYawStepOfSearch = 6.0 * kRadians;
+constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
 
 // Directions around the cameras' up, itself first.
 std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "evaluation/statistics.h"
+#include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "report/page_json.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kNearDeg = 10.0;
 
 json Degrees(double radians) { return PageNumber(kDegPerRad * radians); }

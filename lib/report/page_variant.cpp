@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
+#include "geometry/angles.h"
 #include "report/page_json.h"
 #include "report/page_planes.h"
 #include "report/variant_state.h"
@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 json SigmasOf(const std::vector<double>& variances) {
   std::vector<double> sigmas;

@@ -13,6 +13,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "evaluation/result_checks.h"
+#include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "stage/report_findings.h"
 
@@ -33,10 +34,9 @@ std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
 std::vector<std::optional<YawPrior>> YawPriorsOf(
     const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& shapes,
     const InitialiseOptions& options, int threads) {
-  constexpr double kRadians = std::numbers::pi / 180.0;
   const StandingOptions standing = {options.upright.detection_sigma_fraction,
-                                    options.view_correlation_deg * kRadians,
-                                    options.upright.yaw_grid_deg * kRadians};
+                                    options.view_correlation_deg * kRadPerDeg,
+                                    options.upright.yaw_grid_deg * kRadPerDeg};
   return YawPriors(sequence, shapes, options.yaw_prior, standing, threads);
 }
 

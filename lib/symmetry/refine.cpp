@@ -4,17 +4,15 @@
 #include <ceres/ceres.h>
 
 #include <memory>
-#include <numbers>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "initialisation/single_frame.h"
 #include "symmetry/sampling.h"
 #include "symmetry/yaw_profile.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // One observation, with what all steps of its refinement share.
 struct Refinement {

@@ -6,18 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "artefact/json_file.h"
 #include "artefact/schema.h"
 #include "base/error.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
 
-double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+double Radians(double degrees) { return degrees * kRadPerDeg; }
 
 Eigen::Vector2d Vector2(const json& values) {
   return {values[0].get<double>(), values[1].get<double>()};

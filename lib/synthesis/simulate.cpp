@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "synthesis/noise.h"
 
 namespace soslam {
@@ -46,7 +47,7 @@ std::vector<Rigid3d> NoisyOdometry(const Scene& scene, const std::vector<Rigid3d
     return {x, y, z};
   };
   const double scale = 1.0 + noise.odometry_scale_sigma * normal(random);
-  const double rotation_sigma = noise.odometry_rotation_sigma_deg * std::numbers::pi / 180.0;
+  const double rotation_sigma = noise.odometry_rotation_sigma_deg * kRadPerDeg;
 
   std::vector<Rigid3d> odometry = {true_poses.front()};
   for (size_t i = 1; i < true_poses.size(); ++i) {

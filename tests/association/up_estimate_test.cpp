@@ -7,14 +7,13 @@
 #include <numbers>
 #include <random>
 
+#include "geometry/angles.h"
 #include "support/posts_and_mats.h"
 #include "support/random.h"
 #include "support/rolled.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 double RandomNormal() { return std::normal_distribution<double>()(TestRandom()); }
 
@@ -44,7 +43,7 @@ TEST(UpEstimateTest, OneCameraIsAsUncertainAsItIsHeld) {
   const UpEstimate up = UpOfSegments(SequenceOf({LevelCamera()}), SemanticTable(), options).at(0);
   EXPECT_NEAR((up.up_in_world - Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-12);
   const Eigen::Vector3d variances = Eigen::Vector3d(4.0, 20.0, 0.0).array().square();
-  const Eigen::Matrix3d expected = (kRadians * kRadians * variances).asDiagonal();
+  const Eigen::Matrix3d expected = (kRadPerDeg * kRadPerDeg * variances).asDiagonal();
   EXPECT_LT((up.covariance - expected).norm(), 1e-9);
 }
 
@@ -66,8 +65,8 @@ TEST(UpEstimateTest, ErrorsAreAsLargeAsTheCovarianceSays) {
     std::vector<Eigen::Quaterniond> rotations;
     for (int i = 0; i < 6; ++i) {
       const Eigen::AngleAxisd heading(i * std::numbers::pi / 3.0, Eigen::Vector3d::UnitZ());
-      const Eigen::AngleAxisd pitch(-45.0 * kRadians, Eigen::Vector3d::UnitX());
-      const Eigen::AngleAxisd roll(options.camera_roll_sigma_deg * kRadians * RandomNormal(),
+      const Eigen::AngleAxisd pitch(-45.0 * kRadPerDeg, Eigen::Vector3d::UnitX());
+      const Eigen::AngleAxisd roll(options.camera_roll_sigma_deg * kRadPerDeg * RandomNormal(),
                                    Eigen::Vector3d::UnitZ());
       rotations.push_back(heading * LevelCamera() * pitch * roll);
     }
@@ -88,7 +87,7 @@ TEST(UpEstimateTest, SingleBoxesSayHowCamerasAreRolled) {
     const UpEstimate up =
         UpOfSegments(Rolled(PostsAndMats(), quarters), TableOfPostsAndMats(), AssociateOptions())
             .at(0);
-    EXPECT_GT(std::abs(up.up_in_world.z()), std::cos(25.0 * kRadians)) << quarters;
+    EXPECT_GT(std::abs(up.up_in_world.z()), std::cos(25.0 * kRadPerDeg)) << quarters;
     EXPECT_LT(up.covariance.norm(), 0.3) << quarters;
   }
 }

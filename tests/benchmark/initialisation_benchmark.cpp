@@ -3,10 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <numbers>
 #include <vector>
 
 #include "benchmark/inputs.h"
+#include "geometry/angles.h"
 #include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
@@ -16,7 +16,7 @@
 namespace soslam {
 namespace {
 
-constexpr double kYawStep = 3.0 * std::numbers::pi / 180.0;
+constexpr double kYawStep = 3.0 * kRadPerDeg;
 
 struct OneBox {
   Sequence sequence = FirstObservations(OnlyObject(TwelveViews(), 1));

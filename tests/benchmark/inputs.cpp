@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 #include "artefact/semantic_table_file.h"
@@ -11,14 +10,13 @@
 #include "base/parallel.h"
 #include "dataset/import.h"
 #include "evaluation/iou.h"
+#include "geometry/angles.h"
 #include "image/read_image.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 SceneObject Ellipsoid(int id, const Eigen::Vector2d& position, double yaw_deg,
                       const Eigen::Vector3d& half_axes) {
@@ -27,7 +25,7 @@ SceneObject Ellipsoid(int id, const Eigen::Vector2d& position, double yaw_deg,
   object.label = "ellipsoid " + std::to_string(id);
   object.half_axes = half_axes;
   object.position_on_plane = position;
-  object.yaw = yaw_deg * kDegrees;
+  object.yaw = yaw_deg * kRadPerDeg;
   object.texture_seed = id;
   return object;
 }
@@ -48,7 +46,7 @@ Scene ArcScene(int frames) {
                    Ellipsoid(5, {0.7, 0.0}, 171.0, {0.28, 0.40, 0.40}),
                    Ellipsoid(6, {0.7, 1.3}, -178.0, {0.40, 0.30, 0.25})};
   for (int angle_deg = -30; angle_deg <= 30; angle_deg += 10) {
-    const double angle = angle_deg * kDegrees;
+    const double angle = angle_deg * kRadPerDeg;
     scene.trajectory.waypoints.push_back(
         {{-kRadius * std::cos(angle), -kRadius * std::sin(angle), kCameraHeight}, {0.0, 0.0, 0.2}});
   }

@@ -2,10 +2,9 @@
 // The texture and the edges of one observation; edge maps are there already.
 #include <benchmark/benchmark.h>
 
-#include <numbers>
-
 #include "benchmark/inputs.h"
 #include "benchmark/texture_settings.h"
+#include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
@@ -57,7 +56,7 @@ void Profile(benchmark::State& state, Descriptor descriptor) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(ComputeYawProfile(view.image, view.sequence.camera,
                                                view.landmark_in_camera, samples, {descriptor},
-                                               options, 2.0 * std::numbers::pi / 180.0));
+                                               options, 2.0 * kRadPerDeg));
   }
   state.counters["samples"] = static_cast<double>(samples.size());
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "benchmark/paper_residuals.h"
+#include "geometry/angles.h"
 
 namespace soslam::paper {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kAllFramesVariance = 10.0;    // m^4
 constexpr double kAngleVariance = 10.0 * std::numbers::pi * std::numbers::pi / (180.0 * 180.0);
 constexpr double kSymmetrySigma = 3.0;  // m
 // Odometry between two frames.
-constexpr double kRotationSigma = 0.1 * std::numbers::pi / 180.0;
+constexpr double kRotationSigma = 0.1 * kRadPerDeg;
 constexpr double kTranslationSigma = 0.003;  // m
 constexpr double kHuberDelta = 1.0;
 

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "dataset/import.h"
+#include "geometry/angles.h"
 #include "support/dataset_fixture.h"
 #include "support/image_files.h"
 #include "support/plausible_dataset.h"
@@ -382,8 +383,7 @@ Eigen::Quaterniond WithScalarFirst(const Eigen::Quaterniond& q) {
 }
 
 Rigid3d Turned(const Rigid3d& pose, const Eigen::Vector3d& axis, double degrees) {
-  return {pose.rotation * Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, axis),
-          pose.translation};
+  return {pose.rotation * Eigen::AngleAxisd(degrees * kRadPerDeg, axis), pose.translation};
 }
 
 class PoseConventionTest : public DatasetChecksTest,

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // On the plane z = 0.
 Landmark Standing(double x, double y, double yaw_deg, const Eigen::Vector3d& half_axes) {

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "evaluation/map_matching.h"
+#include "geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {
@@ -169,7 +170,7 @@ void MapQualityTest::MakeAWallOfMistakes() {
   estimates_[static_cast<size_t>(not_estimated)].failure = "too_few_views";
   Detect(AddTruth(), not_estimated);
   const int turned = AddTruth({0.3, 0.06, 0.2});
-  Detect(turned, AddLandmark(Turned(Truth(turned), 44.0 * std::numbers::pi / 180.0)));
+  Detect(turned, AddLandmark(Turned(Truth(turned), 44.0 * kRadPerDeg)));
   const int twice_found = AddFound();
   DetectNothing(AddLandmark(Shifted(twice_found, {0.1, 0, 0})));  // duplicate
   const int high = AddTruth();

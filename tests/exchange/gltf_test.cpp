@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/base64.h"
+#include "geometry/angles.h"
 #include "support/exported_world.h"
 #include "support/gltf_document.h"
 #include "support/mesh_checks.h"
@@ -87,7 +88,7 @@ TEST_F(GltfTest, ExtrasSayWhatTheMapKnows) {
   EXPECT_EQ(extras.at("observations"), 12);
   EXPECT_EQ(extras.at("shape_exponent"), 1.0);
   EXPECT_EQ(extras.at("half_axes").at(1), object.estimate.landmark_in_world->half_axes.y());
-  EXPECT_NEAR(extras.at("yaw_deg").get<double>(), YawOf(object) * 180.0 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(extras.at("yaw_deg").get<double>(), YawOf(object) * kDegPerRad, 1e-9);
   EXPECT_EQ(extras.at("covariance").size(), 9u);
   EXPECT_EQ(extras.at("covariance").at(3).at(8), (*object.estimate.covariance)(3, 8));
   EXPECT_FALSE(Node(document, 1).at("extras").contains("covariance"));

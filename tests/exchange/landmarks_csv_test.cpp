@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "geometry/angles.h"
 #include "support/exported_world.h"
 
 namespace soslam {
@@ -60,7 +60,7 @@ TEST(LandmarksCsvTest, RowsHoldWhatTheMapKnows) {
     EXPECT_EQ(number("qw"), landmark.frame_from_object.rotation.w());
     EXPECT_EQ(number("half_axis_a"), landmark.half_axes.x());
     EXPECT_EQ(number("half_axis_c"), landmark.half_axes.z());
-    EXPECT_NEAR(number("yaw_deg"), YawOf(object) * 180.0 / std::numbers::pi, 1e-9);
+    EXPECT_NEAR(number("yaw_deg"), YawOf(object) * kDegPerRad, 1e-9);
     EXPECT_EQ(number("shape_exponent"), landmark.shape_exponent);
     EXPECT_EQ(table[i].at("failure"), "");
     EXPECT_EQ(table[i].at("fate"), "");
@@ -96,7 +96,7 @@ TEST(LandmarksCsvTest, SigmasAreOfMetresAndDegrees) {
   EXPECT_NEAR(number("sigma_half_axis_b"), 0.3, 1e-12);
   EXPECT_NEAR(number("sigma_half_axis_c"), 0.6, 1e-12);
   // 0.36 * 0.01 + 0.64 * 0.02 + 2 * 0.48 * 0.005
-  EXPECT_NEAR(number("sigma_yaw_deg"), std::sqrt(0.0212) * 180.0 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(number("sigma_yaw_deg"), std::sqrt(0.0212) * kDegPerRad, 1e-9);
 }
 
 TEST(LandmarksCsvTest, WhatIsNotThereIsEmpty) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/box_terms.h"
@@ -17,8 +18,7 @@ namespace soslam {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDegrees = std::numbers::pi / 180.0;
-constexpr double kStep = 3.0 * kDegrees;
+constexpr double kStep = 3.0 * kRadPerDeg;
 constexpr size_t kAll = 1000;
 
 std::vector<UprightSolution> Optima(const UprightObservation& observation, size_t max_count = kAll,
@@ -109,7 +109,8 @@ TEST(LocalOptima, AreSortedDistinctLandmarksInFrontOfTheCamera) {
       const double before = optima[one == 0 ? 0 : one - 1].cost;
       EXPECT_LE(before, optima[one].cost + 1e-7 * (1.0 + before));  // single precision
       for (size_t other = 0; other < one; ++other) {
-        EXPECT_GT(AngleBetweenFronts(optima[one].landmark, optima[other].landmark), 0.5 * kDegrees);
+        EXPECT_GT(AngleBetweenFronts(optima[one].landmark, optima[other].landmark),
+                  0.5 * kRadPerDeg);
       }
     }
   }
@@ -127,9 +128,9 @@ TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
     for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
       const auto terms = BoxTerms(observation, optimum.landmark);
       for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
-        const auto nearby =
-            FitUpright(observation.plane_in_camera, Turned(optimum.landmark, offset_deg * kDegrees),
-                       terms, /*yaw_is_free=*/false);
+        const auto nearby = FitUpright(observation.plane_in_camera,
+                                       Turned(optimum.landmark, offset_deg * kRadPerDeg), terms,
+                                       /*yaw_is_free=*/false);
         ASSERT_TRUE(nearby);
         EXPECT_GT(nearby->cost, 0.99 * optimum.cost - 1e-2)
             << "body " << i << ", turned by " << offset_deg << " degrees";

@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "evaluation/iou.h"
+#include "geometry/angles.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/yaw_sweep.h"
@@ -14,7 +13,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr double kSigmaFraction = 0.02;
 
 // A camera at `position` that looks at `target`, level.
@@ -200,11 +198,11 @@ TEST(SweepViews, FindsTheYaw) {
   for (int i = 0; i < 20; ++i) {
     World world(kCuboidExponent);
     world.AddArc(8);
-    const auto optima = SweepViews(world.Observation(world.Prior(0.1)), 3.0 * kDegrees);
+    const auto optima = SweepViews(world.Observation(world.Prior(0.1)), 3.0 * kRadPerDeg);
     ASSERT_FALSE(optima.empty());
     for (size_t k = 1; k < optima.size(); ++k) EXPECT_LE(optima[k - 1].cost, optima[k].cost);
     const double yaw = Yaw(Eigen::Vector3d::UnitZ(), optima[0].landmark.frame_from_object.rotation);
-    first += std::abs(YawDifferenceModuloPi(yaw, world.TrueYaw())) < 3.0 * kDegrees ? 1 : 0;
+    first += std::abs(YawDifferenceModuloPi(yaw, world.TrueYaw())) < 3.0 * kRadPerDeg ? 1 : 0;
   }
   EXPECT_GE(first, 19);  // a random body may be as long as it is deep
 }
@@ -213,7 +211,7 @@ TEST(SolveViews, PolishesTheYaw) {
   for (int i = 0; i < 10; ++i) {
     World world(kCuboidExponent);
     world.AddArc(8);
-    const auto found = SolveViews(world.Observation(world.Prior(0.05)), 3.0 * kDegrees);
+    const auto found = SolveViews(world.Observation(world.Prior(0.05)), 3.0 * kRadPerDeg);
     ASSERT_TRUE(found);
     EXPECT_GT(BoxIou(found->landmark, world.truth), 0.97);
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/iou.h"
+#include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "support/random.h"
 #include "synthesis/random_scene.h"
@@ -39,7 +40,7 @@ bool Contains(const std::vector<Hypothesis>& hypotheses, const Landmark& truth) 
 
 TEST(SingleFrame, FindsTheTruthAmongTheYawsThatExplainTheBoxAtAnyYaw) {
   for (int degrees = -90; degrees < 90; degrees += 6) {
-    const Standing standing(degrees * std::numbers::pi / 180.0, {0.4, 0.2, 0.3});
+    const Standing standing(degrees * kRadPerDeg, {0.4, 0.2, 0.3});
     const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
     EXPECT_TRUE(Contains(solution.hypotheses, standing.truth)) << degrees;
     EXPECT_LE(solution.hypotheses.size(), 4u) << degrees;

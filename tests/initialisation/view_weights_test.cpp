@@ -8,12 +8,11 @@
 #include <numeric>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 // Cameras on a circle around `centre`, at these angles, each with one detection.
 struct Circle {
@@ -41,17 +40,17 @@ struct Circle {
 
 TEST(ViewWeights, ViewsFromOnePlaceCountAsOne) {
   const Circle circle(RandomVector(-2, 2), std::vector<double>(17, 0.3));
-  for (const double weight : circle.Weights(10 * kDegrees)) EXPECT_NEAR(weight, 1.0 / 17, 1e-12);
+  for (const double weight : circle.Weights(10 * kRadPerDeg)) EXPECT_NEAR(weight, 1.0 / 17, 1e-12);
 }
 
 TEST(ViewWeights, ViewsFromDifferentSidesCountFully) {
   const Circle circle(RandomVector(-2, 2), {0.0, 0.5 * std::numbers::pi, std::numbers::pi});
-  for (const double weight : circle.Weights(10 * kDegrees)) EXPECT_NEAR(weight, 1.0, 1e-9);
+  for (const double weight : circle.Weights(10 * kRadPerDeg)) EXPECT_NEAR(weight, 1.0, 1e-9);
 }
 
 TEST(ViewWeights, TwoViewsAtTheCorrelationAngle) {
-  const Circle circle({1, 2, 3}, {0.7, 0.7 + 15 * kDegrees});
-  for (const double weight : circle.Weights(15 * kDegrees)) {
+  const Circle circle({1, 2, 3}, {0.7, 0.7 + 15 * kRadPerDeg});
+  for (const double weight : circle.Weights(15 * kRadPerDeg)) {
     EXPECT_NEAR(weight, 1.0 / (1.0 + std::exp(-0.5)), 1e-12);
   }
 }
@@ -61,7 +60,7 @@ TEST(ViewWeights, OfAllAnglesAreThoseOfTheDefinition) {
   std::vector<double> angles = {0.4, 0.4 + std::numbers::pi};
   for (int i = 0; i < 9; ++i) angles.push_back(RandomUniform(0.0, 2.0 * std::numbers::pi));
   const Circle circle(RandomVector(-2, 2), angles);
-  for (const double correlation : {10 * kDegrees, 60 * kDegrees, 180 * kDegrees}) {
+  for (const double correlation : {10 * kRadPerDeg, 60 * kRadPerDeg, 180 * kRadPerDeg}) {
     const std::vector<double> weights = circle.Weights(correlation);
     for (size_t i = 0; i < angles.size(); ++i) {
       double similar_views = 0.0;
@@ -89,7 +88,7 @@ TEST(ViewWeights, TheSumDoesNotGrowWithTheFrameRate) {
   const auto sum = [](int frames) {
     std::vector<double> angles;
     for (int i = 0; i < frames; ++i) angles.push_back(0.8 * i / (frames - 1));
-    const auto weights = Circle({0, 0, 0}, angles).Weights(15 * kDegrees);
+    const auto weights = Circle({0, 0, 0}, angles).Weights(15 * kRadPerDeg);
     return std::accumulate(weights.begin(), weights.end(), 0.0);
   };
   EXPECT_NEAR(sum(400), sum(40), 0.05 * sum(400));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/upright_bodies.h"
 
@@ -12,7 +13,6 @@ namespace soslam {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 // A sweep whose costs are a function of the yaw.
 template <typename Cost>
@@ -27,7 +27,7 @@ YawSweep SweepOf(Cost cost, int points) {
 
 TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
   for (int i = 0; i < 50; ++i) {
-    const double sigma = RandomUniform(2.0, 10.0) * kDegrees;
+    const double sigma = RandomUniform(2.0, 10.0) * kRadPerDeg;
     const double mean = RandomYaw();  // also where the grid goes round
     const double offset = RandomUniform(-1e4, 1e4);
     const auto cost = [&](double yaw) {
@@ -46,7 +46,7 @@ TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
 // However narrow: it is not the distance to the nearest yaw of the grid.
 TEST(YawSweep, StandardDeviationOfAPeakBetweenTwoYawsOfTheGrid) {
   for (int i = 0; i < 50; ++i) {
-    const double sigma = RandomUniform(0.1, 0.5) * kDegrees;
+    const double sigma = RandomUniform(0.1, 0.5) * kRadPerDeg;
     const double mean = RandomYaw();
     const YawSweep sweep = SweepOf(
         [&](double yaw) { return 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2); },
@@ -58,7 +58,7 @@ TEST(YawSweep, StandardDeviationOfAPeakBetweenTwoYawsOfTheGrid) {
 // The same body called by its other horizontal axis: two equal peaks a quarter turn apart.
 TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
   for (int i = 0; i < 50; ++i) {
-    const double sigma = RandomUniform(0.3, 3.0) * kDegrees;
+    const double sigma = RandomUniform(0.3, 3.0) * kRadPerDeg;
     const double mean = RandomYaw();
     const double other = mean + 0.5 * kPi;
     const YawSweep sweep = SweepOf(
@@ -84,19 +84,19 @@ TEST(YawSweep, StandardDeviationOfAnyYawIsThatOfAUniformDistribution) {
 TEST(YawSweep, StandardDeviationLeavesOutYawsWithoutALandmark) {
   // Nothing but 20 degrees around the mean, and 10 degrees further on.
   YawSweep sweep = SweepOf([](double) { return 1.0; }, 1800);
-  const double mean = 80.05 * kDegrees;
+  const double mean = 80.05 * kRadPerDeg;
   const auto leave_out = [&](double from, double to) {
     for (size_t i = 0; i < sweep.yaw.size(); ++i) {
-      const double distance = (sweep.yaw[i] - mean) / kDegrees;
+      const double distance = (sweep.yaw[i] - mean) / kRadPerDeg;
       if (distance > from && distance < to) sweep.fits[i].reset();
     }
   };
   leave_out(-90, -10);
   leave_out(20, 101);
-  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), std::sqrt(9000.0 / 3.0 / 30.0) * kDegrees,
+  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), std::sqrt(9000.0 / 3.0 / 30.0) * kRadPerDeg,
               1e-3);
   leave_out(10, 20);
-  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), 20.0 * kDegrees / std::sqrt(12.0), 1e-3);
+  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), 20.0 * kRadPerDeg / std::sqrt(12.0), 1e-3);
 }
 
 TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {

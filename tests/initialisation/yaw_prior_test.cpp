@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "support/box_terms.h"
 #include "support/random.h"
@@ -13,7 +12,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr int kFrames = 11;
 
 // Where a car is in frame `i`: its centre above the ground, x to the right and z ahead of the first
@@ -72,7 +70,7 @@ std::vector<std::optional<YawPrior>> Priors(const Sequence& sequence, YawPriorSo
 double YawErrorOfPrior(const Sequence& sequence, YawPriorSource source) {
   const auto prior = Priors(sequence, source)[kFrames / 2];
   return std::abs(YawDifferenceModuloPi(prior->yaw, TrueYaw(sequence.detections[kFrames / 2]))) /
-         kDegrees;
+         kRadPerDeg;
 }
 
 // The yaw of the direction (x, z) in the world.
@@ -101,8 +99,8 @@ TEST(YawPriors, TheTruthIsThatOfEachFrame) {
 // The middle of a box's lower edge is not a point of the car, but it goes where the car goes.
 TEST(YawPriors, WhatDrivesPointsWhereItGoes) {
   for (const double angle : {60.0, 90.0, 120.0}) {
-    const double x = std::cos(angle * kDegrees);
-    const double z = std::sin(angle * kDegrees);
+    const double x = std::cos(angle * kRadPerDeg);
+    const double z = std::sin(angle * kRadPerDeg);
     const Sequence sequence = Drive(1.0, [&](int i) {
       return Place{-3.0 + 0.8 * x * i, 16.0 + 1.2 * z * i, YawAlong(0.8 * x, 1.2 * z)};
     });
@@ -163,7 +161,7 @@ TEST(InitialiseUpright, HeedsTheYawPrior) {
     EXPECT_NEAR(
         YawDifferenceModuloPi(Yaw(-Eigen::Vector3d::UnitY(), landmark.frame_from_object.rotation),
                               TrueYaw(sequence.detections[index])),
-        0.0, 0.5 * kDegrees);
+        0.0, 0.5 * kRadPerDeg);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "initialisation/closed_form.h"
 #include "support/box_terms.h"
 #include "support/landmark_terms.h"
@@ -20,8 +21,7 @@ namespace {
 using testing::IsEmpty;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDegrees = std::numbers::pi / 180.0;
-constexpr double kStep = 3.0 * kDegrees;
+constexpr double kStep = 3.0 * kRadPerDeg;
 
 TEST(BoxTerms, AddsThePreferenceForTheWorldsAxes) {
   for (int i = 0; i < 50; ++i) {
@@ -58,7 +58,7 @@ Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit
 TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
   for (const double step_deg : {1.0, 3.0, 7.0, 45.0}) {
     const StandingBody body(1.5);
-    const YawSweep sweep = SweepYaw(body.observation, {}, step_deg * kDegrees);
+    const YawSweep sweep = SweepYaw(body.observation, {}, step_deg * kRadPerDeg);
     ASSERT_EQ(sweep.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
     ASSERT_EQ(sweep.fits.size(), sweep.yaw.size());
     const std::vector<double> costs = sweep.Costs();
@@ -109,7 +109,7 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
   };
   objective.rounds = 3;
   objective.extra_cost = [](const Landmark&) { return 7.0; };
-  const YawSweep sweep = SweepYaw(body.observation, objective, 45.0 * kDegrees);
+  const YawSweep sweep = SweepYaw(body.observation, objective, 45.0 * kRadPerDeg);
   ASSERT_EQ(starts.size(), 16u);  // of each yaw three fits, and the cost of the result
   for (size_t i = 0; i < 4; ++i) {
     EXPECT_TRUE(IsSameBody(starts[4 * i], *SolveAtYaw(body.observation, sweep.yaw[i]), 1e-12));

@@ -19,6 +19,7 @@
 #include "artefact/sequence_file.h"
 #include "artefact/symmetry_file.h"
 #include "base/error.h"
+#include "geometry/angles.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
 #include "support/expect_error.h"
@@ -112,7 +113,6 @@ TEST_F(InspectionTest, MapsSayHowSureTheyAre) {
   WriteMap(File(), map, sequence_, {OptionsToJson(options), {}});
 
   const Inspection inspection = Read();
-  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
   EXPECT_NEAR(At(inspection, 0, "yaw").get<double>(), kDegPerRad * 0.5, 1e-9);
   EXPECT_NEAR(At(inspection, 0, "sigma_yaw").get<double>(), kDegPerRad * 0.02, 1e-9);
   EXPECT_NEAR(At(inspection, 0, "sigma_centre").get<double>(), 0.2, 1e-9);

@@ -9,7 +9,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "constraints/manifolds.h"
 #include "constraints/odometry.h"
 #include "constraints/standing.h"
+#include "geometry/angles.h"
 #include "mapping/back_end_problem.h"
 #include "mapping/landmark_fit.h"
 #include "support/cost_function_term.h"
@@ -73,7 +73,7 @@ double CostByCeres(const BackEndInput& input, const OptimiseOptions& options) {
     const Rigid3d step =
         sequence.frames[i - 1].world_from_camera.Inverse() * sequence.frames[i].world_from_camera;
     problem.AddResidualBlock(
-        new OdometryResidual(step, options.odometry_rotation_sigma_deg * std::numbers::pi / 180.0,
+        new OdometryResidual(step, options.odometry_rotation_sigma_deg * kRadPerDeg,
                              options.odometry_translation_sigma_m),
         &loss, values(variables.Pose(i - 1)), pose);
   }
@@ -83,10 +83,9 @@ double CostByCeres(const BackEndInput& input, const OptimiseOptions& options) {
     const auto plane = static_cast<size_t>(sequence.objects[i].plane_index);
     double* normal = values(variables.Normal(plane));
     double* offset = values(variables.Offset(plane));
-    problem.AddResidualBlock(
-        new StandingResidual(options.standing_angle_sigma_deg * std::numbers::pi / 180.0,
-                             options.standing_height_sigma_m),
-        nullptr, landmark, normal, offset);
+    problem.AddResidualBlock(new StandingResidual(options.standing_angle_sigma_deg * kRadPerDeg,
+                                                  options.standing_height_sigma_m),
+                             nullptr, landmark, normal, offset);
     problem.SetParameterBlockConstant(normal);
     problem.SetParameterBlockConstant(offset);
     problem.AddResidualBlock(

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "constraints/parameters.h"
+#include "geometry/angles.h"
 #include "mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
 #include "support/curve_term.h"
@@ -28,9 +29,7 @@ constexpr double kTurnSigma = 0.08;  // rad a frame: level is lost at once
 
 class StartInPartsTest : public testing::Test {
  protected:
-  StartInPartsTest() {
-    options_.odometry_rotation_sigma_deg = kTurnSigma * 180.0 / std::numbers::pi;
-  }
+  StartInPartsTest() { options_.odometry_rotation_sigma_deg = kTurnSigma * kDegPerRad; }
   void MakeProblem() { problem_.emplace(input_, options_); }
   BackEndVariables& Variables() { return problem_->variables(); }
   bool Start(size_t max_frames_per_part = kFramesPerPart) {

@@ -4,18 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <numbers>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 // A curve that costs all but at these yaws (degrees), on a grid of 3 degrees.
 struct Curve {
   explicit Curve(const std::vector<int>& symmetric_deg) {
     for (int i = 0; i < 60; ++i) {
-      grid.push_back(3 * i * kDegrees);
+      grid.push_back(3 * i * kRadPerDeg);
       cost.push_back(0.9 * options.asymmetry_cost);
     }
     for (const int yaw_deg : symmetric_deg) {
@@ -23,7 +22,7 @@ struct Curve {
     }
   }
   std::optional<int> Planes(double yaw_deg) const {
-    return MirrorPlanes(grid, cost, yaw_deg * kDegrees, options);
+    return MirrorPlanes(grid, cost, yaw_deg * kRadPerDeg, options);
   }
 
   TextureOptions options;

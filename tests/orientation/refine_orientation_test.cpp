@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "evaluation/iou.h"
+#include "geometry/angles.h"
 #include "support/drawn_cuboids.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
@@ -16,17 +17,15 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
-
 // Three textured boxes on a floor, none along the world's axes, that a camera drives past.
 Scene BoxScene() {
   Scene scene;
   scene.camera = {640, 480, 533.0, 533.0, 319.5, 239.5};
   scene.planes.push_back({0, "floor", Plane{}, std::nullopt});
   scene.objects = {
-      {1, "box", Shape::kBox, {0.30, 0.50, 0.25}, {2.9, 0.1}, 150.0 * kDegrees, 0, 1},
-      {2, "box", Shape::kBox, {0.22, 0.30, 0.36}, {3.1, -1.1}, -165.0 * kDegrees, 0, 2},
-      {3, "box", Shape::kBox, {0.40, 0.30, 0.46}, {3.8, 1.2}, 205.0 * kDegrees, 0, 3}};
+      {1, "box", Shape::kBox, {0.30, 0.50, 0.25}, {2.9, 0.1}, 150.0 * kRadPerDeg, 0, 1},
+      {2, "box", Shape::kBox, {0.22, 0.30, 0.36}, {3.1, -1.1}, -165.0 * kRadPerDeg, 0, 2},
+      {3, "box", Shape::kBox, {0.40, 0.30, 0.46}, {3.8, 1.2}, 205.0 * kRadPerDeg, 0, 3}};
   scene.trajectory.frames = 4;
   scene.trajectory.waypoints = {{{0.3, -0.7, 1.15}, {3.2, 0.0, 0.4}},
                                 {{0.4, 0.0, 1.12}, {3.2, 0.0, 0.4}},
@@ -117,7 +116,7 @@ TEST_F(RefineBoxes, FindsTheYawOfPlainBoxesByTheirEdges) {
   options.texture_symmetry = false;
   const Frames plain = PlainMaps();
   for (int i = 0; i < Observations(); ++i) {
-    ExpectTruth(i, RefineIn(plain, i, options), 0.5 * kDegrees, 0.98);
+    ExpectTruth(i, RefineIn(plain, i, options), 0.5 * kRadPerDeg, 0.98);
   }
 }
 
@@ -125,7 +124,7 @@ TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxesByTheirTexture) {
   ProfileOptions options = OffAxesOptions();
   options.edge_alignment = false;
   for (int i = 0; i < Observations(); ++i) {
-    ExpectTruth(i, Refine(i, options), 1.0 * kDegrees, 0.97);
+    ExpectTruth(i, Refine(i, options), 1.0 * kRadPerDeg, 0.97);
   }
 }
 
@@ -134,7 +133,7 @@ TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxesByTheirTexture) {
 TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxes) {
   for (int i = 0; i < Observations(); ++i) {
     const RefinedObservation refined = Refine(i, OffAxesOptions());
-    ExpectTruth(i, refined, 6.0 * kDegrees, 0.88);
+    ExpectTruth(i, refined, 6.0 * kRadPerDeg, 0.88);
     EXPECT_LT(std::abs(YawError(refined)), 2.5 * *refined.record.yaw_sigma) << i;
   }
 }
@@ -154,7 +153,7 @@ TEST_F(RefineBoxes, AreDrawnToTheWorldsAxesAsMuchAsTheirPreferenceWeighs) {
     const double without = from_axes(0.0);
     const double by_default = from_axes(UprightOptions().axes_weight);
     EXPECT_LT(by_default, without) << i;
-    EXPECT_GT(by_default, without - 2.0 * kDegrees) << i;
+    EXPECT_GT(by_default, without - 2.0 * kRadPerDeg) << i;
     EXPECT_LT(from_axes(100.0), 0.8 * without) << i;
   }
 }

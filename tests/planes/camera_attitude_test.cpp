@@ -5,17 +5,16 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
-constexpr double kRollSigma = 5.0 * kDegrees;
-constexpr double kPitchSigma = 30.0 * kDegrees;
-constexpr double kCorrelation = 20.0 * kDegrees;
+constexpr double kRollSigma = 5.0 * kRadPerDeg;
+constexpr double kPitchSigma = 30.0 * kRadPerDeg;
+constexpr double kCorrelation = 20.0 * kRadPerDeg;
 
 // Looks along a heading about z, this far downwards, x level.
 Rigid3d LevelCamera(double heading, double downwards) {
@@ -35,17 +34,18 @@ double AngleToUp(const std::vector<Rigid3d>& poses) {
 
 TEST(AttitudeOf, OneCameraHasUpAboveIt) {
   EXPECT_NEAR(AngleToUp({LevelCamera(0.3, 0.0)}), 0.0, 1e-9);
-  EXPECT_NEAR(AngleToUp({LevelCamera(0.3, 40.0 * kDegrees)}), 40.0 * kDegrees, 1e-9);
+  EXPECT_NEAR(AngleToUp({LevelCamera(0.3, 40.0 * kRadPerDeg)}), 40.0 * kRadPerDeg, 1e-9);
 }
 
 // Seen from two sides, the level x axes say what looking down hides: 40 degrees off in one heading
 // only, the axes of the other heading hold up 36 times as firmly.
 TEST(AttitudeOf, HeadingsApartFindUpWhereverTheyLookDown) {
   std::vector<Rigid3d> poses;
-  for (int i = 0; i < 8; ++i) poses.push_back(LevelCamera(i * 45.0 * kDegrees, 40.0 * kDegrees));
+  for (int i = 0; i < 8; ++i)
+    poses.push_back(LevelCamera(i * 45.0 * kRadPerDeg, 40.0 * kRadPerDeg));
   EXPECT_NEAR(AngleToUp(poses), 0.0, 1e-9);
   poses.resize(3);
-  EXPECT_LT(AngleToUp(poses), 3.0 * kDegrees);
+  EXPECT_LT(AngleToUp(poses), 3.0 * kRadPerDeg);
 }
 
 TEST(AttitudeOf, ManyCamerasInOneDirectionCountAsOne) {
@@ -64,24 +64,24 @@ TEST(AttitudeOf, RolledCamerasHaveTheUpOfLevelOnes) {
                                  CameraHolding::kRolled180, CameraHolding::kRolled270};
   for (int quarters = 0; quarters < 4; ++quarters) {
     const Eigen::Quaterniond roll(
-        Eigen::AngleAxisd(quarters * 90.0 * kDegrees, Eigen::Vector3d::UnitZ()));
+        Eigen::AngleAxisd(quarters * 90.0 * kRadPerDeg, Eigen::Vector3d::UnitZ()));
     std::vector<Rigid3d> poses;
     for (int i = 0; i < 5; ++i) {
-      const Rigid3d level = LevelCamera(i * 30.0 * kDegrees, 20.0 * kDegrees);
+      const Rigid3d level = LevelCamera(i * 30.0 * kRadPerDeg, 20.0 * kRadPerDeg);
       poses.push_back({level.rotation * roll, level.translation});
     }
     const auto up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation,
                                kRolls.at(static_cast<size_t>(quarters)))
                         .up_in_world;
-    EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kDegrees) << quarters;
+    EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kRadPerDeg) << quarters;
   }
 }
 
 TEST(AttitudeOf, CamerasThatLookDownHaveUpBehindThem) {
-  const std::vector<Rigid3d> poses = {LevelCamera(0.3, 80.0 * kDegrees)};
+  const std::vector<Rigid3d> poses = {LevelCamera(0.3, 80.0 * kRadPerDeg)};
   for (const auto holding : {CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90}) {
     const auto up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation, holding).up_in_world;
-    EXPECT_NEAR(std::acos(up.z()), 10.0 * kDegrees, 1e-9);
+    EXPECT_NEAR(std::acos(up.z()), 10.0 * kRadPerDeg, 1e-9);
   }
 }
 

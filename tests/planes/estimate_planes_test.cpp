@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "base/error.h"
+#include "geometry/angles.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
@@ -15,7 +15,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr int kFrames = 20;
 constexpr double kLogSigma = 0.1;
 
@@ -36,7 +35,7 @@ Scene CuboidScene(int seed, int objects) {
 CameraAttitude Attitude(const Sequence& sequence) {
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return AttitudeOf(poses, 5.0 * kDegrees, 30.0 * kDegrees, 0.3);
+  return AttitudeOf(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {
@@ -74,7 +73,7 @@ TEST(EstimatePlanes, FindsTheFloorUnderExactBoxes) {
     const PlanesEstimate estimate = Estimate(sequence);
     ASSERT_EQ(estimate.planes.size(), 1u);
     EXPECT_TRUE(estimate.settled);
-    ExpectGiven(sequence, estimate, 0.1 * kDegrees, 0.003);
+    ExpectGiven(sequence, estimate, 0.1 * kRadPerDeg, 0.003);
   }
 }
 
@@ -84,7 +83,7 @@ TEST(EstimatePlanes, SeparatesAShelfFromTheFloor) {
     const Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(seed, 4), 0.25), true);
     const PlanesEstimate estimate = Estimate(sequence);
     ASSERT_EQ(estimate.planes.size(), 2u);
-    ExpectGiven(sequence, estimate, 0.2 * kDegrees, 0.005);
+    ExpectGiven(sequence, estimate, 0.2 * kRadPerDeg, 0.005);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       EXPECT_EQ(estimate.objects[i].plane_index, static_cast<int>(i % 2)) << i;
       EXPECT_EQ(estimate.objects[i].reason, SupportReason::kOwnHeight) << i;
@@ -106,7 +105,7 @@ TEST(EstimatePlanes, WhatHangsHasCeilings) {
         EstimatePlanes(sequence, WithHanging(TrueCuboidPriors(sequence, kLogSigma)),
                        Attitude(sequence), ModelOptions(), 2);
     ASSERT_EQ(estimate.planes.size(), 2u);
-    ExpectGiven(sequence, estimate, 0.2 * kDegrees, 0.005);
+    ExpectGiven(sequence, estimate, 0.2 * kRadPerDeg, 0.005);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       EXPECT_EQ(estimate.objects[i].plane_index, static_cast<int>(i % 2)) << i;
     }
@@ -144,7 +143,7 @@ TEST(EstimatePlanes, PlanesNeedNotBeParallel) {
   const PlanesEstimate estimate = Estimate(sequence, options);
   ASSERT_EQ(estimate.planes.size(), 2u);
   EXPECT_NE(estimate.planes[0].plane_in_world.normal, estimate.planes[1].plane_in_world.normal);
-  ExpectGiven(sequence, estimate, 0.3 * kDegrees, 0.01);
+  ExpectGiven(sequence, estimate, 0.3 * kRadPerDeg, 0.01);
 }
 
 // How well one object shows the tilt is another matter: from 0.5 to 11 degrees here. Exact boxes
@@ -156,7 +155,7 @@ TEST(EstimatePlanes, OneObjectIsEnough) {
     const PlanesEstimate estimate = Estimate(sequence);
     ASSERT_EQ(estimate.planes.size(), 1u);
     EXPECT_LT(NormalisedErrorSquared(sequence, estimate), 0.5);
-    ExpectGiven(sequence, estimate, 5.0 * kDegrees, 0.01);
+    ExpectGiven(sequence, estimate, 5.0 * kRadPerDeg, 0.01);
   }
 }
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "base/error.h"
+#include "geometry/angles.h"
 #include "planes/estimate_planes.h"
 #include "support/expect_error.h"
 #include "support/rolled.h"
@@ -15,7 +15,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr double kLogSigma = 0.1;
 
 PlanesOptions ModelOptions() {
@@ -54,7 +53,7 @@ TEST(EstimateHeldPlanes, FindsUpForEachRoll) {
       ASSERT_EQ(held.estimate.planes.size(), 1u);
       const auto error = CompareWithGiven(sequence, held.estimate, 0);
       ASSERT_TRUE(error);
-      EXPECT_LT(error->angle, 3.0 * kDegrees);
+      EXPECT_LT(error->angle, 3.0 * kRadPerDeg);
       EXPECT_LT(std::abs(error->offset), 0.05);
     }
   }
@@ -66,9 +65,9 @@ TEST(EstimateHeldPlanes, LevelCamerasHaveThePlanesOfTheirAttitude) {
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
   const PlanesOptions options = ModelOptions();
-  const CameraAttitude attitude = AttitudeOf(poses, options.camera_roll_sigma_deg * kDegrees,
-                                             options.camera_pitch_sigma_deg * kDegrees,
-                                             options.view_correlation_deg * kDegrees);
+  const CameraAttitude attitude = AttitudeOf(poses, options.camera_roll_sigma_deg * kRadPerDeg,
+                                             options.camera_pitch_sigma_deg * kRadPerDeg,
+                                             options.view_correlation_deg * kRadPerDeg);
   const PlanesEstimate expected =
       EstimatePlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), attitude, options, 2);
   const PlanesEstimate found = Estimate(sequence).estimate;
@@ -128,12 +127,12 @@ TEST(EstimateHeldPlanes, VerticalsAreNotDoubtedInVain) {
 
 TEST(EstimateHeldPlanes, VerticalsThatBodiesContradictAreDoubted) {
   const Sequence sequence = NoisySequence(2, 5);
-  const Eigen::Vector3d tilted(std::sin(10.0 * kDegrees), 0.0, std::cos(10.0 * kDegrees));
+  const Eigen::Vector3d tilted(std::sin(10.0 * kRadPerDeg), 0.0, std::cos(10.0 * kRadPerDeg));
   const HeldPlanes held = EstimateWithVerticals(sequence, tilted);
   EXPECT_FALSE(held.estimate.verticals);
   const auto error = CompareWithGiven(sequence, held.estimate, 0);
   ASSERT_TRUE(error);
-  EXPECT_LT(error->angle, 3.0 * kDegrees);
+  EXPECT_LT(error->angle, 3.0 * kRadPerDeg);
 }
 
 // As long and wide as high: it may lie on any side, but its camera is not below what it stands on.

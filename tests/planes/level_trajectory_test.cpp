@@ -6,21 +6,21 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
 constexpr int kFrames = 40;
-constexpr double kDrift = 0.15 * kDegrees;  // between two frames, all of it to one side
+constexpr double kDrift = 0.15 * kRadPerDeg;  // between two frames, all of it to one side
 
 LevelOptions RoomOptions() {
   LevelOptions options;
-  options.roll_sigma = 5.0 * kDegrees;
-  options.pitch_sigma = 30.0 * kDegrees;
-  options.vertical_sigma = 1.0 * kDegrees;
-  options.odometry_sigma = 0.2 * kDegrees;
+  options.roll_sigma = 5.0 * kRadPerDeg;
+  options.pitch_sigma = 30.0 * kRadPerDeg;
+  options.vertical_sigma = 1.0 * kRadPerDeg;
+  options.odometry_sigma = 0.2 * kRadPerDeg;
   return options;
 }
 
@@ -100,7 +100,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
   const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
   const LevelTrajectory level = Level(ViewsOf(truth, drifted), RoomOptions());
   ASSERT_EQ(level.world_from_camera.size(), truth.size());
-  EXPECT_GT(WorstUp(truth, drifted, Eigen::Vector3d::UnitZ()), 5.0 * kDegrees);
+  EXPECT_GT(WorstUp(truth, drifted, Eigen::Vector3d::UnitZ()), 5.0 * kRadPerDeg);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world),
             0.25 * kFrames * kDrift);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.5 * WorstPosition(truth, drifted));
@@ -112,7 +112,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
 TEST(Level, LeavesATrajectoryWithoutDrift) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
   const LevelTrajectory level = Level(ViewsOf(truth, truth), RoomOptions());
-  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world), 0.2 * kDegrees);
+  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world), 0.2 * kRadPerDeg);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.02);
 }
 

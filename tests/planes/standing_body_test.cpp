@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "geometry/angles.h"
 #include "support/random.h"
 #include "support/shape_exponents.h"
 #include "support/standing_scene.h"
@@ -12,8 +11,7 @@
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
-constexpr double kStep = 3.0 * kDegrees;
+constexpr double kStep = 3.0 * kRadPerDeg;
 
 // An object of a random scene with noisy boxes.
 MultiViewObservation RandomObservation(int seed, bool noise = true) {

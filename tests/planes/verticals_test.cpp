@@ -4,17 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
-constexpr double kSigma = 1.0 * kDegrees;
-constexpr double kCorrelation = 20.0 * kDegrees;
-constexpr double kMaxTilt = 12.0 * kDegrees;
+constexpr double kSigma = 1.0 * kRadPerDeg;
+constexpr double kCorrelation = 20.0 * kRadPerDeg;
+constexpr double kMaxTilt = 12.0 * kRadPerDeg;
 
 // A camera anywhere in a room around the origin that looks somewhat downwards, not level.
 Rigid3d RandomCamera(double heading) {
@@ -59,7 +58,7 @@ std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc
 CameraAttitude HeldAttitude(const std::vector<SegmentView>& views) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  return AttitudeOf(poses, 5.0 * kDegrees, 30.0 * kDegrees, kCorrelation);
+  return AttitudeOf(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, kCorrelation);
 }
 
 double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
@@ -74,10 +73,10 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
     const auto views = Room(Eigen::Vector3d::UnitZ(), 12, 6.0);
     const CameraAttitude held = HeldAttitude(views);
     const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
-    EXPECT_LT(AngleBetween(found.up_in_world, Eigen::Vector3d::UnitZ()), 0.3 * kDegrees);
+    EXPECT_LT(AngleBetween(found.up_in_world, Eigen::Vector3d::UnitZ()), 0.3 * kRadPerDeg);
     before += AngleBetween(held.up_in_world, Eigen::Vector3d::UnitZ()) / 10;
   }
-  EXPECT_GT(before, 0.5 * kDegrees);
+  EXPECT_GT(before, 0.5 * kRadPerDeg);
 }
 
 TEST(WithVerticals, LeavesTheAttitudeWhereThereIsNoEdge) {

@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 // A curve over half a turn in steps of 2 degrees with `minima` equal minima, one of them at
 // `lowest_deg`, another cost that knows nothing.
@@ -17,12 +16,12 @@ SymmetryRecord Record(double lowest_deg, int minima, double true_deg) {
   SymmetryRecord record;
   const double nan = std::nan("");
   for (int deg = 0; deg < 180; deg += 2) {
-    record.yaw.push_back(deg * kDegrees);
-    record.cost["wave"].push_back(1.0 - std::cos(2.0 * minima * (deg - lowest_deg) * kDegrees) -
-                                  1e-3 * std::cos(2.0 * (deg - lowest_deg) * kDegrees));
+    record.yaw.push_back(deg * kRadPerDeg);
+    record.cost["wave"].push_back(1.0 - std::cos(2.0 * minima * (deg - lowest_deg) * kRadPerDeg) -
+                                  1e-3 * std::cos(2.0 * (deg - lowest_deg) * kRadPerDeg));
     record.cost["gap"].push_back(nan);
   }
-  record.true_yaw = true_deg * kDegrees;
+  record.true_yaw = true_deg * kRadPerDeg;
   return record;
 }
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <numbers>
 
+#include "geometry/angles.h"
 #include "initialisation/upright.h"
 #include "mapping/back_end.h"
 #include "support/random.h"
@@ -18,7 +18,6 @@ namespace soslam::calibration {
 // Whether landmarks are as far from the truth as their covariances say: the normalised estimation
 // error squared (NEES) of centre, size and yaw over many random scenes of one body each.
 
-inline constexpr double kDegrees = std::numbers::pi / 180.0;
 inline constexpr int kFrames = 8;
 
 inline double Normal(double sigma) {
@@ -76,7 +75,7 @@ inline Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
         landmark.half_axes.z() * truth.prior.ratio[i] * std::exp(Normal(truth.prior.log_sigma[i]));
   }
   // Standing on z = 0, as well as bodies are said to stand.
-  const double tilt = options.standing_angle_sigma_deg * kDegrees;
+  const double tilt = options.standing_angle_sigma_deg * kRadPerDeg;
   landmark.frame_from_object = {ExpRotation({Normal(tilt), Normal(tilt), 0.0}) *
                                     UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
                                 {RandomUniform(-0.1, 0.1), RandomUniform(-0.1, 0.1),
@@ -106,8 +105,8 @@ inline Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
     frame.world_from_camera = truth.world_from_camera[i];
     if (i > 0) {
       Rigid3d step = truth.world_from_camera[i - 1].Inverse() * truth.world_from_camera[i];
-      step.rotation =
-          step.rotation * ExpRotation(NormalVector(options.odometry_rotation_sigma_deg * kDegrees));
+      step.rotation = step.rotation *
+                      ExpRotation(NormalVector(options.odometry_rotation_sigma_deg * kRadPerDeg));
       step.translation += NormalVector(options.odometry_translation_sigma_m);
       frame.world_from_camera = sequence.frames.back().world_from_camera * step;
     }

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "geometry/angles.h"
 #include "support/random.h"
 #include "symmetry/refine.h"
 #include "symmetry/sampling.h"
@@ -17,8 +17,6 @@
 
 namespace soslam {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 // The shipped scene of textured ellipsoids, seen from within 60 degrees of their fronts.
 class SyntheticTexture : public testing::Test {
@@ -62,7 +60,7 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
     const auto samples = SamplePixels(image, sequence_->camera, truth, options);
     const YawProfile profile =
         ComputeYawProfile(image, sequence_->camera, truth, samples, {Descriptor::kImprovedDt},
-                          options, 1.0 * kDegrees);
+                          options, 1.0 * kRadPerDeg);
     double best = 1e9;
     double turn = 1e9;
     for (size_t i = 0; i < profile.turns.size(); ++i) {
@@ -72,7 +70,7 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
       }
     }
     ++observations;
-    near_truth += std::abs(turn) <= 3.0 * kDegrees ? 1 : 0;
+    near_truth += std::abs(turn) <= 3.0 * kRadPerDeg ? 1 : 0;
   }
   EXPECT_GE(observations, 30);
   EXPECT_GE(near_truth, 0.9 * observations) << observations;
@@ -83,7 +81,7 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
 TEST_F(SyntheticTexture, DescriptorsTogetherCostWhatEachCostsAlone) {
   const Detection& detection = sequence_->detections.front();
   const SymmetryImage image(maps_->at(0), detection.box);
-  const Landmark landmark = Turned(TrueLandmark(detection), 4.0 * kDegrees);
+  const Landmark landmark = Turned(TrueLandmark(detection), 4.0 * kRadPerDeg);
   const SymmetryOptions options;
   const auto samples = SamplePixels(image, sequence_->camera, landmark, options);
   std::vector<Descriptor> all;
@@ -135,7 +133,7 @@ TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurve
     const auto maps = maps_->find(detection.frame_index);
     if (maps == maps_->end() || detection.frame_index % 2 == 1) continue;
     const Landmark truth = TrueLandmark(detection);
-    const Landmark disturbed = Turned(truth, 6.0 * kDegrees);
+    const Landmark disturbed = Turned(truth, 6.0 * kRadPerDeg);
     const Eigen::Vector2d ratio = truth.half_axes.head<2>() / truth.half_axes.z();
     const RefinedObservation refined =
         RefineObservation(*sequence_, {static_cast<int>(i), {{disturbed, 0.0}}, ""}, maps->second,
@@ -147,14 +145,14 @@ TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurve
       EXPECT_EQ(costs.size(), refined.record.yaw.size()) << name;
     }
     EXPECT_NEAR(YawDifferenceModuloPi(refined.record.initial_yaw, *refined.record.true_yaw),
-                6.0 * kDegrees, 1e-6);
+                6.0 * kRadPerDeg, 1e-6);
     errors.push_back(
         std::abs(YawDifferenceModuloPi(refined.record.refined_yaw, *refined.record.true_yaw)));
   }
   ASSERT_GE(errors.size(), 15u);
   std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
                    errors.end());
-  EXPECT_LT(errors[errors.size() / 2], 1.0 * kDegrees);
+  EXPECT_LT(errors[errors.size() / 2], 1.0 * kRadPerDeg);
 }
 
 TEST_F(SyntheticTexture, AllParametersCanBeRefinedTogether) {
@@ -163,13 +161,13 @@ TEST_F(SyntheticTexture, AllParametersCanBeRefinedTogether) {
   RefineOptions options;
   options.parameters = RefinementParameters::kAll;
   const RefinedObservation refined =
-      RefineObservation(*sequence_, {0, {{Turned(truth, 4.0 * kDegrees), 0.0}}, ""}, maps_->at(0),
+      RefineObservation(*sequence_, {0, {{Turned(truth, 4.0 * kRadPerDeg), 0.0}}, ""}, maps_->at(0),
                         Eigen::Vector2d(truth.half_axes.head<2>() / truth.half_axes.z()), options);
   ASSERT_EQ(refined.estimate.failure, "");
   const Landmark& landmark = refined.estimate.hypotheses.front().landmark_in_camera;
   EXPECT_LT((landmark.Centre() - truth.Centre()).norm(), 0.02);
   EXPECT_NEAR(YawDifferenceModuloPi(refined.record.refined_yaw, *refined.record.true_yaw), 0.0,
-              2.0 * kDegrees);
+              2.0 * kRadPerDeg);
 }
 
 TEST_F(SyntheticTexture, SamplesLieInTheBoxOnTheLandmark) {

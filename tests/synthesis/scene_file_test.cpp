@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "geometry/angles.h"
 #include "support/expect_error.h"
 #include "synthesis/simulate.h"
 
@@ -219,7 +220,7 @@ TEST(ShippedScenes, EllipsoidsShowTheirFront) {
         landmark.frame_from_object.Inverse() *
         sequence.frames[detection.frame_index].true_world_from_camera->translation;
     const double angle = std::atan2(std::abs(camera_in_object.y()), camera_in_object.x());
-    EXPECT_LT(angle * 180.0 / std::numbers::pi, 60.0)
+    EXPECT_LT(angle * kDegPerRad, 60.0)
         << sequence.objects[detection.object_index].label << " in frame " << detection.frame_index;
   }
 }
