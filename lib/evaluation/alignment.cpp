@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
@@ -12,9 +15,14 @@ namespace {
 // Below this root mean square distance from their mean, true camera centres are those of a camera
 // that stands still.
 constexpr double kStillM = 0.005;
-// Centres are on a line, as far as they can tell, when the second singular value of their
-// covariance is below this share of the first.
-constexpr double kLineShare = 1e-3;
+// Paths are unlike each other when the best similarity leaves more than this share of that
+// distance.
+constexpr double kUnlikeShare = 0.5;
+// Centres are on a line when they determine the rotation about it no better than this (standard
+// deviation): cameras' own rotations do then.
+constexpr double kLineDeg = 0.5;
+// What exact paths are taken to err by at least, as a share of the distance above.
+constexpr double kLeastNoise = 1e-5;
 
 // Camera centres, and their means taken off.
 struct Centres {
@@ -35,17 +43,30 @@ struct Centres {
   Eigen::Matrix3Xd CentredTruth() const { return truth.colwise() - mean_truth; }
 };
 
+// The root mean square distance of truth and estimate, moved and scaled as fits best.
+double BestResidual(const Centres& centres) {
+  const Eigen::Matrix4d fit = Eigen::umeyama(centres.estimated, centres.truth, true);
+  const Eigen::Matrix3Xd moved =
+      (fit.topLeftCorner<3, 3>() * centres.estimated).colwise() + fit.topRightCorner<3, 1>();
+  return (moved - centres.truth).norm() / std::sqrt(static_cast<double>(moved.cols()));
+}
+
 CameraPath PathOf(const Centres& centres) {
   if (centres.truth.cols() < 2) return CameraPath::kFewPoses;
-  const double root_count = std::sqrt(static_cast<double>(centres.truth.cols()));
-  const Eigen::Matrix3d covariance =
-      centres.CentredTruth() * centres.CentredEstimated().transpose();
-  const Eigen::Vector3d singular_values = covariance.jacobiSvd().singularValues();
-  if (centres.CentredTruth().norm() < kStillM * root_count || singular_values[0] <= 0.0) {
-    return CameraPath::kStill;
-  }
-  return singular_values[1] < kLineShare * singular_values[0] ? CameraPath::kLine
-                                                              : CameraPath::kGeneral;
+  const auto count = static_cast<double>(centres.truth.cols());
+  const Eigen::Matrix3Xd truth = centres.CentredTruth();
+  const double spread = truth.norm() / std::sqrt(count);
+  if (spread < kStillM) return CameraPath::kStill;
+  if (centres.CentredEstimated().norm() == 0.0) return CameraPath::kUnrelated;
+  const double residual = BestResidual(centres);
+  if (!(residual <= kUnlikeShare * spread)) return CameraPath::kUnrelated;
+  const Eigen::Vector3d variances =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(truth * truth.transpose()).eigenvalues() /
+      count;
+  // Of all centres, those off the line of their largest variance turn it.
+  const double off_the_line = std::sqrt(std::max(variances[0] + variances[1], 0.0));
+  const double noise = std::max(residual / std::sqrt(count), kLeastNoise * spread);
+  return kDegPerRad * noise > kLineDeg * off_the_line ? CameraPath::kLine : CameraPath::kGeneral;
 }
 
 // The rotation nearest to all that lead from an estimated to a true camera (chordal mean).
@@ -74,9 +95,18 @@ double Rmse(const std::vector<PosePair>& pairs, const Alignment& alignment) {
   return std::sqrt(sum / static_cast<double>(pairs.size()));
 }
 
+// Whether estimates have to be scaled onto the truth: the best scale is another than 1, and leaves
+// less than half of what the best motion alone does. Two poses or fewer fit any scale.
+bool HaveOtherScale(const Alignment& rigid, const Alignment& similarity) {
+  constexpr int kFewest = 3;
+  constexpr double kLeastLogScale = 0.1;
+  return similarity.kind == AlignmentKind::kSimilarity && similarity.frames >= kFewest &&
+         std::abs(std::log(similarity.scale)) > kLeastLogScale &&
+         2.0 * *similarity.rmse_m < *rigid.rmse_m;
+}
+
 AlignmentKind ChosenKind(AlignmentChoice choice, const Sequence& sequence,
                          const std::vector<PosePair>& odometry) {
-  constexpr size_t kFewest = 3;
   switch (choice) {
     case AlignmentChoice::kNone:
       return AlignmentKind::kNone;
@@ -89,9 +119,11 @@ AlignmentKind ChosenKind(AlignmentChoice choice, const Sequence& sequence,
   }
   if (sequence.odometry_world == OdometryWorld::kOwnWithScale) return AlignmentKind::kSimilarity;
   if (sequence.odometry_world == OdometryWorld::kOwn) return AlignmentKind::kRigid;
-  if (odometry.size() < kFewest) return AlignmentKind::kNone;
-  if (AreInOneWorld(odometry)) return AlignmentKind::kNone;
-  return HaveSameScale(odometry) ? AlignmentKind::kRigid : AlignmentKind::kSimilarity;
+  if (odometry.empty() || AreInOneWorld(odometry)) return AlignmentKind::kNone;
+  return HaveOtherScale(Align(odometry, AlignmentKind::kRigid),
+                        Align(odometry, AlignmentKind::kSimilarity))
+             ? AlignmentKind::kSimilarity
+             : AlignmentKind::kRigid;
 }
 
 Finding NotAsAsked(const Alignment& alignment, AlignmentKind asked, int segment) {
@@ -105,6 +137,18 @@ Finding NotAsAsked(const Alignment& alignment, AlignmentKind asked, int segment)
           "true poses of a camera that moves",
           "no ground truth of the trajectory, or a camera that stands still, which tells no scale",
           "give groundtruth.txt of a camera that moves, or choose another alignment"};
+}
+
+Finding OtherScale(const Alignment& alignment, const Alignment& similarity, int segment) {
+  return {"alignment_scale",
+          Severity::kWarning,
+          fmt::format("the map of segment {} is aligned as {}, which leaves its cameras {:.3g} m "
+                      "from the true ones; scaled by {:.3g} it would be {:.3g} m",
+                      segment, kAlignmentKindNames[static_cast<size_t>(alignment.kind)],
+                      *alignment.rmse_m, similarity.scale, *similarity.rmse_m),
+          "an estimate in the metres of the truth",
+          "odometry of a single camera, which has a scale of its own, or a wrong scale",
+          "set odometry_has_own_scale, or --alignment similarity"};
 }
 
 }  // namespace
@@ -175,6 +219,11 @@ Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& w
     alignments.of_segment[segment] = alignment;
     if (alignment.kind != asked) {
       alignments.findings.push_back(NotAsAsked(alignment, asked, segment));
+    }
+    if (poses.estimated.empty() || alignment.kind == AlignmentKind::kSimilarity) continue;
+    const Alignment similarity = Align(poses.estimated, AlignmentKind::kSimilarity);
+    if (HaveOtherScale(Align(poses.estimated, AlignmentKind::kRigid), similarity)) {
+      alignments.findings.push_back(OtherScale(alignment, similarity, segment));
     }
   }
   return alignments;

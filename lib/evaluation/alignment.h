@@ -20,12 +20,14 @@ inline constexpr const char* kAlignmentKindNames[] = {"none", "rigid", "similari
 
 // What the camera centres of two trajectories, compared, determine of a motion.
 enum class CameraPath {
-  kGeneral,   // all of it
-  kLine,      // all but the rotation about a line
-  kStill,     // neither rotation nor scale
-  kFewPoses,  // nothing: there is none, or one
+  kGeneral,    // all of it
+  kLine,       // not the rotation about a line, or only within degrees
+  kStill,      // neither rotation nor scale: the true camera stands still
+  kUnrelated,  // neither: the paths are unlike each other, or the estimated camera stands still
+  kFewPoses,   // nothing: there is none, or one
 };
-inline constexpr const char* kCameraPathNames[] = {"general", "line", "still", "few_poses"};
+inline constexpr const char* kCameraPathNames[] = {"general", "line", "still", "unrelated",
+                                                   "few_poses"};
 
 // How estimates are moved onto the truth: x -> truth_from_scaled * (scale * x).
 struct Alignment {
@@ -51,7 +53,8 @@ struct Alignment {
 Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 
 // One for each segment, as each has a world of its own. `world_from_camera`: the estimates, one per
-// Sequence::frames. Why an alignment is not as asked for becomes a finding.
+// Sequence::frames. Findings say where an alignment is not as asked for, and where the estimate has
+// another scale than the truth and is not scaled.
 struct Alignments {
   std::map<int, Alignment> of_segment;
   std::vector<Finding> findings = {};

@@ -95,9 +95,7 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
   errors.centre_relative = own.centre_m / (2.0 * std::cbrt(truth_in_frame.half_axes.prod()));
   errors.log_size = named.half_axes.cwiseQuotient(truth_in_frame.half_axes).array().log();
   errors.log_scale = errors.log_size.mean();
-  const Eigen::Vector3d up_in_truth =
-      truth_in_frame.frame_from_object.rotation.conjugate() * Up(named);
-  errors.up_deg = kDegPerRad * std::atan2(up_in_truth.head<2>().norm(), up_in_truth.z());
+  errors.up_deg = AngleBetweenDeg(Up(estimate), Up(truth_in_frame));
   if (truth.rotationally_symmetric) return errors;
   errors.yaw_deg = kDegPerRad * YawError(named.frame_from_object.rotation,
                                          truth_in_frame.frame_from_object.rotation);
@@ -111,6 +109,11 @@ PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {
   const Eigen::Vector3d up = Up(truth);
   return {-plane.SignedDistance(Foot(truth)),
           kDegPerRad * std::atan2(plane.normal.cross(up).norm(), plane.normal.dot(up))};
+}
+
+bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landmark& truth) {
+  return std::abs(plane.SignedDistance(Foot(estimate))) >
+         std::abs(plane.SignedDistance(Foot(truth)));
 }
 
 std::optional<WrongPart> FindWrongPart(const Landmark& estimate, const GroundTruth& truth,

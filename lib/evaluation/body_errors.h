@@ -19,7 +19,7 @@ struct BodyErrors {
   double centre_relative = 0.0;  // centre_m over the mean side of the true body, a cube's as large
   Eigen::Vector3d log_size = Eigen::Vector3d::Zero();  // along the true x, y, z
   double log_scale = 0.0;                              // of the cube root of the volume
-  double up_deg = 0.0;                                 // between the z axes
+  double up_deg = 0.0;            // between the z axes as they are named, 180 for upside down
   std::optional<double> yaw_deg;  // between the x axes about the true z; none of a body of rotation
   bool is_quarter_turned = false;  // its own x axis is named y
 };
@@ -36,6 +36,10 @@ struct PlaneErrors {
   double tilt_deg = 0.0;
 };
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
+
+// Whether the estimate is farther from the plane that it should stand on than the truth is: then
+// its height is wrong, rather than the plane.
+bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landmark& truth);
 
 // The parts that make up a body on its plane.
 enum class BodyPart {

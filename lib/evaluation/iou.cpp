@@ -122,7 +122,8 @@ double IntersectionVolume(const Landmark& one, const Landmark& other) {
 double BoxIou(const Landmark& one, const Landmark& other) {
   const double intersection =
       std::min({IntersectionVolume(one, other), BoxVolume(one), BoxVolume(other)});
-  return intersection / (BoxVolume(one) + BoxVolume(other) - intersection);
+  const double iou = intersection / (BoxVolume(one) + BoxVolume(other) - intersection);
+  return std::isfinite(iou) ? iou : 0.0;
 }
 
 }  // namespace soslam

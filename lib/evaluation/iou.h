@@ -9,7 +9,8 @@ namespace soslam {
 // for any rotations: one box is clipped by the six faces of the other.
 double IntersectionVolume(const Landmark& one, const Landmark& other);
 
-// Intersection over union of the two circumscribed boxes, in [0, 1].
+// Intersection over union of the two circumscribed boxes, in [0, 1]; 0 where a volume is beyond any
+// number.
 double BoxIou(const Landmark& one, const Landmark& other);
 
 }  // namespace soslam

@@ -7,6 +7,7 @@
 #include "base/assignment.h"
 #include "evaluation/iou.h"
 #include "evaluation/landmark_errors.h"
+#include "initialisation/semantic_table.h"
 
 namespace soslam {
 namespace {
@@ -27,7 +28,7 @@ Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map) {
     const AlignedLandmark& landmark = map.landmarks[static_cast<size_t>(row)];
     for (Eigen::Index column = 0; column < ious.cols(); ++column) {
       const TrueObject& object = sequence.true_objects[static_cast<size_t>(column)];
-      if (!object.is_static || object.segment != landmark.segment) continue;
+      if (!object.IsWanted() || object.segment != landmark.segment) continue;
       const Landmark& truth = object.truth.landmark_in_world;
       const double reach = landmark.landmark_in_world.half_axes.norm() + truth.half_axes.norm();
       if ((landmark.landmark_in_world.Centre() - truth.Centre()).norm() > reach) continue;
@@ -44,12 +45,20 @@ std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou) {
   return Assign(costs, Eigen::VectorXd::Ones(ious.rows()));
 }
 
-bool IsIgnored(const std::vector<IgnoredThings>& ignored, const std::string& label,
-               const Landmark& landmark_in_world) {
-  return std::ranges::any_of(ignored, [&](const IgnoredThings& things) {
-    if (things.label && *things.label != label) return false;
-    return !things.volume_in_world || IsIn(*things.volume_in_world, landmark_in_world);
-  });
+bool IsIgnored(const Sequence& sequence, const std::string& label,
+               const AlignedLandmark& landmark) {
+  return std::ranges::any_of(sequence.ignored,
+                             [&](const IgnoredThings& things) {
+                               if (things.label && !AreSameLabel(*things.label, label)) {
+                                 return false;
+                               }
+                               return !things.volume_in_world ||
+                                      IsIn(*things.volume_in_world, landmark.landmark_in_world);
+                             }) ||
+         std::ranges::any_of(sequence.true_objects, [&](const TrueObject& object) {
+           return object.is_static && object.is_ignored && object.segment == landmark.segment &&
+                  IsIn(object.truth.landmark_in_world, landmark.landmark_in_world);
+         });
 }
 
 }  // namespace soslam

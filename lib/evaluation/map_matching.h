@@ -16,17 +16,17 @@ namespace soslam {
 inline constexpr std::array kMapIous = {0.25, 0.5};
 
 // Intersections over unions of boxes in the world: rows are the map's landmarks, columns the true
-// objects that stand still, others and those of other segments have 0. Bodies of rotation take the
-// landmark's yaw.
+// objects, of which those that are not looked for and those of other segments have 0. Bodies of
+// rotation take the landmark's yaw.
 Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map);
 
 // The true object of each landmark, or kUnassigned: one to one, so that the sum of their IoUs is
 // largest, among pairs with at least this IoU. Labels and ids are not looked at.
 std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou);
 
-// Whether a landmark that matches no true object is neither right nor wrong: its label is ignored,
-// or it is in an ignored volume: half of it, or so much that it would be matched with it.
-bool IsIgnored(const std::vector<IgnoredThings>& ignored, const std::string& label,
-               const Landmark& landmark_in_world);
+// Whether a landmark is of things of which nobody says where they are, or that nobody asked for:
+// its label is ignored, or it is in the volume of ignored things or of an ignored true object: half
+// of it, or so much that it would match a true object there.
+bool IsIgnored(const Sequence& sequence, const std::string& label, const AlignedLandmark& landmark);
 
 }  // namespace soslam

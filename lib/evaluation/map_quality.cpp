@@ -134,28 +134,14 @@ DriftSummary SummariseInFrames(const std::vector<LandmarkRow>& rows) {
   return summary;
 }
 
-// Whether the landmark is that of the true object, at another place.
-bool IsWrong(MapReason reason) {
-  return reason == MapReason::kWrongPlane || reason == MapReason::kWrongSize ||
-         reason == MapReason::kWrongYaw || reason == MapReason::kWrongPlace ||
-         reason == MapReason::kWrongInSeveral;
-}
-
-void Explain(const ReasonInput& input, const RowMaker& maker, MapQuality* quality) {
+void ExplainMisses(const ReasonInput& input, MapQuality* quality) {
   for (TrueObjectRow& object : quality->objects) {
     if (object.landmark) continue;
     object.miss = ExplainMiss(input, object.true_index);
     ++quality->misses[object.miss->reason];
   }
-  for (size_t i = 0; i < quality->landmarks.size(); ++i) {
-    LandmarkRow& row = quality->landmarks[i];
-    if (row.fate != Fate::kFalse) continue;
-    row.why_false = ExplainFalse(input, static_cast<int>(i));
-    ++quality->false_landmarks[row.why_false->reason];
-    row.true_index = row.why_false->true_object;
-    if (!row.true_index || row.why_false->reason == MapReason::kMoving) continue;
-    maker.CompareInWorld(i, &row);
-    if (IsWrong(row.why_false->reason)) maker.CompareInFrames(i, &row);
+  for (const LandmarkRow& row : quality->landmarks) {
+    if (row.why_false) ++quality->false_landmarks[row.why_false->reason];
   }
 }
 
@@ -172,20 +158,19 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
   quality.alignments = AlignSegments(sequence, world_from_camera, alignment);
   const AlignedMap map =
       ApplyAlignments(sequence, estimates, world_from_camera, planes_in_world, quality.alignments);
-  const TrueViews true_views(sequence, map);
+  const TrueViews true_views(sequence);
   const RowMaker maker(sequence, map, true_views);
   const ViewsOfTruth views = FindViews(sequence, true_views);
   const Eigen::MatrixXd ious = WorldIous(sequence, map);
   for (size_t i = kMapIous.size(); i-- > 0;) {  // the first one last, as rows are its
     const std::vector<int> truth_of_landmark = MatchByIou(ious, kMapIous[i]);
+    const ReasonInput input{sequence, estimates, map, views, ious, truth_of_landmark, kMapIous[i]};
     quality.objects = ObjectRows(sequence, views, truth_of_landmark);
-    quality.landmarks = maker.Rows(truth_of_landmark);
+    quality.landmarks = maker.Rows(input);
     quality.scores[i] = Score(kMapIous[i], quality.objects, quality.landmarks);
-    if (i > 0) continue;
-    Explain({sequence, estimates, map, views, ious, truth_of_landmark, kMapIous[i]}, maker,
-            &quality);
-    quality.in_frames = SummariseInFrames(quality.landmarks);
+    if (i == 0) ExplainMisses(input, &quality);
   }
+  quality.in_frames = SummariseInFrames(quality.landmarks);
   return quality;
 }
 

@@ -9,6 +9,8 @@
 #include <map>
 #include <set>
 
+#include "base/assignment.h"
+
 namespace soslam {
 namespace {
 
@@ -75,10 +77,21 @@ std::string InWords(const Sequence& sequence, const Counts<int>& of_truth) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-MapReason ReasonOf(BodyPart part) {
+std::string InWords(const BodyErrors& errors, const std::optional<PlaneErrors>& plane) {
+  std::string text = fmt::format("centre {:.3f} m, size {:+.0f} %, up {:.1f} deg", errors.centre_m,
+                                 100.0 * std::expm1(errors.log_scale), errors.up_deg);
+  if (errors.yaw_deg) text += fmt::format(", yaw {:.1f} deg", *errors.yaw_deg);
+  if (!plane) return text;
+  return text + fmt::format("; its plane {:+.3f} m, {:.1f} deg", plane->offset_m, plane->tilt_deg);
+}
+
+// `plane`: what the landmark stands on.
+MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<Plane>& plane,
+                   const Landmark& truth) {
   switch (part) {
     case BodyPart::kPlane:
-      return MapReason::kWrongPlane;
+      return plane && StandsOffItsPlane(landmark, *plane, truth) ? MapReason::kWrongHeight
+                                                                 : MapReason::kWrongPlane;
     case BodyPart::kSize:
       return MapReason::kWrongSize;
     case BodyPart::kYaw:
@@ -88,20 +101,12 @@ MapReason ReasonOf(BodyPart part) {
   }
 }
 
-std::string InWords(const BodyErrors& errors, const std::optional<PlaneErrors>& plane) {
-  std::string text = fmt::format("centre {:.3f} m, size {:+.0f} %, up {:.1f} deg", errors.centre_m,
-                                 100.0 * std::expm1(errors.log_scale), errors.up_deg);
-  if (errors.yaw_deg) text += fmt::format(", yaw {:.1f} deg", *errors.yaw_deg);
-  if (!plane) return text;
-  return text + fmt::format("; its plane {:+.3f} m, {:.1f} deg", plane->offset_m, plane->tilt_deg);
-}
-
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
   const auto wrong = PartToBlame(input.sequence, input.map, landmark, true_index);
   const GroundTruth& truth = input.sequence.true_objects[static_cast<size_t>(true_index)].truth;
   const auto index = static_cast<size_t>(landmark);
-  const BodyErrors errors =
-      CompareBodies(input.map.landmarks[index].landmark_in_world, truth, truth.landmark_in_world);
+  const Landmark& estimate = input.map.landmarks[index].landmark_in_world;
+  const BodyErrors errors = CompareBodies(estimate, truth, truth.landmark_in_world);
   const auto& plane = input.map.plane_of_landmark[index];
   std::optional<PlaneErrors> plane_errors;
   if (plane) plane_errors = ComparePlane(*plane, truth.landmark_in_world);
@@ -110,15 +115,18 @@ Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index)
     detail += fmt::format(", {:.3f} with the true {}", wrong->iou,
                           kBodyPartNames[static_cast<size_t>(wrong->part)]);
   }
-  return {wrong ? ReasonOf(wrong->part) : MapReason::kWrongInSeveral,
+  const bool is_enough = wrong && wrong->iou >= input.min_iou;
+  return {is_enough ? ReasonOf(wrong->part, estimate, plane, truth.landmark_in_world)
+                    : MapReason::kWrongInSeveral,
           detail + "; " + InWords(errors, plane_errors), true_index};
 }
 
 // The boxes at the place of a true object: by object of those in use, by reason of the others.
 struct Fates {
   std::set<int> frames, frames_in_use;
+  std::set<int> frames_before_association;  // in use, or left out by association
   Counts<int> by_object;
-  Counts<std::pair<bool, std::string>> by_reason;  // whether by association; reason
+  Counts<std::string> by_reason;
 };
 
 Fates FatesOf(const ReasonInput& input, int true_index) {
@@ -129,24 +137,27 @@ Fates FatesOf(const ReasonInput& input, int true_index) {
       const auto index = static_cast<size_t>(*view.detection_index);
       ++fates.by_object[input.sequence.detections[index].object_index];
       fates.frames_in_use.insert(view.frame_index);
+      fates.frames_before_association.insert(view.frame_index);
     } else {
       const RejectedDetection& rejected =
           input.sequence.rejected[static_cast<size_t>(*view.rejected_index)];
-      ++fates.by_reason[{rejected.stage == RejectingStage::kAssociate, rejected.reason}];
+      ++fates.by_reason[rejected.reason];
+      if (rejected.stage == RejectingStage::kAssociate) {
+        fates.frames_before_association.insert(view.frame_index);
+      }
     }
   }
   return fates;
 }
 
 Explanation ExplainLeftOut(const Fates& fates) {
-  Counts<bool> by_stage;
   std::vector<std::string> words;
   for (const auto& [reason, count] : fates.by_reason) {
-    by_stage[reason.first] += count;
-    words.push_back(fmt::format("{} {}", reason.second, count));
+    words.push_back(fmt::format("{} {}", reason, count));
   }
-  const auto most = Most(by_stage);
-  return {most && most->first ? MapReason::kLostInAssociation : MapReason::kGated,
+  const bool by_association =
+      static_cast<int>(fates.frames_before_association.size()) >= kFewestViews;
+  return {by_association ? MapReason::kLostInAssociation : MapReason::kGated,
           fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
                       fmt::join(words, ", "))};
 }
@@ -157,6 +168,10 @@ std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_i
 }
 
 }  // namespace
+
+bool IsWrong(MapReason reason) {
+  return reason >= MapReason::kWrongPlane && reason <= MapReason::kWrongInSeveral;
+}
 
 std::optional<WrongPart> PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
                                      int true_index) {
@@ -182,7 +197,13 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
   const Owners owners = object ? OwnersOf(input, *object) : Owners();
   const bool is_own = owners.Majority() == true_index;
   const auto landmark = object ? LandmarkOfObject(input.map, *object) : std::nullopt;
-  if (is_own && landmark) return ExplainWrong(input, *landmark, true_index);
+  if (is_own && landmark) {
+    const int match = input.truth_of_landmark[static_cast<size_t>(*landmark)];
+    if (match == kUnassigned) return ExplainWrong(input, *landmark, true_index);
+    const TrueObject& other = input.sequence.true_objects[static_cast<size_t>(match)];
+    return {MapReason::kJoined,
+            fmt::format("the landmark of its boxes matches {} ({})", other.id, other.label)};
+  }
   const int detected_frames = input.views.detected_frames[static_cast<size_t>(true_index)];
   if (detected_frames < kFewestViews) {
     return {MapReason::kNotDetected, fmt::format("boxes in {} frames", detected_frames)};
@@ -215,6 +236,12 @@ Explanation ExplainFalse(const ReasonInput& input, int landmark) {
   if (const auto owner = owners.Majority()) {
     const TrueObject& object = input.sequence.true_objects[static_cast<size_t>(*owner)];
     if (!object.is_static) return {MapReason::kMoving, "", *owner};
+    if (object.is_ignored) {
+      return {
+          MapReason::kBackground,
+          fmt::format("its boxes are of {} ({}), which was not asked for", object.id, object.label),
+          *owner};
+    }
     if (!LandmarkOfTruth(input, *owner)) return ExplainWrong(input, landmark, *owner);
     return {MapReason::kSplit, "another landmark matches the object of its boxes", *owner};
   }

@@ -22,7 +22,8 @@ enum class MapReason {
   kSplit,              // boxes are spread over several objects, or another landmark has it already
   kJoined,             // boxes are, or are taken for, those of several true objects
   kNoLandmark,         // the object has boxes enough, and no estimate
-  kWrongPlane,         // a landmark of its boxes is elsewhere, for its plane mostly
+  kWrongPlane,         // a landmark of its boxes is elsewhere, for the plane that it stands on
+  kWrongHeight,        // or for its height over that
   kWrongSize,
   kWrongYaw,
   kWrongPlace,
@@ -33,9 +34,11 @@ enum class MapReason {
 };
 inline constexpr std::array kMapReasonNames = {
     "not_detected", "gated",       "lost_in_association", "split",
-    "joined",       "no_landmark", "wrong_plane",         "wrong_size",
-    "wrong_yaw",    "wrong_place", "wrong_in_several",    "duplicate",
-    "moving",       "background"};
+    "joined",       "no_landmark", "wrong_plane",         "wrong_height",
+    "wrong_size",   "wrong_yaw",   "wrong_place",         "wrong_in_several",
+    "duplicate",    "moving",      "background"};
+// Whether the landmark is that of the true object, at another place.
+bool IsWrong(MapReason reason);
 
 struct Explanation {
   MapReason reason = MapReason::kNotDetected;

@@ -2,12 +2,12 @@
 #include "evaluation/map_rows.h"
 
 #include <string>
-#include <utility>
 
 #include "base/assignment.h"
 #include "evaluation/landmark_errors.h"
 #include "evaluation/map_matching.h"
 #include "evaluation/statistics.h"
+#include "initialisation/semantic_table.h"
 
 namespace soslam {
 
@@ -53,32 +53,47 @@ void RowMaker::CompareInWorld(size_t landmark, LandmarkRow* row) const {
   const Landmark& truth = object.truth.landmark_in_world;
   row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
   row->label_agrees =
-      sequence_.objects[static_cast<size_t>(row->object_index)].label == object.label;
+      AreSameLabel(sequence_.objects[static_cast<size_t>(row->object_index)].label, object.label);
   if (const auto& plane = map_.plane_of_landmark[landmark])
     row->plane = ComparePlane(*plane, truth);
 }
 
-std::vector<LandmarkRow> RowMaker::Rows(const std::vector<int>& truth_of_landmark) const {
+LandmarkRow RowMaker::Found(size_t landmark, int true_index) const {
+  LandmarkRow row;
+  row.object_index = map_.landmarks[landmark].object_index;
+  row.fate = LandmarkRow::Fate::kFound;
+  row.true_index = true_index;
+  CompareInWorld(landmark, &row);
+  CompareInFrames(landmark, &row);
+  row.wrong = PartToBlame(sequence_, map_, static_cast<int>(landmark), true_index);
+  row.id_agrees = MostIdsAgree(row);
+  return row;
+}
+
+LandmarkRow RowMaker::NotFound(const ReasonInput& input, size_t landmark) const {
+  LandmarkRow row;
+  row.object_index = map_.landmarks[landmark].object_index;
+  const Explanation why = ExplainFalse(input, static_cast<int>(landmark));
+  const bool is_of_wanted =
+      why.true_object && sequence_.true_objects[static_cast<size_t>(*why.true_object)].IsWanted();
+  const std::string& label = sequence_.objects[static_cast<size_t>(row.object_index)].label;
+  if (!is_of_wanted && IsIgnored(sequence_, label, map_.landmarks[landmark])) {
+    row.fate = LandmarkRow::Fate::kIgnored;
+    return row;
+  }
+  row.why_false = why;
+  row.true_index = why.true_object;
+  if (!is_of_wanted) return row;
+  CompareInWorld(landmark, &row);
+  if (IsWrong(why.reason)) CompareInFrames(landmark, &row);
+  return row;
+}
+
+std::vector<LandmarkRow> RowMaker::Rows(const ReasonInput& input) const {
   std::vector<LandmarkRow> rows;
   for (size_t i = 0; i < map_.landmarks.size(); ++i) {
-    const AlignedLandmark& landmark = map_.landmarks[i];
-    const std::string& label = sequence_.objects[static_cast<size_t>(landmark.object_index)].label;
-    LandmarkRow row;
-    row.object_index = landmark.object_index;
-    const int truth = truth_of_landmark[i];
-    if (truth != kUnassigned && sequence_.true_objects[static_cast<size_t>(truth)].is_ignored) {
-      row.fate = LandmarkRow::Fate::kIgnored;
-    } else if (truth != kUnassigned) {
-      row.fate = LandmarkRow::Fate::kFound;
-      row.true_index = truth;
-      CompareInWorld(i, &row);
-      CompareInFrames(i, &row);
-      row.wrong = PartToBlame(sequence_, map_, static_cast<int>(i), *row.true_index);
-      row.id_agrees = MostIdsAgree(row);
-    } else if (IsIgnored(sequence_.ignored, label, landmark.landmark_in_world)) {
-      row.fate = LandmarkRow::Fate::kIgnored;
-    }
-    rows.push_back(std::move(row));
+    const int truth = input.truth_of_landmark[i];
+    rows.push_back(truth == kUnassigned ? NotFound(input, i) : Found(i, truth));
   }
   return rows;
 }

@@ -13,15 +13,17 @@ class RowMaker {
   // All of these have to outlive it.
   RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views);
 
-  // One for each landmark of a matching, without explanations.
-  std::vector<LandmarkRow> Rows(const std::vector<int>& truth_of_landmark) const;
+  // One for each landmark: found as `input` matches it; otherwise ignored if things are there that
+  // are ignored and it is not to blame for a wanted object, or false, with the reason.
+  std::vector<LandmarkRow> Rows(const ReasonInput& input) const;
 
+ private:
+  LandmarkRow Found(size_t landmark, int true_index) const;
+  LandmarkRow NotFound(const ReasonInput& input, size_t landmark) const;
   // Compares the row's landmark with its true object in the world.
   void CompareInWorld(size_t landmark, LandmarkRow* row) const;
   // And in the frames of its observations, where the true object's place there is known.
   void CompareInFrames(size_t landmark, LandmarkRow* row) const;
-
- private:
   std::optional<bool> MostIdsAgree(const LandmarkRow& row) const;
 
   const Sequence& sequence_;

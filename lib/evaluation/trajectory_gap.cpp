@@ -24,11 +24,31 @@ double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   return around.diagonal().norm();
 }
 
+namespace {
+
+// How far a camera is from the middle of its path (m): medians, which single wrong poses do not
+// move.
+double SpreadOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
+  Eigen::Vector3d middle;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> coordinates;
+    for (const PosePair& pair : pairs) coordinates.push_back((pair.*pose).translation[axis]);
+    middle[axis] = *MedianOf(coordinates);
+  }
+  std::vector<double> distances;
+  for (const PosePair& pair : pairs) {
+    distances.push_back(((pair.*pose).translation - middle).norm());
+  }
+  return *MedianOf(distances);
+}
+
+}  // namespace
+
 bool HaveSameScale(const std::vector<PosePair>& pairs) {
   constexpr double kLargestRatio = 1.5;
-  constexpr double kLeastM = 0.3;
-  const double truth = std::max(kLeastM, ExtentOf(pairs, &PosePair::truth));
-  const double estimated = std::max(kLeastM, ExtentOf(pairs, &PosePair::estimated));
+  constexpr double kLeastM = 0.1;
+  const double truth = std::max(kLeastM, SpreadOf(pairs, &PosePair::truth));
+  const double estimated = std::max(kLeastM, SpreadOf(pairs, &PosePair::estimated));
   return std::max(truth, estimated) <= kLargestRatio * std::min(truth, estimated);
 }
 

@@ -24,7 +24,8 @@ TrajectoryGap GapOf(const std::vector<PosePair>& pairs);
 // How far a camera moves (m): the diagonal of the box around its path.
 double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
 
-// Whether both cameras move about as far.
+// Whether both cameras move about as far, by the medians of their distances from where they are
+// mostly.
 bool HaveSameScale(const std::vector<PosePair>& pairs);
 
 // Whether the gap is what odometry drifts, of a camera that moves so far.

@@ -57,8 +57,7 @@ std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueVie
 
 }  // namespace
 
-TrueViews::TrueViews(const Sequence& sequence, const AlignedMap& map)
-    : sequence_(sequence), map_(map) {
+TrueViews::TrueViews(const Sequence& sequence) : sequence_(sequence) {
   for (const TruthInFrame& truth : sequence.truth_in_frames) {
     of_frame_[{truth.frame_index, truth.true_object_id}] = &truth.landmark_in_camera;
     said_for_each_frame_.insert(truth.true_object_id);
@@ -83,12 +82,13 @@ std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index
 }
 
 std::optional<Landmark> TrueViews::InCamera(int frame_index, int true_index) const {
-  const auto index = static_cast<size_t>(frame_index);
+  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
   const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
-  const bool is_known = said_for_each_frame_.contains(object.id) ||
-                        sequence_.frames[index].true_world_from_camera.has_value();
+  const bool is_known =
+      said_for_each_frame_.contains(object.id) || frame.true_world_from_camera.has_value();
   if (is_known) return KnownInCamera(frame_index, true_index);
-  return FromPose(map_.world_from_camera[index], frame_index, object);
+  if (sequence_.odometry_world != OdometryWorld::kOfTruth) return std::nullopt;
+  return FromPose(frame.world_from_camera, frame_index, object);
 }
 
 ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {

@@ -7,27 +7,26 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/aligned_map.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
 // Where true objects are in the frames. Where the dataset says it for each frame, as it says: an
-// object is not seen in the frames of which it does not. Otherwise where the object is in the
-// world, seen from the true pose, or else from the aligned estimate.
+// object is not seen in the other frames. Otherwise where the object is in the world, seen from the
+// true pose, or else from the odometry where that is in the world of the truth. No map plays a
+// part.
 class TrueViews {
  public:
-  // Both have to outlive it.
-  TrueViews(const Sequence& sequence, const AlignedMap& map);
+  // The sequence has to outlive it.
+  explicit TrueViews(const Sequence& sequence);
 
   // None where nobody says, as of an object that moves or is of another segment.
   std::optional<Landmark> InCamera(int frame_index, int true_index) const;
-  // The same, where it does not depend on the map.
+  // The same, where it does not depend on the odometry.
   std::optional<Landmark> KnownInCamera(int frame_index, int true_index) const;
 
  private:
   const Sequence& sequence_;
-  const AlignedMap& map_;
   // None of an object that is not in the frame's world.
   std::optional<Landmark> FromPose(const Rigid3d& world_from_camera, int frame_index,
                                    const TrueObject& object) const;

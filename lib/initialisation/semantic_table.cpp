@@ -62,6 +62,10 @@ std::string NormalisedLabel(const std::string& label) {
   return normalised;
 }
 
+bool AreSameLabel(const std::string& one, const std::string& other) {
+  return NormalisedLabel(one) == NormalisedLabel(other);
+}
+
 bool SemanticTable::Contains(const std::string& label) const {
   return priors.count(NormalisedLabel(label)) > 0;
 }

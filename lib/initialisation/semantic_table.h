@@ -46,6 +46,7 @@ ShapePrior TurnedToSupport(const ShapePrior& prior);
 // Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the
 // same label.
 std::string NormalisedLabel(const std::string& label);
+bool AreSameLabel(const std::string& one, const std::string& other);
 
 // SemTable of eq. (11), and how far it is to be trusted: what is known of an object by its label,
 // as it is upright.

@@ -24,12 +24,12 @@ void PrintQuality(const MapQuality& quality) {
   for (const MapScore& score : quality.scores) {
     fmt::print(
         "IoU of at least {:g}: {} of {} true objects found ({} of {} detectable), {} of {} "
-        "landmarks right, {} ignored; mean IoU of the found {:.3f}\n",
+        "landmarks right, {} ignored; mean IoU of the found {}\n",
         score.min_iou, score.found, score.true_objects, score.found_detectable, score.detectable,
         score.found, score.landmarks - score.ignored, score.ignored,
-        score.of_found.iou_mean.value_or(0.0));
+        score.of_found.iou_mean ? fmt::format("{:.3f}", *score.of_found.iou_mean) : "-");
   }
-  ReportFindings("soslam-evaluate", quality.alignments.findings);
+  ReportFindings("evaluate", quality.alignments.findings);
 }
 
 }  // namespace

@@ -81,6 +81,28 @@ TEST(AlignTest, ACameraThatStandsStillTellsNoScale) {
   ExpectTrue(alignment, pairs);
 }
 
+TEST(AlignTest, AnEstimateThatStandsStillTellsNoScale) {
+  auto pairs = Moved(RandomCentres(9), RandomRigid(), 1.0);
+  const Eigen::Vector3d place = pairs[0].estimated.translation;
+  for (PosePair& pair : pairs) pair.estimated.translation = place + RandomVector(-1e-5, 1e-5);
+  const Alignment alignment = Align(pairs, AlignmentKind::kSimilarity);
+  EXPECT_EQ(alignment.path, CameraPath::kUnrelated);
+  EXPECT_EQ(alignment.kind, AlignmentKind::kRigid);
+  EXPECT_EQ(alignment.scale, 1.0);
+}
+
+// Centres a few millimetres off a line, and as uncertain: the cameras' rotations are exact.
+TEST(AlignTest, AShortPathTakesTheRotationOfTheCameras) {
+  std::vector<Eigen::Vector3d> centres;
+  for (int i = 0; i < 12; ++i) centres.emplace_back(0.01 * i, 0.004 * (i % 2), 0.0);
+  const Rigid3d truth_from_scaled = RandomRigid();
+  auto pairs = Moved(centres, truth_from_scaled, 1.0);
+  for (PosePair& pair : pairs) pair.estimated.translation += RandomVector(-0.002, 0.002);
+  const Alignment alignment = Align(pairs, AlignmentKind::kRigid);
+  EXPECT_EQ(alignment.path, CameraPath::kLine);
+  EXPECT_LT(alignment.truth_from_scaled.rotation.angularDistance(truth_from_scaled.rotation), 1e-7);
+}
+
 TEST(AlignTest, FewPoses) {
   EXPECT_EQ(Align({}, AlignmentKind::kRigid).kind, AlignmentKind::kNone);
   EXPECT_FALSE(Align({}, AlignmentKind::kRigid).rmse_m);
@@ -129,6 +151,43 @@ TEST_F(AlignSegmentsTest, AutoTellsOneWorldFromAnother) {
   EXPECT_EQ(AutoKind(Make(drift_, 1.0)), AlignmentKind::kNone);
   EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0)), AlignmentKind::kRigid);
   EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 4.0)), AlignmentKind::kSimilarity);
+}
+
+// Whatever the odometry of single frames says.
+TEST_F(AlignSegmentsTest, AutoIsNotMovedByAWrongPose) {
+  Sequence sequence = Make(drift_, 1.0);
+  sequence.frames[3].world_from_camera.translation.x() += 40.0;
+  EXPECT_EQ(AutoKind(sequence), AlignmentKind::kNone);
+}
+
+TEST_F(AlignSegmentsTest, AutoScalesWhereOnlyAScaleFits) {
+  for (const double scale : {0.7, 1.3}) {
+    EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, scale)),
+              AlignmentKind::kSimilarity);
+  }
+  Sequence short_path = Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0);
+  for (Frame& frame : short_path.frames) {
+    frame.world_from_camera.translation *= 0.05;
+    frame.true_world_from_camera->translation *= 0.02;
+  }
+  EXPECT_EQ(AutoKind(short_path), AlignmentKind::kSimilarity);
+}
+
+TEST_F(AlignSegmentsTest, TwoPosesTellAnotherWorldAndNoScale) {
+  Sequence sequence = Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 2.0);
+  for (size_t i = 2; i < sequence.frames.size(); ++i) {
+    sequence.frames[i].true_world_from_camera.reset();
+  }
+  EXPECT_EQ(AutoKind(sequence), AlignmentKind::kRigid);
+}
+
+TEST_F(AlignSegmentsTest, AnotherScaleThatIsNotTakenIsSaid) {
+  const Alignments alignments = Of(Make({}, 1.25), AlignmentChoice::kAuto);
+  EXPECT_EQ(alignments.of_segment.at(0).kind, AlignmentKind::kNone);
+  ASSERT_EQ(alignments.findings.size(), 1u);
+  EXPECT_EQ(alignments.findings[0].check, "alignment_scale");
+  EXPECT_TRUE(Of(Make({}, 1.25), AlignmentChoice::kSimilarity).findings.empty());
+  EXPECT_TRUE(Of(Make(drift_, 1.0), AlignmentChoice::kAuto).findings.empty());
 }
 
 TEST_F(AlignSegmentsTest, SettingsOfTheDatasetGoFirst) {

@@ -54,7 +54,7 @@ TEST_F(BodyErrorsTest, ABodyWithOtherNamesOfItsAxesIsTheSame) {
   EXPECT_NEAR(turned.yaw_deg.value(), 0.0, 1e-6);
   EXPECT_TRUE(turned.is_quarter_turned);
   EXPECT_NEAR(Compare(Standing(1.0, 2.0, 200.0, {0.4, 0.2, 0.3})).yaw_deg.value(), 0.0, 1e-6);
-  // Its z axis is the true y axis.
+  // Its z axis is the true y axis, so it lies.
   Landmark lying = truth_.landmark_in_world;
   lying.frame_from_object.rotation =
       lying.frame_from_object.rotation *
@@ -62,7 +62,7 @@ TEST_F(BodyErrorsTest, ABodyWithOtherNamesOfItsAxesIsTheSame) {
   lying.half_axes = {0.4, 0.3, 0.2};
   EXPECT_NEAR(Compare(lying).iou, 1.0, 1e-9);
   EXPECT_NEAR(Compare(lying).log_size.norm(), 0.0, 1e-12);
-  EXPECT_NEAR(Compare(lying).up_deg, 0.0, 1e-6);
+  EXPECT_NEAR(Compare(lying).up_deg, 90.0, 1e-6);
 }
 
 TEST_F(BodyErrorsTest, ABodyOfRotationHasNoYaw) {

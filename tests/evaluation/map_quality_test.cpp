@@ -204,11 +204,11 @@ TEST_F(MapQualityTest, AWallOfMistakesHasItsCountsAndReasons) {
               ElementsAre(Pair(MapReason::kNotDetected, 1), Pair(MapReason::kGated, 1),
                           Pair(MapReason::kLostInAssociation, 1), Pair(MapReason::kSplit, 1),
                           Pair(MapReason::kJoined, 2), Pair(MapReason::kNoLandmark, 1),
-                          Pair(MapReason::kWrongPlane, 1), Pair(MapReason::kWrongSize, 1),
+                          Pair(MapReason::kWrongHeight, 1), Pair(MapReason::kWrongSize, 1),
                           Pair(MapReason::kWrongYaw, 1), Pair(MapReason::kWrongPlace, 1)));
   EXPECT_THAT(quality.false_landmarks,
               ElementsAre(Pair(MapReason::kSplit, 1), Pair(MapReason::kJoined, 1),
-                          Pair(MapReason::kWrongPlane, 1), Pair(MapReason::kWrongSize, 1),
+                          Pair(MapReason::kWrongHeight, 1), Pair(MapReason::kWrongSize, 1),
                           Pair(MapReason::kWrongYaw, 1), Pair(MapReason::kWrongPlace, 1),
                           Pair(MapReason::kDuplicate, 1), Pair(MapReason::kBackground, 1)));
   EXPECT_EQ(RowOf(quality, 6).miss->detail, "boxes in use in 0 frames; left out: near_border 6");
@@ -437,6 +437,108 @@ TEST_F(MapQualityTest, OtherLabelsThanThoseAskedForAreIgnored) {
   EXPECT_TRUE(quality.misses.empty());
 }
 
+// However well they fit, and at each IoU; and the landmark of a wanted object is not theirs.
+TEST_F(MapQualityTest, WhatIsIgnoredDoesNotCompete) {
+  const int wanted = AddFound();
+  const int van = AddTruth();
+  TrueObject& ignored = sequence_.true_objects[static_cast<size_t>(van)];
+  ignored.is_ignored = true;
+  ignored.truth.landmark_in_world = Shifted(wanted, {0.05, 0, 0});
+  estimates_[0].landmark_in_world = Shifted(wanted, {0.04, 0, 0});
+  DetectNothing(AddLandmark(Shifted(van, {0.2, 0, 0})));  // IoU 1/3 with the van
+  DetectNothing(AddLandmark(Shifted(van, {0.22, 0, 0})));
+  const MapQuality quality = Evaluate();
+  for (const MapScore& score : quality.scores) {
+    EXPECT_EQ(score.found, 1);
+    EXPECT_EQ(score.landmarks, 3);
+    EXPECT_EQ(score.ignored, 2);
+    EXPECT_EQ(score.precision, 1.0);
+  }
+}
+
+TEST_F(MapQualityTest, ALandmarkOfAWantedObjectIsNotIgnored) {
+  const int elsewhere = AddTruth();
+  const Landmark landmark = Shifted(elsewhere, {0, 9, 0});
+  Detect(elsewhere, AddLandmark(landmark, "mouse"));
+  const int found = AddFound();
+  DetectNothing(AddLandmark(Shifted(found, {0.1, 0, 0}), "mouse"));
+  sequence_.ignored = {{"mouse", std::nullopt}, {std::nullopt, landmark}};
+  const MapQuality quality = Evaluate();
+  EXPECT_EQ(quality.scores[0].ignored, 0);
+  EXPECT_EQ(quality.false_landmarks.at(MapReason::kDuplicate), 1);
+}
+
+// With those that association has left out there would have been enough.
+TEST_F(MapQualityTest, LossesCountWhereTheyHappen) {
+  const int truth = AddTruth();
+  Reject(truth, RejectingStage::kImport, "near_border");
+  std::erase_if(sequence_.rejected, [](const auto& rejected) { return rejected.frame_index < 3; });
+  const auto only_first = [&](int frames) {
+    Reject(truth, RejectingStage::kAssociate, "too_few_detections");
+    std::erase_if(sequence_.rejected, [&](const auto& rejected) {
+      return rejected.stage == RejectingStage::kAssociate && rejected.frame_index >= frames;
+    });
+    return RowOf(Evaluate(), truth).miss->reason;
+  };
+  AddFound();
+  EXPECT_EQ(only_first(2), MapReason::kGated);
+  EXPECT_EQ(only_first(3), MapReason::kLostInAssociation);
+}
+
+TEST_F(MapQualityTest, BoxesOfALowScoreDetectNothing) {
+  const int truth = AddTruth();
+  Reject(truth, RejectingStage::kImport, "low_score");
+  for (RejectedDetection& rejected : sequence_.rejected) rejected.score = 0.24;
+  AddFound();
+  EXPECT_EQ(RowOf(Evaluate(), truth).detected_frames, 0);
+  for (RejectedDetection& rejected : sequence_.rejected) rejected.score = 0.25;
+  EXPECT_EQ(RowOf(Evaluate(), truth).detected_frames, kFrames);
+}
+
+// Without true poses the odometry says where objects are seen, and no map.
+TEST_F(MapQualityTest, WhatIsDetectableDoesNotDependOnTheMap) {
+  AddFound();
+  const Rigid3d away{Eigen::Quaterniond::Identity(), {0.9, 0, 0}};
+  std::vector<Rigid3d> poses;
+  for (Frame& frame : sequence_.frames) {
+    frame.true_world_from_camera.reset();
+    poses.push_back(away * frame.world_from_camera);
+  }
+  estimates_[0].landmark_in_world = Transform(away, *estimates_[0].landmark_in_world);
+  const auto quality =
+      EvaluateMapQuality(sequence_, estimates_, poses, {}, AlignmentChoice::kAuto).value();
+  EXPECT_EQ(quality.scores[0].detectable, 1);
+  EXPECT_EQ(quality.scores[0].found, 0);
+}
+
+// Twice as large, and turned, and elsewhere: none of these alone makes it right.
+TEST_F(MapQualityTest, SeveralPartsCanBeWrong) {
+  const int truth = AddTruth({0.3, 0.1, 0.2});
+  Landmark landmark = Turned(Shifted(truth, {0.3, 0.2, 0.3}), 1.0);
+  landmark.half_axes *= 2.0;
+  Detect(truth, AddLandmark(landmark));
+  EXPECT_EQ(RowOf(Evaluate(), truth).miss->reason, MapReason::kWrongInSeveral);
+}
+
+// The map's plane is tilted into the landmark's height, or the landmark is off the true plane.
+TEST_F(MapQualityTest, AWrongPlaneIsNotAWrongHeight) {
+  const int truth = AddTruth();
+  Detect(truth, AddLandmark(Shifted(truth, {0, 0, 0.3})));
+  EXPECT_EQ(RowOf(Evaluate(), truth).miss->reason, MapReason::kWrongHeight);
+  sequence_.planes[0].plane_in_world.offset = -0.3;
+  EXPECT_EQ(RowOf(Evaluate(), truth).miss->reason, MapReason::kWrongPlane);
+}
+
+TEST_F(MapQualityTest, ALandmarkBeyondAllNumbersIsWrong) {
+  const int truth = AddTruth();
+  Landmark landmark = Truth(truth);
+  landmark.half_axes *= 1e150;
+  Detect(truth, AddLandmark(landmark));
+  const MapQuality quality = Evaluate();
+  EXPECT_EQ(quality.scores[0].found, 0);
+  EXPECT_TRUE(std::isfinite(quality.in_frames.iou_in_frames.value_or(0.0)));
+}
+
 // A landmark of things that nobody measured, which touches an object that is missed.
 TEST_F(MapQualityTest, BoxesOfNothingKnownAreBackground) {
   AddFound();
@@ -512,19 +614,40 @@ TEST(MatchByIou, IsTheBestOfAllWays) {
 
 TEST(IsIgnored, ByLabelOrVolumeOrBoth) {
   const Landmark volume{{}, {1.0, 1.0, 1.0}};
-  const Landmark inside{{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {0.4, 0.4, 0.4}};
-  const Landmark outside{{Eigen::Quaterniond::Identity(), {1.1, 0, 0}}, {0.4, 0.4, 0.4}};
-  const Landmark larger{{}, {1.5, 1.5, 1.5}};       // IoU 8 / 27
-  const Landmark much_larger{{}, {1.6, 1.6, 1.6}};  // IoU 0.244
-  EXPECT_TRUE(IsIgnored({{std::nullopt, volume}}, "book", larger));
-  EXPECT_FALSE(IsIgnored({{std::nullopt, volume}}, "book", much_larger));
-  EXPECT_TRUE(IsIgnored({{"cup", std::nullopt}}, "cup", outside));
-  EXPECT_FALSE(IsIgnored({{"cup", std::nullopt}}, "book", inside));
-  EXPECT_TRUE(IsIgnored({{std::nullopt, volume}}, "book", inside));
-  EXPECT_FALSE(IsIgnored({{std::nullopt, volume}}, "book", outside));
-  EXPECT_FALSE(IsIgnored({{"cup", volume}}, "book", inside));
-  EXPECT_TRUE(IsIgnored({{"cup", volume}, {"book", volume}}, "book", inside));
-  EXPECT_FALSE(IsIgnored({}, "book", inside));
+  const AlignedLandmark inside{
+      0, 0, {{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {0.4, 0.4, 0.4}}};
+  const AlignedLandmark outside{
+      0, 0, {{Eigen::Quaterniond::Identity(), {1.1, 0, 0}}, {0.4, 0.4, 0.4}}};
+  const AlignedLandmark larger{0, 0, {{}, {1.5, 1.5, 1.5}}};       // IoU 8 / 27
+  const AlignedLandmark much_larger{0, 0, {{}, {1.6, 1.6, 1.6}}};  // IoU 0.244
+  const auto is_ignored = [](const std::vector<IgnoredThings>& ignored, const std::string& label,
+                             const AlignedLandmark& landmark) {
+    Sequence sequence;
+    sequence.ignored = ignored;
+    return IsIgnored(sequence, label, landmark);
+  };
+  EXPECT_TRUE(is_ignored({{std::nullopt, volume}}, "book", larger));
+  EXPECT_FALSE(is_ignored({{std::nullopt, volume}}, "book", much_larger));
+  EXPECT_TRUE(is_ignored({{"cup", std::nullopt}}, "cup", outside));
+  EXPECT_TRUE(is_ignored({{"Teddy_Bear", std::nullopt}}, "teddy bear", outside));
+  EXPECT_FALSE(is_ignored({{"cup", std::nullopt}}, "book", inside));
+  EXPECT_TRUE(is_ignored({{std::nullopt, volume}}, "book", inside));
+  EXPECT_FALSE(is_ignored({{std::nullopt, volume}}, "book", outside));
+  EXPECT_FALSE(is_ignored({{"cup", volume}}, "book", inside));
+  EXPECT_TRUE(is_ignored({{"cup", volume}, {"book", volume}}, "book", inside));
+  EXPECT_FALSE(is_ignored({}, "book", inside));
+}
+
+TEST(IsIgnored, ByATrueObjectOfItsSegmentThatIs) {
+  Sequence sequence;
+  sequence.true_objects = {{1, "van", {Landmark{{}, {1.0, 1.0, 1.0}}}, 0, true, true}};
+  AlignedLandmark landmark{0, 0, {{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {0.4, 0.4, 0.4}}};
+  EXPECT_TRUE(IsIgnored(sequence, "car", landmark));
+  landmark.segment = 1;
+  EXPECT_FALSE(IsIgnored(sequence, "car", landmark));
+  landmark.segment = 0;
+  sequence.true_objects[0].is_ignored = false;
+  EXPECT_FALSE(IsIgnored(sequence, "car", landmark));
 }
 
 }  // namespace
