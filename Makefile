@@ -209,7 +209,7 @@ export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats
 	    --coco "$$to/boxes.json" --coco_dataset "$$to/images.json" --csv "$$to/landmarks.csv" || status=$$?; \
 	done; \
 	test "$$found" || { status=2; \
-	  echo 'export: no map.json of VARIANT="$(VARIANT)" in $(RESULTS)/$(DATASET); make run writes it' >&2; }; \
+	  echo 'export: no map.json of VARIANT="$(VARIANT)" in $(RESULTS)/$(DATASET); make run writes those of Quadric and Ours...' >&2; }; \
 	exit $$status
 
 # The import runs anew where its files have changed, so that it looks at them.

@@ -23,8 +23,8 @@ rows=$(awk -F'\t' -v name="$name" '$1 == name' "$table")
   cd "$2" && for known in */SHA256SUMS; do echo -n " ${known%/*}"; done)"
 
 if [[ -n ${WITHOUT:-} ]] && ! grep -q "^[0-9a-f]*  ${WITHOUT%/}/" "$own/SHA256SUMS"; then
-  fail 2 "WITHOUT=$WITHOUT: $name has nothing below; expected a folder of it: $(
-    grep -o '  .*/' "$own/SHA256SUMS" | sort -u | tr -s ' \n' ' ')"
+  fail 2 "WITHOUT=$WITHOUT is no folder of $name; expected one of$(
+    grep -o '  .*/' "$own/SHA256SUMS" | sort -u | tr -s ' \n' ' '), or one around it"
 fi
 # Whether a path is to be left out.
 without() { [[ -n ${WITHOUT:-} && $1 == "${WITHOUT%/}"/* ]]; }

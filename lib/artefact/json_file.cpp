@@ -77,7 +77,9 @@ json ParseJsonFile(const std::filesystem::path& path) {
   const std::string file = path.string();
   std::ifstream stream(path, std::ios::binary);
   if (!stream || IsFolder(path)) {
-    throw InputError(file + ": cannot be read; expected a JSON file");
+    throw InputError(file +
+                     (std::filesystem::exists(path) ? ": cannot be read" : ": no such file") +
+                     "; expected a JSON file");
   }
   return ParseJsonText(stream, file);
 }

@@ -158,9 +158,9 @@ std::string QualitySection(const json& page) {
   if (table.empty()) return "";
   return Section("quality", "Maps against all that is true",
                  Faint("Landmarks and true objects are matched by overlap, whatever their ids and "
-                       "labels, once the map is aligned with the true poses. Means are over what "
-                       "is right at IoU 0.25. In frames: by the poses that saw it; the gap to the "
-                       "world is drift.") +
+                       "labels, in the world of the true poses: alignment none where the map is in "
+                       "it, rigid where it has to be moved there, similarity where it is scaled as "
+                       "well.") +
                      table + Mistakes(page.at("variants")));
 }
 

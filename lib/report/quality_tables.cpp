@@ -105,13 +105,30 @@ std::vector<Cell> ErrorsRow(const std::string& name, const json& quality) {
           Number(in_frames.at("iou_mean_in_world"), 3)};
 }
 
-// Whose the pose estimates are; empty where nobody says.
-std::vector<std::string> OdometryNote(const std::vector<NamedMetrics>& maps) {
+// Whose the pose estimates are.
+std::string OdometryNote(const std::vector<NamedMetrics>& maps) {
   std::set<std::string> sources;
   for (const auto& [name, metrics] : maps) sources.insert(metrics.value("odometry_source", ""));
   sources.erase("");
-  if (sources.empty()) return {};
-  return {fmt::format("Odometry: {}.", fmt::join(sources, ", "))};
+  return fmt::format("Odometry: {}.", sources.empty()
+                                          ? "not said whose"
+                                          : fmt::format("{}", fmt::join(sources, ", ")));
+}
+
+// The name of a map, with its alignment where those of others differ.
+std::string NameOf(const NamedMetrics& map, bool with_alignment) {
+  const json& alignments = map.second["map_quality"].at("alignments");
+  return with_alignment
+             ? fmt::format("{} ({})", map.first, alignments.front().at("kind").get<std::string>())
+             : map.first;
+}
+
+bool AreAlignedAlike(const std::vector<NamedMetrics>& maps) {
+  const auto kind = [](const NamedMetrics& map) {
+    return map.second["map_quality"].at("alignments").front().at("kind");
+  };
+  return std::ranges::all_of(
+      maps, [&](const NamedMetrics& map) { return kind(map) == kind(maps.front()); });
 }
 
 void AddMistakes(const char* kind, const json& rows, const char* id, Table* table) {
@@ -131,26 +148,36 @@ std::vector<Table> QualityTables(const std::string& dataset,
                                  const std::vector<NamedMetrics>& variants) {
   const std::vector<NamedMetrics> maps = MapsAmong(variants);
   if (maps.empty()) return {};
-  Table quality{"map_quality_" + dataset,
-                dataset + ": maps against all that is true, " + AlignmentInWords(maps),
-                {"variant", "true (detectable)", "landmarks (ignored)"}};
+  Table quality;
+  quality.name = "map_quality_" + dataset;
+  quality.title = dataset + ": maps against all that is true, " + AlignmentInWords(maps);
+  quality.header = {"variant", "true (detectable)", "landmarks (ignored)"};
   for (const double min_iou : kMapIous) {
-    for (const char* column : {"right", "precision", "recall", "of detectable", "F1", "mean IoU"}) {
-      quality.header.push_back(fmt::format("{}, IoU {}", column, min_iou));
+    for (const char* column : {"right", "P", "R", "R det.", "F1", "IoU"}) {
+      quality.header.push_back(fmt::format("{} {}", column, min_iou));
     }
   }
-  Table errors{
-      "map_errors_" + dataset,
-      fmt::format("{}: errors of what is right at IoU {}, {}", dataset, kMapIous.front(),
-                  AlignmentInWords(maps)),
-      {"variant", "centre m", "centre / size", "log size x, y, z", "log scale", "yaw deg", "up deg",
-       "plane m", "plane deg", "labels right", "ids agree", "IoU in frames", "IoU in world"}};
-  for (const auto& [name, metrics] : maps) {
-    quality.rows.push_back(QualityRow(name, metrics["map_quality"]));
-    errors.rows.push_back(ErrorsRow(name, metrics["map_quality"]));
+  Table errors;
+  errors.name = "map_errors_" + dataset;
+  errors.title = fmt::format("{}: errors of what is right at IoU {}, {}", dataset, kMapIous.front(),
+                             AlignmentInWords(maps));
+  errors.header = {"variant", "centre m",    "centre / size", "log size x, y, z", "log scale",
+                   "yaw deg", "up deg",      "plane m",       "plane deg",        "labels",
+                   "ids",     "IoU, frames", "IoU, world"};
+  for (const NamedMetrics& map : maps) {
+    const std::string name = NameOf(map, !AreAlignedAlike(maps));
+    quality.rows.push_back(QualityRow(name, map.second["map_quality"]));
+    errors.rows.push_back(ErrorsRow(name, map.second["map_quality"]));
   }
-  quality.notes = OdometryNote(maps);
-  errors.notes = {"Means of absolute values; logarithms are of estimate over truth."};
+  quality.notes = {
+      "Landmarks that match a true object with this IoU or more: how many, precision, recall, "
+      "recall "
+      "of the detectable, F1, mean IoU. " +
+      OdometryNote(maps)};
+  errors.notes = {
+      "Means of absolute values; logarithms are of estimate over truth. Labels and ids: how many "
+      "agree. IoU in the frames that saw what is right or wrong in part, and of the same in the "
+      "world."};
   return {quality, errors};
 }
 
@@ -165,7 +192,7 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
 Table MistakesTable(const json& metrics) {
   Table table;
   table.name = "sentences";
-  table.header = {"", "object", "reason", "detail"};
+  table.header = {"mistake", "object", "reason", "detail"};
   if (!metrics.contains("map_quality")) return table;
   AddMistakes("missed", metrics["map_quality"].at("objects"), "true_object", &table);
   AddMistakes("false", metrics["map_quality"].at("landmarks"), "object", &table);
