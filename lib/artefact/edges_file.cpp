@@ -36,25 +36,18 @@ void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
 
 }  // namespace
 
-PackedEdgeMaps::PackedEdgeMaps(const EdgeMaps& maps)
-    : grey(Pack(maps.grey)),
-      edges(Pack(maps.edges)),
-      distance(Pack(maps.distance)),
-      nearest_edge(Pack(maps.nearest_edge)),
-      corners(PackPixels(maps.corners)) {}
-
 EdgesWriter::EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info)
     : atomic_(path), file_(Hdf5File::Create(atomic_.TemporaryPath(), path)) {
   WriteArtefactHeader(kKind, info, &file_);
 }
 
-void EdgesWriter::Write(int frame_id, const PackedEdgeMaps& maps) {
+void EdgesWriter::Write(int frame_id, const EdgeMaps& maps) {
   const std::string group = FrameGroup(frame_id);
-  file_.WriteArray(group + "/grey", maps.grey);
-  file_.WriteArray(group + "/edges", maps.edges);
-  file_.WriteArray(group + "/distance", maps.distance);
-  file_.WriteArray(group + "/nearest_edge", maps.nearest_edge);
-  file_.WriteArray(group + "/corners", maps.corners);
+  file_.WriteMatrix(group + "/grey", maps.grey);
+  file_.WriteMatrix(group + "/edges", maps.edges);
+  file_.WriteMatrix(group + "/distance", maps.distance);
+  file_.WriteMatrix(group + "/nearest_edge", maps.nearest_edge);
+  WritePixels(group + "/corners", maps.corners, &file_);
 }
 
 void EdgesWriter::Commit() {

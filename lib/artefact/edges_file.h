@@ -7,17 +7,9 @@
 #include "artefact/atomic_file.h"
 #include "artefact/hdf5_file.h"
 #include "artefact/json_file.h"
-#include "artefact/packed_array.h"
 #include "image/edge_maps.h"
 
 namespace soslam {
-
-// The maps of a frame as edges.h5 holds them.
-struct PackedEdgeMaps {
-  explicit PackedEdgeMaps(const EdgeMaps& maps);
-
-  PackedArray grey, edges, distance, nearest_edge, corners;
-};
 
 // Writes edges.h5 (layout: schemas/hdf5-layout.md) frame by frame; it appears with Commit(). Throws
 // SettingsError when it cannot be written.
@@ -25,7 +17,7 @@ class EdgesWriter {
  public:
   EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info);
   // Each frame once; the bytes of the file depend on the order.
-  void Write(int frame_id, const PackedEdgeMaps& maps);
+  void Write(int frame_id, const EdgeMaps& maps);
   void Commit();
 
  private:

@@ -55,14 +55,15 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
   return header;
 }
 
-PackedArray PackPixels(const std::vector<Eigen::Vector2f>& pixels) {
+void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
+                 Hdf5File* file) {
   cv::Mat matrix(static_cast<int>(pixels.size()), 2, CV_32FC1);
   for (int i = 0; i < matrix.rows; ++i) {
     const Eigen::Vector2f& pixel = pixels[static_cast<size_t>(i)];
     matrix.at<float>(i, 0) = pixel.x();
     matrix.at<float>(i, 1) = pixel.y();
   }
-  return Pack(matrix);
+  file->WriteMatrix(name, matrix);
 }
 
 std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name, int count) {

@@ -28,7 +28,8 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path);
 bool IsHdf5(const std::filesystem::path& path);
 
 // Pixels as an n x 2 data set of float32; `count` is how many are expected.
-PackedArray PackPixels(const std::vector<Eigen::Vector2f>& pixels);
+void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
+                 Hdf5File* file);
 std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name,
                                         int count = Hdf5File::kAny);
 

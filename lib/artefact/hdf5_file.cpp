@@ -11,10 +11,12 @@
 #include <functional>
 #include <mutex>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 
 #include "artefact/hdf5_checks.h"
+#include "artefact/hdf5_chunk.h"
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
 #include "base/file_kind.h"
@@ -130,21 +132,26 @@ void Hdf5File::WriteGroup(const std::string& name) {
   }
 }
 
-void Hdf5File::WriteArray(const std::string& name, const PackedArray& array) {
+void Hdf5File::WriteMatrix(const std::string& name, const cv::Mat& matrix) {
+  const cv::Mat whole = matrix.isContinuous() ? matrix : matrix.clone();
+  ArrayShape shape = {static_cast<size_t>(matrix.rows), static_cast<size_t>(matrix.cols)};
+  if (matrix.channels() > 1) shape.push_back(static_cast<size_t>(matrix.channels()));
+  WriteArray(name, shape, matrix.depth(), whole.data);
+}
+
+void Hdf5File::WriteArray(const std::string& name, const ArrayShape& shape, int depth,
+                          const void* values) {
   WriteGroup(name.substr(0, name.rfind('/')));
-  const std::vector<hsize_t> sizes(array.shape.begin(), array.shape.end());
+  const Hdf5Element element = Hdf5ElementOf(depth);
+  const std::vector<hsize_t> sizes(shape.begin(), shape.end());
   const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                          &H5Sclose};
-  const Hdf5Handle creation = Hdf5DataSetCreation(array.shape);
-  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), Hdf5ElementOf(array.depth).file_type,
-                                 space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+  const Hdf5Handle creation = Hdf5DataSetCreation(shape);
+  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), element.file_type, space.id(),
+                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                       &H5Dclose};
-  bool written = data_set.valid();
-  if (written && !array.bytes.empty()) {
-    const std::vector<hsize_t> begin(sizes.size());
-    written = H5Dwrite_chunk(data_set.id(), H5P_DEFAULT, kAllFilters, begin.data(),
-                             array.bytes.size(), array.bytes.data()) >= 0;
-  }
+  const bool written = data_set.valid() && H5Dwrite(data_set.id(), element.memory_type, H5S_ALL,
+                                                    H5S_ALL, H5P_DEFAULT, values) >= 0;
   if (!data_set.Close() || !written) FailWriting(name);
 }
 
@@ -258,37 +265,26 @@ ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& dat
   return shape;
 }
 
-Hdf5File::StoredArray Hdf5File::ReadStored(const std::string& name, int depth,
-                                           const std::vector<int>& expected) const {
-  const LibraryTurn turn;
-  const Hdf5Element element = Hdf5ElementOf(depth);
-  if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
-  const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
-  StoredArray stored{CheckedShape(name, data_set, depth, expected),
-                     static_cast<size_t>(CV_ELEM_SIZE1(depth)),
-                     {},
-                     false};
-  if (auto packed = Hdf5PackedBytes(data_set, stored.shape)) {
-    stored.bytes = std::move(*packed);
-    stored.is_packed = true;
-    return stored;
+void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<int>& expected,
+                         const std::function<void*(const ArrayShape&)>& allocate) const {
+  const auto element_size = static_cast<size_t>(CV_ELEM_SIZE1(depth));
+  std::optional<std::string> chunk;
+  std::span<std::byte> values;
+  {
+    const LibraryTurn turn;
+    const Hdf5Element element = Hdf5ElementOf(depth);
+    if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
+    const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
+    const ArrayShape shape = CheckedShape(name, data_set, depth, expected);
+    values = {static_cast<std::byte*>(allocate(shape)),
+              std::accumulate(shape.begin(), shape.end(), element_size, std::multiplies<size_t>())};
+    chunk = ReadChunk(data_set, shape);
+    if (!chunk && H5Dread(data_set.id(), element.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                          values.data()) < 0) {
+      FailReading(name, kDamaged);
+    }
   }
-  stored.bytes.resize(std::accumulate(stored.shape.begin(), stored.shape.end(), stored.element_size,
-                                      std::multiplies<size_t>()));
-  if (H5Dread(data_set.id(), element.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-              stored.bytes.data()) < 0) {
-    FailReading(name, kDamaged);
-  }
-  return stored;
-}
-
-void Hdf5File::Restore(const std::string& name, const StoredArray& stored,
-                       std::span<std::byte> values) const {
-  if (!stored.is_packed) {
-    std::ranges::copy(std::as_bytes(std::span(stored.bytes)), values.begin());
-  } else if (!Unpack(stored.bytes, stored.element_size, values)) {
-    FailReading(name, kDamaged);
-  }
+  if (chunk && !DecodeChunk(*chunk, element_size, values)) FailReading(name, kDamaged);
 }
 
 bool Hdf5File::IsGroup(const std::string& name) const {
@@ -312,10 +308,11 @@ Hdf5File::Numbers Hdf5File::ReadNumbers(const std::string& name) const {
 cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int columns) const {
   std::vector<int> expected = {rows, columns};
   if (CV_MAT_CN(type) > 1) expected.push_back(CV_MAT_CN(type));
-  const StoredArray stored = ReadStored(name, CV_MAT_DEPTH(type), expected);
-  cv::Mat matrix(static_cast<int>(stored.shape[0]), static_cast<int>(stored.shape[1]), type);
-  Restore(name, stored,
-          std::as_writable_bytes(std::span(matrix.data, matrix.total() * matrix.elemSize())));
+  cv::Mat matrix;
+  ReadArray(name, CV_MAT_DEPTH(type), expected, [&](const ArrayShape& shape) {
+    matrix.create(static_cast<int>(shape[0]), static_cast<int>(shape[1]), type);
+    return matrix.data;
+  });
   return matrix;
 }
 

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/traits.hpp>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "artefact/packed_array.h"
-
 namespace soslam {
+
+using ArrayShape = std::vector<std::uint64_t>;
 
 // Owns one identifier of the HDF5 library.
 class Hdf5Handle {
@@ -44,7 +43,7 @@ class Hdf5Handle {
 // the file, the name in it, what was found and what was expected, when reading does.
 //
 // The HDF5 library is not thread-safe: use it from one thread at a time, all files together. But
-// reading matrices and vectors is for any thread: they take turns, and unpack side by side.
+// any thread may read matrices and vectors: they take turns, and inflate side by side.
 class Hdf5File {
  public:
   // A new, empty file; replaces an existing one. Messages name `final_path`, where it is to go,
@@ -57,16 +56,12 @@ class Hdf5File {
   void WriteGroup(const std::string& name);
   // Rows x columns, or rows x columns x 2 when the matrix has two channels. Depth 8U, 16S, 32S,
   // 32F, 64F.
-  void WriteMatrix(const std::string& name, const cv::Mat& matrix) {
-    WriteArray(name, Pack(matrix));
-  }
+  void WriteMatrix(const std::string& name, const cv::Mat& matrix);
   // One dimension; T is double, float or int.
   template <typename T>
   void WriteVector(const std::string& name, const std::vector<T>& values) {
-    WriteArray(name, Pack(values));
+    WriteArray(name, {values.size()}, cv::DataType<T>::depth, values.data());
   }
-  // Either of them, packed before.
-  void WriteArray(const std::string& name, const PackedArray& array);
   // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
   void WriteText(const std::string& owner, const std::string& name, const std::string& text);
   void WriteNumber(const std::string& owner, const std::string& name, double number);
@@ -81,9 +76,11 @@ class Hdf5File {
   cv::Mat ReadMatrix(const std::string& name, int type, int rows = kAny, int columns = kAny) const;
   template <typename T>
   std::vector<T> ReadVector(const std::string& name, int size = kAny) const {
-    const StoredArray stored = ReadStored(name, cv::DataType<T>::depth, {size});
-    std::vector<T> values(stored.shape[0]);
-    Restore(name, stored, std::as_writable_bytes(std::span(values)));
+    std::vector<T> values;
+    ReadArray(name, cv::DataType<T>::depth, {size}, [&](const ArrayShape& shape) {
+      values.resize(shape[0]);
+      return values.data();
+    });
     return values;
   }
   std::string ReadText(const std::string& owner, const std::string& name) const;
@@ -119,17 +116,10 @@ class Hdf5File {
   ArrayShape CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
                           const std::vector<int>& expected) const;
 
-  // What a data set holds, and Restore() makes numbers of.
-  struct StoredArray {
-    ArrayShape shape;
-    size_t element_size;
-    std::string bytes;
-    bool is_packed;  // else they are the numbers
-  };
-  StoredArray ReadStored(const std::string& name, int depth,
-                         const std::vector<int>& expected) const;
-  void Restore(const std::string& name, const StoredArray& stored,
-               std::span<std::byte> values) const;
+  void WriteArray(const std::string& name, const ArrayShape& shape, int depth, const void* values);
+  // Reads into the memory that `allocate` returns for the shape that is found.
+  void ReadArray(const std::string& name, int depth, const std::vector<int>& expected,
+                 const std::function<void*(const ArrayShape&)>& allocate) const;
 
   [[noreturn]] void FailWriting(const std::string& name) const;
   [[noreturn]] void FailReading(const std::string& name, const std::string& problem) const;

@@ -12,23 +12,6 @@ namespace {
 
 Hdf5Handle PropertyList(hid_t list_class) { return {H5Pcreate(list_class), &H5Pclose}; }
 
-H5Z_filter_t Filter(const Hdf5Handle& creation, unsigned int index) {
-  unsigned int flags = 0;
-  size_t parameters = 0;
-  return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
-}
-
-// As Hdf5DataSetCreation has it.
-bool IsOnePackedChunk(const Hdf5Handle& creation, const ArrayShape& shape) {
-  if (H5Pget_layout(creation.id()) != H5D_CHUNKED || H5Pget_nfilters(creation.id()) != 2) {
-    return false;
-  }
-  std::vector<hsize_t> chunk(shape.size());
-  H5Pget_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
-  return std::ranges::equal(chunk, shape) && Filter(creation, 0) == H5Z_FILTER_SHUFFLE &&
-         Filter(creation, 1) == H5Z_FILTER_DEFLATE;
-}
-
 }  // namespace
 
 Hdf5Element Hdf5ElementOf(int depth) {
@@ -75,24 +58,6 @@ Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape) {
   constexpr unsigned kFastest = 1;
   H5Pset_deflate(creation.id(), kFastest);
   return creation;
-}
-
-std::optional<std::string> Hdf5PackedBytes(const Hdf5Handle& data_set, const ArrayShape& shape) {
-  const Hdf5Handle creation{H5Dget_create_plist(data_set.id()), &H5Pclose};
-  if (!IsOnePackedChunk(creation, shape)) return std::nullopt;
-  const std::vector<hsize_t> begin(shape.size());
-  hsize_t size = 0;
-  if (H5Dget_chunk_storage_size(data_set.id(), begin.data(), &size) < 0 ||
-      size > H5Dget_storage_size(data_set.id())) {
-    return std::nullopt;
-  }
-  std::string bytes(size, '\0');
-  std::uint32_t filters = ~kAllFilters;
-  if (H5Dread_chunk(data_set.id(), H5P_DEFAULT, begin.data(), &filters, bytes.data()) < 0 ||
-      filters != kAllFilters) {
-    return std::nullopt;
-  }
-  return bytes;
 }
 
 Hdf5Handle Hdf5TextType(size_t length) {

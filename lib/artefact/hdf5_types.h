@@ -3,10 +3,6 @@
 
 #include <hdf5.h>
 
-#include <cstdint>
-#include <optional>
-#include <string>
-
 #include "artefact/hdf5_file.h"
 
 namespace soslam {
@@ -27,14 +23,8 @@ Hdf5Handle Hdf5FileAccess();
 // A list for creating files, groups or data sets that stores no times.
 Hdf5Handle Hdf5Timeless(hid_t list_class);
 
-// A chunk's mask of filters that it was not sent through.
-inline constexpr std::uint32_t kAllFilters = 0;
-
-// For a data set of this shape: one chunk, shuffled and deflated (PackedArray).
+// For a data set of this shape: one chunk, shuffled and deflated.
 Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape);
-
-// What a data set of this shape that was created like that holds; none for any other.
-std::optional<std::string> Hdf5PackedBytes(const Hdf5Handle& data_set, const ArrayShape& shape);
 
 // Texts are of fixed length and UTF-8; HDF5 has no length 0.
 Hdf5Handle Hdf5TextType(size_t length);

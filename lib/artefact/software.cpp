@@ -5,8 +5,6 @@
 #include <ceres/version.h>
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <isa-l.h>
-#include <libdeflate.h>
 #include <openssl/crypto.h>
 
 #include <CLI/Version.hpp>
@@ -53,10 +51,7 @@ Software ThisSoftware() {
             fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
            {"fmt", FmtVersion()},
            {"hdf5", Hdf5Version()},
-           {"isa-l",
-            fmt::format("{}.{}.{}", ISAL_MAJOR_VERSION, ISAL_MINOR_VERSION, ISAL_PATCH_VERSION)},
            {"libarchive", LibArchiveVersion()},
-           {"libdeflate", LIBDEFLATE_VERSION_STRING},
            {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                          NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
            {"opencv", cv::getVersionString()},

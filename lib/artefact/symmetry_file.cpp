@@ -26,8 +26,8 @@ void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
   for (const auto& [descriptor, cost] : record.cost) {
     file->WriteVector(group + "/cost/" + descriptor, cost);
   }
-  file->WriteArray(group + "/samples", PackPixels(record.samples));
-  file->WriteArray(group + "/mirrored", PackPixels(record.mirrored));
+  WritePixels(group + "/samples", record.samples, file);
+  WritePixels(group + "/mirrored", record.mirrored, file);
   file->WriteNumber(group, "frame_id", record.frame_id);
   file->WriteNumber(group, "object_id", record.object_id);
   file->WriteNumber(group, "initial_yaw", record.initial_yaw);

@@ -14,7 +14,6 @@
 #include <optional>
 #include <thread>
 
-#include "base/freed_memory.h"
 #include "base/one_line.h"
 #include "base/progress.h"
 #include "dataset/image_path.h"
@@ -242,7 +241,6 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
   // words.
   FLAGS_minloglevel = google::GLOG_FATAL;
   cv::setNumThreads(1);  // stages have threads of their own, on top of which OpenCV's would come
-  KeepFreedMemory();
   CLI::App app(info.purpose, info.name);
   return ExitCodeOf(&app, [&] { return ParseAndRun(argc, argv, info, &app, options, body); });
 }

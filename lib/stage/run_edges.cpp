@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "artefact/edges_file.h"
@@ -50,15 +49,14 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   Progress progress("frames", frames);
   const int batch = 4 * threads;  // bounds the maps that wait for being written
   for (int begin = 0; begin < frames; begin += batch) {
-    std::vector<std::optional<PackedEdgeMaps>> maps(
-        static_cast<size_t>(std::min(batch, frames - begin)));
+    std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
       const cv::Mat grey = reader.ReadGrey(images[static_cast<size_t>(begin + i)]);
-      maps[static_cast<size_t>(i)].emplace(ComputeEdgeMaps(grey, options));
+      maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
       progress.Step();
     });
     for (size_t i = 0; i < maps.size(); ++i) {
-      writer.Write(images[static_cast<size_t>(begin) + i].frame->id, *maps[i]);
+      writer.Write(images[static_cast<size_t>(begin) + i].frame->id, maps[i]);
     }
   }
   writer.Commit();

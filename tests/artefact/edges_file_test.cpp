@@ -42,7 +42,7 @@ class EdgesFileTest : public testing::Test {
  protected:
   std::filesystem::path Write(const std::string& name, const EdgeMaps& maps) {
     EdgesWriter writer(folder_ / name, {});
-    writer.Write(12, PackedEdgeMaps(maps));
+    writer.Write(12, maps);
     writer.Commit();
     return folder_ / name;
   }
@@ -60,8 +60,8 @@ TEST_F(EdgesFileTest, FramesComeBackExactly) {
   const EdgeMaps first = MapsOfRandomRectangles();
   const EdgeMaps second = MapsOfRandomRectangles();
   EdgesWriter writer(folder_ / "edges.h5", {});
-  writer.Write(7, PackedEdgeMaps(first));
-  writer.Write(1234567, PackedEdgeMaps(second));
+  writer.Write(7, first);
+  writer.Write(1234567, second);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "edges.h5")) << "before it is complete";
   writer.Commit();
 
@@ -80,7 +80,7 @@ TEST_F(EdgesFileTest, ThreadsReadSideBySide) {
   EdgesWriter writer(folder_ / "edges.h5", {});
   for (int i = 0; i < 8; ++i) {
     maps.push_back(MapsOfRandomRectangles());
-    writer.Write(i, PackedEdgeMaps(maps.back()));
+    writer.Write(i, maps.back());
   }
   writer.Commit();
   const EdgesReader reader(folder_ / "edges.h5");
@@ -111,7 +111,7 @@ TEST_F(EdgesFileTest, WrittenTwiceGivesTheSameBytes) {
 }
 
 TEST_F(EdgesFileTest, NothingStaysBehindWithoutCommit) {
-  { EdgesWriter(folder_ / "edges.h5", {}).Write(0, PackedEdgeMaps(MapsOfRandomRectangles())); }
+  { EdgesWriter(folder_ / "edges.h5", {}).Write(0, MapsOfRandomRectangles()); }
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 

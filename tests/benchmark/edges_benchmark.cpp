@@ -68,7 +68,7 @@ void ImageToArtefact(benchmark::State& state, EdgeMaps (*maps)(const cv::Mat& gr
       std::filesystem::temp_directory_path() / fmt::format("soslam-bench-edges-{}.h5", getpid());
   EdgesWriter writer(path, {});
   int frame_id = 0;
-  for (auto _ : state) writer.Write(frame_id++, PackedEdgeMaps(maps(RoomAImage())));
+  for (auto _ : state) writer.Write(frame_id++, maps(RoomAImage()));
 }
 // As soslam-edges makes them, with corners and the grey image.
 BENCHMARK_CAPTURE(ImageToArtefact, all, [](const cv::Mat& grey) {

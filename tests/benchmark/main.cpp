@@ -3,14 +3,12 @@
 
 #include <opencv2/core/utility.hpp>
 
-#include "base/freed_memory.h"
 #include "base/machine.h"
 
 // As benchmark_main, with memory and OpenCV's threads as stages have them, and with the processor's
 // name in the result.
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  soslam::KeepFreedMemory();
   benchmark::AddCustomContext("cpu", soslam::ThisMachine().cpu);
   benchmark::AddCustomContext("compiler", __VERSION__);
   benchmark::Initialize(&argc, argv);

@@ -141,7 +141,7 @@ TEST_F(DifferenceTest, InfiniteDistancesAreEqual) {
   EdgeMaps maps = ComputeEdgeMaps(cv::Mat::zeros(20, 30, CV_8UC1), {});
   for (const auto& path : {One(), Two()}) {
     EdgesWriter writer(path, {});
-    writer.Write(0, PackedEdgeMaps(maps));
+    writer.Write(0, maps);
     writer.Commit();
     maps.grey = maps.grey.clone();
     maps.grey.at<uchar>(3, 4) = 9;

@@ -235,8 +235,8 @@ TEST_F(InspectionTest, EdgesHaveARowPerFrame) {
   cv::Mat grey = cv::Mat::zeros(60, 80, CV_8UC1);
   grey(cv::Rect(20, 10, 30, 30)).setTo(200);
   EdgesWriter writer(File(), {});
-  writer.Write(7, PackedEdgeMaps(ComputeEdgeMaps(grey, {})));
-  writer.Write(1234567, PackedEdgeMaps(ComputeEdgeMaps(cv::Mat::zeros(60, 80, CV_8UC1), {})));
+  writer.Write(7, ComputeEdgeMaps(grey, {}));
+  writer.Write(1234567, ComputeEdgeMaps(cv::Mat::zeros(60, 80, CV_8UC1), {}));
   writer.Commit();
   const Inspection inspection = Read();
   EXPECT_EQ(At(inspection, 0, "frame"), 7);

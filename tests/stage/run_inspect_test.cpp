@@ -109,7 +109,7 @@ TEST_F(RunInspectTest, PicturesOfEstimatesNeedTheSequence) {
 
 TEST_F(RunInspectTest, PicturesOfEdgesShowOneLayerOrAll) {
   EdgesWriter writer(File("edges.h5"), {});
-  writer.Write(3, PackedEdgeMaps(ComputeEdgeMaps(cv::Mat(90, 120, CV_8UC1, cv::Scalar(7)), {})));
+  writer.Write(3, ComputeEdgeMaps(cv::Mat(90, 120, CV_8UC1, cv::Scalar(7)), {}));
   writer.Commit();
   InspectRequest request = PictureOf("edges.h5");
   request.frame_id = 3;
