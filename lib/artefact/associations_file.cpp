@@ -10,7 +10,8 @@ using nlohmann::json;
 
 json IdOrNull(int index, int first_id) { return index >= 0 ? json(index + first_id) : json(); }
 
-// How files name a detection of the sequence that was read.
+// Reference to a detection of the input sequence as files have it: frame id and id of the given
+// object.
 json NameOf(const Sequence& sequence, int index) {
   const Detection& detection = sequence.detections[static_cast<size_t>(index)];
   return {{"frame", sequence.frames[static_cast<size_t>(detection.frame_index)].id},

@@ -10,9 +10,9 @@
 
 namespace soslam {
 
-// The artefact of kind "associations": what was decided on each detection of the sequence, each
-// track and each object, and why; how the objects agree with those of the sequence. Objects have
-// the ids that AssociatedSequence gives them. Errors as WriteArtefact.
+// Writes the artefact of kind "associations": the decision and its reason for each detection, track
+// and object, and the agreement of the objects with those of the sequence. Objects have the ids
+// that AssociatedSequence gives them. Errors as WriteArtefact.
 void WriteAssociations(const std::filesystem::path& path, const Sequence& sequence,
                        const Association& association, const Agreement& agreement,
                        const ArtefactInfo& info);

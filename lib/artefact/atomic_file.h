@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// A file that appears whole or not at all: write to TemporaryPath(), then Commit(). Until then, and
-// when anything fails, an existing file of that name stays as it was.
+// A file that is written completely or not at all: write to TemporaryPath(), then Commit(). Until
+// then, and on failure, an existing file of that name is unchanged.
 class AtomicFile {
  public:
   // Creates the empty temporary in the folder of `path`, which must exist. Throws SettingsError

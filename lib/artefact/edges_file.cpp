@@ -19,7 +19,7 @@ constexpr const char* kFrames = "/frames";
 
 std::string FrameGroup(int frame_id) { return fmt::format("{}/{:06d}", kFrames, frame_id); }
 
-// Values index the maps.
+// Checks that all values are pixels of the maps, as they are used as indices.
 void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
   const cv::Rect image(0, 0, nearest_edge.cols, nearest_edge.rows);
   for (int y = 0; y < nearest_edge.rows; ++y) {

@@ -30,9 +30,9 @@ class EdgesReader {
  public:
   explicit EdgesReader(const std::filesystem::path& path);
   bool Has(int frame_id) const;
-  // Ascending. Throws InputError for a group that is not named as a frame is.
+  // Frame ids, ascending. Throws InputError for a group whose name is no frame id.
   std::vector<int> FrameIds() const;
-  // For any thread. Throws InputError when the frame is missing, or its maps differ in size.
+  // Thread-safe. Throws InputError when the frame is missing, or its maps differ in size.
   EdgeMaps Read(int frame_id) const;
 
  private:

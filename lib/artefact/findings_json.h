@@ -8,7 +8,7 @@
 
 namespace soslam {
 
-// The list "findings" of JSON artefacts. It is absent where there is none.
+// The list "findings" of JSON artefacts, which is absent when empty.
 nlohmann::json FindingsToJson(const std::vector<Finding>& findings);
 
 // The findings in an artefact of any kind and version.

@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// Null where there is none.
+// The header as JSON; null where there is none.
 nlohmann::json HeaderOf(const Hdf5File& file) {
   if (!file.HasAttribute("/", kHeaderAttribute)) return {};
   std::istringstream text(file.ReadText("/", kHeaderAttribute));

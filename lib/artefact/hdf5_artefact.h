@@ -11,20 +11,21 @@
 
 namespace soslam {
 
-// An HDF5 artefact carries the header of JSON artefacts (ArtefactHeader) as the text `artefact`, an
-// attribute of its root.
+// Name of the text attribute of the root that holds the header of an HDF5 artefact, the same header
+// as in JSON artefacts (ArtefactHeader).
 inline constexpr const char* kHeaderAttribute = "artefact";
 void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5File* file);
 
-// Opens an artefact for reading. Throws InputError when it is not one of this kind, or newer than
-// what this software reads.
+// Opens an artefact for reading. Throws InputError when it is not of this kind or newer than this
+// software supports.
 Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind);
 
-// The header of an artefact of any kind, JSON or HDF5, which what the file begins with tells, not
-// its name. Throws InputError when the file is neither, or has no header that names its kind.
+// The header of an artefact of any kind, JSON or HDF5; the format is recognised by the first bytes
+// of the file, not by its name. Throws InputError when the file is neither, or has no header with
+// its kind.
 nlohmann::json ReadArtefactHeader(const std::filesystem::path& path);
 
-// Whether a file begins as HDF5 files do.
+// True if a file starts with the HDF5 signature.
 bool IsHdf5(const std::filesystem::path& path);
 
 // Pixels as an n x 2 data set of float32; `count` is how many are expected.

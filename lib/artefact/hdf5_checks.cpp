@@ -7,7 +7,7 @@
 namespace soslam {
 namespace {
 
-// What deflate makes of zeros.
+// Largest compression ratio of deflate, reached for zeros.
 constexpr std::uint64_t kMaxPacking = 1032;
 
 std::uint64_t BytesOf(const Hdf5Handle& data_set, const ArrayShape& shape) {
@@ -17,7 +17,7 @@ std::uint64_t BytesOf(const Hdf5Handle& data_set, const ArrayShape& shape) {
   return bytes;
 }
 
-// Unpacked by deflate twice, a few bytes fill any memory.
+// Rejects repeated deflate: with it a few bytes would decompress to more than the memory.
 bool IsPackedAtMostOnce(const Hdf5Handle& creation) {
   const int filters = H5Pget_nfilters(creation.id());
   int deflates = 0;
@@ -32,13 +32,13 @@ bool IsPackedAtMostOnce(const Hdf5Handle& creation) {
   return filters >= 0 && deflates <= 1;
 }
 
-// Deflate makes what it cannot pack a little larger.
+// Largest stored size of `bytes`: deflate slightly enlarges incompressible data.
 std::uint64_t MostStored(std::uint64_t bytes) {
   constexpr std::uint64_t kSlack = 1 << 16;
   return bytes + bytes / 16 + kSlack;
 }
 
-// The library reads whole chunks into memory.
+// True if no chunk is larger than the data set, as the library reads whole chunks into memory.
 bool HasChunksWithin(const Hdf5Handle& creation, const ArrayShape& shape) {
   std::vector<hsize_t> chunk(shape.size());
   const auto rank = static_cast<int>(shape.size());

@@ -10,8 +10,9 @@
 
 namespace soslam {
 
-// Why a data set of this shape must not be read, and what was expected; none when it may be. Its
-// values have to be in the file itself, and not more than a file of `file_bytes` can hold.
+// Error message when a data set of this shape must not be read, with found and expected values;
+// none when it may be. Its values must be stored in the file itself and fit in a file of
+// `file_bytes`.
 std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const ArrayShape& shape,
                                           std::uint64_t file_bytes);
 

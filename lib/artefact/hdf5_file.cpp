@@ -27,7 +27,7 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-// Beyond any image that can be processed; a damaged size must not exhaust the memory.
+// Limit beyond any image that can be processed; a damaged size must not exhaust the memory.
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 28;
 
 constexpr const char* kDamaged = "cannot be read; the file is cut short or damaged";
@@ -57,8 +57,9 @@ bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
                     });
 }
 
-// A thread's turn with the library. A library that knows threads keeps the errors of each: they are
-// not printed, and are cleared at the end of the turn, as it leaks them when the thread ends.
+// Lock on the library for one thread. A thread-safe build of the library has an error stack per
+// thread: it is not printed, and is cleared at the end, as the library leaks it when the thread
+// ends.
 class LibraryTurn {
  public:
   LibraryTurn() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -111,7 +112,7 @@ Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
 }
 
 void Hdf5File::FailWriting(const std::string& name) const {
-  // Of the system call in which the HDF5 library failed.
+  // Error of the system call in which the HDF5 library failed.
   const std::string reason = errno == 0 ? "" : fmt::format(": {}", std::strerror(errno));
   throw SettingsError(fmt::format("{}: {} cannot be written{}", path_.string(), name, reason));
 }
@@ -122,7 +123,7 @@ void Hdf5File::FailReading(const std::string& name, const std::string& problem) 
 
 void Hdf5File::WriteGroup(const std::string& name) {
   errno = 0;
-  // Group by group: those that HDF5 creates on the way by itself store times.
+  // Creates parent groups one by one: those that HDF5 creates itself store times.
   const Hdf5Handle creation = Hdf5Timeless(H5P_GROUP_CREATE);
   for (const std::string& prefix : Prefixes(name)) {
     if (H5Lexists(file_.id(), prefix.c_str(), H5P_DEFAULT) > 0) continue;

@@ -37,22 +37,22 @@ class Hdf5Handle {
   CloseFunction close_;
 };
 
-// An HDF5 file that is either written or read. Names are absolute: "/frames/000012/grey". Numbers
-// are stored little-endian, chunked as a whole, shuffled and deflated; no times are stored, so that
-// the same calls give the same bytes. Throws SettingsError when writing fails; InputError, naming
-// the file, the name in it, what was found and what was expected, when reading does.
+// An HDF5 file, either written or read. Names are absolute: "/frames/000012/grey". Numbers are
+// stored little-endian in one chunk, shuffled and deflated; no times are stored, so that the same
+// calls give the same bytes. Throws SettingsError when writing fails; InputError, with the file,
+// the name in it, the found and the expected value, when reading fails.
 //
 // The HDF5 library is not thread-safe: use it from one thread at a time, all files together. But
 // any thread may read matrices and vectors: they take turns, and inflate side by side.
 class Hdf5File {
  public:
-  // A new, empty file; replaces an existing one. Messages name `final_path`, where it is to go,
-  // unless that is empty.
+  // Creates an empty file; replaces an existing one. Messages use `final_path`, the later name of
+  // the file, unless that is empty.
   static Hdf5File Create(const std::filesystem::path& path,
                          const std::filesystem::path& final_path = {});
   static Hdf5File Open(const std::filesystem::path& path);
 
-  // Groups on the way to a name are created as needed.
+  // Creates a group. All writers create missing parent groups.
   void WriteGroup(const std::string& name);
   // Rows x columns, or rows x columns x 2 when the matrix has two channels. Depth 8U, 16S, 32S,
   // 32F, 64F.
@@ -65,14 +65,14 @@ class Hdf5File {
   // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
   void WriteText(const std::string& owner, const std::string& name, const std::string& text);
   void WriteNumber(const std::string& owner, const std::string& name, double number);
-  // Ends writing: the file is complete only after this.
+  // Finishes writing: the file is complete only after this.
   void Close();
 
   bool Has(const std::string& name) const;
   bool HasAttribute(const std::string& owner, const std::string& name) const;
   // The names in a group, sorted.
   std::vector<std::string> Children(const std::string& group) const;
-  // A matrix of this OpenCV type and size; kAny for a size that is not known.
+  // A matrix of this OpenCV type and size; kAny if a size is not known.
   cv::Mat ReadMatrix(const std::string& name, int type, int rows = kAny, int columns = kAny) const;
   template <typename T>
   std::vector<T> ReadVector(const std::string& name, int size = kAny) const {
@@ -86,14 +86,14 @@ class Hdf5File {
   std::string ReadText(const std::string& owner, const std::string& name) const;
   double ReadNumber(const std::string& owner, const std::string& name) const;
 
-  // For readers that do not know the layout.
-  // Throws InputError unless a walk through all groups ends soon: groups may hold each other, or be
-  // nested without end.
+  // For readers that do not know the layout. RequireWalkable throws InputError unless a walk
+  // through all groups terminates soon: groups may contain each other or be nested without end.
   void RequireWalkable() const;
   bool IsGroup(const std::string& name) const;
   std::vector<std::string> Attributes(const std::string& owner) const;  // sorted
   bool IsText(const std::string& owner, const std::string& attribute) const;
-  // A data set of any of the types above, row by row. Every value of theirs is a double.
+  // A data set of any of the types above, in row-major order. Each of its values is exactly
+  // representable as double.
   struct Numbers {
     ArrayShape shape;
     std::vector<double> values;
@@ -109,10 +109,10 @@ class Hdf5File {
 
   void WriteAttribute(const std::string& owner, const std::string& name, std::int64_t file_type,
                       std::int64_t memory_type, const void* value);
-  std::uint64_t Size() const;  // of the file, bytes
-  // Throws where there are too many values to read, or more than the file can hold.
+  std::uint64_t Size() const;  // size of the file, bytes
+  // Shape of a data set. Throws if it has too many values, or more than the file can hold.
   ArrayShape ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
-  // The same, and where the shape or the element type are not what is expected.
+  // ShapeOf; also throws if shape or element type differ from the expected ones.
   ArrayShape CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
                           const std::vector<int>& expected) const;
 

@@ -34,7 +34,7 @@ Hdf5Element Hdf5ElementOf(int depth) {
 Hdf5Handle Hdf5FileAccess() {
   H5dont_atexit();  // its clean-up at exit crashes on a file that a full disk left unfinished
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors become exceptions, not text on stderr
-  // A file must not have other files read, nor programs loaded.
+  // Prevents a file from making the library read other files or load plug-ins.
   H5Lunregister(H5L_TYPE_EXTERNAL);
   H5PLset_loading_state(0);
   Hdf5Handle access = PropertyList(H5P_FILE_ACCESS);

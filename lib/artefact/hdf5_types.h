@@ -7,8 +7,8 @@
 
 namespace soslam {
 
-// The type of numbers in files and in memory. For an OpenCV depth; throws std::logic_error for
-// those that our files do not have.
+// HDF5 types of numbers in files and in memory for an OpenCV depth. Hdf5ElementOf throws
+// std::logic_error for a depth that artefacts do not have.
 struct Hdf5Element {
   hid_t file_type;
   hid_t memory_type;
@@ -16,11 +16,11 @@ struct Hdf5Element {
 };
 Hdf5Element Hdf5ElementOf(int depth);
 
-// Format 1.8: attributes, unlike in older ones, may be larger than 64 KiB, and metadata has
-// checksums.
+// File access properties for format 1.8, in which attributes may be larger than 64 KiB and metadata
+// has checksums.
 Hdf5Handle Hdf5FileAccess();
 
-// A list for creating files, groups or data sets that stores no times.
+// Creation property list for files, groups or data sets that stores no times.
 Hdf5Handle Hdf5Timeless(hid_t list_class);
 
 // For a data set of this shape: one chunk, shuffled and deflated.

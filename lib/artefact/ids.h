@@ -11,12 +11,12 @@
 
 namespace soslam {
 
-// Files name frames, planes and objects by id; memory knows them by their index in a vector sorted
-// by id. `Item` has a member `id`.
+// Maps ids to indices. Files refer to frames, planes and objects by id, code by index in a vector
+// sorted by id. `Item` has a member `id`.
 template <typename Item>
 class IdTable {
  public:
-  // `name` says in error messages what the items are. Throws InputError unless ids ascend.
+  // `name` is the name of the items in error messages. Throws InputError unless ids ascend.
   IdTable(std::string name, const std::vector<Item>& items) : name_(std::move(name)) {
     for (const Item& item : items) {
       if (!ids_.empty() && item.id <= ids_.back()) {

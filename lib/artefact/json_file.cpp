@@ -22,11 +22,11 @@ namespace {
 
 using nlohmann::json;
 
-// [major, minor] of every kind's schema. A reader reads all versions up to its own.
+// [major, minor] of all schemas. A reader supports all versions up to its own.
 const std::vector<int> kSchemaVersion = {1, 7};
 
-// A parser callback. nlohmann keeps the last of several equal keys without a word, and what walks a
-// document calls itself for each level, so that deep nesting exhausts the stack.
+// Parser callback that rejects duplicate keys, of which nlohmann silently keeps the last, and deep
+// nesting, which would exhaust the stack in recursive code.
 class StructureCheck {
  public:
   static constexpr int kMaxDepth = 100;

@@ -14,7 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-// Rounding while poses are composed stays far below; a number typed by hand does not.
+// Tolerance far above the rounding of composed poses, but below the error of a number typed by
+// hand.
 constexpr double kUnitTolerance = 1e-6;
 
 Eigen::Vector3d VectorFromJson(const json& json) {

@@ -14,9 +14,9 @@
 
 namespace soslam {
 
-// Geometry in JSON, for nlohmann's `json = value` and `json.get<Value>()`. Doubles come back bit
-// for bit. Readers expect what the artefact's schema has checked; they throw InputError, without
-// the file's name, for what a schema cannot say.
+// Geometry in JSON, for nlohmann's `json = value` and `json.get<Value>()`. Doubles round-trip bit
+// by bit. Readers assume JSON that the artefact's schema has accepted; they throw InputError,
+// without the file's name, for errors that a schema cannot express.
 
 // {"rotation_xyzw": [x, y, z, w], "translation": [x, y, z] in metres}. Reading throws InputError
 // unless the quaternion has unit norm.
@@ -36,12 +36,12 @@ void from_json(const nlohmann::json& json, Box& box);
 void to_json(nlohmann::json& json, const Camera& camera);
 void from_json(const nlohmann::json& json, Camera& camera);
 
-// The edges of a box in the order of Box::EdgeLines.
+// Names of the edges of a box, in the order of Box::EdgeLines.
 inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
 
 nlohmann::json VectorToJson(const Eigen::Vector3d& vector);
 
-// Rows of three numbers.
+// Matrix as rows of three numbers.
 nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);
 Eigen::Matrix3d MatrixFromJson(const nlohmann::json& json);
 

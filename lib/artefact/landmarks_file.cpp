@@ -61,7 +61,7 @@ std::vector<ObservationEstimate> ObservationsFromJson(const json& json, const Se
   return estimates;
 }
 
-// How many observations and objects name a failure, by reason.
+// Number of observations and objects with a failure, per reason.
 std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
   std::map<std::string, int> failures;
   for (const auto& observation : estimates.observations) {

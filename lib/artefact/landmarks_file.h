@@ -10,8 +10,8 @@
 namespace soslam {
 
 // The artefact of kind "landmarks": initial.json, refined.json. `sequence` is the one that the
-// estimates belong to; files name its frames and objects by id.
-// Throws InputError for a file that is not valid or names a detection that the sequence lacks.
+// estimates belong to; files refer to its frames and objects by id. ReadLandmarks throws InputError
+// for a file that is not valid or refers to a detection that the sequence lacks.
 LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequence& sequence);
 // Errors as WriteArtefact.
 void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,

@@ -9,9 +9,9 @@
 
 namespace soslam {
 
-// The artefact of kind "map". `sequence` is the one that the map was made from; files name its
-// frames and objects by id. Throws InputError for a file that is not valid, names an object that
-// the sequence lacks, or whose trajectory does not have exactly the sequence's frames.
+// The artefact of kind "map". `sequence` is the one that the map was made from; files refer to its
+// frames and objects by id. Throws InputError for a file that is not valid, refers to an object
+// that the sequence lacks, or whose trajectory does not have exactly the sequence's frames.
 MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence);
 // Errors as WriteArtefact.
 void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,

@@ -65,7 +65,7 @@ json InFramesToJson(const DriftSummary& summary) {
           {"centre_m_median_in_world", OrNull(summary.centre_m_in_world)}};
 }
 
-// Adds why a row is missed or false; null where it is not.
+// Adds the reason why a row is missed or false; null where it is neither.
 void AddExplanation(const std::optional<Explanation>& explanation, json* row) {
   (*row)["reason"] =
       explanation ? json(kMapReasonNames.at(static_cast<size_t>(explanation->reason))) : json();

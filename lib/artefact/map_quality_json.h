@@ -8,7 +8,7 @@
 
 namespace soslam {
 
-// What metrics.json holds as "map_quality".
+// The field "map_quality" of metrics.json.
 nlohmann::json MapQualityToJson(const MapQuality& quality, const Sequence& sequence);
 
 }  // namespace soslam

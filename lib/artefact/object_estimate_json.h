@@ -9,13 +9,14 @@
 
 namespace soslam {
 
-// Nine rows of nine numbers.
+// Covariance as nine rows of nine numbers.
 nlohmann::json CovarianceToJson(const Covariance9& covariance);
 
-// The "objects" of the landmarks and map artefacts: what all observations of each object say.
+// The field "objects" of the artefacts "landmarks" and "map": the estimates of each object from all
+// its observations.
 nlohmann::json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates,
                                      const Sequence& sequence);
-// One of them, as far as it says so without the sequence: object_index stays 0.
+// One row of "objects", read without the sequence: object_index stays 0.
 ObjectEstimate ObjectEstimateFromJson(const nlohmann::json& row);
 // Throws InputError for an object that the sequence does not have.
 std::vector<ObjectEstimate> ObjectEstimatesFromJson(const nlohmann::json& json,

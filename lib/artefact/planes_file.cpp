@@ -33,7 +33,7 @@ json HoldingToJson(const PlanesEstimate& estimate) {
           {"tried", tried}};
 }
 
-// `tilt_variance`: beside the covariance (rad^2).
+// `tilt_variance` (rad^2) is added to the tilt of the covariance.
 json PlaneToJson(const EstimatedPlane& plane, double tilt_variance) {
   json covariance, tilt_sigma, height_sigma;
   if (plane.covariance) {

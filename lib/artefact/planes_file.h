@@ -10,7 +10,7 @@
 namespace soslam {
 
 // Writes planes.json (kind "planes", schemas/planes.schema.json). `given`: the sequence that the
-// planes were estimated from, with the planes that it gives. Errors as WriteArtefact.
+// planes were estimated from, with its given planes. Errors as WriteArtefact.
 void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
                  const Sequence& given, const ArtefactInfo& info);
 

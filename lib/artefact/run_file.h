@@ -12,14 +12,14 @@
 
 namespace soslam {
 
-// Where the path of a RunFile begins, beside the folders that arguments name.
+// Base folders of RunFile paths, in addition to the folders given as arguments.
 inline constexpr const char* kRelativeToRun = "run";    // the folder of run.json
 inline constexpr const char* kRelativeToCall = "call";  // RunRecord::called_in
 
-// A file that a run read or wrote. Files of a results folder are placed relative to the run, those
-// in a folder that the run was called with relative to it, so that both can be moved.
+// A file that a run read or wrote. The path is relative to the run for files of a results folder,
+// and to the argument for files in a folder given as argument, so that both can be moved.
 struct RunFile {
-  std::string argument;     // that names the file, or the folder it is in; empty: none does
+  std::string argument;     // argument that names the file or its folder; empty: none does
   std::string relative_to;  // kRelativeToRun, kRelativeToCall or an argument
   std::filesystem::path path;
   std::string sha256;
@@ -30,7 +30,7 @@ struct RunSetting {
   std::string origin;  // "default", "settings file" or "command line"
 };
 
-// One run of a stage: the content of run.json, schemas/run.schema.json.
+// One run of a stage: the content of run.json (schemas/run.schema.json).
 struct RunRecord {
   std::string stage;  // the executable: "soslam-refine"
   Software software;

@@ -8,7 +8,8 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 
-// GCC 12 takes a std::string::replace that it inlines into valijson for an overflow.
+// Silences GCC 12, which falsely reports an overflow in a std::string::replace inlined into
+// valijson.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstringop-overflow"
@@ -28,7 +29,7 @@ namespace {
 using nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
 
-// Where valijson stands: ("<root>", "[objects]", "[0]") is /objects/0.
+// JSON pointer of valijson's context: ("<root>", "[objects]", "[0]") is /objects/0.
 json::json_pointer Place(const std::vector<std::string>& context) {
   json::json_pointer place;
   for (size_t i = 1; i < context.size(); ++i) {
@@ -47,7 +48,7 @@ std::optional<std::string> ViolationOf(const json& document, const json& schema_
   valijson::Validator validator;
   valijson::ValidationResults results;
   if (validator.validate(schema, Adapter(document), &results)) return std::nullopt;
-  // The deepest error is reported first; those that follow are its consequences further up.
+  // The deepest error is reported first; later ones are its consequences further up.
   const valijson::ValidationResults::Error& error = *results.begin();
   const json::json_pointer place = Place(error.context);
   return fmt::format("{} is {}: {}", place.empty() ? "the document" : place.to_string(),

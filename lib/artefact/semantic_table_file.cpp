@@ -13,11 +13,11 @@ using nlohmann::json;
 
 constexpr const char* kKind = "semantic_table";
 
-// Of entries that state a ratio only; the schema says the same.
+// Defaults of entries that have a ratio only; the schema documents the same values.
 constexpr double kDefaultLogSigma = 0.3;
 constexpr double kDefaultShapeExponent = 1.1;
 
-// The schema allows no other names.
+// The mount with this name; the schema allows no others.
 Mount MountOf(const std::string& name) {
   return static_cast<Mount>(std::ranges::find(kMountNames, name) - kMountNames.begin());
 }
@@ -67,7 +67,7 @@ json Entry(const SemanticRow& row) {
 
 SemanticRows ReadSemanticRows(const std::filesystem::path& path) {
   const json document = ParseJsonFile(path);
-  // People's tables have no header.
+  // Tables written by people have no header.
   if (document.is_object() && document.contains("artefact")) {
     CheckArtefactHeader(document.at("artefact"), kKind, path.string());
   }

@@ -108,7 +108,8 @@ TrueObject TrueObjectFromJson(const json& json) {
           json.value("is_ignored", false)};
 }
 
-// Before version 1.7 what is true was said of the objects that are detected.
+// Fills true_objects of files before version 1.7, in which only detected objects had a ground
+// truth.
 void SayWhatIsTrueOfObjects(Sequence* sequence) {
   for (const Object& object : sequence->objects) {
     if (!object.ground_truth) continue;
@@ -124,7 +125,7 @@ void SayWhatIsTrueOfObjects(Sequence* sequence) {
   }
 }
 
-// A row of numbers: frame, object, rotation (x, y, z, w), translation, half axes.
+// Row of numbers: frame, object, rotation (x, y, z, w), translation (m), half axes (m).
 json TruthInFrameToJson(const TruthInFrame& truth, const Sequence& sequence) {
   const auto& [rotation, translation] = truth.landmark_in_camera.frame_from_object;
   const Eigen::Vector3d& half_axes = truth.landmark_in_camera.half_axes;
@@ -182,7 +183,7 @@ json BoundsToJson(const std::array<bool, 4>& is_bound) {
   return names;
 }
 
-// Five, as in all versions; 8, 12 or 14 since version 1.6.
+// Coefficients of the distortion: 5 in all versions; 8, 12 or 14 since version 1.6.
 Distortion DistortionFromJson(const json& json) {
   const auto coefficients = json.get<std::vector<double>>();
   const auto distortion = DistortionOfCoefficients(coefficients);
@@ -259,8 +260,8 @@ HeldOutFrame HeldOutFromJson(const json& json) {
   return held_out;
 }
 
-// Rows of numbers, as there may be many: frame, row of `reasons`, row of `labels`, true object or
-// null, score, box.
+// Rejected detections as rows of numbers, because they may be many: frame, index in `reasons`,
+// index in `labels`, true object or null, score, box.
 json RejectedToJson(const Sequence& sequence) {
   std::map<std::pair<RejectingStage, std::string>, size_t> reasons;
   std::map<std::string, size_t> labels;
@@ -288,7 +289,7 @@ json RejectedToJson(const Sequence& sequence) {
   return fields;
 }
 
-// The element of a list that a row of rejected detections names.
+// The element of `list` whose index is in a row of rejected detections.
 const json& Named(const json& list, const json& row, size_t field, size_t place) {
   const auto index = row.at(field).get<size_t>();
   if (index >= list.size()) {
@@ -346,7 +347,8 @@ void CheckBoxesInView(const Sequence& sequence) {
   }
 }
 
-// Odometry and trajectories are those of neighbours.
+// Checks that the frames of a segment are contiguous, as odometry and trajectories connect
+// neighbouring frames.
 void CheckSegments(const std::vector<Frame>& frames) {
   std::set<int> seen;
   for (size_t i = 0; i < frames.size(); ++i) {
@@ -359,7 +361,7 @@ void CheckSegments(const std::vector<Frame>& frames) {
   }
 }
 
-// Estimates lead to a held-out frame from its neighbours.
+// Checks held-out frames, whose poses follow from the estimates of their neighbours.
 void CheckHeldOut(const Sequence& sequence) {
   for (size_t i = 0; i < sequence.held_out.size(); ++i) {
     const Frame& frame = sequence.held_out[i].frame;
@@ -384,7 +386,7 @@ void CheckHeldOut(const Sequence& sequence) {
   }
 }
 
-// Either all planes are known or none.
+// Checks that either all planes are known or none.
 void CheckPlanes(const json& json) {
   const bool is_known = !json.at("planes").empty();
   for (const auto& [list, field] : {std::pair("objects", "plane"),  //
@@ -399,14 +401,14 @@ void CheckPlanes(const json& json) {
   }
 }
 
-// Before version 1.6 images were read as they are stored.
+// Orientation of the images; before version 1.6 they were read as stored.
 ImageOrientation OrientationFromJson(const json& json) {
   const std::string name = json.value("image_orientation", "stored");
   const auto found = std::ranges::find(kImageOrientationNames, name);
   return static_cast<ImageOrientation>(found - std::begin(kImageOrientationNames));
 }
 
-// What is true, apart from what is detected; said since version 1.7.
+// Ground truth that does not depend on detections; since version 1.7.
 void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* sequence) {
   if (!json.contains("true_objects")) SayWhatIsTrueOfObjects(sequence);
   for (const auto& object : json.value("true_objects", nlohmann::json::array())) {
@@ -456,7 +458,7 @@ Sequence SequenceFromJson(const json& json) {
   }
   CheckOrder(sequence.detections);
   CheckBoxesInView(sequence);
-  // Versions 1.0 and 1.1 said nothing about what is nearer.
+  // Versions 1.0 and 1.1 had no possible occluders.
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     Detection& detection = sequence.detections[i];
     const auto& fields = json.at("detections")[i];

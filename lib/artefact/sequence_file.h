@@ -8,14 +8,14 @@
 
 namespace soslam {
 
-// Whether a reader can work with a sequence whose support planes nobody knows yet.
+// Whether a reader needs the support planes of a sequence.
 enum class PlaneNeed { kNeeded, kNotNeeded };
 
-// The artefact of kind "sequence". Files name frames, planes and objects by id.
-// Throws InputError for a file that is missing, of another kind, newer or not valid, and for one
+// The artefact of kind "sequence". Files refer to frames, planes and objects by id. ReadSequence
+// throws InputError for a file that is missing, of another kind, newer or not valid, and for one
 // without the planes that are needed.
 Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need = PlaneNeed::kNeeded);
-// The findings are the sequence's own. Errors as WriteArtefact.
+// Writes the sequence with its own findings. Errors as WriteArtefact.
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info);
 

@@ -29,12 +29,12 @@ std::string Hdf5Version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-// 90101 is "9.1.1".
+// Decodes FMT_VERSION: 90101 is "9.1.1".
 std::string FmtVersion() {
   return fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);
 }
 
-// "libarchive 3.6.2" is "3.6.2".
+// Version number in "libarchive 3.6.2".
 std::string LibArchiveVersion() {
   const std::string text = archive_version_string();
   return text.substr(text.rfind(' ') + 1);

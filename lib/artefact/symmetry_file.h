@@ -9,12 +9,12 @@
 
 namespace soslam {
 
-// Writes symmetry.h5 (layout: schemas/hdf5-layout.md), whole or not at all. At most one record per
-// frame and object. Throws SettingsError when it cannot be written.
+// Writes symmetry.h5 (layout: schemas/hdf5-layout.md) atomically. At most one record per frame and
+// object. Throws SettingsError when it cannot be written.
 void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
                    const ArtefactInfo& info);
 
-// The records in the order of frame id, then object id. Throws InputError when the file is missing,
+// The records, sorted by frame id, then object id. Throws InputError when the file is missing,
 // damaged, not of kind "symmetry" or too new.
 std::vector<SymmetryRecord> ReadSymmetry(const std::filesystem::path& path);
 

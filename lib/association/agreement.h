@@ -9,13 +9,15 @@
 
 namespace soslam {
 
-// How estimated objects agree with those that the sequence came with.
+// Agreement of the estimated objects with the objects given in the sequence.
 struct Agreement {
-  // The given object of each estimated one, an index into Sequence::objects: pairs that share the
-  // most detections first, one to one; none when no detection is shared with any that is left.
+  // For each estimated object the index of its given object in Sequence::objects. One to one,
+  // assigned greedily by the number of shared detections; none when no remaining given object
+  // shares a detection.
   std::vector<std::optional<int>> given_of_object;
-  // Given objects that stand still, with at least min_observations detections; pairs of one of
-  // these and an estimated object that share more than half of the detections that either has.
+  // Number of static given objects with at least min_observations detections, and number of pairs
+  // of such an object and an estimated one whose intersection over union of detections is above
+  // 0.5.
   int given_objects = 0;
   int matched = 0;
 
@@ -28,9 +30,9 @@ struct Agreement {
 Agreement CompareWithGiven(const Sequence& sequence, const Association& association,
                            int min_observations);
 
-// The sequence with the estimated objects, ids from 1, in place of its own, and the detections that
-// are theirs; the others are counted as rejected. Each object takes the ground truth of the given
-// one that it agrees with, if that stands still, for evaluation.
+// The sequence with the estimated objects (ids from 1) in place of the given ones. Keeps the
+// detections of these objects; all others are counted as rejected. Each object takes the ground
+// truth of its given object, if that is static, for evaluation.
 Sequence AssociatedSequence(const Sequence& sequence, const Association& association,
                             const Agreement& agreement);
 

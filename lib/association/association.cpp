@@ -11,7 +11,7 @@
 namespace soslam {
 namespace {
 
-// By their first detection in the sequence.
+// Fills Association::objects, ordered by the first detection in the sequence.
 void ListObjects(const Sequence& sequence, Association* association) {
   for (int i = 0; i < static_cast<int>(association->tracks.size()); ++i) {
     if (association->tracks[static_cast<size_t>(i)].fate == TrackFate::kObject) {

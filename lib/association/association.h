@@ -16,73 +16,76 @@
 
 namespace soslam {
 
-// What became of a detection when its frame was looked at.
+// Result of linking one detection to the tracks of earlier frames.
 enum class LinkDecision {
-  kNewTrack,   // no track explained it better than an object that was never seen would
-  kLinked,     // to a track that was in the image all the time since it was last seen
-  kRevisited,  // linked to a track that was out of the image in between
-  kDuplicate,  // in the frame is a box at the same place with a higher score
+  kNewTrack,   // no track fits it better than an unseen object does
+  kLinked,     // to a track that stayed in the image since its last detection
+  kRevisited,  // to a track that left the image since its last detection
+  kDuplicate,  // dropped: a box with a higher score covers the same place
 };
 inline constexpr std::array kLinkDecisionNames = {"new_track", "linked", "revisited", "duplicate"};
 
 struct DetectionDecision {
   LinkDecision decision = LinkDecision::kNewTrack;
-  int track = -1;  // into Association::tracks; -1: none
-  // Of links: how the track explained the box, and when it was seen before.
-  double overlap = 0.0;   // intersection over union of the box and that of the landmark's outline
-  double distance = 0.0;  // from the expected box, in standard deviations
-  std::optional<int> cut_edge;  // left, top, right, bottom: taken as cut off by something unknown
+  int track = -1;  // index in Association::tracks; -1: none
+  // Fit of the track to the box and time since its last detection; for links only.
+  double overlap = 0.0;   // intersection over union of the box and the landmark's outline box
+  double distance = 0.0;  // Mahalanobis distance to the expected box
+  // Edge (left, top, right, bottom) that is treated as cut off by an unknown occluder.
+  std::optional<int> cut_edge;
   int frames_since_seen = 0;
-  int duplicate_of = -1;    // into Sequence::detections
-  int object = -1;          // into Association::objects; -1: not used
-  bool superseded = false;  // not used, as the merged object has another box in the frame
+  int duplicate_of = -1;    // index in Sequence::detections
+  int object = -1;          // index in Association::objects; -1: not used
+  bool superseded = false;  // not used: the merged object has a better box in the frame
 };
 
-// What became of a track.
+// Result of a track after merging and removal of false tracks.
 enum class TrackFate {
   kObject,
-  kMerged,            // into another track, which explains enough of its boxes
+  kMerged,            // into another track that fits enough of its boxes
   kTooFewDetections,  // false: fewer than min_observations
   kRarelyDetected,    // false: in less than min_detection_share of the frames that should show it
-  kNoLandmark,        // its boxes determine no body
+  kNoLandmark,        // its boxes determine no landmark
 };
 inline constexpr std::array kTrackFateNames = {"object", "merged", "too_few_detections",
                                                "rarely_detected", "no_landmark"};
 
-// A sequence of detections that were linked frame by frame.
+// Detections of one object, linked frame by frame.
 struct Track {
-  std::vector<int> detections;  // into Sequence::detections, frames ascending; merged ones included
-  int linked = 0;               // how many of them before merging
+  // Indices in Sequence::detections, ascending by frame; includes those of merged tracks.
+  std::vector<int> detections;
+  int linked = 0;  // number of detections before merging
   int plane_index = 0;
   LabelVotes votes;
   std::optional<FittedObject> fit;
   TrackFate fate = TrackFate::kObject;
-  // Merged: into which track, which explained so many of the boxes it was tried on, and in how many
-  // frames both had been detected.
+  // Set by merging: the track that this one was merged into, the number of boxes that track fits
+  // (`explained`) of those tested (`tried`), and the number of frames in which both have a
+  // detection.
   int merged_into = -1;
   int explained = 0;
   int tried = 0;
   int shared_frames = 0;
-  std::optional<int>
-      frames_in_sight;  // that should show it; none when its fate was decided without
+  // Number of frames that should show the object; none when it was not needed to decide the fate.
+  std::optional<int> frames_in_sight;
 };
 
 struct Association {
   std::vector<DetectionDecision> detections;  // one per Sequence::detections
   std::vector<Track> tracks;
-  std::vector<int> objects;                  // into `tracks`, by their first detection
-  std::map<int, UpEstimate> up_of_segments;  // empty: planes are known
+  std::vector<int> objects;  // indices in `tracks`, ordered by first detection
+  // Keyed by segment; empty when support planes are given.
+  std::map<int, UpEstimate> up_of_segments;
 };
 
-// The sequence as if nobody knew what its objects stand on.
+// The sequence without support planes.
 Sequence WithoutPlanes(Sequence sequence);
 
-// Finds out which detections are of the same object, from boxes, labels, scores, poses and, where
-// the sequence has them, support planes alone: neither objects nor their ids are looked at, but for
-// the label and plane that each detection has through its own. The frames are gone through in
-// order: each one's detections are assigned to the tracks so far, or start new ones, as is most
-// likely. Then tracks are merged that turn out to be one object, and false ones dropped. Throws
-// SettingsError for malformed interchangeable_labels.
+// Estimates which detections belong to the same object from boxes, labels, scores, poses and, if
+// given, support planes. The given objects and their ids are not used, except for the label and
+// plane of each detection. In frame order, the detections of each frame are assigned to existing
+// tracks or start new ones by maximum likelihood. Then tracks of the same object are merged and
+// false ones dropped. Throws SettingsError for malformed interchangeable_labels.
 Association Associate(const Sequence& sequence, const SemanticTable& table,
                       const AssociateOptions& options, int threads);
 

@@ -12,7 +12,8 @@
 
 namespace soslam {
 
-// What all decisions on detections and tracks rest on. Keeps references.
+// Models shared by all steps of data association: landmark fit, predicted box, and likelihood of
+// box and label. Keeps references.
 class AssociationModel {
  public:
   AssociationModel(const Sequence& sequence, const SemanticTable& table,
@@ -28,20 +29,20 @@ class AssociationModel {
     return sequence_.ObjectOf(detection).plane_index;
   }
 
-  // Fits the track's landmark to its detections, with the prior of its label; when they determine
-  // none, the track keeps the one it has.
+  // Fits the track's landmark to its detections with the prior of its label. When they determine no
+  // landmark, the track keeps its previous one.
   void Fit(Track* track) const;
 
-  // Where a track is expected in a frame; none when it has no landmark, or not wholly in front of
-  // the camera, or the frame is of another segment. Its landmark is good for the nearest frame in
-  // which it was detected.
+  // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
+  // entirely in front of the camera, or the frame is of another segment. Odometry drift is counted
+  // from the nearest frame in which the track was detected.
   std::optional<Prediction> Predict(const Track& track, int frame_index) const;
 
-  // How a track explains a detection, with its label; none when it is more likely of an object that
-  // nothing is known of, or on another plane.
+  // Likelihood of a detection's box and label given the track. None when an unseen object is more
+  // likely, or the detection is on another plane.
   std::optional<Explanation> Explain(const Track& track, const Prediction& prediction,
                                      const Detection& detection) const;
-  // Explanation::cost of an object that nothing is known of.
+  // Cost of assigning the detection to an unseen object, comparable to Explanation::cost.
   double NewObjectCost(const Detection& detection) const;
 
  private:
@@ -50,7 +51,7 @@ class AssociationModel {
   const Sequence& sequence_;
   const SemanticTable& table_;
   const AssociateOptions& options_;
-  std::map<int, UpEstimate> up_of_segments_;  // empty: planes are known
+  std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
   BoxLikelihood boxes_;
   LabelConfusion labels_;
 };

@@ -19,11 +19,12 @@ namespace {
 
 constexpr double kNoHuber = std::numeric_limits<double>::infinity();
 
-// A box whose edges, but for one, are not within so many standard deviations is explained better by
-// any object at all: images of 10^5 x 10^5 px have CostOfAnyBox 91, less than the square of this.
+// Gate in standard deviations: if more than one edge is farther off, an unseen object is always
+// more likely. For images of 10^5 x 10^5 px CostOfAnyBox is 91, less than the square of this.
 constexpr double kReach = 10.0;
 
-// How far the body reaches beyond each edge (px), and the covariance of that.
+// Residuals: the distance that the predicted outline extends beyond each box edge (px), with
+// covariance.
 struct Innovation {
   Eigen::Vector4d residuals;
   Eigen::Matrix4d covariance;
@@ -47,9 +48,9 @@ Innovation InnovationOf(const Prediction& prediction, const Box& box,
   return innovation;
 }
 
-// Of some edges, in px.
+// Normal density of a subset of the edges (px).
 struct NormalDensity {
-  double cost;  // -2 log
+  double cost;  // -2 log of the density
   double distance;
 };
 
@@ -69,8 +70,8 @@ NormalDensity DensityOf(const Innovation& innovation, const std::vector<int>& ed
   return {cost, std::sqrt(squared_distance)};
 }
 
-// Of the four edges of the outline (px^2), as far as the landmark moves them. Where the edges are
-// tangent the derivative of Tangency is theirs.
+// Covariance (px^2) of the four outline edges that follows from the landmark's covariance and
+// drift. The box equals the outline, so the Jacobian of BoxTerm is that of the outline's edges.
 Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& camera,
                                   const FittedObject& object) {
   const auto edges = BoxEdges(camera, prediction.outline, {}, 1.0);
@@ -143,7 +144,7 @@ std::optional<Explanation> BoxLikelihood::Explain(const Prediction& prediction,
 double BoxLikelihood::CostOfAnyBox(const Detection& detection) const {
   const double width = sequence_.CameraOf(detection).width;
   const double height = sequence_.CameraOf(detection).height;
-  // Left and right edge anywhere in the image, in this order; so top and bottom.
+  // Left and right edge are uniform over the image with left < right; top and bottom likewise.
   return 2.0 * std::log(0.5 * width * width * 0.5 * height * height);
 }
 

@@ -22,7 +22,7 @@ Drift::Drift(const std::vector<Frame>& frames, double rotation_sigma_rad,
 Eigen::Matrix3d Drift::PointCovariance(int frame_index, int other_frame_index,
                                        const Eigen::Vector3d& point_in_world) const {
   const auto [first, last] = std::minmax(frame_index, other_frame_index);
-  // Motions end at the frames first + 1 to last.
+  // The motions between the two frames end at the frames first + 1 to last.
   const auto begin = static_cast<size_t>(first) + 1;
   const auto end = static_cast<size_t>(last) + 1;
   const double motions = last - first;

@@ -12,7 +12,7 @@ namespace soslam {
 namespace {
 
 constexpr int kNoObject = -1;
-// A box is hidden when a nearer one covers this share of it.
+// A box counts as occluded when a nearer one covers this share of it.
 constexpr double kHiddenShare = 0.5;
 
 double CoveredShare(const Box& box, const Box& by) {
@@ -21,9 +21,9 @@ double CoveredShare(const Box& box, const Box& by) {
   return std::max(0.0, width) * std::max(0.0, height) / (box.Width() * box.Height());
 }
 
-// In how many frames the track was detected, or should have been: wholly in the image, as far from
-// its border as all detections are, as large as the smallest of its boxes, and not behind what was
-// detected.
+// Number of frames in which the track was detected or should have been: its outline box is inside
+// the image, at least as far from the border as all detections are, at least as high as the
+// smallest of the track's boxes, and not occluded by a nearer detection.
 int FramesInSight(const AssociationModel& model, const Track& track, double border_px) {
   const Sequence& sequence = model.sequence();
   double smallest_height = std::numeric_limits<double>::infinity();

@@ -5,7 +5,7 @@
 
 namespace soslam {
 
-// Decides which of the tracks that are left are objects, and why the others are not.
+// Decides which of the tracks left after merging are objects, and sets the fate of all.
 void DropFalseTracks(const AssociationModel& model, int threads, Association* association);
 
 }  // namespace soslam

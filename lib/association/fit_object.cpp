@@ -13,15 +13,16 @@
 namespace soslam {
 namespace {
 
-// UprightVector, and the height of the foot over the plane (m), which is free without a plane.
+// The parameters of UprightVector and the height of the contact point over the plane (m), which is
+// free without a plane.
 constexpr int kMaxParameters = 7;
 using Information =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParameters, kMaxParameters>;
 using ByParameters =
     Eigen::Matrix<double, kLandmarkDof, Eigen::Dynamic, 0, kLandmarkDof, kMaxParameters>;
 
-// What is known without any box, as standard deviations: a yaw is somewhere on half a turn, the
-// foot (m) anywhere, half axes to a factor of e.
+// Weak prior that keeps the information regular, as standard deviations: yaw uniform over half a
+// turn, contact point anywhere (m), log half axes 1.
 Information PriorInformation(Eigen::Index parameters) {
   Eigen::Matrix<double, kMaxParameters, 1> sigmas;
   sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;
@@ -37,7 +38,8 @@ ByParameters LandmarkByParameters(const MultiViewObservation& observation,
   return by_parameters;
 }
 
-// A body leans with `up`, and its parameters follow so that its boxes stay explained.
+// Marginal covariance of the landmark including that of `up`: the landmark tilts with `up`, and its
+// other parameters adapt so that it still fits the boxes.
 Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark& landmark,
                          const Eigen::Matrix3d& up_covariance) {
   const ByParameters by_parameters = LandmarkByParameters(observation, landmark);
@@ -57,7 +59,7 @@ Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark
          by_turn * up_covariance * by_turn.transpose();
 }
 
-// From one box alone: the best yaw of a sweep.
+// Landmark from one box: the best yaw of a sweep.
 std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detection& detection,
                                         const MultiViewObservation& all,
                                         const AssociateOptions& options) {
@@ -65,7 +67,7 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
   UprightObservation observation = MakeUprightObservation(
       sequence, detection, *all.prior,
       {options.box_sigma_fraction, /*axes_weight=*/0.0, options.yaw_grid_deg});
-  // Of the same pose as all other views, while the detection's own may be of a better one.
+  // The pose shared by all views, whereas the detection's own plane may come from a better pose.
   observation.plane_in_camera = Transform(frame.world_from_camera.Inverse(), all.plane_in_world);
   const YawObjective objective;
   const auto optima =
@@ -75,7 +77,8 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
   return Transform(frame.world_from_camera, optima.front().landmark);
 }
 
-// From all views at once; where these need a start, from the first one that gives one.
+// Landmark from all views jointly. If that needs an initial guess, it is the first single-view
+// landmark.
 std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence,
                                         const std::vector<int>& detections,
                                         const MultiViewObservation& observation,

@@ -19,14 +19,14 @@ struct FittedObject {
   Covariance9 covariance;  // over the parameters of kLandmarkDof
 };
 
-// The landmark of an object from its detections (indices into Sequence::detections, at least one;
-// all on one plane), of which max_views are used, and its covariance: the inverse of the
-// information in boxes and prior, with views from one side counted as one. None when the boxes do
-// not determine a body in front of the cameras.
+// Fits an object's landmark to its detections (indices in Sequence::detections, at least one, all
+// on one plane), of which at most max_views are used. The covariance is the inverse of the
+// information of boxes and prior; views from one side count as one. None when the boxes do not
+// determine a landmark in front of the cameras.
 //
-// In a sequence without planes `up` (of the segment) stands for them: the body is upright at any
-// height, its size and so its distance are first known from the prior's height_m, which is then
-// needed. That up may be wrong, and what of the landmark has adapted to it, is in the covariance.
+// In a sequence without planes, `up` (of the segment) replaces them: the object is upright at a
+// free height, and its prior's height_m, which is then required, fixes the scale and thus the
+// distance. The covariance includes the uncertainty of `up`, with the landmark adapting to it.
 std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
                                       const ShapePrior& prior, const AssociateOptions& options,
                                       const std::optional<UpEstimate>& up = std::nullopt);

@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// The parts between separators, without spaces around them.
+// Parts between separators, trimmed of spaces.
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   for (size_t begin = 0; begin <= text.size();) {

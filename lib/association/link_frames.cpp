@@ -13,7 +13,8 @@
 namespace soslam {
 namespace {
 
-// A landmark is fitted again for each new detection at first, then when there are so many more.
+// A landmark is refitted after every new detection up to this number, then whenever the number of
+// detections has grown by this factor.
 constexpr size_t kAlwaysFitted = 6;
 constexpr double kFitGrowth = 1.5;
 
@@ -37,10 +38,10 @@ class FrameLinker {
   }
 
  private:
-  // What is known of a track beside its detections.
+  // State of a track in addition to its detections.
   struct State {
     std::optional<Prediction> prediction;  // in the current frame
-    bool was_out_of_image = false;         // since it was last seen
+    bool was_out_of_image = false;         // since its last detection
     bool has_changed = false;              // in the current frame
     size_t fitted_detections = 0;
     std::string fitted_label;
@@ -53,7 +54,8 @@ class FrameLinker {
     return association_.detections[static_cast<size_t>(detection)];
   }
 
-  // By what is seen, so that the order and ids of the input do not matter; best score first.
+  // Indices of the detections of a frame, best score first. Ties are ordered by box and label, so
+  // that the order and ids of the input do not matter.
   std::vector<int> DetectionsIn(int frame) const {
     const auto& all = model_.sequence().detections;
     std::vector<int> detections;

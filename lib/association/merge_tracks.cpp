@@ -11,13 +11,13 @@
 namespace soslam {
 namespace {
 
-// How a track would take up another one.
+// Candidate merge of a smaller track into a larger one.
 struct Merge {
   int into = -1;
   int explained = 0;
   int tried = 0;
   int shared_frames = 0;
-  double cost = 0.0;  // of the explained boxes, in all
+  double cost = 0.0;  // sum over the explained boxes
 
   bool IsBetterThan(const Merge& other) const {
     return std::tuple(-explained, cost, into) <
@@ -46,7 +46,7 @@ class TrackMerger {
   Track& TrackAt(int track) { return association_.tracks[static_cast<size_t>(track)]; }
   const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
 
-  // The tracks that are left, fewest detections first, of equals the youngest.
+  // Tracks not yet merged, fewest detections first, the youngest first among equals.
   std::vector<int> SmallestFirst() const {
     std::vector<int> order;
     for (int i = 0; i < static_cast<int>(association_.tracks.size()); ++i) {
@@ -59,8 +59,8 @@ class TrackMerger {
 
   bool HasChanged(int track) const { return has_changed_[static_cast<size_t>(track)] != 0; }
 
-  // Of the tracks after this one in the order the one to merge it into. What was found before
-  // still holds for pairs of tracks that have not changed.
+  // The best track to merge this one into, among those after it in the order. Reuses the previous
+  // result for pairs of tracks that have not changed.
   std::optional<Merge> BestMerge(const std::vector<int>& order, size_t position) const {
     const int smaller = order[position];
     std::optional<Merge> best = best_[static_cast<size_t>(smaller)];
@@ -74,8 +74,8 @@ class TrackMerger {
     return best;
   }
 
-  // Finds for each track the one to merge it into, and merges those pairs of which neither track
-  // has changed since. Returns whether any were.
+  // Finds the best merge of each track and applies those in which neither track has changed in this
+  // round. Returns whether any were applied.
   bool MergeOnce() {
     const std::vector<int> order = SmallestFirst();
     std::vector<std::optional<Merge>> merges(order.size());
@@ -164,7 +164,7 @@ class TrackMerger {
   const AssociationModel& model_;
   int threads_;
   Association& association_;
-  // By track: the merge found last, and whether the track has changed since.
+  // Per track: the merge found last, and whether the track has changed since.
   std::vector<std::optional<Merge>> best_;
   std::vector<char> has_changed_;
 };

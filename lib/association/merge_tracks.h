@@ -5,11 +5,12 @@
 
 namespace soslam {
 
-// Merges tracks that are one object: when the larger one's landmark explains at least merge_share
-// of the smaller one's boxes (of max_views, evenly over all), and they are hardly ever detected in
-// the same frame (max_shared_frames). The smallest tracks first, each into the one that explains
-// most of it; until none is left to merge. Where a merged object has two detections in a frame, the
-// one with the lower score is superseded. Landmarks of tracks that grew are fitted again.
+// Merges tracks of the same object: the larger track's landmark fits at least merge_share of the
+// smaller one's boxes (at most max_views of them, evenly spread), and the two are detected in the
+// same frame in at most max_shared_frames of the smaller one's frames. Smallest tracks first, each
+// into the one that fits most of its boxes, until no pair is left to merge. Where a merged object
+// has two detections in a frame, the one with the lower score is superseded. Landmarks of grown
+// tracks are refitted.
 void MergeTracks(const AssociationModel& model, int threads, Association* association);
 
 }  // namespace soslam

@@ -9,8 +9,8 @@
 namespace soslam {
 
 enum class AssociationSource {
-  kGiven,      // the dataset says which box is of which object
-  kEstimated,  // it does not, or is not asked
+  kGiven,      // the dataset gives the object of each box
+  kEstimated,  // the dataset does not, or it is ignored
 };
 inline constexpr std::array kAssociationSourceNames = {"given", "estimated"};
 

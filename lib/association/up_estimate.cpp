@@ -17,29 +17,30 @@
 namespace soslam {
 namespace {
 
-// Of each label, evenly over all: as many boxes are looked at.
+// Boxes used per label, evenly spread.
 constexpr size_t kBoxesOfLabel = 48;
-// What is usual is not doubted: without boxes that say otherwise cameras are held level.
+// Threshold of ChooseHolding, high because level cameras are usual: they are assumed unless boxes
+// contradict.
 constexpr double kClear = 0.1;
-// Those that lead to different axes: which end of it is up does not matter to bodies.
+// Holdings that differ in the vertical axis. Its sign does not matter to the fit of a body.
 constexpr std::array kHoldings = {CameraHolding::kLevel, CameraHolding::kRolled90,
                                   CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90};
 
-// Of things whose label has no height: to a factor of e.
+// Standard deviation of the log height of an object whose label has no height.
 constexpr double kUnknownHeightLogSigma = 1.0;
 
-// Of a label that the table knows nothing about: as long and wide as high, give or take a factor of
-// e, and a cuboid.
+// Prior of a label that is not in the table: a cuboid as long and wide as high, with a log standard
+// deviation of 1.
 ShapePrior UnknownShape() {
   ShapePrior prior;
   prior.shape_exponent = kCuboidExponent;
   return prior;
 }
 
-// What is seen in one world.
+// Poses and detections of one segment.
 struct Segment {
   std::vector<Rigid3d> world_from_camera;
-  std::map<std::string, std::vector<int>> detections;  // by label
+  std::map<std::string, std::vector<int>> detections;  // keyed by label
 };
 
 std::map<int, Segment> SegmentsOf(const Sequence& sequence) {
@@ -56,7 +57,7 @@ std::map<int, Segment> SegmentsOf(const Sequence& sequence) {
   return segments;
 }
 
-// By label: each box alone, of an upright body at any height.
+// Per label, single-box observations of an upright body at a free height.
 using BoxesOfLabels = std::vector<std::vector<MultiViewObservation>>;
 
 BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
@@ -75,7 +76,7 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
   return boxes;
 }
 
-// The mean over a label's boxes: those of one object all say the same.
+// Mean cost over a label's boxes; a mean, because boxes of the same object are correlated.
 std::optional<double> MeanCost(const std::vector<MultiViewObservation>& boxes,
                                const Eigen::Vector3d& up) {
   double sum = 0.0;
@@ -91,7 +92,7 @@ std::optional<double> MeanCost(const std::vector<MultiViewObservation>& boxes,
 
 UpEstimate UpOf(const CameraAttitude& attitude, double tilt_variance) {
   const Eigen::Vector3d& up = attitude.up_in_world;
-  // Turns about these two move up by their cross products with it.
+  // Rotations about these two axes move up by their cross products with it.
   Eigen::Matrix<double, 3, 2> axes;
   axes.col(0) = up.unitOrthogonal();
   axes.col(1) = up.cross(axes.col(0));

@@ -13,23 +13,24 @@
 
 namespace soslam {
 
-// Where up is in a world without support planes, as cameras are held.
+// Up direction of a world without support planes, from the way the cameras are held.
 struct UpEstimate {
   Eigen::Vector3d up_in_world;
-  // Of the rotation vector that turns it to where it really is (rad^2, world axes); zero about
-  // itself.
+  // Covariance (rad^2, world axes) of the rotation vector from the estimated to the true up; zero
+  // about up itself.
   Eigen::Matrix3d covariance;
-  CameraHolding holding = CameraHolding::kLevel;  // the most probable way to hold cameras
-  std::vector<TriedHolding> holdings = {};        // one for each direction of up that was tried
-  double holding_tilt_variance = 0.0;             // rad^2, by the others; 0 where one is clear
+  CameraHolding holding = CameraHolding::kLevel;  // most probable one
+  std::vector<TriedHolding> holdings = {};        // one per tried direction of up
+  // Variance of up over the alternatives (rad^2); 0 where the choice is clear.
+  double holding_tilt_variance = 0.0;
 };
 
-// Of a label's objects, with a height also where the table has none.
+// Shape prior of a label's objects; it always has a height, also where the table has none.
 ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
                         const AssociateOptions& options);
 
-// By segment, each with a world of its own. How the cameras are held, single boxes say: what it
-// costs to take each for that of an upright body of its label.
+// Up direction per segment, as each segment has a world of its own. The way the cameras are held
+// follows from the cost of fitting upright bodies of the label's shape to single boxes.
 std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticTable& table,
                                        const AssociateOptions& options);
 

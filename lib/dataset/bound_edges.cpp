@@ -11,14 +11,14 @@
 namespace soslam {
 namespace {
 
-// A box that ends this close to the image border (px) is cut by it. Tools differ by up to a pixel
-// in where the border is (width - 1 or width), and detectors round.
+// Edges this close to the image border (px) count as cut by it. Tools differ by up to a pixel in
+// the position of the border (width - 1 or width), and detectors round.
 constexpr double kCutAtBorderPx = 1.5;
 
-// A share of exactly the option's value hides, whatever the rounding of the boxes' edges.
+// Rounding tolerance: a covered share equal to the option's value counts as occluded.
 constexpr double kShareTolerance = 1e-9;
 
-// The share of a box's lower edge that lies inside the union of other boxes.
+// Share of a box's lower edge that lies inside the union of other boxes.
 double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
   std::vector<std::pair<double, double>> intervals;
   for (const Box& other : others) {
@@ -44,11 +44,11 @@ std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
           camera.height - 0.5 - box.y_max <= kCutAtBorderPx};
 }
 
-// Nearer objects make a bound of the lower edge only. They stand on the same support, so they hide
-// what is behind them from the feet upwards, and a box that ends within another has probably lost
-// its feet. Sides and tops tell less: the box of a tall object full of gaps (a chair) covers much
-// that is seen past its back and between its legs, and the edge of the object behind is then
-// measured as well as any.
+// Nearer objects make only the lower edge a bound. They stand on the same support, so they occlude
+// what is behind them from the base upwards, and a box that ends within another has probably lost
+// its base. Sides and tops are less certain: the box of a tall object full of gaps (a chair) covers
+// much that is visible past its back and between its legs, and the edge of the object behind is
+// then measured as well as any.
 void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence) {
   for (Detection& detection : sequence->detections) {
     const double hidden_share =

@@ -8,13 +8,13 @@
 
 namespace soslam {
 
-// Detection::is_bound says which edges of a box are bounds: those that the image border cuts, and a
-// lower edge that nearer objects hide.
+// Marks edges of boxes that are only bounds (Detection::is_bound): edges cut by the image border,
+// and lower edges occluded by nearer objects.
 
-// The edges of a box that end at the border of the image it is in: left, top, right, bottom.
+// True for the edges of a box (left, top, right, bottom) at the border of its image.
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera);
 
-// Marks the lower edges that BoxesInFront hide (hidden_edge_fraction).
+// Marks lower edges that BoxesInFront cover (hidden_edge_fraction).
 void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence);
 
 }  // namespace soslam

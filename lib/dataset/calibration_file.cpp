@@ -24,8 +24,8 @@
 namespace soslam {
 namespace {
 
-// In lower case, without underscores, and without what Kalibr and ORB-SLAM3 call their first
-// camera.
+// Normalised key: lower case, without underscores and without Kalibr's and ORB-SLAM3's prefix of
+// the first camera.
 std::string PlainKey(const std::string& key) {
   std::string plain;
   for (const char c : key) {
@@ -35,14 +35,14 @@ std::string PlainKey(const std::string& key) {
   return plain.starts_with("camera1.") ? "camera." + plain.substr(8) : plain;
 }
 
-// Whether a field is of another camera of Kalibr's than the first: "cam1.intrinsics".
+// True for a field of another camera of Kalibr's than the first: "cam1.intrinsics".
 bool IsOfOtherCamera(const std::string& plain_key) {
   const std::string camera = plain_key.substr(0, plain_key.find('.'));
   return camera.size() > 3 && camera.starts_with("cam") &&
          camera.find_first_not_of("0123456789", 3) == camera.npos;
 }
 
-// Whether a field says by its name that it is of a lens, and is no size of a matrix.
+// True if the field's name denotes distortion, and not the size of a matrix.
 bool IsOfDistortion(const std::string& plain_key) {
   for (const char* end : {".rows", ".cols"}) {
     if (plain_key.ends_with(end)) return false;
@@ -93,7 +93,7 @@ class CalibrationReader {
     throw InputError(fmt::format("{}: {}", file_, what));
   }
 
-  // The first of these fields that there is; null when none is.
+  // First of these fields that exists; null when none does.
   const Values* Find(std::initializer_list<const char*> keys) const {
     for (const char* key : keys) {
       const auto found = fields_.find(key);
@@ -166,7 +166,8 @@ class CalibrationReader {
     Refuse("has no camera_matrix; expected that or intrinsics (fx, fy, cx, cy)");
   }
 
-  // A region of interest or binned pixels, of ROS: another camera than that of the whole image.
+  // Refuses ROS' region of interest and binning, with which the camera differs from that of the
+  // whole image.
   void RefusePartsOfImages(int width, int height) const {
     const auto number = [&](const char* key) { return Find({key}) == nullptr ? 0.0 : Number(key); };
     for (const char* key : {"binningx", "binningy"}) {
@@ -194,7 +195,7 @@ class CalibrationReader {
     }
   }
 
-  // What is not `read` must not look as if it were.
+  // Refuses distortion in fields that are not `read`, so that it is not ignored silently.
   void RefuseOtherDistortion(const Values* read) const {
     for (const auto& [key, values] : fields_) {
       if (&values == read || !IsOfDistortion(key) || !std::ranges::any_of(values, IsNumber))
@@ -230,7 +231,7 @@ class CalibrationReader {
   }
 
   NamedFields fields_;
-  std::map<std::string, std::string> names_;  // as the file writes them, by plain key
+  std::map<std::string, std::string> names_;  // names as in the file, keyed by plain key
   std::string file_;
 };
 

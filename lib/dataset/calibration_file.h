@@ -9,30 +9,30 @@
 
 namespace soslam {
 
-// What a calibration says of a camera. Pixel (0, 0) is the centre of the top-left one, as here.
+// A camera calibration. Pixel (0, 0) is the centre of the top-left pixel, as everywhere in this
+// project.
 struct Calibration {
   LensCamera camera;
-  // EuRoC's T_BS, or the inverse of Kalibr's T_cam_imu. The body is what EuRoC's poses are of.
+  // EuRoC's T_BS, or the inverse of Kalibr's T_cam_imu. The body is the frame that EuRoC's poses
+  // refer to.
   std::optional<Rigid3d> body_from_camera;
 };
 
-// A camera in YAML (.yaml, .yml) or XML (.xml), by the names of the fields, in which capitals and
-// underscores do not count:
+// Reads a camera from YAML (.yaml, .yml) or XML (.xml). Field names are matched without capitals
+// and underscores:
 //
 //   size        image_width and image_height (ROS, OpenCV), width and height, resolution (EuRoC,
 //               Kalibr)
 //   intrinsics  camera_matrix or K: 9 numbers, or a matrix with "data"; intrinsics: fx fy cx cy;
 //               Camera.fx, .fy, .cx, .cy (ORB-SLAM)
-//   lens        distortion_coefficients, dist_coeffs, dist_coeff, distortion_coeffs or D: in
-//   OpenCV's order;
-//               Camera.k1, .k2, .p1, .p2, .k3
+//   lens        distortion_coefficients, dist_coeffs, dist_coeff, distortion_coeffs or D,
+//               in OpenCV's order; Camera.k1, .k2, .p1, .p2, .k3
 //   its model   distortion_model, camera_model, Camera.type (ParseLens)
 //
 // The camera is the first one of a rig: cam0 of Kalibr's camchain.yaml, Camera1 of ORB-SLAM3's
-// settings.
-// Other fields are of no matter to the camera. Throws InputError, naming the field, for what is
-// missing, for a skew or a transposed matrix, for a fisheye_model, for coefficients of distortion
-// by other names, and for ROS' binning and roi.
+// settings. Other fields are ignored. Throws InputError, naming the field, for a missing field, a
+// skew or a transposed matrix, a fisheye_model, distortion coefficients by other names, and ROS'
+// binning and roi.
 Calibration ReadCalibration(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -7,9 +7,9 @@
 
 namespace soslam {
 
-// The camera of a file, whatever its format, which is told by its name: .yaml, .yml, .xml
-// (ReadCalibration), .txt (ReadColmapCamera; .bin, its binary files, is refused), or else JSON:
-// nerfstudio's, as it has "frames" or "fl_x", or a camera.json (ReadCamera). Throws InputError.
+// Reads a camera file; the format follows from its name: .yaml, .yml, .xml (ReadCalibration), .txt
+// (ReadColmapCamera; its binary .bin is refused), otherwise JSON: nerfstudio's if it has "frames"
+// or "fl_x", or a camera.json (ReadCamera). Throws InputError.
 Calibration ReadCameraFile(const std::filesystem::path& path);
 
 }  // namespace soslam

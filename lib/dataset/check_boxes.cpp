@@ -10,7 +10,7 @@
 namespace soslam {
 namespace {
 
-// The four numbers of a box as its file has them, and as what they could be meant.
+// The four numbers of a box in its file, and conversions from other conventions.
 using FourNumbers = std::array<double, 4>;
 
 Box FromCorners(const FourNumbers& v) { return {v[0], v[1], v[2], v[3]}; }
@@ -49,10 +49,10 @@ const BoxConvention& ConventionOf(const ImportOptions& options) {
   }
 }
 
-// What detectors and roundings take, as a share of the image's sides.
+// Tolerance for detectors and rounding, as a share of the image's sides.
 constexpr double kMargin = 0.03;
 
-// Has an area, and lies in the image up to the margin.
+// True if the box has an area and lies in the image up to the margin.
 bool IsPlausible(const Box& box, const Camera& camera) {
   const double margin_x = kMargin * camera.width;
   const double margin_y = kMargin * camera.height;
@@ -67,7 +67,7 @@ int CountPlausible(const std::vector<Box>& boxes, const Camera& camera,
       boxes, [&](const Box& box) { return IsPlausible(reading(box), camera); }));
 }
 
-// The convention with which nearly all boxes lie in the image; null when none has them there.
+// The convention under which nearly all boxes lie in the image; null when there is none.
 const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camera& camera,
                                       const BoxConvention& assumed) {
   constexpr double kNearlyAll = 0.98;
@@ -84,7 +84,7 @@ const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camer
   return best;
 }
 
-// How far boxes reach to the right and down.
+// Maximum x and y of all boxes (px).
 Eigen::Vector2d Extent(const std::vector<Box>& boxes) {
   Eigen::Vector2d extent = Eigen::Vector2d::Zero();
   for (const Box& box : boxes) extent = extent.cwiseMax(Eigen::Vector2d(box.x_max, box.y_max));
@@ -115,7 +115,7 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
   if (bad < kFewest || bad <= kTolerated * all) return {};
   const BoxConvention& assumed = ConventionOf(options);
   const BoxConvention* better = BetterConvention(boxes, camera, assumed);
-  // Boxes of whole objects that the image cuts reach out of it on all sides.
+  // Boxes of whole objects that the image cuts extend beyond it on all sides.
   const auto is_left_or_above = [&](const Box& box) {
     return box.x_min < -kMargin * camera.width || box.y_min < -kMargin * camera.height;
   };
@@ -148,8 +148,8 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
   return {finding};
 }
 
-// Boxes of images that were made smaller begin at the left border, and some end where those images
-// do.
+// Finds boxes of downscaled images: they begin at the left border, and some end at the border of
+// the smaller image.
 std::vector<Finding> CheckUnusedPart(const std::vector<Box>& boxes, const Camera& camera) {
   constexpr size_t kFewest = 30;
   constexpr double kLargestPart = 0.7;
@@ -179,7 +179,7 @@ std::vector<Finding> CheckBoxes(const ImportView& view) {
   const bool is_folder = view.options.format == DatasetFormat::kSoslam ||
                          view.options.format == DatasetFormat::kTumRgbd ||
                          view.options.format == DatasetFormat::kIclNuim;
-  if (!is_folder) return {};  // the others say what their boxes are
+  if (!is_folder) return {};  // other formats define their boxes
   std::vector<Box> boxes;
   for (const DetectionRow& row : view.content.rows) {
     boxes.push_back(row.box_in_image_file.value_or(row.box));

@@ -9,7 +9,7 @@
 namespace soslam {
 namespace {
 
-// Within the rounding and the crops of tools.
+// True within the tolerance for rounding and crops of tools.
 bool IsAbout(double value, double expected, double relative = 0.05) {
   return std::abs(value - expected) <= relative * std::abs(expected);
 }
@@ -19,7 +19,7 @@ std::string InWords(const Camera& camera) {
                      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
 }
 
-// Where the principal point would be the middle of the image if its sides were swapped.
+// True if the principal point would be the image centre with width and height swapped.
 bool HasSwappedSides(const Camera& camera) {
   const bool is_off =
       !IsAbout(camera.cx, 0.5 * camera.width, 0.1) || !IsAbout(camera.cy, 0.5 * camera.height, 0.1);
@@ -27,7 +27,7 @@ bool HasSwappedSides(const Camera& camera) {
          IsAbout(camera.cy, 0.5 * camera.width);
 }
 
-// How many times larger the image is in whose middle the principal point lies; 0 for none.
+// Scale of the image whose centre is the principal point; 0 for none.
 double ScaleOfPrincipalPoint(const Camera& camera) {
   const double by_x = 2.0 * camera.cx / camera.width;
   const double by_y = 2.0 * camera.cy / camera.height;

@@ -12,11 +12,11 @@
 namespace soslam {
 namespace {
 
-// One size that images have where the camera has another one.
+// An image size that differs from the camera's.
 struct Mismatch {
   Camera camera;
   ImageSize size;
-  bool is_of_stored;  // the camera is of the size that EXIF turns
+  bool is_of_stored;  // the camera has the size of the stored image, before EXIF rotation
   std::string first_image;
   int images = 0;
 };
@@ -53,8 +53,8 @@ Finding Explained(const Mismatch& mismatch, size_t all) {
   return finding;
 }
 
-// Turned images of which no size tells whether camera and boxes refer to them as they are shown, or
-// whose poses are COLMAP's.
+// Checks images with an EXIF rotation when their size does not determine whether camera and boxes
+// refer to the rotated image, or when the poses are COLMAP's.
 std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportOptions& options) {
   if (turned == 0 || options.image_orientation == ImageOrientation::kStored) return {};
   Finding finding{

@@ -12,7 +12,8 @@
 namespace soslam {
 namespace {
 
-// How many detections have a label that objects.json knows, with their classes counted `shift` on.
+// Number of detections whose label is in objects.json, with their class numbers increased by
+// `shift`.
 int CountKnown(const ImportView& view, const std::set<std::string>& known, int shift) {
   const std::vector<std::string>& names = view.content.class_names;
   return static_cast<int>(std::ranges::count_if(view.content.rows, [&](const DetectionRow& row) {
@@ -24,7 +25,7 @@ int CountKnown(const ImportView& view, const std::set<std::string>& known, int s
   }));
 }
 
-// Classes counted from 1 where the list counts from 0, or the reverse.
+// Finds class numbers that count from 1 where the list counts from 0, or the reverse.
 std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   constexpr int kFewest = 10;
   std::set<std::string> known;
@@ -50,7 +51,7 @@ std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   return {};
 }
 
-// Blank lines between names, which programs count as classes that read names by their line.
+// Finds blank lines between names, which count as classes for programs that identify names by line.
 std::vector<Finding> CheckBlankLines(const ImportView& view) {
   const auto& file = view.content.class_names_file;
   if (!file || file->extension() == ".yaml" || file->extension() == ".yml") return {};

@@ -12,18 +12,18 @@
 namespace soslam {
 namespace {
 
-constexpr size_t kFewest = 10;  // boxes that say something
-constexpr double kCutPx = 2.0;  // from the border: boxes that the image cuts
+constexpr size_t kFewest = 10;  // minimum number of usable boxes
+constexpr double kCutPx =
+    2.0;  // distance from the border at which a box counts as cut by the image
 
-// A box, and the true landmark that an id stands for, seen from the same camera.
+// A box and the true landmark with its id, in the same camera's frame.
 struct BoxAndTruth {
   Box box;
   Camera camera;
   Landmark landmark_in_camera;
 };
 
-// The whole boxes of static objects beside the true landmarks of the objects with their id plus
-// `shift`.
+// Uncut boxes of static objects with the true landmarks of the objects with their id plus `shift`.
 std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
   std::map<std::int64_t, const Landmark*> landmarks;
   for (const Object& object : view.content.objects) {
@@ -49,7 +49,7 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
   return pairs;
 }
 
-// How far (deg, median) boxes are from the centres; none when there are too few.
+// Median angle (deg) between boxes and centres; none when there are too few.
 std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
   std::vector<double> angles;
   for (const auto& [box, camera, landmark] : pairs) {
@@ -86,15 +86,15 @@ std::vector<Finding> CheckCentres(const ImportView& view) {
   return {finding};
 }
 
-// The height (px) that a landmark looks, by its distance where it has no outline, as where the
-// camera is within it.
+// Height (px) of a landmark's outline; from its distance where it has no outline, for example
+// because the camera is inside it.
 double HeightPx(const Camera& camera, const Landmark& landmark_in_camera) {
   const auto outline = OutlineBox(camera, landmark_in_camera);
   if (outline) return outline->Height();
   return 2.0 * camera.fy * landmark_in_camera.half_axes.z() / landmark_in_camera.Centre().norm();
 }
 
-// Heights of outlines against those of the boxes.
+// Compares heights of outlines with those of the boxes.
 std::vector<Finding> CheckTrueSizes(const ImportView& view) {
   constexpr double kLargestFactor = 1.6;
   constexpr double kFactorOfUnit = 5.0;
@@ -117,7 +117,7 @@ std::vector<Finding> CheckTrueSizes(const ImportView& view) {
 
 }  // namespace
 
-// The z axes of upright objects against the normals of their planes.
+// Compares the z axes of upright objects with the normals of their planes.
 std::vector<Finding> CheckObjectAxes(const ImportView& view) {
   constexpr double kSteepestDeg = 30.0;
   constexpr size_t kFewestObjects = 2;

@@ -15,8 +15,8 @@
 namespace soslam {
 namespace {
 
-// The plane that most objects are on (then most detections), with these detections; empty where no
-// plane is known. Others may well be above cameras, as shelves are, or upright, as walls are.
+// Detections on the plane with most objects (then most detections); empty where no plane is known.
+// Other planes may be above cameras, as shelves are, or upright, as walls are.
 std::vector<const Detection*> DetectionsOnMainPlane(const Sequence& sequence) {
   std::map<int, std::set<int>> objects;
   std::map<int, std::vector<const Detection*>> detections;
@@ -47,7 +47,7 @@ std::string PlaneInWords(const SupportPlane& plane) {
 constexpr const char* kWall =
     "a wall given as the floor, another axis of the world up, or cameras that were rolled";
 
-// Between the plane's normal and the images' up (deg, median).
+// Median angle (deg) between the plane's normal and the images' up.
 double AngleToImagesUpDeg(const std::vector<const Detection*>& detections) {
   std::vector<double> angles;
   for (const Detection* detection : detections) {
@@ -56,13 +56,13 @@ double AngleToImagesUpDeg(const std::vector<const Detection*>& detections) {
   return *MedianOf(angles);
 }
 
-// Whether the plane is rather upright, as cameras are held.
+// True if the plane is about vertical, given the way cameras are held.
 bool IsUpright(const std::vector<const Detection*>& detections) {
   const double angle_deg = AngleToImagesUpDeg(detections);
   return angle_deg > 60.0 && angle_deg < 120.0;
 }
 
-// Where the things on a plane are, as far as boxes tell: points in the world of the planes.
+// Triangulated points of the objects on a plane, in the world of the planes.
 std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_index) {
   const bool has_true_planes =
       view.options.camera_planes == PlanePoses::kGroundTruth && view.content.has_true_poses;
@@ -90,14 +90,14 @@ std::vector<double> HeightsOver(const Plane& plane, const std::vector<Eigen::Vec
   return heights;
 }
 
-// The main plane, what is on it, and how it is seen.
+// The main plane and the objects on it.
 struct MainPlane {
   SupportPlane plane;
   std::vector<const Detection*> detections;
   std::vector<Eigen::Vector3d> points_in_world;
 };
 
-// The side of the plane on which cameras and things are. Cameras alone may well be below it, as
+// Checks on which side of the plane cameras and objects are. Cameras alone may be below it, as
 // those of a robot below a table.
 std::vector<Finding> CheckSide(const MainPlane& main) {
   const auto below = std::ranges::count_if(main.detections, [](const Detection* detection) {
@@ -118,7 +118,7 @@ std::vector<Finding> CheckSide(const MainPlane& main) {
                       : "turn the sign of the normal and of d, or of d alone"}};
 }
 
-// Whether things are about as high above their plane; things before a wall are not.
+// True if all objects are about equally high above their plane; objects in front of a wall are not.
 bool AreAlong(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
   constexpr double kTolerance = 0.1;
   constexpr double kFlat = 0.5;

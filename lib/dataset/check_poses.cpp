@@ -20,7 +20,7 @@ std::optional<Rigid3d> PoseAt(const ImportView& view, size_t frame) {
   return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
 }
 
-// The pose of a neighbour in the list, of the same segment.
+// Pose of the frame `shift` places later in the list, if it is of the same segment.
 std::optional<Rigid3d> PoseBeside(const ImportView& view, size_t frame, int shift) {
   const std::vector<ListedFrame>& frames = view.content.frames;
   const size_t beside = frame + static_cast<size_t>(shift);  // wraps before the first frame
@@ -29,13 +29,14 @@ std::optional<Rigid3d> PoseBeside(const ImportView& view, size_t frame, int shif
   return PoseAt(view, beside);
 }
 
-// Whether an error is of about the same rays.
+// True if an error is from about the same number of rays.
 bool IsComparable(const std::optional<RayError>& error, const RayError& as_read) {
   constexpr double kMost = 0.8;
   return error && static_cast<double>(error->rays) >= kMost * static_cast<double>(as_read.rays);
 }
 
-// Whether the cameras turn so far that no motion of things can look like another reading of poses.
+// True if the cameras rotate so far that moving objects cannot be mistaken for another convention
+// of the poses.
 bool DoCamerasTurn(const ImportView& view) {
   constexpr double kFarDeg = 10.0;
   const Frame* first = nullptr;
@@ -49,13 +50,13 @@ bool DoCamerasTurn(const ImportView& view) {
   return false;
 }
 
-// A mistake that explains why things are not where they are seen.
+// A possible mistake in the input that explains why objects are not where they are seen.
 struct Explanation {
   std::string name;
   std::string cause;
   std::string remedy;
-  bool is_order = false;  // that of the frames
-  RayError error;         // what is left of it without the mistake
+  bool is_order = false;  // a mistake in the order of frames
+  RayError error;         // remaining error once it is corrected
 };
 
 Things Mirrored(Things things) {
@@ -96,8 +97,8 @@ std::vector<Explanation> ExplanationsByOrder(const ImportView& view, const Thing
   return explanations;
 }
 
-// Poses or orders that mean something else than they are read as make things fly apart; as they
-// are meant, things are to within a degree where they are seen.
+// Searches for the best explanation. Under a wrong convention of poses or frame order the rays to
+// objects diverge; under the right one they meet to within a degree.
 std::optional<Explanation> BestExplanation(const ImportView& view, const Things& things,
                                            const RayError& as_read) {
   constexpr double kFitsDeg = 1.0;
@@ -120,7 +121,7 @@ std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
                                    const RayError& as_read) {
   const auto best = BestExplanation(view, things, as_read);
   if (!best) return {};
-  // Rays that meet behind the cameras may be of things that move faster than these.
+  // Rays that meet behind the cameras may come from objects that move faster than the cameras.
   const bool is_certain = !best->is_order && (as_read.median_deg <= 90.0 || DoCamerasTurn(view));
   return {{best->is_order ? kFrameOrder : kPoseConvention,
            is_certain ? Severity::kError : Severity::kWarning,
@@ -133,8 +134,8 @@ std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
            best->cause, best->remedy}};
 }
 
-// Boxes that are one image late or early: things are clearly nearer to where they are seen one way,
-// and farther off the other way. That the first image has no box says so, too.
+// Finds boxes that are one image late or early: rays meet clearly better with a shift in one
+// direction, and worse in the other. A first image without boxes confirms it.
 std::vector<Finding> CheckFrameNumbers(const ImportView& view, const Things& things,
                                        const RayError& as_read) {
   constexpr double kClearlyBetter = 0.7;
@@ -169,7 +170,7 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view, const Things& thi
   return {};
 }
 
-// Poses of an IMU that are taken for those of the camera, unless boxes fit them.
+// Warns if poses of an IMU are used as those of the camera, unless boxes fit them.
 std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayError>& as_read) {
   constexpr double kFitsDeg = 1.0;
   if (!view.content.may_have_poses_of_body) return {};
@@ -187,8 +188,8 @@ std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayEr
                (as_read ? "" : "; nothing where the poses are those of the camera")}};
 }
 
-// Things that are far from where they are seen, by the size of their boxes, whatever the reading.
-// Where they are seen right from the true poses, the estimates drift, and CheckTruth tells how far.
+// Warns if objects are far from where they are seen, relative to the size of their boxes, under any
+// convention. If they are right from the true poses, the estimates drift, which CheckTruth reports.
 std::vector<Finding> CheckContradiction(const ImportView& view, const Things& things,
                                         const RayError& as_read) {
   constexpr double kLargestShare = 0.2;

@@ -16,7 +16,7 @@ struct CauseAndRemedy {
   const char* remedy;
 };
 
-// Gates that drop what the data are like; the others drop what a setting asks for.
+// Gates that reject detections because of the data; the others apply what a setting asks for.
 const std::map<std::string, CauseAndRemedy>& GatesOfData() {
   const auto name = [](RejectReason reason) { return std::string(RejectReasonName(reason)); };
   static const std::map<std::string, CauseAndRemedy> gates = {
@@ -44,7 +44,7 @@ const std::map<std::string, CauseAndRemedy>& GatesOfData() {
   return gates;
 }
 
-// Detections that the settings leave to the gates of data.
+// Number of detections that reach the gates of data.
 int Asked(const Sequence& sequence, size_t used) {
   int count = static_cast<int>(used);
   for (const auto& [reason, number] : sequence.rejected_detections) {
@@ -56,7 +56,8 @@ int Asked(const Sequence& sequence, size_t used) {
 }  // namespace
 
 std::vector<Finding> CheckRejections(const ImportView& view) {
-  if (view.options.format == DatasetFormat::kKittiObject) return {};  // an image is a world
+  if (view.options.format == DatasetFormat::kKittiObject)
+    return {};  // each image has its own world
   constexpr int kFewest = 10;
   const int all = Asked(view.sequence, view.sequence.detections.size());
   std::vector<Finding> findings;

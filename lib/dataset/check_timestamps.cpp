@@ -11,7 +11,7 @@
 namespace soslam {
 namespace {
 
-// The first and the last time of a list.
+// First and last time of a list.
 struct TimeRange {
   double first = 0.0;
   double last = 0.0;
@@ -30,7 +30,7 @@ struct TimeUnit {
 constexpr std::array kUnits = {TimeUnit{"milliseconds", 1e3}, TimeUnit{"microseconds", 1e6},
                                TimeUnit{"nanoseconds", 1e9}};
 
-// The unit that makes the second range about the first one; null when none does.
+// Time unit in which the second range matches the first one; null when none does.
 const TimeUnit* UnitBetween(const TimeRange& seconds, const TimeRange& other) {
   for (const TimeUnit& unit : kUnits) {
     const double tolerance = 0.5 * std::max(seconds.Span(), 1.0);
@@ -42,7 +42,7 @@ const TimeUnit* UnitBetween(const TimeRange& seconds, const TimeRange& other) {
   return nullptr;
 }
 
-// The unit of times since 1970 when they are of this century; null for seconds and for all else.
+// Unit of times since 1970 when they are of this century; null for seconds and otherwise.
 const TimeUnit* UnitOfClock(double time) {
   constexpr double kYear2001 = 1e9;
   constexpr double kYear2100 = 4.1e9;
@@ -61,7 +61,7 @@ std::string DivideBy(const std::string& file, const TimeUnit& unit) {
   return fmt::format("divide the time stamps of {} by {:.0e}", file, unit.per_second);
 }
 
-// Cause and remedy of stamps that do not meet.
+// Fills in cause and remedy for time stamps that do not overlap.
 void Explain(const TimeRange& images, const TimeRange& poses, const std::string& file,
              Finding* finding) {
   constexpr const char* kBoth = "both files";

@@ -10,7 +10,7 @@
 namespace soslam {
 namespace {
 
-// Those of the first segment, as each has a world of its own.
+// Pose pairs of the first segment, as each segment has its own world.
 std::vector<PosePair> Pairs(const ImportView& view) {
   std::vector<PosePair> pairs;
   for (const ListedFrame& listed : view.content.frames) {
@@ -30,7 +30,7 @@ std::vector<PosePair> ReadAs(const PoseReading& reading, std::vector<PosePair> p
   return pairs;
 }
 
-// With the world of the estimates moved so that the first pose is the true one.
+// Pairs after moving the estimated trajectory so that its first pose is the true one.
 std::vector<PosePair> AlignedAtFirst(std::vector<PosePair> pairs) {
   const Rigid3d true_from_estimated = pairs.front().truth * pairs.front().estimated.Inverse();
   for (PosePair& pair : pairs) pair.estimated = true_from_estimated * pair.estimated;

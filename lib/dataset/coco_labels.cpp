@@ -7,7 +7,8 @@
 namespace soslam {
 namespace {
 
-constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};  // and 91
+// Ids of dropped categories below 90; 91 was dropped, too.
+constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 
 }  // namespace
 

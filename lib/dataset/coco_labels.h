@@ -7,15 +7,15 @@
 
 namespace soslam {
 
-// The names of COCO's 80 object classes, in the order that detectors trained on COCO number them,
-// from 0 (T.-Y. Lin et al., "Microsoft COCO: Common Objects in Context", ECCV 2014).
+// Names of COCO's 80 object classes, in the order of detectors trained on COCO, from 0 (T.-Y. Lin
+// et al., "Microsoft COCO: Common Objects in Context", ECCV 2014).
 const std::vector<std::string>& CocoLabels();
 
-// The position in CocoLabels of a category id of COCO's annotation files. Those ids run from 1 to
-// 90 and leave out eleven numbers, whose categories were dropped; none for these and beyond.
+// Index in CocoLabels of a category id of COCO's annotation files. These ids run from 1 to 90
+// without ten numbers of dropped categories; none for these and others.
 std::optional<int> CocoClassIndex(int category_id);
 
-// The category id of a position in CocoLabels.
+// Category id of an index in CocoLabels.
 int CocoCategoryId(int class_index);
 
 }  // namespace soslam

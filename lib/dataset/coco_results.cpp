@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// What the ids of a results file stand for.
+// Names of the ids in a results file.
 struct CocoNames {
   std::map<int, std::string> images;
   std::map<int, std::string> categories;
@@ -67,7 +67,7 @@ Box ParseBox(const JsonEntry& entry) {
   return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
 }
 
-// As CVAT writes it for tracks; none without one.
+// Track id as CVAT writes it; none without one.
 std::optional<int> ParseTrack(const JsonEntry& entry) {
   if (entry.Has("track_id")) return entry.Integer("track_id");
   if (!entry.Has("attributes") || !entry.Field("attributes").is_object()) return std::nullopt;
@@ -75,7 +75,7 @@ std::optional<int> ParseTrack(const JsonEntry& entry) {
   return attributes.Has("track_id") ? std::optional(attributes.Integer("track_id")) : std::nullopt;
 }
 
-// Whether it is around a crowd of objects, which are not one.
+// True if the box is around a crowd of objects.
 bool IsCrowd(const JsonEntry& entry) { return entry.Has("iscrowd") && entry.Field("iscrowd") == 1; }
 
 std::vector<LabelledBox> ParseBoxes(const json& list, const std::string& place,

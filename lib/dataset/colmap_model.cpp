@@ -17,7 +17,7 @@
 namespace soslam {
 namespace {
 
-// Of a camera model: what its parameters are, in their order. "f" is both focal lengths.
+// Camera model with the names of its parameters, in order. "f" is both focal lengths.
 struct ColmapModel {
   const char* name;
   std::vector<const char*> parameters;
@@ -34,7 +34,7 @@ const std::vector<ColmapModel>& Models() {
   return models;
 }
 
-// The parameters of one line, by their names.
+// Parameters of one line, accessed by name.
 class Parameters {
  public:
   Parameters(const ColmapModel& model, std::vector<double> values)
@@ -103,7 +103,7 @@ NamedPose ParsePose(const TextLine& line) {
   ParseInteger(words[8], line.place, "CAMERA_ID");
   const Rigid3d camera_from_world{UnitQuaternion({v[1], v[2], v[3], v[0]}, line.place),
                                   {v[4], v[5], v[6]}};
-  // A name may have blanks: it is the rest of the line.
+  // The name may contain blanks: it is the rest of the line.
   const auto name = static_cast<size_t>(words[9].data() - line.text.data());
   return {line.place, std::string(Trimmed(std::string_view(line.text).substr(name))),
           camera_from_world.Inverse()};

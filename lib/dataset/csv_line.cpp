@@ -11,7 +11,7 @@
 namespace soslam {
 namespace {
 
-// What a quoted field holds, which is at the beginning of `rest`; `rest` becomes what follows it.
+// Content of the quoted field at the beginning of `rest`, which becomes the text after the field.
 std::string TakeQuoted(std::string_view* rest, const std::string& place) {
   std::string field;
   for (size_t i = 1; i < rest->size(); ++i) {

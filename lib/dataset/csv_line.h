@@ -7,13 +7,14 @@
 
 namespace soslam {
 
-// The lines of a table of which each is a row: RFC 4180 without line ends in fields.
+// Lines of a CSV table with one row per line: RFC 4180 without line ends in fields.
 
-// The character between fields: of comma, semicolon and tab the one that the header has most of.
+// Separator of the fields: the most frequent one of comma, semicolon and tab in the header.
 char SeparatorOf(std::string_view header);
 
-// The trimmed fields. One that begins with a quote ends with one; two quotes within it are one.
-// Throws InputError, naming `place`, for a quote that is not closed, and for text after it.
+// The trimmed fields. A field that begins with a quote ends with one; two quotes within it stand
+// for one. Throws InputError, naming `place`, for an unclosed quote and for text after a closing
+// one.
 std::vector<std::string> SplitCsvLine(std::string_view line, char separator,
                                       const std::string& place);
 

@@ -14,7 +14,7 @@ void Append(const Check& check, const ImportView& view, std::vector<Finding>* fi
   findings->insert(findings->end(), more.begin(), more.end());
 }
 
-// What objects and planes are found to be through poses or orders of frames that are wrong.
+// Findings on objects and planes when poses or frame order are wrong: they get that as their cause.
 void AppendThroughWrongPoses(const ImportView& view, std::vector<Finding>* findings) {
   for (const Check check : {&CheckObjects, &CheckPlanes}) {
     for (Finding finding : check(view)) {
@@ -31,7 +31,7 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   std::vector<Finding> findings;
   for (const Check check : {&CheckCamera, &CheckImages, &CheckBoxes})
     Append(check, view, &findings);
-  // Boxes through a wrong camera, and wrong boxes, contradict the best poses; wrong poses
+  // Boxes with a wrong camera, and wrong boxes, contradict even the best poses; wrong poses
   // contradict objects and planes.
   const auto has = [&](auto field, const auto& value) {
     return std::ranges::find(findings, value, field) != findings.end();

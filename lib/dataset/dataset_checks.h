@@ -13,7 +13,8 @@
 
 namespace soslam {
 
-// What the checks of a dataset look at: what its reader found, and what the gates left of it.
+// Input of the checks of a dataset: the content that its reader found, and the sequence left after
+// the gates.
 struct ImportView {
   const std::filesystem::path& folder;
   const ImportOptions& options;
@@ -21,43 +22,44 @@ struct ImportView {
   const Sequence& sequence;
 };
 
-// The mistakes that people make with such data, looked for in the data themselves (one file for
-// each of these). All checks return what they find; they throw nothing.
+// Checks for common mistakes in datasets (one file each). All checks return their findings and
+// throw nothing.
 
-// Intrinsics against themselves: normalised, in millimetres, of another image size.
+// Plausibility of the intrinsics: normalised, in millimetres, of another image size.
 std::vector<Finding> CheckCamera(const ImportView& view);
-// The camera's image size against the headers of the image files, and images that EXIF turns.
+// The camera's image size against the headers of the image files, and images with an EXIF rotation.
 std::vector<Finding> CheckImages(const ImportView& view);
-// Boxes as another convention or another image size would have them.
+// Boxes in another convention or of another image size.
 std::vector<Finding> CheckBoxes(const ImportView& view);
 // Scores outside 0 to 1.
 std::vector<Finding> CheckScores(const ImportView& view);
-// Class names that are shifted against the classes: counted from 1, or with blank lines between.
+// Class names that are shifted with respect to the classes: counted from 1, or with blank lines
+// between.
 std::vector<Finding> CheckLabels(const ImportView& view);
-// Gates that drop more than a third of the detections.
+// Gates that reject more than a third of the detections.
 std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.
 std::vector<Finding> CheckTruth(const ImportView& view);
-// The poses against the boxes: the same and boxes that are mirrored (kPoseConvention), frames in
-// another order (kFrameOrder), poses of an IMU, frames counted from 1; or poses, frames or ids that
-// contradict the boxes in another way (kBoxesAgainstPoses).
+// The poses against the boxes: another pose convention, or mirrored boxes (kPoseConvention), frames
+// in another order (kFrameOrder), poses of an IMU, frames counted from 1; or poses, frames or ids
+// that contradict the boxes in another way (kBoxesAgainstPoses).
 inline constexpr const char* kPoseConvention = "pose_convention";
 inline constexpr const char* kFrameOrder = "frame_order";
 inline constexpr const char* kBoxesAgainstPoses = "boxes_against_poses";
 std::vector<Finding> CheckPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids
-// counted from 1, full sizes for half axes; quaternions with qw first.
+// counted from 1, full sizes instead of half axes; quaternions with qw first.
 std::vector<Finding> CheckObjects(const ImportView& view);
 std::vector<Finding> CheckObjectAxes(const ImportView& view);
 // The support plane of most objects against cameras and objects.
 std::vector<Finding> CheckPlanes(const ImportView& view);
 
-// The time stamps of images against those of a trajectory, which is not empty.
+// Time stamps of images against those of a trajectory, which is not empty.
 std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
                                      const std::vector<TimedPose>& trajectory,
                                      const std::string& trajectory_file, double max_difference_s);
 
-// All checks of a dataset, errors first, those of its reader among them.
+// All checks of a dataset, including the findings of its reader; errors first.
 std::vector<Finding> CheckDataset(const ImportView& view);
 
 }  // namespace soslam

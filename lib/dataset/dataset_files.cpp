@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Looks for the files of a folder, and remembers which are missing.
+// Finds the files of a folder and records the missing ones.
 class Finder {
  public:
   explicit Finder(const fs::path& folder) : folder_(folder) {}
@@ -28,11 +28,11 @@ class Finder {
     if (!Exists(folder_ / name)) missing_.push_back(name);
     return folder_ / name;
   }
-  // None when nothing is named.
+  // The required file; none when the name is empty.
   std::optional<fs::path> RequiredIfNamed(const std::string& name) {
     return name.empty() ? std::nullopt : std::optional(Required(name));
   }
-  // May be absent when it has its usual name.
+  // A trajectory file, which may be absent under its usual name.
   std::optional<fs::path> Trajectory(const std::string& name, const std::string& usual_name) {
     return name == usual_name ? IfPresent(name) : RequiredIfNamed(name);
   }
@@ -56,7 +56,7 @@ std::vector<fs::path> FilesIn(const fs::path& path) {
   std::vector<fs::path> files;
   for (const fs::path& entry : EntriesAtAnyDepth(path)) {
     const fs::path name = entry.filename();
-    const bool is_hidden = name.string().starts_with('.');  // of macOS
+    const bool is_hidden = name.string().starts_with('.');  // created by macOS
     if (IsFile(entry) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
   }
   return files;

@@ -9,24 +9,25 @@
 
 namespace soslam {
 
-// The text files of a folder of images that an import with certain options reads.
+// Text files of a folder of images that an import with given options reads.
 struct DatasetFiles {
-  std::optional<std::filesystem::path> images;  // the list; none: detections name their images
-  std::optional<std::filesystem::path> camera;  // none: the options say it
+  std::optional<std::filesystem::path>
+      images;  // the image list; none: detections name their images
+  std::optional<std::filesystem::path> camera;  // none: the options have the camera
   std::optional<std::filesystem::path> planes;  // planes.json
   std::filesystem::path detections;             // a file or a folder
   std::optional<std::filesystem::path> class_names;
-  std::filesystem::path trajectory;     // the pose estimates: the odometry or the true poses
-  bool trajectory_is_fallback = false;  // the file that the options ask for is absent
+  std::filesystem::path trajectory;     // the pose estimates: odometry or true poses
+  bool trajectory_is_fallback = false;  // the file requested by the options is absent
   std::optional<std::filesystem::path> groundtruth;
   std::optional<std::filesystem::path> objects;  // objects.json
 
-  // Each of them once, those in the folder of detections one by one.
+  // Each file once, including every file in the folder of detections.
   std::vector<std::filesystem::path> All() const;
 };
 
-// Throws InputError naming all required files that are missing. Odometry and true poses with the
-// usual names may be absent; files that the options name have to be there.
+// Finds the files of a dataset. Throws InputError naming all missing required files. Odometry and
+// true poses may be absent under their default names; files that the options name must exist.
 DatasetFiles FindDatasetFiles(const std::filesystem::path& folder, const ImportOptions& options);
 
 }  // namespace soslam

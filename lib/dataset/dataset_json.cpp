@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using Entry = JsonEntry;
 
-// Parses each entry of a list, which has a name for error messages.
+// Parses each entry of a list; `name` is used in error messages.
 template <typename Item>
 std::vector<Item> ParseList(const json& list, const std::string& name,
                             Item (*parse)(const Entry&)) {
@@ -31,7 +31,7 @@ std::vector<Item> ParseList(const json& list, const std::string& name,
   return items;
 }
 
-// The same, sorted by id, which may not come twice.
+// ParseList for entries with ids, sorted by id; each id at most once.
 template <typename Item>
 std::vector<Item> ParseListWithIds(const json& list, const std::string& name,
                                    Item (*parse)(const Entry&)) {

@@ -12,28 +12,29 @@
 
 namespace soslam {
 
-// The JSON files of a dataset folder. Keys that are not named here are refused. All throw
-// InputError naming the file, entry and field.
+// Readers of the JSON files of a dataset folder. Unknown keys are refused. All throw InputError
+// naming the file, entry and field.
 
-// "width", "height", "fx", "fy", "cx", "cy" of an object that may have others; fy may be negative.
+// Camera from "width", "height", "fx", "fy", "cx", "cy" of an object that may have other keys; fy
+// may be negative.
 Camera ParseCamera(const JsonEntry& entry);
 
 enum class CameraYAxis {
   kDown,
-  kUp,  // fy is negative: read as the camera with y down that gives the same images
+  kUp,  // fy is negative: converted to the camera with y down that gives the same images
 };
 
-// {"width", "height", "fx", "fy", "cx", "cy"}, pixels, with optional "distortion" (ParseLens), the
-// names of its model as "model", "camera_model" or "distortion_model", and, for people only,
+// Reads {"width", "height", "fx", "fy", "cx", "cy"}, pixels, with optional "distortion"
+// (ParseLens), its model as "model", "camera_model" or "distortion_model", and the ignored keys
 // "name", "description", "comment", "source", "fps", "depth_scale".
 LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis = CameraYAxis::kDown);
 
-// [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal pointing
-// away from the support, of any length. For people only: "label", "name", "description", "comment".
-// Sorted by id; at least one.
+// Reads [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal
+// pointing away from the support, of any length. Ignored keys: "label", "name", "description",
+// "comment". Sorted by id; at least one.
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path);
 
-// What objects.json says of one object.
+// One object of objects.json.
 struct ListedObject {
   int id = 0;
   std::string label;
@@ -46,12 +47,12 @@ struct ListedObjects {
   std::vector<IgnoredThings> ignored = {};
 };
 
-// [{"id", "label", "support_plane" (may be absent), and, all or none: "center", "quaternion_xyzw"
-// (world from object), "half_axes"}], with optional "mirror_symmetric" (default true),
-// "mirror_symmetric_yz" and "rotationally_symmetric" (default false). For people only: "model",
-// "name", "description", "comment", "source".
-// Or {"objects": such a list, "ignored": [{"label", or the volume "center", "quaternion_xyzw",
-// "half_axes", or both}]}, for people only: "name", "description", "comment", "source".
+// Reads [{"id", "label", "support_plane" (may be absent), and, all or none: "center",
+// "quaternion_xyzw" (world from object), "half_axes"}], with optional "mirror_symmetric" (default
+// true), "mirror_symmetric_yz" and "rotationally_symmetric" (default false). Ignored keys: "model",
+// "name", "description", "comment", "source". Or {"objects": such a list, "ignored": [{"label", or
+// the volume "center", "quaternion_xyzw", "half_axes", or both}]}, ignored keys: "name",
+// "description", "comment", "source".
 ListedObjects ReadObjects(const std::filesystem::path& path);
 
 }  // namespace soslam

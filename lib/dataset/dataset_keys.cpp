@@ -4,7 +4,7 @@
 namespace soslam {
 namespace {
 
-// What other programs call otherwise.
+// Hints for keys of other programs.
 constexpr const char* kCoefficients =
     "k1, k2, p1, p2, k3 are read as \"distortion\": [k1, k2, p1, p2, k3]";
 constexpr const char* kMatrix = "the intrinsics are read as \"fx\", \"fy\", \"cx\", \"cy\", pixels";
@@ -15,7 +15,7 @@ constexpr const char* kQuaternion =
     "the orientation is read as \"quaternion_xyzw\"; that of a yaw about z is "
     "[0, 0, sin(yaw / 2), cos(yaw / 2)]";
 
-// What a place, a size and a label are called elsewhere, after these.
+// Adds hints for other names of position, size and label.
 std::vector<KeyHint> WithPlaceHints(std::vector<KeyHint> hints) {
   hints.insert(hints.end(), {{"position", kCenter},
                              {"translation", kCenter},

@@ -11,10 +11,10 @@
 
 namespace soslam {
 
-// DetectionRow::object_id of a row that is not used, as it is of no object; nobody's id.
+// DetectionRow::object_id of an unused row that belongs to no object; never a real id.
 inline constexpr int kNoObject = std::numeric_limits<int>::min();
 
-// A 2D box of one object in one frame, as a dataset has it.
+// A 2D box of one object in one frame, as in the dataset.
 struct DetectionRow {
   std::string place;  // "<file>:<line>", for error messages
   int frame_id;
@@ -22,12 +22,12 @@ struct DetectionRow {
   std::string label;
   double score;
   Box box;
-  // Where the lens put it, in a dataset whose images are distorted.
+  // Distorted box in the image file, in a dataset with distorted images.
   std::optional<Box> box_in_image_file = std::nullopt;
-  // Where the dataset's labels say more about this object in this frame; frames are the camera's.
-  double truncation = 0.0;  // how much of it is outside the image, in the dataset's own measure
-  int occlusion = 0;        // how much of it is hidden, in the dataset's own measure
-  std::optional<Plane> plane_in_camera = std::nullopt;  // what it stands on
+  // Further values from the dataset's labels, if any; geometry is in the camera frame.
+  double truncation = 0.0;  // amount outside the image, in the dataset's own measure
+  int occlusion = 0;        // occlusion level, in the dataset's own measure
+  std::optional<Plane> plane_in_camera = std::nullopt;  // its support plane
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
 };
 

@@ -23,7 +23,7 @@ namespace {
 constexpr std::array kColumns = {"frame", "label", "score", "x1", "y1", "x2", "y2"};
 constexpr const char* kIdColumn = "object_id";
 
-// In lower case, with underscores for blanks.
+// Normalised column name: lower case, underscores instead of blanks.
 std::string ColumnName(std::string field) {
   for (char& c : field) {
     c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -31,11 +31,11 @@ std::string ColumnName(std::string field) {
   return field;
 }
 
-// What the first line says of all others.
+// Table format given by the first line.
 struct Header {
   char separator;
   size_t size;
-  std::map<std::string, size_t> positions;  // by column, of those that are read
+  std::map<std::string, size_t> positions;  // column name -> index, for the columns that are read
 };
 
 Header ParseHeader(const TextLine& line) {
@@ -57,7 +57,7 @@ Header ParseHeader(const TextLine& line) {
   return header;
 }
 
-// The fields of one row by the names of their columns.
+// Fields of one row, accessed by column name.
 class Row {
  public:
   Row(const TextLine& line, const Header& header)
@@ -84,7 +84,7 @@ class Row {
   const std::string& Field(const char* column) const {
     return fields_[header_.positions.at(column)];
   }
-  // A column with gaps is one of real numbers for some programs: 7 is "7.0".
+  // Some programs write a column with gaps as real numbers: 7 is "7.0".
   std::optional<int> ObjectId() const {
     std::string_view text = Field(kIdColumn);
     if (text.empty()) return std::nullopt;

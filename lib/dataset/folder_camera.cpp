@@ -16,7 +16,7 @@
 namespace soslam {
 namespace {
 
-// The numbers of a setting; none when a word of it is not one.
+// Numbers of a setting; none when one of its words is not a number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text) {
   std::vector<double> numbers;
   try {

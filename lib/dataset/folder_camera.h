@@ -9,9 +9,9 @@
 
 namespace soslam {
 
-// The camera of a folder of images, as the options say, or else the camera file. That of ICL-NUIM
-// is the one with y down that gives the same images. Throws SettingsError for options that cannot
-// be; InputError naming the field.
+// The camera of a folder of images, from the options, otherwise from the camera file. ICL-NUIM's
+// camera is converted to the one with y down that gives the same images. Throws SettingsError for
+// invalid options; InputError naming the field.
 Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_file,
                              const ImportOptions& options);
 

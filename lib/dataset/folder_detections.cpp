@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file of one class, or a folder with a folder for each class, which has one file.
+// Reads a file of one class, or a folder with one folder per class, each with one file.
 std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   if (!IsFolder(path)) return ReadKittiBoxes(path);
   std::vector<LabelledBox> boxes;
@@ -46,8 +46,8 @@ std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   return boxes;
 }
 
-// The class names that the options name, or else those that lie among the labels or beside them, or
-// else COCO's.
+// Class names from the options, otherwise from a file among the labels or beside them, otherwise
+// COCO's.
 std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& folder,
                                     DatasetFiles* files) {
   if (files->class_names) return ReadLabelFile(*files->class_names);

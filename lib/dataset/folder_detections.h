@@ -14,33 +14,33 @@
 
 namespace soslam {
 
-// Boxes, and the class names by which they got their labels; none where they name these themselves.
+// Boxes and the class names that their labels were taken from; no names where boxes have labels.
 struct FolderBoxes {
   std::vector<LabelledBox> boxes;
   std::vector<std::string> class_names;
 };
 
-// The boxes of a folder of images, in any of the formats of `detections_format`. The class names of
-// YOLO's labels may lie with them: `files` then gets to know where, and it is said on stdout. Boxes
-// that are not as they stand in the file are counted in `mended`. Throws InputError.
+// Reads the boxes of a folder of images in any of the formats of `detections_format`. Class names
+// may be stored with YOLO's labels: `files` then gets their path, which is printed to stdout. Boxes
+// that are changed on reading are counted in `mended`. Throws InputError.
 FolderBoxes ReadFolderBoxes(const std::filesystem::path& folder, const ImportOptions& options,
                             const Camera& camera, DatasetFiles* files, RejectionCounts* mended);
 
-// The boxes as rows of these images. Boxes without object ids are of an object each, with ids from
-// `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and how many
-// these are is said on stdout. Throws InputError for a row number beyond the list, and when no box
+// Converts boxes to rows of these images. Each box without object id is a separate object, with ids
+// from `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and their
+// number is printed to stdout. Throws InputError for a row number beyond the list, and when no box
 // is of a listed image.
 std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const DatasetFiles& files,
                                       const std::vector<ListedImage>& images, int first_free_id,
                                       RejectionCounts* rejected);
 
-// The boxes of listed images as rows of no object.
+// Rows of the boxes of listed images, with no object.
 std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxes,
                                             const std::vector<ListedImage>& images);
 
-// Turns boxes in images that a lens took into those of a pinhole camera (UndistortBox). Boxes
-// without such a counterpart are counted in `rejected`.
+// Converts boxes in distorted images to those of a pinhole camera (UndistortBox). Boxes without
+// such a counterpart are counted in `rejected`.
 std::vector<DetectionRow> Undistorted(std::vector<DetectionRow> rows, const Camera& camera,
                                       const Distortion& distortion, RejectionCounts* rejected);
 

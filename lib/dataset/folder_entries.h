@@ -6,9 +6,9 @@
 
 namespace soslam {
 
-// What is in a folder, by name. Throws InputError when the system does not let it be listed.
+// Entries of a folder, sorted by name. Throws InputError when it cannot be listed.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
-// The same at any depth.
+// Entries at any depth, sorted by name.
 std::vector<std::filesystem::path> EntriesAtAnyDepth(const std::filesystem::path& folder);
 
 }  // namespace soslam

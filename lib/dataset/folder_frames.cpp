@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// By image; none where there is no pose near enough in time.
+// Poses per image; none where there is no pose near enough in time.
 using ImagePoses = std::vector<std::optional<Rigid3d>>;
 
 void CheckFrameNumber(double number, const std::string& place) {
@@ -36,7 +36,7 @@ void CheckFrameNumber(double number, const std::string& place) {
       "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
 }
 
-// Of an image that is called by it, with or without extension: "12.5" has none.
+// Timestamp in an image's name, with or without extension: "12.5" has none.
 double TimestampOf(const std::string& name, const std::string& place) {
   const fs::path file = fs::path(name).filename();
   const std::string extension = file.extension().string();
@@ -171,7 +171,7 @@ ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const Import
   }
 }
 
-// EuRoC's images lie in the folder "data" beside their list, which has only their file names.
+// EuRoC's images are in the folder "data" beside their list, which has only file names.
 void NameInDataFolder(const fs::path& dataset, const fs::path& list,
                       std::vector<ListedImage>* images) {
   const fs::path data = list.parent_path() / "data";
@@ -182,7 +182,7 @@ void NameInDataFolder(const fs::path& dataset, const fs::path& list,
   }
 }
 
-// Moves all estimates together so that the first one with a true pose is that.
+// Moves all estimates together so that the first one with a true pose equals it.
 void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* estimates) {
   for (size_t i = 0; i < truth.size(); ++i) {
     if (!truth[i] || !(*estimates)[i]) continue;
@@ -197,7 +197,7 @@ void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* est
       file.string()));
 }
 
-// The image's path in a frame; empty when it is not there and need not be.
+// The image's path in a frame; empty when it does not exist and is not required.
 std::string ImageOfFrame(const fs::path& folder, const DatasetFiles& files,
                          const ListedImage& image, const ImportOptions& options) {
   const fs::path path =

@@ -13,17 +13,17 @@
 
 namespace soslam {
 
-// The images of a folder: those of the list, or else those that `boxes` name by their timestamps.
-// Absolute paths into the folder become relative, ICL-NUIM's frame numbers seconds. Throws
+// The images of a folder: those of the list, otherwise those that `boxes` name by their timestamps.
+// Absolute paths into the folder become relative, ICL-NUIM's frame numbers become seconds. Throws
 // InputError naming line or box.
 std::vector<ListedImage> ListImages(const std::filesystem::path& folder, const DatasetFiles& files,
                                     const ImportOptions& options,
                                     const std::vector<LabelledBox>& boxes);
 
-// A frame for each image, with the poses that are nearest in time or of its name, and says on
-// stdout how many of them have one. EuRoC's poses are of a body, to which the camera is fixed as
-// said, or else of the camera. Only in format soslam the listed image files have to be there.
-// What time stamps look wrong is added to `findings`. Throws InputError.
+// Creates a frame per image with the pose nearest in time or with the same image name, and prints
+// to stdout how many have one. EuRoC's poses are those of a body; `body_from_camera` is the
+// camera's pose in it, or none if the body is the camera. Only in format soslam the listed image
+// files must exist. Suspicious time stamps are added to `findings`. Throws InputError.
 std::vector<ListedFrame> ReadFolderFrames(const std::filesystem::path& folder,
                                           const DatasetFiles& files, const ImportOptions& options,
                                           const std::vector<ListedImage>& images,

@@ -18,7 +18,8 @@ fs::path FolderOf(const std::string& image) {
   return fs::path(image).lexically_normal().parent_path();
 }
 
-// The innermost names in which two folders differ, as far as both go; empty where they do not.
+// Innermost components in which two folders differ, up to the length of the shorter; empty where
+// they do not.
 std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
   for (; one.has_filename() && other.has_filename();
        one = one.parent_path(), other = other.parent_path()) {
@@ -29,7 +30,8 @@ std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
   return {};
 }
 
-// In lower case, numbers without leading zeros: image_02 and image_2 are one folder.
+// Normalised folder name: lower case, numbers without leading zeros; image_02 and image_2 are one
+// folder.
 std::string PlainName(const std::string& name) {
   std::string plain;
   for (size_t i = 0; i < name.size(); ++i) {
@@ -45,7 +47,7 @@ std::string PlainName(const std::string& name) {
   return plain;
 }
 
-// The name of a folder, in lower case, without what tells the cameras of a rig apart.
+// Folder name in lower case, without the part that distinguishes the cameras of a rig.
 std::string RigOf(std::string folder) {
   for (const std::string side : {"left", "right"}) {
     const size_t found = folder.find(side);

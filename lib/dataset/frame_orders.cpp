@@ -8,7 +8,7 @@
 namespace soslam {
 namespace {
 
-// 0, 1, 10, 11, 2, ...
+// Order of the frame numbers as strings: 0, 1, 10, 11, 2, ...
 std::vector<size_t> OrderOfStrings(size_t frames) {
   std::vector<size_t> order(frames);
   std::iota(order.begin(), order.end(), size_t{0});

@@ -6,15 +6,16 @@
 
 namespace soslam {
 
-// An order that the frames of a file may have in place of that of the list of images.
+// A wrong frame order that a file may have compared with the image list.
 struct FrameOrder {
   const char* name;  // "the poses are in reversed order"
   const char* cause;
   const char* remedy;
-  std::vector<size_t> frame_meant;  // whose pose belongs to the boxes of a frame, by index
+  // For each frame, the index of the frame whose pose belongs to its boxes.
+  std::vector<size_t> frame_meant;
 };
 
-// The orders that people's files have been seen to have, but for the right one.
+// The wrong orders that occur in practice.
 std::vector<FrameOrder> FrameOrders(size_t frames);
 
 }  // namespace soslam

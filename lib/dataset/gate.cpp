@@ -60,7 +60,7 @@ bool IsInView(RejectReason reason) {
 
 std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camera,
                                     const ImportOptions& options) {
-  // A box exactly border_px from the border is kept, whatever the rounding of its edges.
+  // A box exactly border_px from the border is kept regardless of rounding.
   constexpr double kTolerancePx = 1e-9;
   const Box box = row.box_in_image_file.value_or(row.box);
   if (!IsWanted(row.label, options)) return RejectReason::kOtherLabel;

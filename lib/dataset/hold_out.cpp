@@ -7,13 +7,13 @@
 namespace soslam {
 namespace {
 
-// Where a frame of the whole sequence goes.
+// New place of a frame of the whole sequence.
 struct Destination {
   bool is_held_out;
-  size_t index;  // into Sequence::held_out or Sequence::frames
+  size_t index;  // index in Sequence::held_out or Sequence::frames
 };
 
-// What is of frames that are not held out.
+// Elements of frames that are not held out, with new frame indices.
 template <typename OfFrame>
 std::vector<OfFrame> InKeptFrames(std::vector<OfFrame> all,
                                   const std::vector<Destination>& destinations) {

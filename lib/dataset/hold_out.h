@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// Moves the frames that are held out, and what was detected there, out of reach of all estimates:
-// to Sequence::held_out. Places of frames are counted from 0 in each segment.
+// Moves the held-out frames and their detections to Sequence::held_out, where no estimate uses
+// them. Positions of frames are counted from 0 in each segment.
 Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out);
 
 }  // namespace soslam

@@ -18,7 +18,7 @@ Camera WithYDown(const Camera& camera_with_y_up) {
 }
 
 Rigid3d MirroredInY(const Rigid3d& world_from_camera) {
-  // With S = diag(1, -1, 1): S R S turns about the mirrored axis by the opposite angle.
+  // With S = diag(1, -1, 1), S R S rotates about the mirrored axis by the opposite angle.
   const Eigen::Quaterniond& q = world_from_camera.rotation;
   const Eigen::Vector3d& t = world_from_camera.translation;
   return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), {t.x(), -t.y(), t.z()}};

@@ -16,7 +16,7 @@ bool& OutsidePathsFlag() {
   return are_allowed;
 }
 
-// With symbolic links followed as far as there is something.
+// Path with symbolic links resolved as far as it exists.
 fs::path Resolved(const fs::path& path) {
   std::error_code error;
   fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);

@@ -6,18 +6,18 @@
 
 namespace soslam {
 
-// The file of an image that a list names relative to its dataset folder, or by an absolute path
-// into it. Throws InputError, naming `place`, for a name that is empty or leads out of the folder,
-// by itself or through a symbolic link: a dataset from elsewhere must not have other files of its
-// user read.
+// Path of an image that a list names relative to its dataset folder, or by an absolute path into
+// it. Throws InputError, naming `place`, for a name that is empty or leads out of the folder,
+// directly or through a symbolic link: a dataset from elsewhere must not make the program read
+// other files of the user.
 std::filesystem::path ImagePath(const std::filesystem::path& dataset, const std::string& image,
                                 const std::string& place);
 
-// The name relative to its dataset folder, where it is an absolute path into that.
+// The name relative to its dataset folder, if it is an absolute path into it.
 std::string NameInDataset(const std::filesystem::path& dataset, const std::string& image);
 
-// Whether images may lie outside their dataset folder all the same, for the whole program; not
-// while threads are running. At first they may not.
+// Allows images outside their dataset folder, for the whole program; not thread-safe. Initially not
+// allowed.
 void AllowOutsidePaths(bool is_allowed);
 bool OutsidePathsAreAllowed();
 

@@ -43,10 +43,10 @@ DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOpti
   throw std::logic_error("format without a reader");
 }
 
-// Of a frame of the dataset: its position in Sequence::frames, or why it is not there.
+// Position of a dataset frame in Sequence::frames, or the reason why it is not used.
 using FrameSlot = std::variant<int, RejectReason>;
 
-// The frames that are used, and the slots of all by id.
+// Selects the frames to use; returns the slots of all frames, keyed by id.
 std::map<int, FrameSlot> ChooseFrames(const std::vector<ListedFrame>& listed,
                                       const ImportOptions& options, std::vector<Frame>* frames) {
   std::map<int, FrameSlot> slots;
@@ -69,7 +69,7 @@ std::map<int, FrameSlot> ChooseFrames(const std::vector<ListedFrame>& listed,
   return slots;
 }
 
-// Makes the detections of a sequence whose frames, planes and objects are known.
+// Creates the detections of a sequence whose frames, planes and objects are known.
 class Importer {
  public:
   Importer(const DatasetContent& content, const ImportOptions& options, Sequence* sequence)
@@ -111,7 +111,7 @@ class Importer {
   }
 
  private:
-  // The pose that carries world planes into a frame. Never a mixture of the two trajectories.
+  // The pose that transforms world planes into a frame. Never a mixture of the two trajectories.
   std::optional<Rigid3d> PlanePose(const Frame& frame) const {
     return planes_from_truth_ ? frame.true_world_from_camera
                               : std::optional(frame.world_from_camera);
@@ -126,7 +126,7 @@ class Importer {
     return GateRow(row, sequence_->CameraOf(frame), options_);
   }
 
-  // The counts of all, and those that are of used frames.
+  // Stores the counts of all rejected detections, and those of used frames.
   void Keep(const Rejections& rejected) {
     for (const auto& [reason, count] : rejected.counts) {
       sequence_->rejected_detections[reason] += count;
@@ -179,7 +179,7 @@ class Importer {
     return detections;
   }
 
-  // The plane of a detection's object as its camera sees it.
+  // The plane of a detection's object in the camera frame.
   Plane WorldPlane(const Detection& detection) const {
     const Object& object = sequence_->ObjectOf(detection);
     const SupportPlane& plane = sequence_->planes[static_cast<size_t>(object.plane_index)];
@@ -200,8 +200,8 @@ OdometryWorld WorldOfOdometry(const ImportOptions& options) {
   return options.folder.align_odometry ? OdometryWorld::kOwn : OdometryWorld::kOfTruth;
 }
 
-// Where each detection is an object of its own, those that are not used are no objects either, nor
-// is what objects.json lists, of which no detection is known to be.
+// Drops objects without detections, in datasets in which each detection is a separate object; this
+// includes those of objects.json, whose detections are unknown.
 void DropUndetectedObjects(Sequence* sequence) {
   std::vector<bool> is_kept(sequence->objects.size());
   for (const Detection& detection : sequence->detections) {
@@ -219,7 +219,7 @@ void DropUndetectedObjects(Sequence* sequence) {
   }
 }
 
-// Refuses what cannot be right: all that was found in one message.
+// Throws one InputError with all findings that are errors.
 void RefuseErrors(const std::filesystem::path& folder, const std::vector<Finding>& findings) {
   std::vector<std::string> errors;
   for (const Finding& finding : findings) {

@@ -27,7 +27,7 @@ inline constexpr const char* kPlanePosesNames[] = {"groundtruth", "trajectory"};
 
 enum class HeldOutFrames {
   kNone,
-  kOdd,  // every other one of those that are used, the first one not
+  kOdd,  // every other used frame, starting with the second
 };
 inline constexpr const char* kHeldOutFramesNames[] = {"none", "odd"};
 
@@ -39,12 +39,12 @@ enum class DetectionsFormat { kCsv, kYolo, kYoloPixels, kCoco, kOaSlam, kKitti }
 inline constexpr const char* kDetectionsFormatNames[] = {"csv",  "yolo",    "yolo_pixels",
                                                          "coco", "oa_slam", "kitti"};
 
-// Also "same": as trajectory_format.
+// Also "same": the format given by trajectory_format.
 inline constexpr const char* kGroundtruthFormatNames[] = {"tum",    "kitti",      "euroc",
                                                           "colmap", "nerfstudio", "same"};
 
-// What is in which file of a folder of images, and how. Paths are relative to the dataset folder,
-// or absolute.
+// Files of a folder of images and their formats. Paths are relative to the dataset folder, or
+// absolute.
 struct FolderOptions {
   std::string images = "rgb.txt";
   std::string odometry = "odometry.txt";
@@ -104,7 +104,7 @@ struct FolderOptions {
   }
 };
 
-// What the readers of KITTI's formats need to know beyond the files.
+// Settings of the readers of KITTI's formats.
 struct KittiOptions {
   std::string sequences;
   double match_min_iou = 0.5;

@@ -15,14 +15,14 @@ using nlohmann::json;
 
 namespace {
 
-// A value as an error message quotes it: a whole list of images is no help.
+// A value for an error message, truncated.
 std::string Quoted(const json& value) {
   constexpr size_t kLongest = 100;
   const std::string text = value.dump();
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-// How many letters have to be put in, left out or changed to make one of the other (Levenshtein).
+// Levenshtein distance: number of letters to insert, remove or replace.
 size_t Misspellings(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
@@ -37,7 +37,7 @@ size_t Misspellings(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// What may have been meant by an unknown key, as the end of a message; empty without a guess.
+// Suggestion for an unknown key, as the end of a message; empty if there is none.
 std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
   for (const KeyHint& hint : known.hints) {
     if (key == hint.key) return fmt::format("; {}", hint.instead);

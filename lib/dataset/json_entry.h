@@ -11,25 +11,25 @@
 
 namespace soslam {
 
-// A key that is often met where it is not known, and what to write instead.
+// An unknown key that occurs often, and what to write instead.
 struct KeyHint {
   const char* key;
   const char* instead;
 };
 
-// The keys that objects of one kind have. All of them are read, or said to be for people only.
+// Known keys of JSON objects of one kind. All of them are read, or accepted and ignored.
 struct KnownKeys {
   std::vector<const char*> keys;
   std::vector<KeyHint> hints = {};
 };
 
-// An object of somebody's JSON file, whose fields have yet to be checked. It refers to the
-// document, which has to outlive it. All functions throw InputError, naming place and field, when
-// the field is missing or is not what they return.
+// Checked access to an object of an external JSON file. It refers to the document, which must
+// outlive it. All functions throw InputError, naming place and field, when the field is missing or
+// of another type.
 class JsonEntry {
  public:
-  // `place` says in error messages where the object stands: "<file>", "<file>[index]" or
-  // "<file>#<JSON pointer>".
+  // `place` is the object's position in error messages: "<file>", "<file>[index]" or "<file>#<JSON
+  // pointer>".
   JsonEntry(const nlohmann::json& fields, std::string place);
 
   const std::string& place() const { return place_; }
@@ -56,7 +56,7 @@ class JsonEntry {
 
   [[noreturn]] void Refuse(const char* name, const std::string& expected) const;
 
-  // For any key that is not among these: what is not read must not look as if it were.
+  // Refuses keys that are not known, so that none is ignored silently.
   void RefuseUnknownKeys(const KnownKeys& known) const;
 
  private:

@@ -8,10 +8,10 @@
 
 namespace soslam {
 
-// 2D detections of a KITTI sequence as trackers exchange them: <class>/<sequence>.txt, lines
+// Reads 2D detections of a KITTI sequence as trackers exchange them: <class>/<sequence>.txt, lines
 // "frame,x1,y1,x2,y2,score", frames counted from 0, pixels as in KITTI's labels. The label is the
-// name of the file's folder, as it stands there ("Car"). In file order; a file may have no boxes.
-// Throws InputError naming the line.
+// name of the file's folder, unchanged ("Car"). In file order; a file may have no boxes. Throws
+// InputError naming the line.
 std::vector<LabelledBox> ReadKittiBoxes(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -22,12 +22,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kUnlabelledType = "DontCare";
 
-// The columns that both benchmarks have, from the type on.
+// Columns of both benchmarks, from the type on.
 constexpr std::array kColumns = {"type",   "truncated", "occluded", "alpha",  "left",
                                  "top",    "right",     "bottom",   "height", "width",
                                  "length", "x",         "y",        "z",      "rotation_y"};
 
-// `words`: the kColumns of one line, and a score if it has one.
+// `words`: the kColumns of one line, optionally followed by a score.
 KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string& place) {
   const auto real = [&](size_t i) { return ParseReal(words[i], place, kColumns[i]); };
   KittiLabel label;

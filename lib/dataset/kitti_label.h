@@ -14,10 +14,11 @@
 
 namespace soslam {
 
-// What the tracking and the object benchmark of KITTI have in common. Everything is in the frame of
-// camera 2 (left colour), which takes the images, except what a KittiLabel holds.
+// Common parts of KITTI's tracking and object benchmarks. Everything is in the frame of camera 2
+// (left colour), which takes the images, except the values of KittiLabel.
 
-// P2 of a calibration file: pixel = P2 [x; 1], x in the rectified frame of camera 0.
+// Camera of the projection P2 of a calibration file: pixel = P2 [x; 1], x in the rectified frame of
+// camera 0.
 struct KittiCalibration {
   Camera camera;                                                   // without its size
   Eigen::Vector3d camera2_from_camera0 = Eigen::Vector3d::Zero();  // translation, m; no rotation
@@ -37,41 +38,41 @@ struct KittiLabel {
   Eigen::Vector3d size = Eigen::Vector3d::Ones();  // height, width, length, m
   Eigen::Vector3d bottom_centre = Eigen::Vector3d::Zero();
   double rotation_y = 0.0;  // rad; 0: the length along the camera's x axis
-  double score = 1.0;       // of results of detectors and trackers
+  double score = 1.0;       // in results of detectors and trackers
 };
 
-// 17 values a line, frame and track first (tracking), or 15 without these (object: frame 0, track
-// counted from 0), and in results of detectors and trackers a score behind them. Regions that are
-// not labelled (DontCare) are left out. Throw InputError naming the line.
+// Readers of labels: 17 values per line, starting with frame and track (tracking), or 15 without
+// these (object: frame 0, track counted from 0), followed by a score in results of detectors and
+// trackers. Unlabelled regions (DontCare) are left out. Throw InputError naming the line.
 std::vector<KittiLabel> ReadKittiTrackingLabels(const std::filesystem::path& path);
 std::vector<KittiLabel> ReadKittiObjectLabels(const std::filesystem::path& path);
 
-// Files and folders that KITTI names by a number: "0013.txt".
+// A file or folder with a number as its name: "0013.txt".
 struct NumberedPath {
   int number;
   std::filesystem::path path;
 };
-// Those in a folder that have this extension, by number. Throws InputError for a name that is not a
-// number, and when there is none.
+// The numbered files in a folder with this extension, sorted by number. Throws InputError for a
+// name that is not a number, and when there is none.
 std::vector<NumberedPath> NumberedFiles(const std::filesystem::path& folder,
                                         const std::string& extension);
 
-// The file, when it is there. Throws InputError otherwise.
+// The path, if it is a file. Throws InputError otherwise.
 std::filesystem::path RequiredFile(const std::filesystem::path& path);
 
-// The camera with the size (px) of an image, or without one with the size that the setting gives.
+// The camera with the size (px) of the image; without an image the size is that of the setting.
 Camera WithImageSize(Camera camera, const std::optional<std::filesystem::path>& image,
                      ImageOrientation orientation, const RecordingValues& image_size,
                      int recording);
 
-// In lower case: KITTI's Car is the label car.
+// Label of a type, in lower case: KITTI's Car is the label car.
 std::string LabelOfType(const std::string& type);
 
 // The labelled cuboid in the frame of camera 2: x along the length, z up.
 Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration);
 
-// The label as a detection: `box` cut to the image; plane and landmark those of the label, the
-// plane that of its bottom face.
+// Converts a label to a detection: `box` cut to the image; plane (the label's bottom face) and
+// landmark from the label.
 DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,
                         const KittiCalibration& calibration, const Camera& camera);
 

@@ -170,7 +170,7 @@ class Recording {
     content_->rows.push_back(std::move(row));
   }
 
-  // A detector has a folder for each type of object that it finds.
+  // Adds the detector's boxes from one folder per object type.
   void AddFoundBoxes() {
     std::vector<fs::path> types;
     std::error_code error;
@@ -231,7 +231,7 @@ class Recording {
   int number_;
   fs::path file_;  // SSSS.txt
   const KittiOptions& options_;
-  std::string detections_;  // empty: those of the labels
+  std::string detections_;  // empty: the boxes of the labels
   ImageOrientation image_orientation_;
   DatasetContent* content_;
   KittiCalibration calibration_;
@@ -240,7 +240,7 @@ class Recording {
   std::vector<Rigid3d> poses_;
 };
 
-// Those of the option `sequences`.
+// Recordings selected by the option `sequences`.
 std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::string& sequences) {
   std::vector<NumberedPath> all = NumberedFiles(labels, ".txt");
   const auto ranges = ParseRecordings("sequences", sequences);

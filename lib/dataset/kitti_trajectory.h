@@ -8,10 +8,10 @@
 
 namespace soslam {
 
-// A trajectory in the format of KITTI's odometry benchmark: one line per frame, the upper 3 x 4 of
-// world_from_camera row by row, metres. The k-th pose is that of frame k, from 0. Files round
-// matrices, so each rotation is replaced by the one nearest to it. Throws InputError naming the
-// line when a matrix is no rotation within what rounding explains; also when there is no pose.
+// Reads a trajectory in the format of KITTI's odometry benchmark: one line per frame, the upper 3 x
+// 4 of world_from_camera row by row, metres. The k-th pose is that of frame k, from 0. Files round
+// matrices, so each is replaced by the nearest rotation. Throws InputError naming the line when a
+// matrix is no rotation within rounding; also when there is no pose.
 std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What programs call these files; where several are, the first counts.
+// File names used by programs; of several the first is used.
 constexpr std::array kNames = {"classes.txt", "obj.names", "data.yaml", "data.yml", "dataset.yaml"};
 
 bool IsYaml(const fs::path& path) {
@@ -31,7 +31,7 @@ void CheckName(const std::string& name, const std::string& place) {
       fmt::format("{}: label is '{}'; expected names, each without a comma", place, name));
 }
 
-// Of the keys "names.0", "names.1", ...
+// Names under the keys "names.0", "names.1", ...
 std::vector<std::string> NumberedNames(const NamedFields& fields, const std::string& place) {
   std::vector<std::string> names;
   for (;;) {
@@ -91,7 +91,7 @@ bool IsLabelFile(const fs::path& name) {
 
 std::optional<fs::path> FindLabelFile(const fs::path& labels, const fs::path& dataset) {
   fs::path folder = IsFolder(labels) ? PlainPath(labels) : PlainPath(labels).parent_path();
-  // Labels from elsewhere have a folder around them at most.
+  // For labels outside the dataset only their parent folder is searched.
   bool may_leave = IsFolder(labels) && !IsWithin(folder, dataset);
   for (;;) {
     for (const char* name : kNames) {

@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// A name of OpenCV's model, and how many coefficients it may come with.
+// A name of OpenCV's model and the possible numbers of its coefficients.
 struct LensModel {
   const char* name;
   std::vector<size_t> counts;
@@ -38,7 +38,7 @@ const std::vector<LensModel>& LensModels() {
   return models;
 }
 
-// In lower case, without what stands between words.
+// Normalised model name: lower case, without word separators.
 std::string PlainName(const std::string& model) {
   std::string name;
   for (const char c : model) {
@@ -48,7 +48,7 @@ std::string PlainName(const std::string& model) {
   return name;
 }
 
-// Whether it is one of those that see more than a plane in front of the camera can hold.
+// True for a wide-angle model, whose field of view exceeds that of a pinhole image.
 bool IsWideAngle(const std::string& plain_name) {
   for (const char* part : {"fisheye", "equi", "kannala", "kb", "omni", "mei", "unified", "ucm",
                            "doublesphere", "fov", "atan", "scaramuzza", "spherical", "ftheta"}) {

@@ -10,17 +10,17 @@
 
 namespace soslam {
 
-// A pinhole camera, y down, and what its lens does to images and boxes.
+// A pinhole camera, y down, and the distortion of its lens.
 struct LensCamera {
   Camera camera;
-  std::optional<Distortion> distortion;  // none: nothing
+  std::optional<Distortion> distortion;  // none: no distortion
 };
 
-// The lens that a file describes by the name of a model and its coefficients, in OpenCV's order: 4,
-// 5, 8, 12 or 14 of them. Tools name models differently ("plumb_bob", "radtan", "OPENCV", "rational
-// polynomial"); capitals do not count, nor what stands between words. No coefficients are no lens.
-// Throws InputError, naming `place`, for a model that is not OpenCV's (fisheye, equidistant,
-// omnidirectional, ...), and for a number of coefficients that the model does not have.
+// Distortion from the name of a model and its coefficients, in OpenCV's order: 4, 5, 8, 12 or 14 of
+// them. Tools name models differently ("plumb_bob", "radtan", "OPENCV", "rational polynomial");
+// capitals and word separators are ignored. None without coefficients. Throws InputError, naming
+// `place`, for a model that is not OpenCV's (fisheye, equidistant, omnidirectional, ...), and for a
+// number of coefficients that the model does not have.
 std::optional<Distortion> ParseLens(const std::string& model, std::span<const double> coefficients,
                                     const std::string& place);
 

@@ -13,9 +13,9 @@ struct ScoredBox {
   double score = 0.0;
 };
 
-// For each found box the index of the given one that it is, if any: one to one, the found box with
-// the highest score chooses first, and takes the free given box with the largest overlap of at
-// least `min_overlap`.
+// For each found box the index of its given box, if any. One to one and greedy: found boxes in
+// order of descending score take the free given box with the largest overlap of at least
+// `min_overlap`.
 std::vector<std::optional<size_t>> MatchBoxes(const std::vector<ScoredBox>& found,
                                               const std::vector<Box>& given, double min_overlap);
 

@@ -7,7 +7,7 @@
 
 namespace soslam {
 
-// The pose of an image that is known by its name, as structure from motion has it, not by its time.
+// Pose of an image identified by name instead of time, as in structure from motion.
 struct NamedPose {
   std::string place;          // "<file>:<line>" or "<file>#<JSON pointer>", for error messages
   std::string image;          // path, as the file has it

@@ -56,8 +56,8 @@ std::optional<Distortion> LensOf(const JsonEntry& entry) {
     coefficients.push_back(RealOr(entry, name, 0.0));
   }
   std::string model = entry.Has("camera_model") ? entry.Text("camera_model") : "OPENCV";
-  if (entry.Flag("is_fisheye", false)) model = "fisheye";  // of instant-ngp
-  if (model == "FULL_OPENCV") model = "OPENCV";            // it has no more than these here
+  if (entry.Flag("is_fisheye", false)) model = "fisheye";  // written by instant-ngp
+  if (model == "FULL_OPENCV") model = "OPENCV";  // no further coefficients are in these files
   const auto distortion = ParseLens(model, coefficients, entry.place());
   for (const char* name : {"k4", "k5", "k6"}) {
     if (RealOr(entry, name, 0.0) != 0.0) entry.Refuse(name, "0: no lens model here has it");
@@ -74,7 +74,7 @@ std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
   return entries;
 }
 
-// A frame that names a camera key has to say what all do.
+// Checks that camera keys of single frames equal those of the file.
 void RefuseOtherCameras(const JsonEntry& all) {
   for (const JsonEntry& frame : FramesOf(all)) {
     for (const char* key : kCameraKeys) {

@@ -9,10 +9,10 @@
 
 namespace soslam {
 
-// Detections as OA-SLAM reads them (M. Zins, G. Simon, M.-O. Berger, "OA-SLAM", ISMAR 2022):
+// Reads detections in OA-SLAM's format (M. Zins, G. Simon, M.-O. Berger, "OA-SLAM", ISMAR 2022):
 // [{"file_name", "detections": [{"category_id", "detection_score", "bbox": [x1, y1, x2, y2]}]}],
 // pixels from the image's outer corner. `labels` are the names of the categories, from 0; OA-SLAM's
-// own files have COCO's 80. In file order. Throws InputError with file and JSON pointer.
+// own files use COCO's 80. In file order. Throws InputError with file and JSON pointer.
 std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
                                          const std::vector<std::string>& labels);
 

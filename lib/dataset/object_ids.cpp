@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// How often each id is of several boxes of one image; ids below 0 do not count.
+// Number of images in which each id occurs more than once; without ids below 0.
 std::map<int, int> ImagesWithSeveral(const std::vector<LabelledBox>& boxes) {
   std::map<std::pair<FrameKey, int>, int> counts;
   std::map<int, int> images;

@@ -10,8 +10,8 @@
 
 namespace soslam {
 
-// All objects of a dataset, sorted by id: those given in objects.json, detected or not, and those
-// that only detections name, which have no ground truth. An object stands on its support_plane, or
+// All objects of a dataset, sorted by id: those of objects.json, detected or not, and those that
+// only occur in detections, which have no ground truth. An object stands on its support_plane, or
 // else on the only plane; on none when no plane is known. Rows of one object have one label. Throws
 // InputError for a plane that does not exist, and when the plane is not given although there are
 // several.

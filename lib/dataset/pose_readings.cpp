@@ -10,13 +10,13 @@ namespace {
 
 Rigid3d Inverted(const Rigid3d& pose) { return pose.Inverse(); }
 
-// Four numbers w x y z that were read as x y z w.
+// Quaternion w x y z that was read as x y z w.
 Rigid3d WithScalarFirst(const Rigid3d& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
 }
 
-// A camera with x right, y up, z backward.
+// Pose of a camera with x right, y up, z backward.
 Rigid3d OfOpenGlCamera(const Rigid3d& pose) {
   const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
   return {pose.rotation * half_turn_about_x, pose.translation};
@@ -30,12 +30,12 @@ Rigid3d WithInverseRotation(const Rigid3d& pose) {
   return {pose.rotation.conjugate(), pose.translation};
 }
 
-// The centre -R t of a camera whose inverse pose has the translation t.
+// Pose with camera centre -R t, for a translation t of the inverse pose.
 Rigid3d WithInverseTranslation(const Rigid3d& pose) {
   return {pose.rotation, -(pose.rotation * pose.translation)};
 }
 
-// A translation that was inverted although it was the centre.
+// Pose with a translation that was inverted although it was the centre.
 Rigid3d WithCentreInverted(const Rigid3d& pose) {
   return {pose.rotation, pose.Inverse().translation};
 }
@@ -48,7 +48,7 @@ Rigid3d HalfTurned(const Rigid3d& pose) { return TurnedAboutZ(pose, 0.5); }
 Rigid3d QuarterTurned(const Rigid3d& pose) { return TurnedAboutZ(pose, 0.25); }
 Rigid3d QuarterTurnedBack(const Rigid3d& pose) { return TurnedAboutZ(pose, -0.25); }
 
-// A body with x forward, y left, z up.
+// Pose of a body with x forward, y left, z up.
 Rigid3d OfRosBody(const Rigid3d& pose) {
   const Eigen::Quaterniond body_from_camera(0.5, -0.5, 0.5, -0.5);
   return {pose.rotation * body_from_camera, pose.translation};

@@ -8,17 +8,18 @@
 
 namespace soslam {
 
-// What a file may mean by a pose that is read as world_from_camera with quaternion qx qy qz qw.
+// An alternative convention of a pose that was read as world_from_camera with quaternion qx qy qz
+// qw.
 struct PoseReading {
   const char* name;  // "the poses are the inverse, camera_from_world"
   const char* cause;
   const char* remedy;
-  Rigid3d (*Apply)(const Rigid3d& as_read);  // world_from_camera as it is meant
-  bool are_boxes_mirrored = false;           // left to right, in the camera as it is meant
-  bool is_turned_in_body = false;            // as a camera may be in any body
+  Rigid3d (*Apply)(const Rigid3d& as_read);  // converts to the true world_from_camera
+  bool are_boxes_mirrored = false;           // boxes are also mirrored left to right
+  bool is_turned_in_body = false;            // a rotation that a camera may also have in a body
 };
 
-// The readings that people's files have been seen to mean, but for the right one.
+// The wrong conventions that occur in practice.
 std::span<const PoseReading> PoseReadings();
 
 }  // namespace soslam

@@ -12,7 +12,7 @@
 namespace soslam {
 namespace {
 
-// A setting that is not what it should be, instead of an input.
+// Throws SettingsError for an invalid setting.
 [[noreturn]] void Refuse(const std::string& option, std::string_view found, const char* expected) {
   throw SettingsError(fmt::format("{}: found '{}'; expected {}", option, found, expected));
 }

@@ -7,26 +7,26 @@
 
 namespace soslam {
 
-// KITTI numbers its recordings, and names their files by number: "0013.txt". These are settings
-// about some of them. All throw SettingsError naming the option.
+// Settings for KITTI's numbered recordings, whose files are named by number: "0013.txt". All
+// functions throw SettingsError naming the option.
 
-// Recordings first to last.
+// Recordings `first` to `last`, inclusive.
 struct RecordingRange {
   int first = 0;
   int last = 0;
   bool Contains(int recording) const { return recording >= first && recording <= last; }
 };
 
-// "0001 0003-0005", blanks between ranges.
+// Parses "0001 0003-0005", blanks between ranges.
 std::vector<RecordingRange> ParseRecordings(const std::string& option, std::string_view text);
 
-// "0000-0013:0.969 0020:0.988", or one value for all recordings.
+// Values per recording, "0000-0013:0.969 0020:0.988", or one value for all.
 class RecordingValues {
  public:
   RecordingValues(const std::string& option, const std::string& text);
-  // The value that holds for a recording. Throws SettingsError when there is none.
+  // Value of a recording. Throws SettingsError when there is none.
   const std::string& Of(int recording) const;
-  // The same, as a number above 0.
+  // Value of a recording as a number above 0.
   double PositiveOf(int recording) const;
 
  private:

@@ -126,7 +126,7 @@ class Problem {
     }
   }
 
-  // An index into a list of this size.
+  // An index in a list of this size.
   static size_t Index(const JsonEntry& entry, const char* field, size_t size) {
     const int index = entry.Integer(field);
     if (index < 0 || index >= static_cast<int>(size)) {

@@ -40,8 +40,8 @@ const Finding kRelabelled = {
     "ids that are of several things, or a detector that calls one thing by several names",
     "give each thing an id of its own, or no ids and estimated association"};
 
-// All of them are counted; those of listed images that the lens can have put where they are have
-// rows.
+// Rejects boxes without a track. All are counted; rows are kept for boxes of listed images that
+// have an undistorted counterpart.
 void RejectBoxesOfNoTrack(const std::vector<LabelledBox>& boxes,
                           const std::vector<ListedImage>& images, const LensCamera& camera,
                           Rejections* rejected) {
@@ -64,8 +64,8 @@ std::vector<TrueObject> TrueObjects(const std::vector<ListedObject>& listed) {
   return objects;
 }
 
-// `count` of the boxes are used otherwise than as they stand: said on stdout, and a finding where
-// that is more than a third.
+// Reports that `count` boxes were changed on reading: on stdout, and as a finding when more than a
+// third.
 void ReportMended(const DatasetFiles& files, int count, size_t boxes, Finding finding,
                   std::vector<Finding>* findings) {
   constexpr size_t kFewest = 10;

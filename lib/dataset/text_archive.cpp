@@ -30,13 +30,13 @@ ArchivePointer Open(const std::filesystem::path& path) {
   NoteInput(path);
   constexpr size_t kBlock = 1 << 16;  // bytes
   ArchivePointer opened(archive_read_new());
-  // Not "all": for some formats the library runs programs.
+  // Not "all", because the library runs external programs for some formats.
   archive_read_support_filter_gzip(opened.get());
   archive_read_support_filter_bzip2(opened.get());
   archive_read_support_filter_xz(opened.get());
   archive_read_support_filter_zstd(opened.get());
   archive_read_support_format_tar(opened.get());
-  // Not the zip that is read in one pass: it looks for the next entry without end.
+  // Not the streaming zip reader, which may search for the next entry endlessly.
   archive_read_support_format_zip_seekable(opened.get());
   if (archive_read_open_filename(opened.get(), path.c_str(), kBlock) != ARCHIVE_OK) {
     Refuse(path, opened.get());
@@ -44,8 +44,8 @@ ArchivePointer Open(const std::filesystem::path& path) {
   return opened;
 }
 
-// More than any detector's boxes of a recording, and than an archive of them unpacks to: what is
-// larger is packed to fill the memory, or to keep its reader busy.
+// Limits above any detector's boxes of a recording and any archive of them; larger ones are
+// decompression bombs.
 constexpr std::int64_t kMaxTextBytes = std::int64_t{64} << 20;
 constexpr std::int64_t kMaxUnpackedBytes = std::int64_t{256} << 20;
 
@@ -55,7 +55,7 @@ void CheckBytes(std::int64_t bytes, std::int64_t most, const std::filesystem::pa
                                path.string(), bytes, most));
 }
 
-// Of the entry that was opened last.
+// Reads the entry that was opened last.
 std::string ReadEntry(const std::filesystem::path& path, std::int64_t max_bytes, archive* opened) {
   std::string text;
   std::array<char, 1 << 16> block;
@@ -81,10 +81,10 @@ std::vector<ArchivedText> ReadTextArchive(
     const int status = archive_read_next_header(opened.get(), &entry);
     if (status == ARCHIVE_EOF) break;
     if (status < ARCHIVE_WARN) Refuse(path, opened.get());
-    // Also what is skipped has to be unpacked, to find what follows.
+    // Skipped entries are decompressed, too, to find the next one.
     CheckBytes(archive_entry_size(entry), kMaxUnpackedBytes, path);
     CheckBytes(archive_filter_bytes(opened.get(), 0), kMaxUnpackedBytes, path);
-    // Packed over and over, a few bytes keep any reader busy. Not being packed counts as one.
+    // Nested compression makes a few bytes expand endlessly. No compression counts as one filter.
     if (archive_filter_count(opened.get()) > 2) {
       throw InputError(path.string() + ": is packed more than once; expected .tar.gz, .tar, .zip");
     }

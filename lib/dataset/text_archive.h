@@ -14,8 +14,8 @@ struct ArchivedText {
   std::string text;
 };
 
-// The files of an archive (tar, also compressed; zip) whose names (ArchivedText::name) are
-// `wanted`, by name. Throws InputError for what is no archive, and for one that is cut short, or
+// Reads the files of an archive (tar, also compressed; zip) whose names (ArchivedText::name) are
+// `wanted`, sorted by name. Throws InputError for a file that is no archive, is truncated, or
 // unpacks to more than text files would.
 std::vector<ArchivedText> ReadTextArchive(
     const std::filesystem::path& path,

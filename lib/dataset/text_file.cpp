@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
 
-// Names and labels end up in JSON, which has to be UTF-8.
+// Names and labels are written to JSON, which must be UTF-8.
 bool IsUtf8(const std::string& text) {
   try {
     nlohmann::json(text).dump();
@@ -45,7 +45,7 @@ std::string ReadWhole(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t bytes = IsFile(path) ? std::filesystem::file_size(path, error) : 0;
   std::ifstream stream;
-  if (IsFile(path) && !error) stream.open(path, std::ios::binary);  // a pipe would have it wait
+  if (IsFile(path) && !error) stream.open(path, std::ios::binary);  // opening a pipe would block
   if (!stream.is_open()) {
     throw InputError(path.string() + ": cannot be read; expected a text file");
   }
@@ -73,7 +73,7 @@ void ForEachLine(const std::string& text, const std::string& name, const Use& us
 
 bool IsComment(std::string_view line) { return Trimmed(line).starts_with('#'); }
 
-// Without what is of `blanks` at both ends of a line.
+// Lines without the characters of `blanks` at both ends.
 std::vector<TextLine> LinesWithout(std::string_view blanks, const std::string& text,
                                    const std::string& name) {
   std::vector<TextLine> lines;
@@ -95,7 +95,7 @@ bool ParseWhole(std::string_view text, Number* number) {
   return error == std::errc() && stop == end;
 }
 
-// Whether a decimal point in place of the only comma would make it a number.
+// True if replacing the only comma by a decimal point gives a number.
 bool HasDecimalComma(std::string_view text) {
   std::string with_point(text);
   const size_t comma = with_point.find(',');

@@ -14,32 +14,31 @@ struct TextLine {
   std::string text;
 };
 
-// The lines of a UTF-8 text file that are neither blank nor comments (first character #), without
-// blanks at both ends. A byte order mark is dropped. Lines end with a line feed, with or without
-// carriage returns, or, in a text that has no line feed, with a carriage return. Throws InputError
-// when the file cannot be read, is no regular one or one of more than 1 GiB, and when it is not
-// UTF-8.
+// Reads the lines of a UTF-8 text file without blank lines and comments (first character #),
+// trimmed of blanks. A byte order mark is dropped. Lines end with a line feed, with or without
+// carriage returns, or with a carriage return in a text without line feeds. Throws InputError when
+// the file cannot be read, is not a regular file, is larger than 1 GiB, or is not UTF-8.
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
-// The same of a text that is not a file of its own; `name` stands for it in error messages.
+// ReadTextLines for a text that is not a file of its own; `name` stands for it in error messages.
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name);
 
-// The same of a table: tabs at both ends of a line are kept, as fields may be empty.
+// ReadTextLines for a table: tabs at both ends of a line are kept, as fields may be empty.
 std::vector<TextLine> ReadTableLines(const std::filesystem::path& path);
 
-// All lines, also blank ones and comments, as they stand; at most 4 million. Comments need not be
+// All lines unchanged, including blank ones and comments; at most 4 million. Comments need not be
 // UTF-8.
 std::vector<TextLine> ReadRawLines(const std::filesystem::path& path);
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name);
 
-// Without blanks at both ends.
+// The text without blanks at both ends.
 std::string_view Trimmed(std::string_view text);
-// The words between blanks.
+// Words separated by blanks.
 std::vector<std::string_view> SplitWords(std::string_view text);
-// The trimmed fields between commas; a comma cannot be part of a field.
+// Trimmed fields separated by commas; a comma cannot be part of a field.
 std::vector<std::string_view> SplitFields(std::string_view text);
 
-// The whole of `text` as a number, whatever the locale. Throws InputError, naming place and field,
-// for anything else; a real number must be finite.
+// Parses all of `text` as a number, independent of the locale. Throws InputError, naming place and
+// field, for anything else; a real number must be finite.
 double ParseReal(std::string_view text, const std::string& place, const std::string& field);
 int ParseInteger(std::string_view text, const std::string& place, const std::string& field);
 

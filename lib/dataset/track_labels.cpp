@@ -17,7 +17,7 @@ struct Votes {
   double score = 0.0;
 };
 
-// Of the rows of one object, by label.
+// Votes of the rows of one object, keyed by label.
 using Ballot = std::map<std::string, Votes>;
 
 std::string Winner(const Ballot& ballot) {

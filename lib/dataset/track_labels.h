@@ -8,10 +8,11 @@
 
 namespace soslam {
 
-// Gives all rows of an object one label, as detectors call one thing by several names: that which
-// most of them have (of as many that with the larger sum of scores, then the first by name), or
-// that of objects.json unless more than half have another. Returns how many rows had another label.
-// Throws InputError, naming a row, for an object that objects.json calls otherwise than most rows.
+// Gives all rows of an object one label, as detectors use several labels for one object: the most
+// frequent one (ties: larger sum of scores, then alphabetical), or that of objects.json unless more
+// than half of the rows have another. Returns the number of rows whose label changed. Throws
+// InputError, naming a row, for an object whose label in objects.json differs from that of most
+// rows.
 int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionRow>* rows);
 
 }  // namespace soslam

@@ -12,7 +12,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// Of each coordinate by itself.
+// Median of each coordinate.
 template <typename Vector>
 Eigen::Vector3d Median(const std::vector<Landmark>& landmarks, const Vector& vector) {
   Eigen::Vector3d median;

@@ -16,15 +16,15 @@ struct LabelledView {
   Landmark landmark_in_camera;
 };
 
-// What all labels of one object say about it in the world.
+// Ground truth of one object in the world from all its labels.
 struct TrackTruth {
   bool is_static = false;
-  // The median of all views; of an object that is not static its first view.
+  // Median of all views; the first view if the object is not static.
   Landmark landmark_in_world;
   Plane plane_in_world;  // the landmark's bottom face
 };
 
-// `views`: at least one, in the order of time.
+// `views`: at least one, in temporal order.
 TrackTruth SummariseTrack(const std::vector<LabelledView>& views, const KittiOptions& options);
 
 }  // namespace soslam

@@ -26,7 +26,7 @@ double HalfDiagonalDeg(const Camera& camera, const Box& box) {
          AngleBetweenDeg(camera.Ray({box.x_min, box.y_min}), camera.Ray({box.x_max, box.y_max}));
 }
 
-// The labels that no frame has twice.
+// Labels that occur at most once per frame.
 std::map<std::string, bool> SingleLabels(const std::vector<DetectionRow>& rows) {
   std::map<std::pair<std::string, int>, int> counts;
   for (const DetectionRow& row : rows) ++counts[{row.label, row.frame_id}];

@@ -10,41 +10,40 @@
 
 namespace soslam {
 
-// The middle of a box, as a viewing ray of a frame.
+// Viewing ray through the centre of a box.
 struct TrackedRay {
-  size_t frame = 0;  // into DatasetContent::frames
+  size_t frame = 0;  // index in DatasetContent::frames
   Eigen::Vector3d ray_in_camera;
   double half_diagonal_deg = 0.0;  // of the box
 };
 
-// A thing of which several boxes are known.
+// An object seen in several boxes.
 struct TrackedThing {
-  std::optional<int> object_id;  // none: the only thing with its label
+  std::optional<int> object_id;  // none: the only object with its label
   std::vector<TrackedRay> rays;
 };
 
-// The things that an object id or, without ids, a label that no frame has twice tells apart. Boxes
-// that the image cuts do not count, nor those below min_score, of moving objects, and of things
-// with fewer than three others.
+// Objects that are identified by object id or, without ids, by a label that occurs at most once per
+// frame. Without boxes that the image cuts or below min_score, moving objects, and objects with
+// fewer than four boxes.
 std::vector<TrackedThing> TrackedThings(const ImportView& view);
 
-// The pose of a frame, by index into DatasetContent::frames; none where there is none.
+// Pose of a frame, by index in DatasetContent::frames; none where there is none.
 using PoseOfFrame = std::function<std::optional<Rigid3d>(size_t frame)>;
 
-// The point that is nearest to the rays of a thing from these poses (least squares); none where the
-// rays are too few or too parallel to meet.
+// Triangulates the point nearest to the rays of an object from these poses (least squares); none
+// where the rays are too few or too parallel.
 std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>& rays,
                                                    const PoseOfFrame& world_from_camera);
 
-// How far things are from where they are seen, each at its nearest point: what poses and boxes
-// disagree by.
+// Disagreement of poses and boxes: angles between rays and triangulated points.
 struct RayError {
   double median_deg = 0.0;
-  double median_share = 0.0;  // of the half diagonals of the boxes
-  size_t rays = 0;            // of the things that have such a point
+  double median_share = 0.0;  // relative to the half diagonals of the boxes
+  size_t rays = 0;            // of the objects with a triangulated point
   size_t things = 0;
 };
-// None when no thing has such a point.
+// Median error over all objects; none when no object can be triangulated.
 std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
                                        const PoseOfFrame& world_from_camera);
 

@@ -27,7 +27,7 @@ TimedPose ParsePose(const TextLine& line) {
   return {v[0], {UnitQuaternion({v[4], v[5], v[6], v[7]}, line.place), {v[1], v[2], v[3]}}};
 }
 
-// Within what a camera moves while a clock of some digits does not.
+// True if the poses differ by no more than a camera moves within the resolution of a timestamp.
 bool IsSamePose(const Rigid3d& a, const Rigid3d& b) {
   constexpr double kMetres = 0.01;
   constexpr double kRadians = 0.02;
@@ -35,7 +35,8 @@ bool IsSamePose(const Rigid3d& a, const Rigid3d& b) {
          a.rotation.angularDistance(b.rotation) <= kRadians;
 }
 
-// A row "timestamp,filename"; none for another one, also for commas in numbers and file names.
+// Parses a row "timestamp,filename"; none for other rows, including those with commas in numbers or
+// file names.
 std::optional<ListedImage> EurocImage(const TextLine& line) {
   constexpr double kSecondsPerUnit = 1e-9;
   const auto fields = SplitFields(line.text);

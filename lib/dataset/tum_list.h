@@ -10,7 +10,7 @@
 
 namespace soslam {
 
-// The text lists of the TUM RGB-D benchmark: one row a line, # starts a comment.
+// Readers of the text lists of the TUM RGB-D benchmark: one row per line, # starts a comment.
 
 // A row "timestamp filename" of rgb.txt.
 struct ListedImage {
@@ -18,12 +18,12 @@ struct ListedImage {
   std::string image;  // path relative to the dataset folder
 };
 
-// The rows in the order of the file; also rows "timestamp,filename" with nanoseconds, as EuRoC has
-// them. Throws InputError naming the line; also when there is no row.
+// Reads an image list in file order; also rows "timestamp,filename" with nanoseconds, as in EuRoC.
+// Throws InputError naming the line; also when there is no row.
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path);
 
-// Rows as above, or "timestamp filename timestamp filename" as tools write them that associate
-// colour images with depth images: the first pair is the image, or else the second.
+// Reads rows as above, or "timestamp filename timestamp filename" of tools that associate colour
+// with depth images; the order of the two is given by `order`.
 enum class PairOrder { kImageFirst, kImageSecond };
 std::vector<ListedImage> ReadPairedImageList(const std::filesystem::path& path, PairOrder order);
 
@@ -33,16 +33,16 @@ struct TimedPose {
   Rigid3d world_from_camera;
 };
 
-// The poses by ascending timestamp, quaternions normalised; of those of one time, which a
-// recorder's clock may give to two, the first. Throws InputError naming the line, for two poses of
-// one time that are not about the same, and when there is no pose.
+// Reads a trajectory, sorted by timestamp, with normalised quaternions; of several poses with one
+// timestamp the first. Throws InputError naming the line for two clearly different poses with one
+// timestamp, and when there is no pose.
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path);
 
-// What a reader of `path` does with its poses at the end, as said above.
+// Final step of a trajectory reader, as above: sorts, removes duplicates, checks.
 std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
                                         const std::filesystem::path& path);
 
-// The pose of `trajectory` (ascending) that is nearest in time, none when it is further away than
+// The pose of `trajectory` (ascending) nearest in time; none when it is further away than
 // `max_difference_s`.
 std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,
                                      double max_difference_s);

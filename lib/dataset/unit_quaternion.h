@@ -11,8 +11,8 @@
 
 namespace soslam {
 
-// Files round quaternions, so that their norm is only about 1; this makes it 1. Throws InputError,
-// naming `place`, when it is off by more than rounding explains.
+// Normalises a quaternion that was rounded in a file. Throws InputError, naming `place`, when its
+// norm differs from 1 by more than rounding.
 inline Eigen::Quaterniond UnitQuaternion(const Eigen::Vector4d& xyzw, const std::string& place) {
   constexpr double kTolerance = 1e-2;
   if (!(std::abs(xyzw.norm() - 1.0) <= kTolerance)) {

@@ -42,7 +42,7 @@ class XmlReader {
     throw InputError(fmt::format("{}: {}", place_, what));
   }
 
-  // The text before `end`, which is taken, too.
+  // Returns the text before `end` and consumes both.
   std::string_view TakeUntil(std::string_view end) {
     const size_t found = rest_.find(end);
     if (found == rest_.npos) Refuse(fmt::format("has a < without {}", end));
@@ -77,7 +77,7 @@ class XmlReader {
     open_.pop_back();
   }
 
-  // Of the innermost open element.
+  // Path of the innermost open element.
   std::string Path() const {
     return fmt::format("{}", fmt::join(std::span(open_).subspan(1), "."));
   }

@@ -7,10 +7,10 @@
 
 namespace soslam {
 
-// The words in each element of an XML file as OpenCV writes it, by the names of the elements around
-// them without the outermost one: "camera_matrix.data". Attributes and comments are left out;
-// entities and CDATA are not known. Throws InputError for an element that is not closed or comes
-// twice, and for more, or deeper nested, than a calibration is.
+// Reads the words in each element of an XML file written by OpenCV, keyed by the names of the
+// enclosing elements without the outermost one: "camera_matrix.data". Attributes and comments are
+// skipped; entities and CDATA are not supported. Throws InputError for an element that is not
+// closed or occurs twice, and for a file larger or nested deeper than a calibration.
 NamedFields ReadXmlFields(const std::filesystem::path& path);
 
 }  // namespace soslam

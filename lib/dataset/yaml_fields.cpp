@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// Where `found` is first true of text outside of quotes; npos when it never is.
+// First position outside of quotes at which `found` is true; npos if there is none.
 template <typename Found>
 size_t FindUnquoted(std::string_view text, const Found& found) {
   char quote = '\0';
@@ -36,7 +36,7 @@ std::string_view WithoutComment(std::string_view line) {
                      }));
 }
 
-// Of the colon after a key.
+// Position of the colon after a key.
 size_t FindColon(std::string_view text) {
   return FindUnquoted(text, [&](size_t i) {
     return text[i] == ':' && (i + 1 == text.size() || text[i + 1] == ' ' || text[i + 1] == '\t');
@@ -49,7 +49,7 @@ std::string_view Unquoted(std::string_view text) {
   return is_quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-// How many brackets are open at the end of a text.
+// Number of open brackets at the end of a text.
 int OpenBrackets(std::string_view text) {
   int open = 0;
   FindUnquoted(text, [&](size_t i) {
@@ -82,7 +82,7 @@ class YamlReader {
   }
 
  private:
-  // A key whose value are the lines below it that are indented more.
+  // A key whose value is the more deeply indented lines below it.
   struct OpenKey {
     size_t indent;
     std::string path;
@@ -92,7 +92,7 @@ class YamlReader {
     throw InputError(lines_[std::min(next_, lines_.size() - 1)].place + ": " + what);
   }
 
-  // The path of a key that is read now.
+  // Full path of a key; checks the limits.
   std::string Join(const std::string& path, std::string_view key) {
     if (++keys_ > kMaxFieldValues) Refuse(fmt::format("has more than {} keys", kMaxFieldValues));
     if (path.size() + key.size() > kMaxFieldPath) {
@@ -132,7 +132,7 @@ class YamlReader {
     ReadFlow(open_.back().path, text);
   }
 
-  // Lines of text that belong to a key at this indentation.
+  // Skips lines of text that belong to a key at this indentation.
   void SkipBlock(size_t indent) {
     while (next_ + 1 < lines_.size()) {
       const std::string& line = lines_[next_ + 1].text;
@@ -142,7 +142,7 @@ class YamlReader {
     }
   }
 
-  // A scalar, or what is in brackets, perhaps over several lines.
+  // Reads a scalar, or a value in brackets, possibly over several lines.
   void ReadFlow(const std::string& path, std::string_view begin) {
     std::string text(begin);
     if (text.starts_with('[') || text.starts_with('{')) {
@@ -175,7 +175,7 @@ class YamlReader {
     }
   }
 
-  // What is before the next comma outside of brackets; `rest` becomes what follows it.
+  // Returns the text before the next comma outside of brackets; `rest` becomes the text after it.
   static std::string_view TakeItem(std::string_view* rest) {
     int open = 0;
     const std::string_view text = *rest;
@@ -198,10 +198,10 @@ class YamlReader {
   }
 
   std::vector<TextLine> lines_;
-  size_t next_ = 0;  // the line that is read
+  size_t next_ = 0;  // index of the current line
   size_t values_ = 0;
   size_t keys_ = 0;
-  std::vector<OpenKey> open_;  // from the outermost on
+  std::vector<OpenKey> open_;  // outermost first
   NamedFields fields_;
 };
 

@@ -14,8 +14,9 @@
 namespace soslam {
 namespace {
 
-constexpr double kRounding = 1e-3;    // files round to three digits at least
-constexpr double kMostBeyond = 0.05;  // of what annotators and detectors draw past the image
+constexpr double kRounding = 1e-3;  // files round to three digits at least
+// Largest overhang of boxes by annotators and detectors, fraction.
+constexpr double kMostBeyond = 0.05;
 
 YoloRow ParseLine(const TextLine& line, const std::string& image,
                   const std::array<const char*, 4>& names) {
@@ -38,7 +39,7 @@ YoloRow ParseLine(const TextLine& line, const std::string& image,
   return row;
 }
 
-// Corners in fractions of the image.
+// Box with corners in fractions of the image.
 Box FractionsBox(const std::array<double, 4>& values, const std::string& place) {
   for (size_t i = 0; i < values.size(); ++i) {
     const double least = i < 2 ? -kMostBeyond : -kRounding;
@@ -51,7 +52,7 @@ Box FractionsBox(const std::array<double, 4>& values, const std::string& place) 
   return {cx - 0.5 * w, cy - 0.5 * h, cx + 0.5 * w, cy + 0.5 * h};
 }
 
-// How far a box in fractions reaches beyond the image, at most.
+// Largest overhang of a box beyond the image, in fractions.
 double Beyond(const Box& box) {
   return std::max({0.0, -box.x_min, -box.y_min, box.x_max - 1.0, box.y_max - 1.0});
 }

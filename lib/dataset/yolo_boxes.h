@@ -10,25 +10,25 @@
 
 namespace soslam {
 
-// Detections as YOLO programs write them: one text file per image, named like the image, one line
-// per box. Which of the two conventions holds cannot be told from the numbers with certainty, so
-// each has its reader; a line that is plainly of the other one is refused. The boxes come file by
-// file, sorted by name; an image without detections may have an empty file or none. What may follow
-// the box, its score and its track, ReadYoloExtras finds out; tracks become object ids.
+// Readers of detections written by YOLO programs: one text file per image, named like the image,
+// one line per box. The two conventions cannot be distinguished with certainty from the numbers, so
+// each has its own reader; a line that is clearly of the other one is refused. Boxes are ordered by
+// file name; an image without detections may have an empty file or none. ReadYoloExtras interprets
+// score and track after the box; tracks become object ids.
 //
 // `labels` are the names of the classes, from 0. Both throw InputError naming the line.
 
-// Lines "class cx cy w h [score] [track]": centre and size in fractions of the image's width and
-// height. This is what YOLOv5 and its successors save, and the format of their labels. Boxes that
-// reach beyond the image by less than a twentieth of it are cut to it; when by more than rounding,
-// they are counted in `mended` as cut_to_image.
+// Reads lines "class cx cy w h [score] [track]": centre and size in fractions of the image's width
+// and height, the format of labels and results of YOLOv5 and its successors. Boxes that extend
+// beyond the image by less than a twentieth of it are cut to it; if by more than rounding, they are
+// counted in `mended` as cut_to_image.
 std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  const std::vector<std::string>& labels,
                                                  int image_width, int image_height,
                                                  RejectionCounts* mended);
 
-// Lines "class x y w h [score] [track]": upper left corner and size in pixels, as EAO-SLAM reads
-// them.
+// Reads lines "class x y w h [score] [track]": upper left corner and size in pixels, as EAO-SLAM
+// does.
 std::vector<LabelledBox> ReadPixelYoloBoxes(const YoloTexts& texts,
                                             const std::vector<std::string>& labels);
 

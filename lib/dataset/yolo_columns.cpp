@@ -22,7 +22,7 @@ bool IsTrack(double value) {
   return value >= -1.0 && value <= std::numeric_limits<int>::max() && value == std::floor(value);
 }
 
-// The first row whose extra is not what it should be; null when all are.
+// The first row whose extra violates `is_it`; null when there is none.
 const YoloRow* FirstOther(const Rows& rows, size_t extra, bool (*is_it)(double)) {
   const auto found =
       std::ranges::find_if(rows, [&](const YoloRow* row) { return !is_it(row->extras[extra]); });

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kLists = {"classes.txt", "train.txt", "val.txt", "valid.txt", "test.txt"};
 
-// Whether a program or a system puts such files beside labels.
+// True for files that programs or systems add beside labels.
 bool IsExtra(const fs::path& path) {
   const std::string name = path.filename().string();
   const auto is_of_macos = [](const fs::path& part) { return part == "__MACOSX"; };
@@ -31,7 +31,7 @@ bool IsExtra(const fs::path& path) {
 
 bool IsLabels(const fs::path& path) { return path.extension() == ".txt" && !IsExtra(path); }
 
-// Whether a file of this name is a list of something else than boxes.
+// True if a file of this name is a list of something other than boxes.
 bool IsList(const fs::path& path, const std::vector<TextLine>& lines) {
   if (std::ranges::find(kLists, path.filename().string()) == kLists.end()) return false;
   return !lines.empty() && !std::isdigit(static_cast<unsigned char>(lines.front().text.front()));

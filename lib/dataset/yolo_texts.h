@@ -10,23 +10,23 @@
 
 namespace soslam {
 
-// The boxes of one image, a line each.
+// The boxes of one image, one per line.
 struct YoloText {
   std::string image;  // its name without extension
   std::vector<TextLine> lines;
 };
 
-// What a folder or an archive of YOLO's labels holds.
+// Content of a folder or an archive of YOLO's labels.
 struct YoloTexts {
-  std::vector<YoloText> images;                   // by name
+  std::vector<YoloText> images;                   // sorted by name
   std::optional<std::vector<std::string>> names;  // of the classes, in an archive that has them
-  std::string names_place;                        // of these
+  std::string names_place;                        // place of the names, for messages
 };
 
-// The *.txt of a folder, or of an archive (ReadTextArchive) at any depth. Left out are names that
-// begin with a point (of macOS), what __MACOSX holds, README*, and where they do not begin with a
-// number, as boxes do, the lists classes.txt, train.txt, val.txt, valid.txt and test.txt of CVAT
-// and others. Throws InputError when there is nothing to read, and for two files of one name.
+// Reads the *.txt of a folder, or of an archive (ReadTextArchive) at any depth. Skipped are hidden
+// files (of macOS), __MACOSX, README*, and the lists classes.txt, train.txt, val.txt, valid.txt and
+// test.txt of CVAT and others unless they begin with a number, as boxes do. Throws InputError when
+// there is nothing to read, and for two files of one name.
 YoloTexts ReadYoloTexts(const std::filesystem::path& path);
 
 }  // namespace soslam

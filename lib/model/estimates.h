@@ -14,35 +14,35 @@
 
 namespace soslam {
 
-// One landmark that explains an observation, with the cost at which it does (half the sum of
-// squared weighted residuals, no unit).
+// One landmark that fits an observation, with its cost (half the sum of squared weighted residuals,
+// no unit).
 struct Hypothesis {
   Landmark landmark_in_camera;
   double cost = 0.0;
 };
 
-// What one observation alone says about its object. `hypotheses` is sorted best first; the first
-// one is the estimate. `failure` says why there is none (hypotheses empty), or why a later stage
-// left the estimate as it was.
+// Estimate of an object from one observation alone. `hypotheses` is sorted best first; the first
+// one is the estimate. `failure` gives the reason when there is none (hypotheses empty), or when a
+// later stage left the estimate unchanged.
 struct ObservationEstimate {
-  int detection_index = 0;  // into Sequence::detections
+  int detection_index = 0;  // index in Sequence::detections
   std::vector<Hypothesis> hypotheses;
   std::string failure;
 };
 
-// The failure of an object that is not known to stand still, which has no place in the map.
+// Failure of an object that is not known to be static and thus has no place in the map.
 inline constexpr const char* kMovingObject = "moving";
 
 using Covariance9 = Eigen::Matrix<double, 9, 9>;
 
-// What all observations of an object together say about it. Covariance over (rotation vector in the
-// world frame, rad; centre in the world frame, m; log half axes).
+// Estimate of an object from all its observations. Covariance over (rotation vector in the world
+// frame, rad; centre in the world frame, m; log half axes).
 struct ObjectEstimate {
-  int object_index = 0;  // into Sequence::objects
-  int observations = 0;  // how many detections it comes from
+  int object_index = 0;  // index in Sequence::objects
+  int observations = 0;  // number of detections used
   std::optional<Landmark> landmark_in_world;
   std::optional<Covariance9> covariance;
-  std::string failure;           // why there is no landmark
+  std::string failure;           // reason when there is no landmark
   bool proper_ellipsoid = true;  // false: see LandmarkFromDualQuadric
 };
 
@@ -52,20 +52,20 @@ struct LandmarkEstimates {
   std::vector<ObjectEstimate> objects;
 };
 
-// Texture and edges join in when the rest has settled: initial_cost is the first solve's of all
-// frames, without them; final_cost is the last one's, with them; the iterations are those of all
-// solves, but not of a start in parts. Converged: so did the last solve, and choosing texture and
-// edges anew changed nothing more.
+// Summary of all solves. Texture and edges are added once boxes alone have converged: initial_cost
+// is that of the first solve over all frames, without them; final_cost is that of the last solve,
+// with them; iterations are the sum over all solves, except those of a start in parts. `converged`:
+// the last solve converged, and a new selection of texture and edges changed nothing.
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;
   int iterations = 0;
   bool converged = false;
   std::vector<double> cost_per_iteration;
-  std::map<std::string, int> residuals;  // by kind: boxes, pairs of pixels, or blocks
-  std::map<std::string, int> gated;      // what was left out before the solve, by reason
-  // How far outwards the left, top, right and bottom edges of all boxes have to move to fit; zero
-  // where no bias is estimated.
+  std::map<std::string, int> residuals;  // count per kind: boxes, pixel pairs, or blocks
+  std::map<std::string, int> gated;      // count per reason of what was left out before the solve
+  // Outward offset (px) of the left, top, right and bottom edges that makes all boxes fit best;
+  // zero where no bias is estimated.
   std::array<double, 4> detector_bias_px{};
 };
 
@@ -73,9 +73,9 @@ struct SolverSummary {
 struct MapEstimate {
   std::vector<ObjectEstimate> objects;
   std::vector<Rigid3d> world_from_camera;  // one per Sequence::frames
-  std::vector<Plane> planes_in_world;      // one per Sequence::planes; given ones as they were
+  std::vector<Plane> planes_in_world;      // one per Sequence::planes; given ones are unchanged
   SolverSummary solver;
-  // By index into Sequence::planes, of estimated ones: over (normal, offset).
+  // Covariances of estimated planes over (normal, offset), keyed by index in Sequence::planes.
   std::map<int, Eigen::Matrix4d> plane_covariances = {};
 };
 

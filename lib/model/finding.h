@@ -8,27 +8,27 @@
 namespace soslam {
 
 enum class Severity {
-  kWarning,  // may be right, and a person has to decide
+  kWarning,  // may be right; a person has to decide
   kError,    // cannot be right
 };
 inline constexpr std::array kSeverityNames = {"warning", "error"};
 
-// What a look at data or at a result found that does not fit what it should be.
+// A violation found by a check of data or of a result.
 struct Finding {
   std::string check;  // name of the check: "camera_size"
   Severity severity = Severity::kWarning;
-  std::string found;     // with its numbers
-  std::string expected;  // of data that are as they should be
-  std::string cause;     // the likely one
+  std::string found;     // what was found, with numbers
+  std::string expected;  // what correct data would have
+  std::string cause;     // the likely cause
   std::string remedy;    // what to do
 
   bool operator==(const Finding&) const = default;
 };
 
-// One sentence for a person, without name and severity.
+// The finding as one sentence for a person, without name and severity.
 std::string InWords(const Finding& finding);
 
-// Errors first; otherwise in the order that they had, each once.
+// Findings without duplicates, errors first, otherwise in the given order.
 std::vector<Finding> WorstFirst(std::vector<Finding> findings);
 
 }  // namespace soslam

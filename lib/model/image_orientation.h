@@ -3,8 +3,8 @@
 
 namespace soslam {
 
-// Which pixels a camera and boxes refer to where an image file has a note of EXIF that turns it:
-// those of the image as viewers show it, or those that the file stores.
+// Orientation of the image that a camera and boxes refer to, where an image file has an EXIF
+// orientation: as viewers show the image, or as the file stores it.
 enum class ImageOrientation { kUpright, kStored };
 inline constexpr const char* kImageOrientationNames[] = {"upright", "stored"};
 

@@ -9,9 +9,9 @@
 namespace soslam {
 namespace {
 
-// How far in front of the camera (m, along its axis) a detection's foot is; infinite without one.
-// Without planes a value in the same order for things on one plane: what ends lower in the image is
-// nearer.
+// Depth (m, along the optical axis) of a detection's ground contact point; infinite without one.
+// Without planes, a value with the same order for objects on one plane: a box that ends lower in
+// the image is nearer.
 double FootDepth(const Sequence& sequence, const Detection& detection) {
   if (sequence.planes.empty()) return -detection.box.y_max;
   const auto foot =
@@ -48,7 +48,7 @@ std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detectio
 
 namespace {
 
-// A frame's detections in view, nearest first.
+// Detections in view of a frame, nearest first.
 class FrameByDepth {
  public:
   FrameByDepth(const Sequence& in_view, int frame_index) {

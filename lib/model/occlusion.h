@@ -10,25 +10,25 @@
 
 namespace soslam {
 
-// A frame's detections, in the order of objects.
+// Detections of a frame, ordered by object.
 std::span<const Detection> DetectionsIn(const Sequence& sequence, int frame_index);
 
-// Where the thing in a box stands, seen from the camera: where the ray through the middle of the
-// box's lower edge meets its support plane. None when it does not in front of the camera: the box
-// then ends at or above the plane's horizon.
+// Ground contact point of the object in a box, in the camera frame: the intersection of the ray
+// through the middle of the box's lower edge with its support plane. None when it is not in front
+// of the camera, that is when the box ends at or above the plane's horizon.
 std::optional<Eigen::Vector3d> FootInCamera(const Camera& camera, const Box& box,
                                             const Plane& plane_in_camera);
 
-// The boxes of the frame's other objects that may hide a detection's: those whose foot is nearer to
-// the camera.
+// Boxes of the frame's other objects that may occlude this detection: those whose contact point is
+// nearer to the camera.
 std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detection);
 
-// Decides NearerBoxes for all detections of a sequence, among those of `in_view`: of the same
-// frames, objects and planes, with one detection for each object in a frame. Takes a sort for each
-// frame, and a box for each detection.
+// Computes NearerBoxes for all detections of a sequence, from the detections of `in_view`, which
+// has the same frames, objects and planes and one detection per object and frame. Needs one sort
+// per frame and one box per detection.
 void ListBoxesInView(const Sequence& in_view, Sequence* sequence);
 
-// The boxes that may hide a detection of the sequence, as was decided at import.
+// Boxes that may occlude a detection of the sequence, as computed at import.
 std::vector<Box> BoxesInFront(const Sequence& sequence, const Detection& detection);
 
 }  // namespace soslam

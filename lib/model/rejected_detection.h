@@ -8,17 +8,17 @@
 
 namespace soslam {
 
-// The stages that leave detections out.
+// Stages that reject detections.
 enum class RejectingStage { kImport, kAssociate, kPlanes };
 inline constexpr const char* kRejectingStageNames[] = {"import", "associate", "planes"};
 
-// What was detected in a frame and is not used.
+// A detection that is not used.
 struct RejectedDetection {
-  int frame_index = 0;  // into Sequence::frames
+  int frame_index = 0;  // index in Sequence::frames
   std::string label;
   double score = 1.0;
   Box box;
-  std::optional<int> true_object_id = std::nullopt;  // as Detection has it
+  std::optional<int> true_object_id = std::nullopt;  // see Detection::true_object_id
   RejectingStage stage = RejectingStage::kImport;
   std::string reason;
 };

@@ -23,10 +23,9 @@
 
 namespace soslam {
 
-// One image with its pose. `id` is the 0-based row in the dataset's image list and is what files
-// say; the position in Sequence::frames (frame_index) is contiguous and is what code uses.
-// Frames of one recording, taken one after the other, form a segment; each segment has a world of
-// its own.
+// One image with its pose. `id` is the 0-based row in the dataset's image list and is used in
+// files; the position in Sequence::frames (frame_index) is contiguous and is used in code.
+// Consecutive frames of one recording form a segment; each segment has its own world.
 struct Frame {
   int id = 0;
   double timestamp = 0.0;     // seconds, within its segment
@@ -34,59 +33,59 @@ struct Frame {
   Rigid3d world_from_camera;  // the pose estimate: odometry
   std::optional<Rigid3d>
       true_world_from_camera;  // ground truth; see ImportOptions for what else uses it
-  int segment = 0;             // frames of a segment follow each other
-  std::optional<Camera> camera = std::nullopt;  // where it is not Sequence::camera
-  // Of what was detected in it, also if it is not used, one box for each object: nearest first.
-  // Decided at import.
+  int segment = 0;             // frames of a segment are consecutive
+  std::optional<Camera> camera = std::nullopt;  // set where it differs from Sequence::camera
+  // Boxes of all detections in the frame, used or not, one per object, nearest first. Computed at
+  // import.
   std::vector<Box> boxes_in_view = {};
 };
 
 struct SupportPlane {
   int id = 0;
   Plane plane_in_world;
-  // Of an estimated plane: what is known of its normal n without the boxes that it comes from, as a
-  // cost half n^T information n (1 / rad^2). None: the plane is given, and exact. Estimated planes
-  // of one normal are parallel.
+  // Information (1 / rad^2) on the normal n of an estimated plane from camera attitudes alone, as a
+  // cost 0.5 n^T information n. None: the plane is given and exact. Estimated planes of one normal
+  // are parallel.
   std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
 };
 
-// Object::plane_index where nobody has said yet what there is to stand on.
+// Object::plane_index while support planes are unknown.
 inline constexpr int kNoPlane = -1;
 
 struct Object {
   int id = 0;
   std::string label;
-  int plane_index = 0;  // into Sequence::planes: the plane it stands on; kNoPlane without planes
+  int plane_index = 0;  // index in Sequence::planes of its support plane; kNoPlane without planes
   std::optional<GroundTruth> ground_truth;
-  // Otherwise it moves, or is not known to stand still: single frames can estimate it, but it has
-  // no place in the map.
+  // False: it moves or is not known to be static; single frames can estimate it, but it has no
+  // place in the map.
   bool is_static = true;
 };
 
-// A 2D box of one object in one frame. `plane_in_camera` is the object's support plane as that
-// camera sees it; it means nothing in a sequence without planes.
+// A 2D box of one object in one frame. `plane_in_camera` is the object's support plane in that
+// camera's frame; undefined in a sequence without planes.
 struct Detection {
-  int frame_index = 0;   // into Sequence::frames
-  int object_index = 0;  // into Sequence::objects
+  int frame_index = 0;   // index in Sequence::frames
+  int object_index = 0;  // index in Sequence::objects
   double score = 1.0;
   Box box;
   Plane plane_in_camera;
-  // Left, top, right, bottom: the object may reach farther than this edge of its box, because the
-  // image border or a nearer object cuts it off. Decided at import, for all that follows.
+  // True for an edge (left, top, right, bottom) beyond which the object may extend, because the
+  // image border or a nearer object cuts it off. Computed at import.
   std::array<bool, 4> is_bound{};
-  // What may hide this one, see BoxesInFront: as many of Frame::boxes_in_view, but for that of its
-  // own object where there is one among them. Decided at import.
+  // Possible occluders, see BoxesInFront: the first `nearer_in_view` of Frame::boxes_in_view,
+  // except `own_in_view`, the box of the object itself, if it is among them. Computed at import.
   int nearer_in_view = 0;
   std::optional<int> own_in_view = std::nullopt;
-  std::vector<Box> nearer_boxes = {};  // those beside, of files before version 1.6
-  // Where the dataset says for each frame where the object is: exact, also while it moves.
+  std::vector<Box> nearer_boxes = {};  // possible occluders in files before version 1.6
+  // Exact object pose in this frame, also while it moves; where the dataset has it per frame.
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
-  // Which of Sequence::true_objects it is of, where the dataset says so.
+  // Id of the object in Sequence::true_objects, where the dataset gives it.
   std::optional<int> true_object_id = std::nullopt;
 };
 
-// A frame that no estimate may use, and what was detected there: to judge landmarks by. Boxes pass
-// the same gates as detections; nobody says whose they are.
+// A frame withheld from all estimates, with its detections, to evaluate landmarks. Its boxes pass
+// the same gates as detections but are not assigned to objects.
 struct HeldOutFrame {
   struct LabelledBox {
     std::string label;
@@ -97,30 +96,31 @@ struct HeldOutFrame {
   std::vector<LabelledBox> boxes;
 };
 
-// What every stage works on: one dataset, checked and gated. Detections are sorted by frame, then
-// by object; frames, objects and planes by id.
+// The data that every stage works on: one dataset, checked and gated. Detections are sorted by
+// frame, then by object; frames, objects and planes by id.
 struct Sequence {
   std::string name;
   Camera camera;
-  // Whose the pose estimates are, "ORB-SLAM2" or "simulated", say; empty: nobody has said.
+  // Origin of the pose estimates, such as "ORB-SLAM2" or "simulated"; empty: unknown.
   std::string odometry_source = {};
-  // Of the image files, whose frames have no cameras of their own; boxes are those of a camera
-  // without it. None: the images are, too.
+  // Distortion of the image files, when no frame has a camera of its own; boxes are always
+  // undistorted. None: the images are undistorted, too.
   std::optional<Distortion> image_distortion = std::nullopt;
-  ImageOrientation image_orientation = ImageOrientation::kUpright;  // of cameras and boxes
+  // Orientation that cameras and boxes refer to.
+  ImageOrientation image_orientation = ImageOrientation::kUpright;
   std::vector<Frame> frames;
-  std::vector<SupportPlane> planes;  // empty: not known, nor is any detection's plane
+  std::vector<SupportPlane> planes;  // empty: unknown, as are the planes of detections
   std::vector<Object> objects;
   std::vector<Detection> detections;
-  std::vector<HeldOutFrame> held_out;              // by frame id; none of them in `frames`
-  std::map<std::string, int> rejected_detections;  // reason -> how many
-  // Those of them that are of a frame above, and have a place in its image.
+  std::vector<HeldOutFrame> held_out;              // sorted by frame id; none of them in `frames`
+  std::map<std::string, int> rejected_detections;  // reason -> number of detections
+  // Rejected detections that belong to a frame above and have a place in its image.
   std::vector<RejectedDetection> rejected = {};
-  std::vector<TrueObject> true_objects = {};       // by id
-  std::vector<TruthInFrame> truth_in_frames = {};  // by frame, then by object
+  std::vector<TrueObject> true_objects = {};       // sorted by id
+  std::vector<TruthInFrame> truth_in_frames = {};  // sorted by frame, then by object
   std::vector<IgnoredThings> ignored = {};
   OdometryWorld odometry_world = OdometryWorld::kOfTruth;
-  // What does not fit what it should be, of the data and of the stages so far.
+  // Findings on the data and on the stages so far.
   std::vector<Finding> findings = {};
 
   const Frame& FrameOf(const Detection& detection) const {
@@ -133,7 +133,7 @@ struct Sequence {
   const Camera& CameraOf(const Detection& detection) const { return CameraOf(FrameOf(detection)); }
 };
 
-// What becomes of a detection that a stage leaves out.
+// Record of a detection that a stage rejects.
 inline RejectedDetection Rejected(const Sequence& sequence, const Detection& detection,
                                   RejectingStage stage, std::string reason) {
   return {detection.frame_index, sequence.ObjectOf(detection).label, detection.score,
@@ -141,9 +141,9 @@ inline RejectedDetection Rejected(const Sequence& sequence, const Detection& det
           std::move(reason)};
 }
 
-// The exact landmark of a detection's object as its camera sees it: as its frame's labels say, or
-// else the object's, seen from the true pose (or the estimated one, where there is no true pose).
-// None without ground truth.
+// Exact landmark of a detection's object in the camera frame: from the labels of its frame, or else
+// from the object's landmark in the world, seen from the true pose (the estimated one where there
+// is no true pose). None without ground truth.
 inline std::optional<Landmark> TrueLandmarkInCamera(const Sequence& sequence,
                                                     const Detection& detection) {
   if (detection.true_landmark_in_camera) return detection.true_landmark_in_camera;
@@ -154,7 +154,7 @@ inline std::optional<Landmark> TrueLandmarkInCamera(const Sequence& sequence,
   return Transform(world_from_camera.Inverse(), truth->landmark_in_world);
 }
 
-// How close to the image border (px) boxes come that passed the gates of import.
+// Smallest distance (px) to the image border of all boxes that passed the gates of import.
 inline double SmallestDistanceToBorder(const Sequence& sequence) {
   double smallest = std::numeric_limits<double>::infinity();
   const auto add = [&](const Camera& camera, const Box& box) {
@@ -170,7 +170,7 @@ inline double SmallestDistanceToBorder(const Sequence& sequence) {
   return smallest;
 }
 
-// Indices into sequence.detections of each object's detections, in frame order.
+// Indices in sequence.detections of each object's detections, in frame order.
 inline std::vector<std::vector<int>> DetectionsByObject(const Sequence& sequence) {
   std::vector<std::vector<int>> by_object(sequence.objects.size());
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
@@ -180,7 +180,7 @@ inline std::vector<std::vector<int>> DetectionsByObject(const Sequence& sequence
   return by_object;
 }
 
-// `count` of an object's detections (all, if they are fewer), evenly over all from the first on.
+// At most `count` of an object's detections, evenly spread, including the first.
 inline std::vector<int> SpreadOver(const std::vector<int>& detections, size_t count) {
   const size_t n = std::min(count, detections.size());
   std::vector<int> chosen;

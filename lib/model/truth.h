@@ -8,8 +8,8 @@
 
 namespace soslam {
 
-// Exact values of an object: for evaluation, and as a prior where a setting asks for it. Of an
-// object that moves, the landmark is where it was seen first.
+// Exact values of an object, for evaluation and as a prior where a setting asks for it. For a
+// moving object, the landmark at its first observation.
 struct GroundTruth {
   Landmark landmark_in_world;
   bool mirror_symmetric = true;
@@ -17,40 +17,39 @@ struct GroundTruth {
   bool rotationally_symmetric = false;
 };
 
-// An object that is known to be there, whatever is detected of it, and whoever says which
-// detections are of one object.
+// An object known to exist in the scene, independent of detections and of their assignment to
+// objects.
 struct TrueObject {
   int id = 0;
   std::string label;
   GroundTruth truth;
-  int segment = 0;        // whose world that is
-  bool is_static = true;  // otherwise it has no place in a map
-  // Its label is none of those that the import was asked for: a landmark of it is neither right nor
-  // wrong, and that there is none is no miss.
+  int segment = 0;        // segment whose world the landmark is in
+  bool is_static = true;  // false: it has no place in a map
+  // True if its label is not among those requested at import: a landmark of it is neither right nor
+  // wrong, and a missing one is not a miss.
   bool is_ignored = false;
 
   bool IsWanted() const { return is_static && !is_ignored; }
 };
 
-// Where a dataset says for each frame where an object is: exact, also while it moves.
+// Exact pose of an object in one frame, also while it moves.
 struct TruthInFrame {
-  int frame_index = 0;     // into Sequence::frames
-  int true_object_id = 0;  // of Sequence::true_objects
+  int frame_index = 0;     // index in Sequence::frames
+  int true_object_id = 0;  // id in Sequence::true_objects
   Landmark landmark_in_camera;
 };
 
-// Things that are there and that nobody has measured: a landmark of theirs is neither right nor
-// wrong.
+// Objects that exist but were not measured: a landmark of them is neither right nor wrong.
 struct IgnoredThings {
-  std::optional<std::string> label;         // none: whatever they are
-  std::optional<Landmark> volume_in_world;  // none: wherever they are
+  std::optional<std::string> label;         // none: any label
+  std::optional<Landmark> volume_in_world;  // none: anywhere
 };
 
-// Whose world the odometry is in, as the dataset's settings say.
+// World frame of the odometry, as the dataset's settings give it.
 enum class OdometryWorld {
-  kOfTruth,       // that of the true poses and objects, as far as nothing else shows
-  kOwn,           // another one, in metres
-  kOwnWithScale,  // another one, of any unit
+  kOfTruth,       // the frame of the true poses and objects, unless the data contradict
+  kOwn,           // another frame, in metres
+  kOwnWithScale,  // another frame, of any unit
 };
 inline constexpr const char* kOdometryWorldNames[] = {"of_truth", "own", "own_with_scale"};
 

@@ -9,24 +9,25 @@
 
 namespace soslam {
 
-// What is known about up before boxes are looked at.
+// Prior on the up direction from the cameras alone, before boxes are used.
 struct CameraAttitude {
-  // Half u^T information u is the cost of an upward unit vector u in the world (1 / rad^2).
+  // Information (1 / rad^2): an upward unit vector u in the world costs 0.5 u^T information u.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();  // the one of lowest cost
+  Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();  // the one of least cost
 };
 
-// Of the two unit vectors of lowest cost the one on the side of `above`.
+// Unit vector of least cost (smallest eigenvector of the information), with the sign on the side of
+// `above`.
 Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Vector3d& above);
 
-// What each camera counts when cameras whose optical axes are closer than about `correlation_rad`
-// count together as one; 1 where that is zero.
+// Weight of each camera: cameras whose optical axes are closer than about `correlation_rad` are
+// correlated and count together as one; all weights are 1 where it is zero.
 std::vector<double> ShareOfCameras(const std::vector<Rigid3d>& world_from_camera,
                                    double correlation_rad);
 
-// What the way in which people and vehicles hold cameras says: held level, x axes are nearly level,
-// optical axes less so; held otherwise, other axes are. From at least one pose; sigmas in radians.
-// Up is where most cameras have it.
+// Prior on up from the way people and vehicles hold cameras. Level cameras have nearly level x
+// axes, and less exactly level optical axes; for other holdings see AxesOf. At least one pose;
+// sigmas in radians. The sign of up is that of most cameras.
 CameraAttitude AttitudeOf(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
                           double pitch_sigma, double correlation_rad,
                           CameraHolding holding = CameraHolding::kLevel);

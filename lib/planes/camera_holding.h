@@ -7,7 +7,7 @@
 
 namespace soslam {
 
-// How cameras may be held: which of their axes is nearest to up, and which is level.
+// Possible camera holdings: the camera axis nearest to up and the axis that is level.
 enum class CameraHolding {
   kLevel,
   kRolled90,  // clockwise about the optical axis, seen from behind the camera
@@ -26,8 +26,8 @@ constexpr const char* NameOf(CameraHolding holding) {
   return kCameraHoldingNames.at(static_cast<size_t>(holding));
 }
 
-// In the camera's frame: the axis that is level as far as the roll's deviation says, and up where
-// the third axis is level, too, as far as the pitch's says.
+// Two axes in the camera's frame: `level` is horizontal up to the roll's deviation; `up` is
+// vertical when the third axis is horizontal too, up to the pitch's deviation.
 struct HeldAxes {
   Eigen::Vector3d level;
   Eigen::Vector3d up;

@@ -11,8 +11,8 @@
 namespace soslam {
 namespace {
 
-// Negative logarithms of probabilities: of a holding other than level, of verticals that are none,
-// of things that are all seen from below, and of an object whose boxes are wrong.
+// Negative log prior probabilities: a holding other than level, wrongly classified vertical edges,
+// all objects seen from below, an object with wrong boxes.
 const double kNotLevel = std::log(100.0);
 const double kWrongVerticals = std::log(100.0);
 const double kFromBelow = std::log(1000.0);
@@ -22,7 +22,7 @@ constexpr double kSameUp = 5.0 * kRadPerDeg;
 
 using Costs = std::vector<double>;
 
-// By object, over all evidence; infinite for an object that has no body anywhere.
+// Per object, the lowest cost over all evidence; infinite for an object that has no body in any.
 Costs LowestCosts(const std::vector<HoldingEvidence>& evidence) {
   Costs lowest(evidence.front().object_costs.size(), std::numeric_limits<double>::infinity());
   for (const HoldingEvidence& one : evidence) {
@@ -33,7 +33,7 @@ Costs LowestCosts(const std::vector<HoldingEvidence>& evidence) {
   return lowest;
 }
 
-// How many times as much as their noise allows boxes cost at least.
+// Factor, at least 1, by which the boxes cost more than expected from their noise.
 double Misfit(const Costs& lowest, double expected_cost) {
   double sum = 0.0;
   for (const double cost : lowest) sum += std::isfinite(cost) ? cost : 0.0;
@@ -81,7 +81,8 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
   }
   choice.best = BestOf(evidence, choice.costs);
   const double best_cost = choice.costs[choice.best];
-  const double lowest_cost = std::ranges::min(choice.costs);  // maybe of one that cannot be chosen
+  // possibly of one that cannot be chosen
+  const double lowest_cost = std::ranges::min(choice.costs);
   double sum = 0.0;
   std::vector<double> weights;
   for (double& cost : choice.costs) {

@@ -9,40 +9,44 @@
 
 namespace soslam {
 
-// What speaks against cameras being held in one way, as negative logarithms of likelihoods.
+// Costs of one hypothesis on how the cameras are held (negative log likelihoods).
 struct HoldingEvidence {
   CameraHolding holding = CameraHolding::kLevel;
-  bool doubts_verticals = false;  // edges that were taken for vertical ones are others
+  bool doubts_verticals = false;  // vertical edges are ignored as wrongly classified
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
-  // Of each object's boxes, upright bodies explaining them; none where there is no such body.
+  // Per object, the cost of its boxes given the best upright body; none where there is no such
+  // body.
   std::vector<std::optional<double>> object_costs;
-  double other_cost = 0.0;        // of planes, say
-  double share_from_below = 0.0;  // of the boxes, whose camera is below what the object stands on
-  bool can_be_chosen = true;      // otherwise it only makes the choice less clear
+  double other_cost = 0.0;  // further costs, such as that of the number of planes
+  // Share of the boxes whose camera is below the plane that the object stands on.
+  double share_from_below = 0.0;
+  bool can_be_chosen = true;  // otherwise it only makes the choice less certain
 };
 
 struct HoldingChoice {
-  size_t best = 0;  // into the evidence
-  // Of each: the whole cost over that of the best one, and how probable it is.
+  size_t best = 0;  // index in the evidence
+  // Per hypothesis: total cost relative to the best one, and probability.
   std::vector<double> costs;
   std::vector<double> probabilities;
-  // Of the chosen up direction, as others may be right (rad^2); zero where the choice is clear.
+  // Variance of the chosen up direction (rad^2) over the alternatives; zero where the choice is
+  // clear.
   double tilt_variance = 0.0;
 };
 
-// Within a few degrees, which boxes hardly tell apart: ways to hold cameras that lead to the same
-// up are the same.
+// True if two up directions differ by at most a few degrees, which boxes cannot distinguish.
+// Holdings with the same up are the same hypothesis.
 bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other);
 
-// A choice is clear when all that lead to another up are together less probable than this.
+// A choice is clear when all hypotheses with another up direction have less probability than this
+// in total.
 inline constexpr double kClearHolding = 0.01;
 
-// The most probable of at least one that can be chosen; all have the same objects. One sequence in
-// a hundred is taken to be held in any certain way other than level, or to have edges that are
-// taken for vertical ones by mistake, one in a thousand to see all things from below their planes.
-// Where objects cost more than `expected_cost` even in the best case, boxes say less than their
-// noise promises: costs count in that proportion. No object alone decides, as its boxes may be of
-// several.
+// Chooses the most probable hypothesis; at least one can be chosen, and all have the same objects.
+// Prior probabilities: 1/100 for each holding other than level and for wrongly classified vertical
+// edges, 1/1000 for all objects seen from below their planes. If the objects cost more than
+// `expected_cost` even in the best case, the boxes are less informative than their noise model:
+// their costs are scaled down accordingly. The cost of a single object is bounded, as its boxes may
+// belong to several objects.
 HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double expected_cost,
                             double clear = kClearHolding);
 

@@ -19,18 +19,19 @@
 namespace soslam {
 namespace {
 
-// For the search of up, of each object.
+// Views per object in the search for up.
 constexpr size_t kViewsOfSearch = 12;
 
 constexpr double kYawStep = 3.0 * kRadPerDeg;
 constexpr int kMaxRounds = 10;
-// Either way, of deciding who stands where.
+// Largest tilt in either direction when objects are assigned to planes.
 constexpr double kMaxTilt = 8.0 * kRadPerDeg;
-// An object whose height is known no better than to this share of its size does not decide.
+// An object takes part in estimating the planes only if the standard deviation of its height is
+// below this share of its size.
 constexpr double kMaxHeightSigmaBySize = 1.0;
 
-// Of an object's boxes where nothing but their noise is in them: half of what four edges and two
-// ratios say more than it takes to determine a body.
+// Expected cost of an object's boxes if they contain only their noise: half the degrees of freedom,
+// that is residuals of edges and two ratios minus the parameters of a body.
 double ExpectedCost(const MultiViewObservation& observation) {
   constexpr double kParameters = 7.0, kRatios = 2.0;
   double edges = 0.0;
@@ -38,8 +39,8 @@ double ExpectedCost(const MultiViewObservation& observation) {
   return 0.5 * std::max(1.0, edges + kRatios - kParameters);
 }
 
-// The planes of the objects that are mounted in one way, on bodies whose z axes are up as the
-// attitude has it.
+// Estimates the planes of all objects with one mount. The z axes of their bodies point up as in
+// `attitude`.
 class Estimator {
  public:
   Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
@@ -50,7 +51,7 @@ class Estimator {
         detections_(DetectionsByObject(sequence)),
         attitude_(attitude) {
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
-      // What moves is in no one place in the world.
+      // A moving object has no single place in the world.
       const bool takes_part = sequence.objects[i].is_static && MountOf(priors[i]) == mount;
       if (!takes_part) detections_[i].clear();
       observations_.push_back(Observe(detections_[i], priors[i]));
@@ -58,7 +59,7 @@ class Estimator {
     }
   }
 
-  // Of the objects that are mounted so.
+  // Adds the costs of the objects with this mount.
   void AddCostsOfUprightBodies(BodyCosts* costs) const {
     const Eigen::Vector3d up = SearchUp(attitude_, sparse_, threads_).front();
     for (size_t i = 0; i < sparse_.size(); ++i) {
@@ -95,7 +96,7 @@ class Estimator {
     return observation;
   }
 
-  // None when no body's views determine the height of its foot, or a body is lost.
+  // None when no body's views determine the height of its base, or a fit fails.
   std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up) {
     PlanesEstimate estimate;
     estimate.up_of_cameras = attitude_.up_in_world;
@@ -114,8 +115,8 @@ class Estimator {
     return estimate;
   }
 
-  // Of every object's boxes, also of those that do not decide, the cameras' attitude and the number
-  // of planes.
+  // Cost of all objects' boxes (including objects that do not decide about planes), of the cameras'
+  // attitude, and of the number of planes.
   double CostOfAll(const PlanesEstimate& estimate) const {
     double cost =
         *estimate.cost + static_cast<double>(estimate.planes.size()) * options_.new_plane_cost;
@@ -127,7 +128,7 @@ class Estimator {
     return cost;
   }
 
-  // The bodies whose own views determine the height of their foot, the normal being given.
+  // Finds the bodies whose own views determine the height of their base, given the normal.
   void FindOwnHeights(const Eigen::Vector3d& normal) {
     std::vector<std::optional<StandingBody>> found(observations_.size());
     ParallelFor("objects", static_cast<int>(found.size()), threads_, [&](int i) {
@@ -148,7 +149,7 @@ class Estimator {
     }
   }
 
-  // Which of these bodies share a plane, and the planes.
+  // Assigns these bodies to shared planes and computes the planes.
   void Decide(Plane* reference) {
     const Eigen::Vector3d pivot = MiddleOfFeet(own_);
     *reference = {reference->normal, -reference->normal.dot(pivot)};
@@ -178,7 +179,7 @@ class Estimator {
     }
   }
 
-  // False when a body is lost.
+  // False when the fit of a body fails.
   bool RefineAll() {
     refined_.clear();
     if (options_.parallel) return RefineTogether(&standing_);
@@ -203,7 +204,7 @@ class Estimator {
     return refined.has_value();
   }
 
-  // The covariance of one plane's motion, through refined_'s pivot.
+  // Covariance of one plane's motion, through refined_'s pivot.
   Eigen::Matrix3d CovarianceOf(size_t plane) const {
     const RefinedPlanes& refined = options_.parallel ? refined_.front() : refined_[plane];
     const auto rise = static_cast<Eigen::Index>(options_.parallel ? 2 + plane : 2);
@@ -239,7 +240,7 @@ class Estimator {
     const Eigen::Vector3d feet = MiddleOfFeet(bodies);
     const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
     const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-    // Turns about the pivot raise the plane at the point.
+    // Rotations about the pivot raise the plane at the point.
     const Eigen::Vector3d& pivot =
         options_.parallel ? refined_.front().pivot : refined_[index].pivot;
     Eigen::Matrix3d at_point = Eigen::Matrix3d::Identity();
@@ -300,7 +301,7 @@ class Estimator {
   int threads_;
   std::vector<std::vector<int>> detections_;
   CameraAttitude attitude_;
-  // By object; none without detections.
+  // Per object; none for an object without detections.
   std::vector<std::optional<MultiViewObservation>> observations_;
   std::vector<std::optional<MultiViewObservation>> sparse_;
   // Objects that decide about planes, and their bodies, each on its own plane.

@@ -12,31 +12,31 @@
 
 namespace soslam {
 
-// What the boxes of objects cost, and what their noise alone would make of it.
+// Costs of the objects' boxes, and the cost expected from the boxes' noise alone.
 struct BodyCosts {
-  std::vector<std::optional<double>> of_objects;  // none: they are of no body
+  std::vector<std::optional<double>> of_objects;  // none: no body fits the boxes
   double expected = 0.0;
 };
 
-// With an upright body of any height for each object, in the direction of up, of those that the
-// attitude leaves open, that is best for all.
+// Costs with an upright body of free height per object, at the up direction that is best for all
+// objects among those that the attitude allows.
 BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const std::vector<std::optional<ShapePrior>>& priors,
                                const CameraAttitude& attitude, const PlanesOptions& options,
                                int threads);
 
-// NothingUsableError: no object's views determine the height of its foot.
+// Throws NothingUsableError: no object's views determine the height of its base.
 [[noreturn]] void ThrowNoPlanes(const Sequence& sequence);
 
-// EstimatePlanes, or none when no object's views determine the height of its foot.
+// EstimatePlanes, or none when no object's views determine the height of its base.
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
                                          const CameraAttitude& attitude,
                                          const PlanesOptions& options, int threads);
 
-// The planes that the sequence's objects stand on, upright, from their boxes in several frames, the
-// trajectory, the objects' priors and what is known about up. Throws NothingUsableError when no
-// object's views determine the height of its foot (one view, or all from the same place).
+// Estimates the planes that the sequence's upright objects stand on, from their boxes in several
+// frames, the trajectory, the objects' priors and the prior on up. Throws NothingUsableError when
+// no object's views determine the height of its base (one view, or all from the same place).
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
                               const std::vector<std::optional<ShapePrior>>& priors,
                               const CameraAttitude& attitude, const PlanesOptions& options,

@@ -15,7 +15,8 @@ namespace soslam {
 namespace {
 
 constexpr double kSameAxis = 1e-9;  // one minus a cosine
-// Negative logarithm of how improbable a holding is that is not followed to its planes.
+// Hypotheses whose cost after the fit of bodies is higher than this are dropped before planes are
+// estimated.
 const double kHopeless = std::log(1e4);
 
 struct Hypothesis {
@@ -63,8 +64,8 @@ double ShareFromBelow(const HeldPlanes& held) {
   return seen == 0 ? 0.0 : static_cast<double>(below) / seen;
 }
 
-// `of_bodies`: that of bodies of any height. An object may have one that is not found again on its
-// plane.
+// `of_bodies`: evidence from bodies of free height. A body of an object may not be found again when
+// it must stand on its plane.
 HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const HeldPlanes& held,
                            const PlanesOptions& options) {
   HoldingEvidence evidence = of_bodies;
@@ -81,7 +82,8 @@ HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const HeldPlanes& h
   return evidence;
 }
 
-// Upright bodies are the same in the opposite direction.
+// Copies the costs of a hypothesis with the opposite up direction, which are equal, as upright
+// bodies have no up or down side.
 bool TakeOppositeCosts(const std::vector<Hypothesis>& known, Hypothesis* hypothesis) {
   const Eigen::Vector3d down = -hypothesis->evidence.up_in_world;
   for (const Hypothesis& other : known) {
@@ -93,8 +95,8 @@ bool TakeOppositeCosts(const std::vector<Hypothesis>& known, Hypothesis* hypothe
   return false;
 }
 
-// Adds what upright bodies anywhere say about a way to hold cameras, unless one before leads to the
-// same up.
+// Adds the hypothesis of one camera holding with the costs of upright bodies of free height, unless
+// an earlier hypothesis has the same up.
 void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
                    const HoldingEvidence& holding,
                    const std::vector<std::optional<ShapePrior>>& priors,
@@ -115,8 +117,8 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
   hypotheses->push_back(std::move(hypothesis));
 }
 
-// Those whose up directions differ. Where cameras look one way, verticals are looked for around an
-// up that is hardly known: those found may be other edges.
+// All hypotheses with different up directions. Vertical edges are doubted because, when all cameras
+// look the same way, the up direction around which they are searched is uncertain.
 std::vector<Hypothesis> Hypotheses(const Sequence& sequence, const std::vector<SegmentView>& views,
                                    const std::vector<std::optional<ShapePrior>>& priors,
                                    const PlanesOptions& options, int threads) {
@@ -144,8 +146,8 @@ HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
   return ChooseHolding(evidence, expected_cost);
 }
 
-// Where no object's views determine the height of its foot, it is of one plane, and cannot be
-// chosen.
+// Estimates the planes of a hypothesis. If no object's views determine the height of its base, the
+// hypothesis counts as having one plane and cannot be chosen.
 void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
                     const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
   HeldPlanes held;
@@ -162,8 +164,8 @@ void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<Sh
   hypothesis->planes = std::move(held);
 }
 
-// Whether the same way to hold cameras, with its vertical edges, leads to planes and explains
-// bodies at no higher cost.
+// True if the same holding with its vertical edges leads to planes and fits bodies at no higher
+// cost.
 bool IsDoubtedInVain(const std::vector<Hypothesis>& hypotheses, size_t doubting,
                      const std::vector<double>& costs_of_bodies) {
   const HoldingEvidence& evidence = hypotheses[doubting].evidence;
@@ -176,7 +178,7 @@ bool IsDoubtedInVain(const std::vector<Hypothesis>& hypotheses, size_t doubting,
   return false;
 }
 
-// Boxes may lead ways to hold cameras to one up although they began at different ones.
+// True if a followed hypothesis has the same up: different holdings may converge to one up.
 bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& hypothesis) {
   return std::ranges::any_of(followed, [&](const Hypothesis& other) {
     return other.planes && hypothesis.planes &&
@@ -184,7 +186,8 @@ bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& h
   });
 }
 
-// `tried`: also those that were given up for what their bodies cost, and are not among `followed`.
+// `tried`: all hypotheses, including those dropped for the cost of their bodies, which are not in
+// `followed`.
 HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, bool has_views,
                         const std::vector<Hypothesis>& followed) {
   const HoldingChoice choice = Choose(followed);

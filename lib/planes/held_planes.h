@@ -14,11 +14,12 @@ namespace soslam {
 
 struct HeldPlanes {
   PlanesEstimate estimate;
-  Sequence level;  // its frames' poses have the same up everywhere
+  Sequence level;  // the sequence with poses that have the same up everywhere
 };
 
-// EstimatePlanes for cameras that are held in any of kCameraHoldings: the most probable one's.
-// `views`: by frame, with the segments in which verticals are looked for; empty where they are not.
+// EstimatePlanes for each camera holding in kCameraHoldings; returns the most probable result.
+// `views`: per frame, with the segments among which vertical edges are searched; empty to not use
+// vertical edges.
 HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<SegmentView>& views,
                               const std::vector<std::optional<ShapePrior>>& priors,
                               const PlanesOptions& options, int threads);

@@ -21,8 +21,8 @@ Basis LevelAxes(const Eigen::Vector3d& up) {
   return UprightRotation(up, 0.0).toRotationMatrix().leftCols<2>();
 }
 
-// A chain of tilts, each with information of its own about where it is (of half tilt^T information
-// tilt - tilt^T right_side) and tied to the one before.
+// Chain of tilts, each with its own cost 0.5 tilt^T information tilt - tilt^T right_side, and tied
+// to the previous one.
 class Chain {
  public:
   // `stiffness`: 1 / rad^2.
@@ -31,7 +31,7 @@ class Chain {
       : information_(std::move(information)),
         right_side_(std::move(right_side)),
         stiffness_(stiffness) {
-    // What all that follow say about each, by elimination from the last.
+    // Eliminates from the last: adds the information of all later tilts to each.
     for (size_t i = information_.size() - 1; i > 0; --i) {
       const Eigen::Matrix2d share = stiffness_ * Tied(i).inverse();
       information_[i - 1] += stiffness_ * (Eigen::Matrix2d::Identity() - share);

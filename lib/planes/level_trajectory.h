@@ -10,9 +10,9 @@
 
 namespace soslam {
 
-// A trajectory without its drift about the horizontal axes.
+// Trajectory without drift about the horizontal axes.
 struct LevelTrajectory {
-  std::vector<Rigid3d> world_from_camera;  // the first as it was
+  std::vector<Rigid3d> world_from_camera;  // the first pose is unchanged
   CameraAttitude attitude;                 // of the first camera's world
 };
 
@@ -20,15 +20,16 @@ struct LevelOptions {
   double roll_sigma = 0.0;       // see AttitudeOf (rad)
   double pitch_sigma = 0.0;      // (rad)
   double vertical_sigma = 0.0;   // see WithVerticals (rad)
-  double odometry_sigma = 0.0;   // of the turn between two frames about one axis (rad); 0: exact
+  double odometry_sigma = 0.0;   // rotation between two frames about one axis (rad); 0: exact
   double correlation_rad = 0.0;  // see ShareOfCameras
   CameraHolding holding = CameraHolding::kLevel;
 };
 
-// Odometry drifts: up is not the same direction of its world in every frame, but where how cameras
-// are held and vertical edges say, and nearly where it was in the frame before. Poses are turned
-// until up is everywhere what it was in the first frame, and the motions between frames, as the
-// cameras saw them, joined anew. At least one view.
+// Removes the drift of odometry about the horizontal axes. Because of drift, up differs from frame
+// to frame; it is estimated per frame from the way cameras are held, vertical edges, and continuity
+// with the frame before. Poses are rotated so that up is the same as in the first frame everywhere,
+// and the translations between frames, as measured in the camera, are concatenated again. At least
+// one view.
 LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions& options);
 
 }  // namespace soslam

@@ -8,17 +8,17 @@
 namespace soslam {
 namespace {
 
-// Either way from no tilt.
+// Grid steps in either direction from zero tilt.
 constexpr int kTiltSteps = 32;
 
-// An object's height and how well it is known (1 / m^2), at a certain tilt.
+// Height of an object at a given tilt, with its information (1 / m^2).
 struct Height {
   double mean;
   double information;
 };
 
-// The partition of heights into levels of lowest cost: levels hold neighbours, so the best one of
-// the first n follows from those of fewer.
+// Partition of heights into levels of least cost. Levels are contiguous in the sorted heights, so
+// dynamic programming over the first n heights finds the optimum.
 class Partition {
  public:
   Partition(const std::vector<Height>& heights, double new_level_cost)
@@ -60,7 +60,7 @@ class Partition {
   }
 
  private:
-  // Of heights over a reference among them, so that squares do not cancel.
+  // Weighted sums of heights relative to one of them, which avoids cancellation of squares.
   struct Sums {
     double weight = 0.0;
     double first = 0.0;
@@ -78,11 +78,11 @@ class Partition {
 
   const std::vector<Height>& heights_;
   std::vector<size_t> order_;
-  std::vector<double> cost_;   // of the first n
-  std::vector<size_t> begin_;  // of the last level of the first n
+  std::vector<double> cost_;   // least cost of the first n heights
+  std::vector<size_t> begin_;  // first height of the last level of the first n
 };
 
-// Of an object at a tilt, its height being its own.
+// Height of an object at a tilt, if it shares its plane with no other.
 Height HeightAt(const PlaneEvidence& evidence, double height, const Eigen::Vector2d& tilt) {
   const double information = evidence.information(2, 2);
   const double slope = evidence.gradient(2) + evidence.information.row(2).head<2>().dot(tilt);

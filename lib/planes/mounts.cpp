@@ -7,7 +7,7 @@
 namespace soslam {
 namespace {
 
-// Level where the floor is, through the same point.
+// The ceiling made parallel to the floor, through its own point.
 EstimatedPlane Opposite(const EstimatedPlane& floor, EstimatedPlane ceiling) {
   const Eigen::Vector3d normal = -floor.plane_in_world.normal;
   ceiling.plane_in_world = {normal, -normal.dot(ceiling.point_in_world)};
@@ -25,7 +25,7 @@ CameraAttitude DownOf(const CameraAttitude& attitude, const std::optional<Planes
   if (!floors) return down;
   const EstimatedPlane& floor = floors->planes.front();
   down.up_in_world = -floor.plane_in_world.normal;
-  // Turns about x move the normal by -y, those about y by x.
+  // Rotations about x move the normal by -y, those about y by x.
   Eigen::Matrix<double, 3, 2> by_turns;
   by_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
   by_turns.col(1) = -floor.x_axis_in_world;

@@ -10,13 +10,15 @@
 
 namespace soslam {
 
-// How an object of that prior is mounted; without one it stands.
+// Mount of an object with this prior; standing if it has none.
 Mount MountOf(const std::optional<ShapePrior>& prior);
 
-// What is known of down, z of what hangs: ceilings are level where floors are.
+// Attitude for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
+// are any.
 CameraAttitude DownOf(const CameraAttitude& attitude, const std::optional<PlanesEstimate>& floors);
 
-// Both, with the objects of each on their own planes; parallel if they are to be.
+// Floors and ceilings in one estimate, with the objects of each on their own planes; ceilings are
+// made parallel to the floor if `parallel`.
 PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
                             bool parallel, const std::vector<std::optional<ShapePrior>>& priors);
 

@@ -8,7 +8,7 @@
 namespace soslam {
 
 enum class PlaneSource {
-  kGiven,         // those of the dataset
+  kGiven,         // given by the dataset
   kEstimated,     // from the boxes of the objects that stand on them
   kCameraHeight,  // one ground plane per frame, at a known height below a level camera
 };

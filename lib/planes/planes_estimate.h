@@ -15,22 +15,22 @@ namespace soslam {
 struct EstimatedPlane {
   Plane plane_in_world;
   Eigen::Vector3d point_in_world =
-      Eigen::Vector3d::Zero();  // on the plane, among what stands on it
-  Eigen::Vector3d x_axis_in_world = Eigen::Vector3d::UnitX();  // in the plane
-  // Of the plane's turns (rad) about x_axis_in_world and normal x x_axis_in_world through the
-  // point, and of its rise (m) along the normal; none where it is not known.
+      Eigen::Vector3d::Zero();  // on the plane, in the middle of the objects on it
+  Eigen::Vector3d x_axis_in_world = Eigen::Vector3d::UnitX();  // unit vector in the plane
+  // Covariance of the plane's rotations (rad) about x_axis_in_world and normal x x_axis_in_world
+  // through the point, and of its translation (m) along the normal; none where unknown.
   std::optional<Eigen::Matrix3d> covariance;
 };
 
-// Why an object is mounted on the plane that it is.
+// Reason why an object is assigned to its plane.
 enum class SupportReason {
   kOwnHeight,     // its views determine the height of its lowest point
-  kLowestCost,    // they do not: the plane on which its boxes are explained best
-  kNoViews,       // it has none: the plane of most objects
+  kLowestCost,    // its views do not: the plane on which its boxes are fitted best
+  kNoViews,       // it has no views: the plane of most objects
   kCameraHeight,  // the ground below the cameras that see it
-  kNoBody,        // its boxes are of a body on none of the planes: the plane of most objects
-  kMoving,        // it is in no one place: the plane of most objects
-  kNone,          // no plane that it could be mounted on was found: its boxes cannot be used
+  kNoBody,        // no body on any of the planes fits its boxes: the plane of most objects
+  kMoving,        // it is not static: the plane of most objects
+  kNone,          // no plane for its mount was found: its boxes cannot be used
 };
 inline constexpr std::array kSupportReasonNames = {
     "own_height", "lowest_cost", "no_views", "camera_height", "no_body", "moving", "none"};
@@ -38,46 +38,46 @@ inline constexpr std::array kSupportReasonNames = {
 struct ObjectSupport {
   int plane_index = 0;
   SupportReason reason = SupportReason::kNoViews;
-  // Of its lowest point over the plane (m), by its own views, the normal being known.
+  // Height of its lowest point over the plane (m), from its own views, given the normal.
   std::optional<double> height;
   std::optional<double> height_sigma;
-  std::optional<double> cost;  // of its boxes, on its plane
+  std::optional<double> cost;  // cost of its boxes, on its plane
 };
 
-// One way in which the cameras may be held, and what came of it.
+// One tried camera holding and its result.
 struct TriedHolding {
   CameraHolding holding = CameraHolding::kLevel;
-  bool verticals = false;  // taken to be in the images
-  double cost = 0.0;       // over the lowest of all (negative logarithms of likelihoods)
+  bool verticals = false;  // vertical edges of the images are used
+  double cost = 0.0;       // relative to the lowest (negative log likelihood)
   double probability = 0.0;
-  std::optional<int> planes;  // how many; none when it was given up before
+  std::optional<int> planes;  // number of planes; none when it was dropped before
 };
 
 struct PlanesEstimate {
   std::vector<EstimatedPlane> planes;
-  std::vector<ObjectSupport> objects;  // of the sequence's
-  // What is known of up in the world before boxes are looked at: the best direction, and half
-  // u^T information u, the cost of a unit vector u (1 / rad^2).
+  std::vector<ObjectSupport> objects;  // one per Sequence::objects
+  // Prior on up in the world from the cameras alone: the best direction, and the information (1 /
+  // rad^2), so that a unit vector u costs 0.5 u^T information u.
   Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
   std::optional<Eigen::Matrix3d> attitude_information;
-  // Empty where the cameras' attitude was given; otherwise in the order of kCameraHoldings, and
-  // what is taken.
+  // Tried holdings in the order of kCameraHoldings, and the chosen one; empty where the cameras'
+  // attitude was given.
   std::vector<TriedHolding> holdings;
   CameraHolding holding = CameraHolding::kLevel;
   bool verticals = false;
-  // Of the normals, as the cameras may be held otherwise (rad^2); zero where that is clear.
+  // Variance of the normals (rad^2) over other possible holdings; zero where the choice is clear.
   double holding_tilt_variance = 0.0;
-  std::optional<double> cost;  // of all boxes, ratios and camera attitudes
-  double expected_cost = 0.0;  // of the boxes' noise alone
-  int rounds = 0;              // of deciding who stands where
-  bool settled = false;        // the last round decided as the one before
+  std::optional<double> cost;  // total cost of all boxes, ratios and camera attitudes
+  double expected_cost = 0.0;  // cost expected from the boxes' noise alone
+  int rounds = 0;              // iterations of assigning objects to planes
+  bool settled = false;        // the last iteration did not change the assignment
 };
 
-// The sequence with these planes, carried into each frame with the estimated pose. Detections of
-// objects without any are left out, and counted as rejected.
+// The sequence with these planes, transformed into each frame with the estimated pose. Detections
+// of objects without a plane are removed and counted as rejected.
 Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate);
 
-// How far an estimated plane is from the one that the sequence gives most of the objects on it, for
+// Error of an estimated plane with respect to the given plane of most objects on it, for
 // evaluation; none when no object stands on it.
 struct PlaneError {
   int given_plane_index = 0;

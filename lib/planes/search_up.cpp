@@ -12,16 +12,16 @@
 namespace soslam {
 namespace {
 
-// Where up may be before boxes are looked at: this far (standard deviations) from the cameras' up.
+// Search range of up before boxes are used: this many standard deviations from the cameras' up.
 constexpr double kMaxSigmas = 2.5;
 constexpr double kMaxTiltOfCameras = 45.0 * kRadPerDeg;
 constexpr double kTiltStep = 7.5 * kRadPerDeg;
-// Directions that all the rest is tried from, farther apart than neighbours of the grid.
+// Initial guesses of up, farther apart than neighbours of the grid.
 constexpr size_t kStarts = 4;
 constexpr double kBetweenStarts = 1.6 * kTiltStep;
 constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
 
-// Directions around the cameras' up, itself first.
+// Directions around the cameras' up, which comes first.
 std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
   const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
   const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);

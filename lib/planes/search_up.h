@@ -10,16 +10,17 @@
 
 namespace soslam {
 
-// A direction of up in which an object has no body is worse than any in which it has one.
+// Cost of an object for an up direction in which it has no body; worse than any in which it has
+// one.
 inline constexpr double kCostWithoutBody = 1e4;
 
-// Of an object's boxes, with the best upright body of any height; none when there is none.
+// Cost of an object's boxes with the best upright body of free height; none when there is none.
 std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
                                         MultiViewObservation observation);
 
-// Of the directions that the cameras leave open, those in which upright bodies of any height
-// explain the boxes best, lowest cost first: where bodies turn over to another of their axes the
-// cost has several minima. Observations by object; none of those that do not take part.
+// Local minima of up, among the directions that the cameras allow, in which upright bodies of free
+// height fit the boxes best, lowest cost first. There are several minima, because bodies may stand
+// on another of their axes. `observations`: per object; none for objects that do not take part.
 std::vector<Eigen::Vector3d> SearchUp(
     const CameraAttitude& attitude,
     const std::vector<std::optional<MultiViewObservation>>& observations, int threads);

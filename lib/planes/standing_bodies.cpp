@@ -15,7 +15,8 @@ constexpr int kMaxIterations = 60;
 constexpr double kSettledCost = 1e-9;  // relative
 constexpr double kMaxDamping = 1e8;
 
-// The cost of all bodies and of the cameras' attitude, to second order in the planes' motions.
+// Quadratic approximation of the cost of all bodies and of the cameras' attitude, in the planes'
+// motions.
 struct Quadratic {
   double cost = 0.0;
   Eigen::VectorXd gradient;
@@ -50,7 +51,7 @@ PlaneMotion MotionOfPlane(const Eigen::VectorXd& step, int plane) {
   return {step(0), step(1), step(2 + plane)};
 }
 
-// All planes moved, the bodies with them, each at its best again; none when one is lost.
+// All planes moved with their bodies, which are then fitted again; none when a fit fails.
 std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eigen::Vector3d& pivot,
                                       const Eigen::VectorXd& step, int threads) {
   StandingBodies stepped = standing;

@@ -10,30 +10,30 @@
 
 namespace soslam {
 
-// Parallel planes, the bodies that stand on them, and what is known of up.
+// Parallel planes, the bodies that stand on them, and the prior on up.
 struct StandingBodies {
   std::vector<StandingBody> bodies;
   std::vector<int> plane_of;  // for each body, an index into planes
-  std::vector<Plane> planes;  // with one normal
+  std::vector<Plane> planes;  // all with the same normal
   CameraAttitude attitude;
   double height_sigma_fraction = 0.0;  // see PlanesOptions
 };
 
-// The attitude's cost as that of a plane's motion.
+// The attitude's cost as a function of a plane's motion.
 PlaneEvidence EvidenceOf(const CameraAttitude& attitude, const Plane& plane);
 
-// How much a body may stand above or below its plane (m).
+// Standard deviation of a body's height over its plane (m).
 double HeightSigma(const StandingBody& body, double height_sigma_fraction);
 
-// The point in the middle of the bodies' feet; of at least one.
+// Mean of the bodies' lowest points; at least one body.
 Eigen::Vector3d MiddleOfFeet(const std::vector<StandingBody>& bodies);
 
-// Levenberg-Marquardt over the planes' normal and heights and all bodies. None when a body does not
-// settle on its plane.
+// Optimises the planes' common normal, their heights and all bodies with Levenberg-Marquardt. None
+// when a body's fit on its plane fails.
 struct RefinedPlanes {
   double cost = 0.0;
-  Eigen::Vector3d pivot;       // of the covariance's motions
-  Eigen::MatrixXd covariance;  // two turns, then the rise of each plane
+  Eigen::Vector3d pivot;       // centre of the covariance's motions
+  Eigen::MatrixXd covariance;  // two rotations (rad), then the translation of each plane (m)
 };
 std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads);
 

@@ -11,8 +11,8 @@ namespace soslam {
 namespace {
 
 constexpr int kHeightSteps = 20;
-constexpr double kSettledHeight = 1e-3;  // of the body's size
-// Of the largest: what the boxes say less about than this (the yaw of a round body) stays free.
+constexpr double kSettledHeight = 1e-3;  // share of the body's size
+// Eigenvalues below this share of the largest count as unobserved (the yaw of a round body).
 constexpr double kMinInformationShare = 1e-9;
 
 Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
@@ -21,7 +21,7 @@ Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMo
   return {turn, pivot - turn * pivot + motion.z() * (turn * plane.normal)};
 }
 
-// d (nine parameters of kLandmarkDof) / d motion, at no motion.
+// d (nine parameters of kLandmarkDof) / d motion, at zero motion.
 Eigen::Matrix<double, kLandmarkDof, 3> ByMotion(const Plane& plane, const Eigen::Vector3d& pivot,
                                                 const Landmark& landmark) {
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
@@ -33,7 +33,7 @@ Eigen::Matrix<double, kLandmarkDof, 3> ByMotion(const Plane& plane, const Eigen:
   return by_motion;
 }
 
-// The inverse on what is known, zero on what is not.
+// Pseudo-inverse: zero on unobserved directions.
 Eigen::Matrix<double, 6, 6> InverseOfKnown(const Eigen::Matrix<double, 6, 6>& information) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(information);
   const double least = kMinInformationShare * eigen.eigenvalues()(5);
@@ -51,7 +51,7 @@ StandingBody Raised(StandingBody body, double rise) {
   return body;
 }
 
-// A body raised by `rise`, or half as much, or half of that, ..., with a lower cost than `cost`.
+// A body raised by `rise`, `rise` / 2, `rise` / 4, ..., at the first that costs less than `cost`.
 std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, double rise,
                                          double least_rise) {
   for (; std::abs(rise) >= least_rise; rise *= 0.5) {
@@ -63,7 +63,7 @@ std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, 
   return std::nullopt;
 }
 
-// The height that is best near the body's own, all else following it.
+// The body at its optimal height near its own, all other parameters adapting.
 std::optional<StandingBody> AtBestHeight(const StandingBody& start) {
   auto body = Settled(start);
   for (int i = 0; body && i < kHeightSteps; ++i) {

@@ -10,35 +10,36 @@
 
 namespace soslam {
 
-// A small motion of a plane, together with all that stands on it: turns (rad) about its horizontal
-// axes UprightRotation(normal, 0) x and y through a point, then a rise along the new normal (m).
+// Small motion of a plane and all bodies on it: rotations (rad) about its horizontal axes, the x
+// and y axes of UprightRotation(normal, 0), through a point, then a translation along the new
+// normal (m).
 using PlaneMotion = Eigen::Vector3d;
 Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion);
 Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
                const Landmark& landmark);
 
-// How the cost of an object's boxes changes with the plane that it stands on, when the body is
-// always the best one for the plane: to second order in the plane's motion.
+// Quadratic approximation, in the plane's motion, of the cost of an object's boxes, minimised over
+// the body on the plane.
 struct PlaneEvidence {
   double cost = 0.0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
 };
 
-// An object and the body that explains its boxes best on a plane.
+// The boxes of an object and the body on a plane that fits them best.
 struct StandingBody {
   MultiViewObservation observation;  // plane_in_world: the plane that it stands on
   Landmark landmark;
 };
 
-// The body that is best on a plane, near the given one. None when it is lost.
+// The best body on its plane near the given one. None when the fit fails.
 std::optional<StandingBody> Settled(StandingBody body);
 
-// At a settled body. The body's six degrees of freedom are free.
+// Evidence at a body returned by Settled, with its six degrees of freedom marginalised.
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot);
 
-// The best body whose plane has this normal and any height, over all yaws in steps (rad). None when
-// the views do not determine its height.
+// The best body on a plane with this normal and free height, over all yaws in steps of `step`
+// (rad). None when the views do not determine its height.
 std::optional<StandingBody> BodyOfFreeHeight(MultiViewObservation observation,
                                              const Eigen::Vector3d& normal_in_world, double step);
 

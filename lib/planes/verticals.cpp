@@ -11,15 +11,15 @@ namespace soslam {
 namespace {
 
 constexpr double kBound = 3.0;         // standard deviations
-constexpr double kUnitOfHeight = 0.1;  // a segment this long, of the image's height, counts as one
-constexpr int kTiltSteps = 32;         // of the search, either way
+constexpr double kUnitOfHeight = 0.1;  // length of weight 1, as a share of the image's height
+constexpr int kTiltSteps = 32;         // of the search, in either direction
 constexpr int kMaxRounds = 50;
 constexpr double kSettled = 1e-9;  // rad
 
-// The plane through a camera's centre and a segment.
+// Plane through a camera's centre and a segment.
 struct SegmentPlane {
   Eigen::Vector3d normal_in_world;
-  double weight;  // divided by the variance of the angle to up
+  double weight;  // already divided by the variance of the angle to up (1 / rad^2)
 };
 
 std::vector<SegmentPlane> PlanesOf(const std::vector<SegmentView>& views, double sigma,
@@ -41,7 +41,7 @@ std::vector<SegmentPlane> PlanesOf(const std::vector<SegmentView>& views, double
   return planes;
 }
 
-// Geman-McClure's loss of the angle between up and the planes.
+// Geman-McClure loss of the angle between up and the segments' planes.
 class Verticals {
  public:
   Verticals(std::vector<SegmentPlane> planes, double sigma)
@@ -56,7 +56,7 @@ class Verticals {
     return cost;
   }
 
-  // Of the loss's weights at `up`.
+  // Information with the loss's IRLS weights at `up`.
   Eigen::Matrix3d Information(const Eigen::Vector3d& up) const {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (const SegmentPlane& plane : planes_) {

@@ -11,25 +11,26 @@
 
 namespace soslam {
 
-// The straight edges that one camera sees.
+// Straight edges in one image.
 struct SegmentView {
   Camera camera;
   std::vector<LineSegment> segments;
   Rigid3d world_from_camera;
 };
 
-// What one camera's segments say about up, near `up_in_world`, as CameraAttitude::information; see
-// WithVerticals. The camera counts as one.
+// Information on up from one camera's segments, linearised at `up_in_world`, as
+// CameraAttitude::information; see WithVerticals. The camera has weight 1.
 Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
                                        const Eigen::Vector3d& up_in_world);
 
-// What is made by people has vertical edges. The planes through a camera's centre and the images of
-// vertical edges contain the up direction. Each segment counts by its length, in proportion to
-// segments of a tenth of the image's height, with this standard deviation (rad) of the angle
-// between up and its plane; segments off by more than three are of other edges: their cost is
-// bounded. Cameras whose optical axes are closer than about `correlation_rad` see the same edges
-// and count together as one. The attitude with these in addition, about the direction of lowest
-// cost within `max_tilt` of its own.
+// Adds vertical edges of man-made structures to the attitude. The plane through a camera's centre
+// and the image of a vertical edge contains the up direction. Each segment is weighted by its
+// length, relative to a tenth of the image's height; `sigma` (rad) is the standard deviation of the
+// angle between up and its plane. The loss is bounded (Geman-McClure), so that segments off by more
+// than three standard deviations, which are not vertical, have little influence. Cameras whose
+// optical axes are closer than about `correlation_rad` see the same edges and count together as
+// one. The result is linearised at the up direction of least cost within `max_tilt` (rad) of the
+// attitude's own.
 CameraAttitude WithVerticals(const CameraAttitude& attitude, const std::vector<SegmentView>& views,
                              double sigma, double correlation_rad, double max_tilt);
 

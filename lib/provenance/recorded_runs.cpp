@@ -20,7 +20,8 @@ RecordedRun* Find(const std::string& name, std::vector<RecordedRun>* runs) {
   return found == runs->end() ? nullptr : &*found;
 }
 
-// A variant lists its runs in order, so in the union of all each comes after what it reads.
+// Appends the runs of all variants. Each variant lists its runs in order, so each run comes after
+// the runs that it reads from.
 void AppendSharedRuns(DatasetRuns* dataset) {
   for (const VariantRuns& variant : dataset->variants) {
     for (const std::string& id : variant.runs) {
@@ -44,12 +45,12 @@ void AppendExports(DatasetRuns* dataset) {
   }
 }
 
-// Where relative paths of a call begin: in the folder of that call, as long as there is one.
+// Resolves a relative path of a call in the folder of that call, if it still exists.
 fs::path AsCalled(const fs::path& path, const RunRecord& record) {
   return IsFolder(record.called_in) ? record.called_in / path : path;
 }
 
-// Where the runs had it; if it is not there any more, where the plan had it.
+// Folder of the dataset as recorded by the runs; if that no longer exists, as recorded by the plan.
 fs::path FolderOfDataset(const DatasetRuns& dataset) {
   for (const RecordedRun& run : dataset.runs) {
     try {
@@ -59,7 +60,7 @@ fs::path FolderOfDataset(const DatasetRuns& dataset) {
       fs::path called = AsCalled(folder->second, record);
       if (IsFolder(called)) return called;
     } catch (const InputError&) {
-      continue;  // which is found when the run is compared
+      continue;  // reported when the run is compared
     }
   }
   return DatasetFolderOf(dataset.results);

@@ -44,8 +44,8 @@ std::set<std::string> ChangesOf(const Software& then, const Software& now) {
   return changes;
 }
 
-// The first place at which two artefacts of different bytes differ; that of a header comes last, as
-// its inputs differ whenever those do.
+// First difference between two artefacts of different bytes; one in a header comes last, as its
+// inputs differ whenever theirs do.
 std::string FirstDifference(const fs::path& recorded, const fs::path& again) {
   constexpr double kExactly = 0.0;
   try {
@@ -98,7 +98,7 @@ std::vector<Outcome> Reproduction::Rerun(const RecordedRun& run) {
   return outcomes;
 }
 
-// What makes a rerun pointless; none when there is nothing.
+// Reason why a rerun is pointless; none if there is none.
 std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const RecordedRun& run) {
   if (record.exit_code != 0) return "it failed when it was recorded: " + record.error;
   if (record.outputs.empty() || !record.settings) return "its record has no outputs or no settings";
@@ -109,8 +109,8 @@ std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const
   return ChangedInput(record, run);
 }
 
-// A record is a file like any other, and may come from anybody: what it would write outside of the
-// results; none when there is nothing.
+// Checks for writes outside of the results, as a record may come from anybody; returns the reason
+// to refuse it, or none.
 std::optional<std::string> Reproduction::ForeignWrite(const RunRecord& record,
                                                       const RecordedRun& run) const {
   const std::set<std::string> written = written_arguments_(record.stage);
@@ -130,7 +130,7 @@ std::optional<std::string> Reproduction::ForeignWrite(const RunRecord& record,
   return std::nullopt;
 }
 
-// An input that is not what it was; none when all are, or are made again.
+// An input that has changed; none when all are unchanged or made again.
 std::optional<std::string> Reproduction::ChangedInput(const RunRecord& record,
                                                       const RecordedRun& run) {
   for (const RunFile& input : record.inputs) {
@@ -147,7 +147,7 @@ std::optional<std::string> Reproduction::ChangedInput(const RunRecord& record,
   return std::nullopt;
 }
 
-// Why it failed; none after success.
+// Repeats a run; returns the reason of a failure, none after success.
 std::optional<std::string> Reproduction::RunAgain(const RunRecord& record,
                                                   const RecordedRun& run) const {
   const fs::path folder = Again(run.folder);

@@ -16,29 +16,29 @@ namespace soslam {
 struct Outcome {
   enum class Kind { kSame, kDiffers, kNotRerun };
   Kind kind;
-  std::filesystem::path path;  // an artefact; of kNotRerun the folder of the run
-  std::string detail;          // where it differs, why it was not rerun
+  std::filesystem::path path;  // an artefact; for kNotRerun the folder of the run
+  std::string detail;          // where it differs, or why it was not rerun
 };
 
-// The names of the arguments that a stage of the pipeline, "soslam-refine", writes to; none for any
+// Names of the output arguments of a stage of the pipeline, such as "soslam-refine"; empty for any
 // other program.
 using WrittenArguments = std::function<std::set<std::string>(const std::string& stage)>;
 
-// Runs what a dataset's runs were once more, with their recorded settings, each on what those
-// before it wrote now, and compares the artefacts byte by byte. The results stay as they are.
+// Repeats a dataset's runs with their recorded settings, each on the new outputs of earlier runs,
+// and compares the artefacts byte by byte. The existing results are not changed.
 class Reproduction {
  public:
-  // `executables`: the folder of the stages' programs; `again`: an empty folder for what they
-  // write.
+  // `executables`: the folder of the stages' programs; `again`: an empty folder for the new
+  // outputs.
   Reproduction(const DatasetRuns& dataset, std::filesystem::path executables,
                WrittenArguments written_arguments, std::filesystem::path again, int threads);
 
-  // To be called in the order of the dataset's runs. One outcome for each artefact, or one that
-  // says why there is none: no record, an input from outside that has changed, a failure. Throws
-  // NothingUsableError when it is interrupted.
+  // Repeats one run; call it in the order of the dataset's runs. Returns one outcome per artefact,
+  // or one with the reason why there is none: no record, a changed external input, a failure.
+  // Throws NothingUsableError when it is interrupted.
   std::vector<Outcome> Rerun(const RecordedRun& run);
 
-  // How the software that was recorded differs from this one: "opencv 4.5.4 is 4.6.0 now".
+  // Differences between the recorded software and this one: "opencv 4.5.4 is 4.6.0 now".
   const std::set<std::string>& software_changes() const { return software_changes_; }
 
  private:
@@ -48,7 +48,7 @@ class Reproduction {
   std::optional<std::string> RunAgain(const RunRecord& record, const RecordedRun& run) const;
   std::vector<std::string> Arguments(const RunRecord& record, const RecordedRun& run) const;
   Outcome Compare(const std::filesystem::path& artefact) const;
-  // Whether a file lies in the results of the dataset.
+  // True if a file is in the results of the dataset.
   bool IsResult(const std::filesystem::path& path) const;
   std::filesystem::path Again(const std::filesystem::path& path) const;
 
@@ -58,7 +58,7 @@ class Reproduction {
   std::filesystem::path again_;
   int threads_;
   FileDigests digests_;
-  std::set<std::filesystem::path> rerun_;  // folders of the runs that were
+  std::set<std::filesystem::path> rerun_;  // folders of the repeated runs
   std::set<std::string> software_changes_;
 };
 

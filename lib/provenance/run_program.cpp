@@ -8,7 +8,7 @@
 namespace soslam {
 namespace {
 
-// As one word of a shell's command.
+// The word quoted for a shell.
 std::string Quoted(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);

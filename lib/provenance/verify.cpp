@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Empty when it cannot be read.
+// SHA-256 of a file; empty when it cannot be read.
 std::string DigestOf(const fs::path& path) {
   try {
     return IsFile(path) ? Sha256OfFile(path) : "";
@@ -46,7 +46,7 @@ class Verifier {
     result_.discrepancies.push_back({fmt::format("{}: {}", file.string(), problem), variants});
   }
 
-  // Instead of a discrepancy for each of its files.
+  // Adds one discrepancy for a missing dataset instead of one for each of its files.
   void AddDataset() {
     std::vector<std::string> all;
     for (const VariantRuns& variant : dataset_.variants) all.push_back(variant.name);
@@ -87,14 +87,14 @@ class Verifier {
     for (const RunFile& input : record.inputs) check(input, "read");
   }
 
-  // The folder of a variant shows the artefacts of its runs, of each the last one of that name.
+  // Checks that the folder of a variant links the artefacts of its runs, the last one of each name.
   void CheckVariant(const VariantRuns& variant) {
     if (!variant.problem.empty()) {
       result_.discrepancies.push_back({variant.problem, {variant.name}});
       return;
     }
-    std::map<fs::path, std::string> makers;  // run by file name
-    bool are_known = true;                   // the outputs of all its runs
+    std::map<fs::path, std::string> makers;  // file name -> run
+    bool are_known = true;                   // the outputs of all its runs are known
     for (const std::string& id : variant.runs) {
       const std::string run = "shared/" + id;
       const std::vector<RunFile>& outputs = records_[run].outputs;
@@ -128,7 +128,7 @@ class Verifier {
   const DatasetRuns& dataset_;
   bool is_dataset_gone_;
   FileDigests digests_;
-  std::map<std::string, RunRecord> records_;  // by name of the run; empty where it has none
+  std::map<std::string, RunRecord> records_;  // keyed by name of the run; empty where it has none
   Verification result_;
 };
 

@@ -11,10 +11,10 @@
 
 namespace soslam {
 
-// Compares files with what they held once; each is read once only.
+// Compares files with their recorded digests; each file is read only once.
 class FileDigests {
  public:
-  // "is gone", "has changed", "cannot be read"; none when it holds what it held.
+  // "is gone", "has changed", "cannot be read"; none when the content is unchanged.
   std::optional<std::string> ChangeOf(const std::filesystem::path& path, const std::string& sha256);
   size_t files() const { return digests_.size(); }
 
@@ -24,13 +24,13 @@ class FileDigests {
 
 // Something that does not match its record.
 struct Discrepancy {
-  std::string text;                   // one line: which file, what of it
-  std::vector<std::string> variants;  // whose results it concerns
+  std::string text;                   // one line: the file and its problem
+  std::vector<std::string> variants;  // variants whose results it concerns
 };
 
 struct Verification {
   std::vector<Discrepancy> discrepancies;
-  size_t files = 0;  // that were compared
+  size_t files = 0;  // number of compared files
 };
 
 // Compares the files of all runs of a dataset with their run.json: inputs, outputs, and the links

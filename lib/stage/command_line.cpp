@@ -27,13 +27,13 @@ namespace {
 
 constexpr const char* kFailureRecord = "--failure_record";
 
-// What CLI11 stores while it parses.
+// Storage for CLI11 while it parses.
 struct ParsedArguments {
   StageFiles files;
   std::string settings_file;
   int threads = 0;
   bool quiet = false;
-  std::map<std::string, std::string> option_texts;  // by option name
+  std::map<std::string, std::string> option_texts;  // keyed by option name
 };
 
 void AddFiles(const std::vector<FileArgument>& files, const std::string& group, CLI::App* app,
@@ -93,8 +93,8 @@ void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArgum
   AddHelpAndVersion(app);
 }
 
-// The value of an option's text. What does not look like the type stays a string, which
-// OptionsFromJson then refuses by name.
+// Value of an option's text. A text that does not match the type stays a string, which
+// OptionsFromJson then refuses with the option's name.
 nlohmann::json ValueFromText(const std::string& text, const std::string& type) {
   const char* const end = text.data() + text.size();
   if (type == "integer") {
@@ -140,7 +140,7 @@ struct Failure {
   std::string message;  // one line
 };
 
-// What the exception that is being handled means.
+// Exit code and message of the current exception.
 Failure CurrentFailure() {
   const auto failure = [](ExitCode exit_code, const std::string& message) {
     return Failure{static_cast<int>(exit_code), OneLine(message)};
@@ -162,7 +162,7 @@ int Fail(const CLI::App& app, const Failure& failure) {
   std::cerr << app.get_name() << ": error: " << failure.message << std::endl;
   const CLI::Option* record = app.get_option_no_throw(kFailureRecord);
   if (record != nullptr && record->count() > 0) {
-    // Where the record cannot be written, stderr has to do.
+    // If the record cannot be written, stderr must suffice.
     std::ofstream(record->as<std::string>())
         << fmt::format("exit code {}: {}\n", failure.exit_code, failure.message);
   }
@@ -237,8 +237,8 @@ int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
 
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
                  const std::vector<OptionRow>& options, const StageBody& body) {
-  // Ceres warns through glog of what its results say as well, and what the stages report in their
-  // words.
+  // Silences Ceres' warnings through glog, which repeat its results; stages report these in their
+  // own words.
   FLAGS_minloglevel = google::GLOG_FATAL;
   cv::setNumThreads(1);  // stages have threads of their own, on top of which OpenCV's would come
   CLI::App app(info.purpose, info.name);

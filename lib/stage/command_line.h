@@ -17,29 +17,29 @@ class App;
 
 namespace soslam {
 
-// A file or folder that a stage is called with: --<name> PATH.
+// A file or folder argument of a stage: --<name> PATH.
 struct FileArgument {
   std::string name;
   std::string doc;
   bool required = true;
   bool repeatable = false;  // may be given several times, or with several paths
-  bool is_folder = false;   // of outputs
+  bool is_folder = false;   // for outputs only
 };
 
-// What --help says about a stage.
+// Help text of a stage.
 struct StageInfo {
-  std::string name;     // of the executable: "soslam-edges"
+  std::string name;     // name of the executable: "soslam-edges"
   std::string purpose;  // one sentence
   std::vector<FileArgument> inputs;
   std::vector<FileArgument> outputs;
   std::string example;  // one command
-  // What the exit code kFindings means; empty for stages that have none.
+  // Meaning of the exit code kFindings; empty for stages that do not return it.
   std::string findings = "";
-  // Whether it leaves run.json and timing.json beside its first output.
+  // True if it writes run.json and timing.json beside its first output.
   bool is_recorded = true;
 };
 
-// Exit code of what was asked to look for something, and found it, as diff has it.
+// Exit code of a program that searches for something and found it, as in diff.
 inline constexpr int kFindings = 1;
 
 namespace internal {
@@ -47,29 +47,29 @@ namespace internal {
 // Settings from one source, named for error messages.
 struct SettingsLayer {
   std::string where;
-  std::string origin;  // for the record of the run, where "default" is that of all other values
+  std::string origin;  // for the record of the run; values from no layer have "default"
   nlohmann::json values;
 };
 
-// What a stage does with its options, whose type only it knows.
+// Functions of a stage that depend on the type of its options.
 struct StageBody {
-  // Takes the settings, later ones win; the value of every option.
+  // Applies the settings, later layers win; returns the value of every option.
   std::function<nlohmann::json(const std::vector<SettingsLayer>&)> resolve;
-  // The exit code; threads >= 1.
+  // Runs the stage and returns the exit code; threads >= 1.
   std::function<int(const StageFiles& files, int threads)> run;
 };
 
-// What --help says of exit codes; `findings`: as StageInfo has it.
+// Help text on exit codes; `findings`: see StageInfo.
 std::string ExitCodesHelp(const std::string& findings);
 
-// Options --help and --version of a program.
+// Adds options --help and --version to a program.
 void AddHelpAndVersion(CLI::App* app);
 
-// Option --allow_outside_paths of a program that reads images of datasets.
+// Adds option --allow_outside_paths to a program that reads images of datasets.
 void AddOutsidePaths(CLI::App* app);
 
-// What `run`, which parses the command line first, returns: an exit code. Errors that it throws
-// become one line on stderr and their exit codes; --help and --version are answered.
+// Calls `run`, which parses the command line first, and returns its exit code. Errors that it
+// throws become one line on stderr and their exit codes; --help and --version are answered.
 int ExitCodeOf(CLI::App* app, const std::function<int()>& run);
 
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
@@ -77,10 +77,10 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
 
 }  // namespace internal
 
-// The main of a stage: reads the command line, calls `run` and returns the exit code, which is
-// that of `run` where it has one (int). Options: defaults < --settings FILE < --<option> VALUE. An
-// error is one line on stderr. What the run was is in run.json beside its first output, also when
-// it fails; after success timing.json lies there, too.
+// The main function of a stage: parses the command line, calls `run` and returns the exit code,
+// which is that of `run` if it returns int. Options: defaults < --settings FILE < --<option> VALUE.
+// An error is one line on stderr. The record of the run is run.json beside its first output, also
+// after failure; after success timing.json is there, too.
 template <typename Options, typename Result>
 int StageMain(int argc, const char* const* argv, const StageInfo& info,
               Result (*run)(const Options& options, const StageFiles& files, int threads)) {

@@ -12,26 +12,25 @@
 
 namespace soslam {
 
-// A frame of a sequence, which must outlive it, and its image's file in the dataset folder.
+// A frame of a sequence, which must outlive this, and the path of its image in the dataset folder.
 struct FrameImage {
   const Frame* frame;
   std::filesystem::path path;
 };
 
-// Of the frames that have an image, in their order. Reads files "dataset" and "sequence", the
-// latter for messages. Throws InputError for a path that leaves the folder, NothingUsableError when
-// no frame has an image.
+// All frames that have an image, in order. Uses files "dataset" and "sequence", the latter for
+// messages. Throws InputError for a path that leaves the folder, NothingUsableError when no frame
+// has an image.
 std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& files);
 
-// Reads images as the cameras of a sequence, which must outlive it, would have taken them without
-// their lenses.
+// Reads undistorted images for the cameras of a sequence, which must outlive it.
 class FrameImageReader {
  public:
   explicit FrameImageReader(const Sequence& sequence);
-  // Grey values, CV_8UC1, of the camera's size. May be called by several threads at once. Throws
-  // InputError, also when the file is of another size.
+  // Grey image, CV_8UC1, of the camera's size. Thread-safe. Throws InputError, also when the file
+  // has another size.
   cv::Mat ReadGrey(const FrameImage& image) const;
-  // The same in colour, CV_8UC3.
+  // Colour image, CV_8UC3; otherwise like ReadGrey.
   cv::Mat ReadColour(const FrameImage& image) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kTextColumn = 34;
 constexpr size_t kWidth = 100;
 
-// Breaks lines at spaces, so that none has more than `width` characters unless one word has.
+// Wraps lines at spaces to at most `width` characters, except for longer words.
 std::string Wrap(const std::string& text, size_t width) {
   std::string wrapped;
   std::istringstream lines(text);
@@ -38,7 +38,7 @@ std::string ReplaceAll(std::string text, const std::string& from, const std::str
   return text;
 }
 
-// The values that an option takes; empty when all of its type.
+// Possible values of an option; empty when all of its type.
 std::string Domain(const OptionRow& row) {
   if (row.range) {
     return fmt::format("{} to {}{}{}", row.range->min, row.range->max, row.unit.empty() ? "" : " ",
@@ -56,7 +56,7 @@ std::string HelpFormatter::make_description(const CLI::App* app) const {
   return Wrap(app->get_description(), kWidth) + "\n";
 }
 
-// One empty line between two groups, where CLI11 has two.
+// Replaces CLI11's two empty lines between groups by one.
 std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
                                      CLI::AppFormatMode mode) const {
   const std::string help = CLI::Formatter::make_help(app, std::move(name), mode);

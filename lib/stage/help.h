@@ -8,7 +8,7 @@
 
 namespace soslam::internal {
 
-// Lays --help out: names in one column, texts wrapped in another.
+// Layout of --help: names in one column, wrapped texts in another.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter();
@@ -18,10 +18,10 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override;
 };
 
-// What --help says of an option: its doc, default, and range or choices, with units.
+// Help text of an option: its doc, default, and range or choices, with units.
 std::string OptionHelp(const OptionRow& row);
 
-// A command, over as many lines as it needs, that a shell still takes as one.
+// A command wrapped over several lines such that a shell reads it as one.
 std::string ExampleHelp(const std::string& command);
 
 }  // namespace soslam::internal

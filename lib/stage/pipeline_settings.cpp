@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// The defaults of an options struct overwritten by `values`.
+// Defaults of an options struct overwritten by `values`.
 template <typename Options>
 json Resolve(const json& values, const std::string& where) {
   Options options;
@@ -38,7 +38,7 @@ struct PipelineStage {
   const char* name;
   json (*resolve)(const json& values, const std::string& where);
   std::vector<std::string> needs;  // stages whose artefacts it reads
-  // Whether its (resolved) settings ask for it; null for a stage that 'stages' lists.
+  // True if its (resolved) settings ask for it; null for a stage that 'stages' lists.
   bool (*is_asked_for)(const json& settings) = nullptr;
 };
 
@@ -71,7 +71,7 @@ const PipelineStage* FindStage(const std::string& name) {
   return found == Stages().end() ? nullptr : &*found;
 }
 
-// Those that 'stages' may list.
+// Stages that 'stages' may list.
 std::vector<std::string> ListedStages() {
   std::vector<std::string> names;
   for (const PipelineStage& stage : Stages()) {
@@ -97,10 +97,10 @@ void CheckStageList(const json& stages, const std::string& file) {
   }
 }
 
-// Checks one file alone, so that a message can name it.
+// Checks one file separately, so that a message can name it.
 void CheckLayer(const json& layer, const std::string& file) {
   for (const auto& [key, value] : layer.items()) {
-    if (value.is_null()) continue;  // in a merge patch: removes what a lower layer says
+    if (value.is_null()) continue;  // null in a merge patch removes the value of a lower layer
     if (const PipelineStage* stage = FindStage(key)) {
       json without_nulls = json::object();
       if (value.is_object()) without_nulls.merge_patch(value);
@@ -127,7 +127,7 @@ json ReadLayer(const fs::path& file) {
   return layer;
 }
 
-// A file that all variants start from.
+// Reads a layer shared by all variants.
 json ReadBaseLayer(const fs::path& file) {
   json layer = ReadLayer(file);
   if (layer.contains("extends")) {
@@ -136,7 +136,7 @@ json ReadBaseLayer(const fs::path& file) {
   return layer;
 }
 
-// The variant in `file` after those that it extends.
+// Layers of the variant in `file`, preceded by those that it extends.
 std::vector<json> ReadVariantLayers(fs::path file) {
   std::vector<json> layers;
   std::set<fs::path> seen;

@@ -10,29 +10,30 @@
 
 namespace soslam {
 
-// What a variant runs on a dataset.
+// Stages and settings of a variant on a dataset.
 struct VariantSettings {
-  std::set<std::string> stages;                   // with those that a setting asks for
-  std::map<std::string, nlohmann::json> options;  // by stage of `stages`: every option, resolved
-  std::string semantic_table;                     // path relative to the pipelines folder
+  std::set<std::string> stages;  // including stages that a setting asks for
+  // Every option, resolved, keyed by stage of `stages`.
+  std::map<std::string, nlohmann::json> options;
+  std::string semantic_table;  // path relative to the pipelines folder
 };
 
-// The stages that a variant may run, in the order in which they do.
+// All stages that a variant may run, in order of execution.
 std::vector<std::string> PipelineStages();
 
 // The names of all pipelines/variants/<name>.json, sorted. Throws SettingsError when there are
 // none.
 std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);
 
-// pipelines/base.json < datasets/<dataset>.json (if any) < variants/<variant>.json, merged as JSON
-// merge patches (RFC 7396). A variant with "extends": "<path>" comes after the variant in
-// <path>.json, relative to its own folder. Throws SettingsError, naming the file, for a missing or
-// malformed file, an unknown stage or setting, a value out of range, and stages that lack what they
-// read.
+// Reads the settings of a variant: pipelines/base.json < datasets/<dataset>.json (if any) <
+// variants/<variant>.json, merged as JSON merge patches (RFC 7396). A variant with "extends":
+// "<path>" is merged after the variant in <path>.json, relative to its own folder. Throws
+// SettingsError, naming the file, for a missing or malformed file, an unknown stage or setting, a
+// value out of range, and stages whose inputs no stage writes.
 VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::string& dataset,
                             const std::string& variant);
 
-// Whether the back end with these (resolved) settings looks at images.
+// True if the back end with these (resolved) settings uses images.
 bool UsesImages(const nlohmann::json& optimise_settings);
 
 }  // namespace soslam

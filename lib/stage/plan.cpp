@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Enough that two of a dataset's instances never meet, short enough to read.
+// Digits of a key: enough to avoid collisions within a dataset, few enough to read.
 constexpr size_t kKeyDigits = 10;
 
 // Builds the chain of one variant, stage by stage.
@@ -46,7 +46,7 @@ class ChainBuilder {
 
   std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
     if (stage == "import") return {};
-    // Images do not change with what is seen in them.
+    // Edge maps and associations depend on the imported sequence only.
     if (stage == "edges" || stage == "associate") return {{"sequence", Output("import")}};
     std::map<std::string, ArtefactSource> inputs = {
         {"sequence", stage == "planes" ? Latest({"associate", "import"})
@@ -67,7 +67,7 @@ class ChainBuilder {
     return {ids_.at(stage), OutputsOfStage(stage).front().file};
   }
 
-  // The output of the first of these stages that the variant runs.
+  // The output of the first of these stages that is in the variant.
   ArtefactSource Latest(const std::vector<std::string>& stages) const {
     const auto found = std::find_if(stages.begin(), stages.end(), [&](const std::string& stage) {
       return ids_.count(stage) > 0;
@@ -86,7 +86,7 @@ class ChainBuilder {
   }
 
   const VariantSettings& settings_;
-  std::map<std::string, std::string> ids_;  // by stage
+  std::map<std::string, std::string> ids_;  // keyed by stage
   std::vector<StageInstance> chain_;
 };
 

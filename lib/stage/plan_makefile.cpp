@@ -17,11 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Make compares modification times, and artefacts that come out as before keep theirs. So a stage
-// leaves a stamp, `done`, dated when it began; artefacts depend on it with a recipe that does
-// nothing, after which make looks at their times again (also in a dry run, because of its "+").
-// Stages that read them depend on both: when only stamps are newer there is nothing to do. A dry
-// run cannot know what will come out and lists every stage that may have to run.
+// Make compares modification times, and unchanged artefacts keep theirs. Therefore a stage writes a
+// stamp, `done`, with the time at which it began; artefacts depend on it with an empty recipe,
+// after which make reads their times again (also in a dry run, because of its "+"). Stages that
+// read them depend on both: when only stamps are newer there is nothing to do. A dry run cannot
+// know which artefacts will change and lists every stage that may have to run.
 constexpr const char* kPreamble =
     R"make(# Written by soslam-plan; changes here are lost.
 results := {results}
@@ -92,12 +92,13 @@ class Writer {
     return paths;
   }
 
-  // The folder of a variant holds links, replaced together once its last stage is done; .linked
-  // keeps the stages.txt that they are of.
+  // Rules of a variant's folder, which contains links that are replaced together once its last
+  // stage is done; .linked is the stages.txt that they belong to.
   std::string VariantRules(const VariantChain& variant) const {
     const std::string folder = "$(results)/" + variant.name;
     std::vector<std::string> links, targets;
-    std::map<std::string, std::string> last_maker;  // of each file: what later stages read
+    // Maker of the version that later stages read, keyed by file name.
+    std::map<std::string, std::string> last_maker;
     for (const std::string& id : variant.instances) {
       for (const StageOutput& output : OutputsOfStage(plan_.Instance(id).stage)) {
         last_maker[output.file] = id;
@@ -139,8 +140,8 @@ class Writer {
     return stamps;
   }
 
-  // A goal for each job of a cluster, one for what it needs from the trunk, and which instances it
-  // is made of.
+  // Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their
+  // instances.
   std::string UnitRules() const {
     const std::vector<WorkUnit> units = WorkUnitsOf(plan_);
     std::vector<std::string> names;

@@ -8,21 +8,22 @@
 
 namespace soslam {
 
-// Where the files of a plan lie; relative paths are relative to where make runs.
+// Folders of a plan; relative paths are relative to where make runs.
 struct PlanFolders {
   std::filesystem::path dataset;
   std::filesystem::path pipelines;
-  std::filesystem::path results;  // of this dataset: <results>/<name>
+  std::filesystem::path results;  // results of this dataset: <results>/<name>
 };
 
-// The text of the makefile that carries a plan out: one goal per variant, "all" first, and one rule
-// per stage instance. It is for GNU make >= 4.3; $(BIN) is the folder of the executables, $(LAUNCH)
-// what starts them ("srun -n1"; empty: nothing). For clusters there is a goal per work unit, as
-// $(units) lists them, and `before-<unit>`, which is up to date when all that it needs from the
-// trunk is.
+// Text of the makefile that executes a plan: one goal per variant, "all" first, and one rule per
+// stage instance. It needs GNU make >= 4.3; $(BIN) is the folder of the executables, $(LAUNCH) the
+// command that starts them ("srun -n1"; may be empty). For clusters there is a goal per work unit,
+// listed in $(units), and `before-<unit>`, which is up to date when everything that the unit needs
+// from the trunk is.
 std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders);
 
-// The folders that a makefile by PlanMakefile names. Throws InputError when there is no such file.
+// Reads the folders named in a makefile by PlanMakefile. Throws InputError when there is no such
+// file.
 PlanFolders ReadPlanFolders(const std::filesystem::path& makefile);
 
 }  // namespace soslam

@@ -111,8 +111,9 @@ class StateFinder {
     return reasons;
   }
 
-  // A listing has the dataset's folder in its first line, then lines "<name> <size> <time>" of the
-  // files whose content counts, and names of those of which only the existence does.
+  // Files of a listing newer than `done`. A listing has the dataset's folder in its first line,
+  // then lines "<name> <size> <time>" of the files whose content is read, and names of files whose
+  // existence alone matters.
   std::string NewerFilesListedIn(const fs::path& listing, fs::file_time_type done) const {
     std::vector<std::string> newer;
     for (const std::string& line : LinesOf(listing)) {
@@ -150,7 +151,7 @@ class StateFinder {
   std::map<std::string, InstanceState> states_;
 };
 
-// Of two sets of settings, those that differ.
+// Differences between two sets of settings.
 std::vector<std::string> SettingChanges(const json& before, const json& now) {
   const auto text = [](const json& settings, const std::string& name) {
     return settings.contains(name) ? settings.at(name).dump() : std::string("absent");
@@ -215,7 +216,7 @@ std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolder
 std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChain& variant,
                                              const StageInstance& instance,
                                              const PlanFolders& folders) {
-  std::map<std::string, std::string> last;  // id by stage
+  std::map<std::string, std::string> last;  // stage -> id
   for (const std::string& id : LinesOf(folders.results / variant.name / ".linked")) {
     last[StageOf(id)] = id;
   }

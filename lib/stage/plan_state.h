@@ -12,39 +12,39 @@
 namespace soslam {
 
 enum class StageState {
-  kDone,     // make has nothing to do for it
-  kStale,    // ran, and would run again
+  kDone,     // up to date
+  kStale,    // ran, but would run again
   kFailed,   // its last run failed
-  kMissing,  // has not run to the end yet
-  kQueued,   // one of these three, and a job that will run it waits
+  kMissing,  // has not completed yet
+  kQueued,   // one of the previous three, and a job for it is queued
   kRunning,  // runs now
 };
 const char* NameOf(StageState state);
 
-// What a stage instance has come to, by the rules of the makefile.
+// State of a stage instance, by the rules of the makefile.
 struct InstanceState {
   StageState state = StageState::kDone;
-  // Why it would run, one line each, in words; empty when it would not.
+  // Reasons why it would run, one line each; empty when it would not.
   std::vector<std::string> reasons;
 };
 
-// Instances that are kQueued or kRunning unless they are done, by id.
+// Instances that are kQueued or kRunning unless they are done, keyed by id.
 using StagesUnderWay = std::map<std::string, StageState>;
 
-// By dataset, what a file with a line "<dataset> <id> queued|running" for each such instance says.
-// Running wins where there are several lines. Throws InputError for another line.
+// Reads a file with lines "<dataset> <id> queued|running"; the result is keyed by dataset. Running
+// wins where there are several lines. Throws InputError for any other line.
 std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const std::filesystem::path& file);
 
-// The states of all instances of a plan, by id. `executables` is the folder of the stages'
-// programs. Nothing is written. What the listings of the dataset (see RunPlan) say is taken for
-// true.
+// States of all instances of a plan, keyed by id. `executables` is the folder of the stages'
+// programs. Nothing is written. The listings of the dataset (see RunPlan) are assumed to be
+// correct.
 std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
                                               const std::filesystem::path& executables,
                                               const StagesUnderWay& under_way = {});
 
-// How the settings and inputs of a variant's instance differ from those of the last complete run of
-// the variant, one line each: "yaw_step_deg: 2.0 -> 5.0". Empty when they do not differ, or the
-// variant has not been complete yet.
+// Differences of settings and inputs between a variant's instance and the last complete run of the
+// variant, one line each: "yaw_step_deg: 2.0 -> 5.0". Empty when there is none, or the variant has
+// never been complete.
 std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChain& variant,
                                              const StageInstance& instance,
                                              const PlanFolders& folders);

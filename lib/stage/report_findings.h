@@ -8,7 +8,7 @@
 
 namespace soslam {
 
-// Prints findings on stderr, a line each, for the person who runs a stage.
+// Prints findings on stderr, one per line.
 void ReportFindings(const std::string& stage, const std::vector<Finding>& findings);
 
 }  // namespace soslam

@@ -17,7 +17,7 @@
 namespace soslam {
 namespace {
 
-// "12 object, 3 merged".
+// Summary of the tracks' fates: "12 object, 3 merged".
 std::string DescribeTracks(const Association& association) {
   std::array<int, kTrackFateNames.size()> counts{};
   for (const Track& track : association.tracks) ++counts.at(static_cast<size_t>(track.fate));
@@ -29,7 +29,7 @@ std::string DescribeTracks(const Association& association) {
   return text.empty() ? "none" : text;
 }
 
-// That of the first segment whose up is open.
+// Finding of the first segment whose up direction is ambiguous.
 std::vector<Finding> CheckUpOfSegments(const Association& association) {
   std::vector<Finding> findings;
   for (const auto& [segment, up] : association.up_of_segments) {

@@ -6,11 +6,12 @@
 
 namespace soslam {
 
-// Finds out which detections are of the same object. Files: "sequence", sequence.json, whose
-// objects and ids are not looked at but to say how well they agree; "table", the semantic table;
-// "output", the sequence with the objects found, to write; "associations", associations.json to
-// write: what was decided and why. Throws InputError; NothingUsableError when no object is found;
-// SettingsError, also when the setting `association` is `given`.
+// soslam-associate: estimates which detections belong to the same object. Files: "sequence",
+// sequence.json, whose objects and ids are used only to measure the agreement; "table", the
+// semantic table; "output", the sequence with the estimated objects, to write; "associations",
+// associations.json to write: all decisions and their reasons. Throws InputError;
+// NothingUsableError when no object is found; SettingsError, also when the setting `association` is
+// `given`.
 void RunAssociate(const AssociateOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

@@ -35,8 +35,8 @@ std::vector<fs::path> ImagePaths(const fs::path& dataset) {
   return images;
 }
 
-// The detections of each image. A worker has a network of its own, which OpenCV runs on one thread:
-// so the result does not depend on how many there are.
+// The detections of each image. Each worker has its own network, which OpenCV runs on one thread,
+// so that the result does not depend on the number of workers.
 std::vector<std::vector<YoloDetection>> DetectAll(const std::vector<fs::path>& images,
                                                   const fs::path& network, int classes,
                                                   const DetectorOptions& options, int threads) {
@@ -69,7 +69,7 @@ std::vector<LabelledBox> WithLabels(const std::vector<std::vector<YoloDetection>
   return boxes;
 }
 
-// The header that other artefacts have, as comments: one line, then one for each input.
+// The artefact header as comments: one line, then one per input.
 std::string Comments(const ArtefactInfo& info) {
   nlohmann::json header = ArtefactHeader("detections", info);
   const nlohmann::json inputs = header["inputs"];

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a run of a stage has to say.
+// A finding of a stage's run and the variants that it concerns.
 struct Diagnosis {
   Finding finding;
   std::string stage;
@@ -38,7 +38,7 @@ std::vector<Finding> FindingsInFile(const fs::path& path) {
   }
 }
 
-// The message says all there is to say.
+// Finding for a failed run; its message is complete, so cause and remedy stay empty.
 Finding FailureOf(const RunRecord& run) {
   Finding failure;
   failure.check = "failed";
@@ -47,7 +47,7 @@ Finding FailureOf(const RunRecord& run) {
   return failure;
 }
 
-// The findings in the artefacts of a run, or how it failed; none where it has not run.
+// Findings in the artefacts of a run, or its failure; none where it has not run.
 std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path& results) {
   const fs::path record = results / InstancePath(instance.Id(), "run.json");
   if (!Exists(record)) return {};
@@ -61,7 +61,7 @@ std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path
   return WorstFirst(std::move(findings));
 }
 
-// Worst first. Findings that later stages carry on are those of the first one.
+// All diagnoses, worst first. A finding that later stages pass on is attributed to the first one.
 std::vector<Diagnosis> DiagnosesOf(const Plan& plan, const fs::path& results) {
   std::vector<Diagnosis> diagnoses;
   for (const StageInstance& instance : plan.instances) {

@@ -17,8 +17,8 @@ struct DoctorOptions {
   }
 };
 
-// Prints what the stages that have run for a dataset in folder "results" found, and how those ended
-// that failed: worst first, each with its likely cause and remedy. The exit code is kFindings when
+// Prints the findings of all completed stages of a dataset in folder "results", and the errors of
+// failed ones: worst first, each with its likely cause and remedy. The exit code is kFindings when
 // there is an error. Throws InputError when nothing was planned for the dataset; SettingsError as
 // MakePlan.
 int RunDoctor(const DoctorOptions& options, const StageFiles& files, int threads);

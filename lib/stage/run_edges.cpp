@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Nearest edges are stored as 16-bit coordinates.
+// Checks the image size, as nearest edges are stored as 16-bit coordinates.
 void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
   constexpr int kMaxSide = std::numeric_limits<std::int16_t>::max();
   if (std::max(camera.width, camera.height) > kMaxSide) {
@@ -47,7 +47,7 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   const FrameImageReader reader(sequence);
   const int frames = static_cast<int>(images.size());
   Progress progress("frames", frames);
-  const int batch = 4 * threads;  // bounds the maps that wait for being written
+  const int batch = 4 * threads;  // limits the maps in memory that wait to be written
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {

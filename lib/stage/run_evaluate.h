@@ -6,8 +6,9 @@
 
 namespace soslam {
 
-// Any landmarks artefact (initial.json, refined.json, map.json) to metrics.json: files "sequence",
-// "landmarks", "output". Without ground truth the summary has 0 objects and no numbers.
+// soslam-evaluate: evaluates any landmarks artefact (initial.json, refined.json, map.json) and
+// writes metrics.json: files "sequence", "landmarks", "output". Without ground truth the summary
+// has 0 objects and no numbers.
 void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

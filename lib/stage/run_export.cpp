@@ -65,8 +65,7 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
   }
 }
 
-// What the evaluation of the map says of it as a whole; null where its dataset does not say what is
-// true.
+// Map quality from the evaluation of the map; null where the dataset has no ground truth.
 nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
   const nlohmann::json document = ReadArtefact(metrics, "metrics");
   const nlohmann::json& inputs = document.at("artefact").at("inputs");
@@ -121,7 +120,7 @@ void CheckWorlds(const std::vector<World>& worlds, const StageFiles& files) {
   }
 }
 
-// All outputs, so that what cannot be made leaves no part of the rest.
+// Creates all outputs before any is written, so that a failure leaves no partial result.
 std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOptions& options,
                                 const StageFiles& files) {
   std::vector<Output> outputs;

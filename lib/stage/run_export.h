@@ -19,16 +19,16 @@ struct ExportOptions {
   }
 };
 
-// soslam-export: files "sequence" and, unless truth is set, "map" (of which "metrics" say what is
-// right) to one or more of "trajectory",
-// "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map there are the sequence's own poses
-// to export, and no objects. Of several segments, each a world of its own, "trajectory", "ply" and
-// "gltf" become a file each, see SegmentPath. Throws SettingsError without an output, for objects
-// without a map or truth, for both, and for an extension that glTF does not have;
-// NothingUsableError when there is no pose or landmark to write. Then nothing is written.
+// soslam-export: writes "sequence" and, unless truth is set, "map" (with its evaluation "metrics")
+// to one or more of "trajectory", "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map,
+// only the sequence's own poses are exported. With several segments, each in its own world,
+// "trajectory", "ply" and "gltf" become one file per segment, see SegmentPath. Throws SettingsError
+// without an output, for objects without a map or truth, for both, and for an extension that glTF
+// does not have; NothingUsableError when there is no pose or landmark to write. Nothing is written
+// in these cases.
 void RunExport(const ExportOptions& options, const StageFiles& files, int threads);
 
-// map.ply and segment 3: map-3.ply.
+// Path of a segment's file: map.ply and segment 3 give map-3.ply.
 std::filesystem::path SegmentPath(const std::filesystem::path& path, int segment);
 
 }  // namespace soslam

@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// soslam-import: reads the folder "dataset", writes the sequence artefact "output" and prints one
-// line that says how much of it is used. Errors as ImportDataset and WriteSequence.
+// soslam-import: reads the folder "dataset", writes the sequence artefact "output" and prints a
+// one-line summary of how much is used. Errors as ImportDataset and WriteSequence.
 void RunImport(const ImportOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

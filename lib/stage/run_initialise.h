@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// sequence.json and the semantic table to initial.json: files "sequence", "table", "output". Throws
-// NothingUsableError when no observation gave a landmark.
+// soslam-initialise: sequence.json and the semantic table to initial.json: files "sequence",
+// "table", "output". Throws NothingUsableError when no observation gave a landmark.
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

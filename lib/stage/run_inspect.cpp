@@ -39,8 +39,7 @@ const Value& Required(const std::optional<Value>& value, const char* option,
                                   frame_id, file.string(), first, last));
 }
 
-// The grey image of a frame as its camera would have taken it without its lens; even grey where
-// there is no image, or no folder is given.
+// Undistorted grey image of a frame; uniform grey where there is no image, or no folder is given.
 cv::Mat GreyImage(const InspectRequest& request, const Sequence& sequence, int frame_index) {
   const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
   if (!request.dataset || frame.image.empty()) {
@@ -53,7 +52,7 @@ cv::Mat GreyImage(const InspectRequest& request, const Sequence& sequence, int f
   return FrameImageReader(sequence).ReadGrey({&frame, path});
 }
 
-// The sequence of a picture and its frame.
+// Sequence and frame of a picture.
 struct FrameOfSequence {
   Sequence sequence;
   int frame_index;
@@ -146,7 +145,7 @@ std::optional<Sequence> KnownSequence(const InspectRequest& request) {
   return ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
 }
 
-// Whether the artefact was made from another sequence than the one that is given.
+// True if the artefact was made from another sequence than the given one.
 bool IsOfAnotherSequence(const InspectRequest& request) {
   if (!request.sequence || *request.sequence == request.file) return false;
   const std::string sha256 = Sha256OfFile(*request.sequence);

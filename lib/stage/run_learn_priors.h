@@ -6,10 +6,11 @@
 
 namespace soslam {
 
-// A semantic table from data: files "base" (a table), "furniture" with "furniture_labels",
-// "sequence" and "held_out" (any number, with ground truth), all optional; "output". Prints how
-// well the table predicts the objects of the sequences that are held out; catalogue models that are
-// such objects are not learned from. Throws NothingUsableError when there is not one row.
+// soslam-learn-priors: learns a semantic table from data: files "base" (a table), "furniture" with
+// "furniture_labels", "sequence" and "held_out" (any number, with ground truth), all optional;
+// "output". Prints how well the table predicts the objects of the held-out sequences; catalogue
+// models of these objects are excluded from learning. Throws NothingUsableError when the table has
+// no row.
 void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

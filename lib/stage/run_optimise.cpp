@@ -39,10 +39,9 @@ void CheckImageOptions(const OptimiseOptions& options, const StageFiles& files) 
   }
 }
 
-// The observations of static objects in frames that have an image: those whose texture and those
-// whose edges are looked at.
+// Observations of static objects, in frames with an image, that are used for texture and for edges.
 struct ImageUse {
-  std::vector<int> symmetry, edges;  // by index into Sequence::detections
+  std::vector<int> symmetry, edges;  // indices in Sequence::detections
 };
 ImageUse ChooseImageUse(const Sequence& sequence, const OptimiseOptions& options) {
   ImageUse use;
@@ -60,7 +59,7 @@ ImageUse ChooseImageUse(const Sequence& sequence, const OptimiseOptions& options
   return use;
 }
 
-// Reads the edge maps that symmetry and edge alignment look at.
+// Reads the edge maps for symmetry and edge alignment.
 void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
                 int threads, BackEndInput* input) {
   const Sequence& sequence = input->sequence;

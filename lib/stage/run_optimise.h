@@ -6,9 +6,10 @@
 
 namespace soslam {
 
-// initial.json or refined.json to map.json: files "sequence", "landmarks", "table", "output" and,
-// for symmetry, "edges". Throws SettingsError when symmetry is on without edges or with a
-// descriptor that has no derivative, NothingUsableError when no object has a start.
+// soslam-optimise: initial.json or refined.json to map.json: files "sequence", "landmarks",
+// "table", "output" and, for symmetry, "edges". Throws SettingsError when symmetry is on without
+// edges or with a descriptor that has no derivative, NothingUsableError when no object has an
+// initial guess.
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

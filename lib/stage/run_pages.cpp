@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Frames whose file is not there have no image.
+// Images of a dataset folder; frames whose file is missing have no image.
 ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
   const auto frame_at = [&sequence](int frame_index) -> const Frame& {
     return sequence.frames[static_cast<size_t>(frame_index)];
@@ -40,7 +40,7 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
           }};
 }
 
-// What is missing on the page.
+// Prints what is missing on the page.
 void PrintProblems(const nlohmann::json& page) {
   const auto print = [&](const std::string& what) {
     fmt::print(stderr, "soslam-pages: {}: {}\n", page["dataset"].get<std::string>(), what);
@@ -52,7 +52,7 @@ void PrintProblems(const nlohmann::json& page) {
   for (const nlohmann::json& problem : page["problems"]) print(problem.get<std::string>());
 }
 
-// The data of the page, which is written unless it has nothing to show.
+// Returns the data of the page, and writes the page unless it has nothing to show.
 nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
   const auto page_with = [&](const std::string& tables, const nlohmann::json& data) {
     return PageHtml(result.name, tables, data, PageScripts::kDataset);

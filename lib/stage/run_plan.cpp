@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Make splits lists at spaces and gives several characters a meaning, with no way to quote them
-// all.
+// Refuses names that make cannot handle: it splits lists at spaces and interprets several
+// characters, which cannot all be quoted.
 void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
   const bool fit = !text.empty() && text.front() != '-' &&
                    std::all_of(text.begin(), text.end(), [](unsigned char c) {
@@ -46,7 +46,7 @@ void RefuseIfNotAFolderName(const std::string& name, const std::string& what) {
   }
 }
 
-// One line per file that tells when it changes, without reading it.
+// One line per file that changes whenever the file does, without reading it.
 std::string Fingerprint(const fs::path& folder, const std::set<std::string>& names) {
   std::string text = fs::canonical(folder).string() + "\n";
   for (const std::string& name : names) {
@@ -63,8 +63,8 @@ std::string Fingerprint(const fs::path& folder, const std::set<std::string>& nam
   return text;
 }
 
-// The files below a dataset folder, whatever its format is: tables and lists, and all others, which
-// are images mostly.
+// Files below a dataset folder, independent of its format: tables and lists, and all others, which
+// are mostly images.
 struct FoundFiles {
   std::set<std::string> tables;
   std::set<std::string> others;
@@ -74,12 +74,12 @@ FoundFiles FindFiles(const fs::path& dataset) {
   static const std::set<std::string> kTables = {".txt", ".csv", ".json", ".gz",
                                                 ".tgz", ".tar", ".zip"};
   FoundFiles found;
-  std::error_code error;  // a circle of symbolic links, or a folder that may not be read
+  std::error_code error;  // a cycle of symbolic links, or an unreadable folder
   fs::recursive_directory_iterator entries(dataset, fs::directory_options::follow_directory_symlink,
                                            error);
   for (; !error && entries != fs::end(entries); entries.increment(error)) {
     const fs::directory_entry& entry = *entries;
-    std::error_code ignored;  // a link to nothing is no file
+    std::error_code ignored;  // a dangling link is no file
     if (!entry.is_regular_file(ignored)) continue;
     const fs::path extension = entry.path().extension();
     const bool is_table = kTables.count(extension.string()) > 0;
@@ -101,7 +101,7 @@ bool IsImage(const std::string& file) {
   return kExtensions.contains(extension);
 }
 
-// Imports read tables, and some look which images there are.
+// Fingerprint of what imports depend on: the content of tables, and the existence of images.
 std::string DatasetFingerprint(const fs::path& dataset, const FoundFiles& files) {
   return Fingerprint(dataset, files.tables) + fmt::format("{}\n", fmt::join(files.others, "\n"));
 }
@@ -116,10 +116,10 @@ void WriteFile(const fs::path& path, const std::string& text) {
   WriteTextFile(path, text);
 }
 
-// The word for the variants that were planned before; all, where there are none.
+// Option value for the variants planned before; all if there are none.
 constexpr const char* kPlanned = "planned";
 
-// Says what PossibleVariants leaves out.
+// Prints the variants that PossibleVariants excludes.
 void PrintImpossible(const fs::path& pipelines, const std::string& dataset,
                      const std::vector<std::string>& possible) {
   std::vector<std::string> impossible = VariantNames(pipelines);

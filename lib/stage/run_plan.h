@@ -23,25 +23,25 @@ struct PlanOptions {
   }
 };
 
-// The words of a list of names, each once.
+// Words of a list of names, without duplicates.
 std::vector<std::string> SplitAtSpaces(const std::string& text);
 
-// All variants that folder `pipelines` defines; where the dataset called `name` in folder `dataset`
-// has no images, those that look at none. Errors as RunPlan.
+// All variants defined in folder `pipelines`; if the dataset `name` in folder `dataset` has no
+// images, only variants that do not use images. Errors as RunPlan.
 std::vector<std::string> PossibleVariants(const std::filesystem::path& pipelines,
                                           const std::string& name,
                                           const std::filesystem::path& dataset);
 
-// Those of the variants in folder `pipelines` that have been planned in folder `results` of a
-// dataset.
+// Variants of folder `pipelines` that have been planned in the results folder of a dataset.
 std::vector<std::string> PlannedVariants(const std::filesystem::path& pipelines,
                                          const std::filesystem::path& results);
 
-// Resolves the variants that folder "pipelines" defines for the dataset in folder "dataset". Under
-// <results>/<name> it writes, each only when its content changes: plan.mk, see PlanMakefile;
-// shared/<stage>-<key>/settings.json; shared/dataset.txt and shared/images.txt, which list the
-// dataset's files with size and time; and <variant>/stages.txt. Throws InputError when there is no
-// such dataset; SettingsError as MakePlan, and for a path with characters that make cannot handle.
+// soslam-plan: resolves the variants that folder "pipelines" defines for the dataset in folder
+// "dataset". Writes under <results>/<name>, each only when its content changes: plan.mk, see
+// PlanMakefile; shared/<stage>-<key>/settings.json; shared/dataset.txt and shared/images.txt, which
+// list the dataset's files with size and time; and <variant>/stages.txt. Throws InputError when
+// there is no such dataset; SettingsError as MakePlan, and for a path with characters that make
+// cannot handle.
 void RunPlan(const PlanOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

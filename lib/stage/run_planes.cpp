@@ -22,8 +22,8 @@
 namespace soslam {
 namespace {
 
-// Of the dataset's images, in the frames' order, where verticals are looked for and there are any;
-// the images are added to `inputs`.
+// Line segments of the dataset's images, in the frames' order, if vertical edges are used and there
+// are images; the images are added to `inputs`.
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesOptions& options,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs) {
@@ -49,7 +49,7 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
   return views;
 }
 
-// Every segment has a world, and so an up and planes, of its own.
+// Checks that there is one segment, as every segment has its own world, up direction and planes.
 void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
   const int first = sequence.frames.front().segment;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
@@ -64,10 +64,11 @@ void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path
 struct Result {
   PlanesEstimate estimate;
   Sequence sequence;
-  std::vector<std::filesystem::path> inputs;  // beside the sequence
+  std::vector<std::filesystem::path> inputs;  // in addition to the sequence
 };
 
-// Odometry drifts also along the plane's normal: poses, bodies and planes settle together.
+// Joint optimisation of poses, landmarks and planes, as odometry also drifts along the plane's
+// normal.
 MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
                      const PlanesOptions& options, int threads) {
   OptimiseOptions optimise;
@@ -79,13 +80,13 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   if (options.odometry_rotation_sigma_deg > 0.0) {
     optimise.odometry_rotation_sigma_deg = options.odometry_rotation_sigma_deg;
   }
-  optimise.axes_weight = 0.0;  // the world's axes mean nothing
+  optimise.axes_weight = 0.0;  // the world's axes are arbitrary
   BackEndInput input{sequence, {}, priors, {}, {}};
   input.starts = ChooseUprightStarts(input, {}, optimise, threads);
   return OptimiseMap(input, optimise, threads);
 }
 
-// `covariance`: over (normal, offset).
+// Replaces a plane by an optimised one; `covariance` is over (normal, offset).
 void Replace(const Plane& plane_in_world, const std::optional<Eigen::Matrix4d>& covariance,
              EstimatedPlane* plane) {
   const Eigen::Vector3d& normal = plane_in_world.normal;
@@ -96,14 +97,14 @@ void Replace(const Plane& plane_in_world, const std::optional<Eigen::Matrix4d>& 
   plane->x_axis_in_world = x;
   plane->covariance.reset();
   if (!covariance) return;
-  // Turns about x and y move the normal by -y and x; the plane rises at the point.
+  // Rotations about x and y move the normal by -y and x; the translation is at the point.
   Eigen::Matrix<double, 3, 4> motion;
   motion << -normal.cross(x).transpose(), 0.0, x.transpose(), 0.0,
       -plane->point_in_world.transpose(), -1.0;
   plane->covariance = motion * *covariance * motion.transpose();
 }
 
-// Poses, planes and bodies where they settle together; the sequence's own poses change with them.
+// Optimises poses, planes and bodies jointly; the poses of `level` are replaced.
 void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
                      const PlanesOptions& options, int threads, PlanesEstimate* estimate,
                      Sequence* level) {
@@ -143,7 +144,7 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   return result;
 }
 
-// In every frame it is the ground, whatever the trajectory says.
+// Uses the ground plane at the camera's height in every frame, independent of the trajectory.
 Result FromCameraHeight(const Sequence& sequence, const PlanesOptions& options,
                         const StageFiles& files) {
   Result result;

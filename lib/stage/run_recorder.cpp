@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Where the first output lies that the stage is called with.
+// Folder of the first given output.
 std::optional<fs::path> RecordFolder(const StageInfo& info, const StageFiles& files) {
   if (!info.is_recorded) return std::nullopt;
   for (const FileArgument& output : info.outputs) {
@@ -30,7 +30,7 @@ std::optional<fs::path> RecordFolder(const StageInfo& info, const StageFiles& fi
   return std::nullopt;
 }
 
-// "sequence" for the second file of --sequence as well: see RepeatedName.
+// Argument name of a file: "sequence" also for the second file of --sequence, see RepeatedName.
 std::string ArgumentOf(const std::string& name) { return name.substr(0, name.find('#')); }
 
 const FileArgument* FindOutput(const StageInfo& info, const std::string& argument) {
@@ -103,13 +103,13 @@ void RunRecorder::RecordFailure(int exit_code, const std::string& error) {
     const RunRecord record = Finished(exit_code, error);
     WriteRun(*folder_ / "run.json", record);
   } catch (const std::exception&) {
-    return;  // the failure itself is what counts
+    return;  // the failure itself is more important
   }
 }
 
 RunRecord RunRecorder::Finished(int exit_code, const std::string& error) {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
-  if (log_) {  // not when it is called again because the first record could not be written
+  if (log_) {  // false when called again because the first record could not be written
     for (const FileDigest& input : log_->Inputs()) record_.inputs.push_back(Place(input));
     for (const FileDigest& output : log_->Outputs()) record_.outputs.push_back(Place(output));
     record_.seed = log_->Seed();
@@ -133,7 +133,7 @@ RunFile RunRecorder::Place(const FileDigest& file) const {
     }
   }
   const std::string argument = named == files_.end() ? "" : ArgumentOf(named->first);
-  // What lies in the run's folder, or beside it, is moved together with it.
+  // Files in the run's folder, or beside it, move together with it.
   const fs::path run = PlainPath(*folder_);
   if (IsWithin(path, run.parent_path())) {
     return {argument, kRelativeToRun, path.lexically_relative(run), file.sha256};

@@ -14,29 +14,29 @@
 
 namespace soslam::internal {
 
-// Writes what a run was, beside its first output: run.json in any case, timing.json after success.
-// Programs that are not recorded leave neither.
+// Writes the record of a run beside its first output: run.json in any case, timing.json after
+// success. Nothing for programs that are not recorded.
 class RunRecorder {
  public:
-  // Begins; the files that the stage is called with count as read. `settings_file`: empty for none.
+  // Starts the record; the files given to the stage count as read. `settings_file`: empty for none.
   RunRecorder(const StageInfo& info, const StageFiles& files,
               const std::filesystem::path& settings_file, int threads);
 
-  // `resolved`: the value of every option, after these layers.
+  // `resolved`: the value of every option after merging these layers.
   void SetSettings(const nlohmann::json& resolved, const std::vector<SettingsLayer>& layers);
 
   // Throws SettingsError when the files cannot be written.
   void RecordSuccess();
-  // Where the file cannot be written there is no record: the error is on stderr as well.
+  // Ignores a failure to write the record: the error is on stderr as well.
   void RecordFailure(int exit_code, const std::string& error);
 
  private:
-  // Ends the log.
+  // Completes the record and ends the log.
   RunRecord Finished(int exit_code, const std::string& error);
   RunFile Place(const FileDigest& file) const;
 
   std::optional<std::filesystem::path> folder_;  // none: not recorded
-  StageFiles files_;                             // with the settings file
+  StageFiles files_;                             // includes the settings file
   RunRecord record_;                             // as far as known
   std::optional<RunLog> log_;
   int threads_;

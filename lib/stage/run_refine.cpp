@@ -26,7 +26,7 @@ namespace {
 
 using ObservationsOfFrame = std::vector<const ObservationEstimate*>;
 
-// Observations by frame. Those of frames without an image are left out.
+// Observations per frame, without frames that have no image.
 std::vector<ObservationsOfFrame> GroupByFrame(const Sequence& sequence,
                                               const LandmarkEstimates& initial) {
   std::vector<ObservationsOfFrame> groups(sequence.frames.size());
@@ -39,8 +39,7 @@ std::vector<ObservationsOfFrame> GroupByFrame(const Sequence& sequence,
   return groups;
 }
 
-// The edge maps of a frame, from when the first of its observations takes them until the last one
-// has.
+// Edge maps of a frame, loaded for its first observation and released after its last.
 class FrameInUse {
  public:
   explicit FrameInUse(size_t observations) : to_come_(observations) {}
@@ -62,7 +61,7 @@ class Refiner {
           const OrientationOptions& options)
       : sequence_(sequence), priors_(priors), options_(options) {}
 
-  // Frame by frame, so that few edge maps are in memory at a time.
+  // Refines frame by frame, so that few edge maps are in memory at a time.
   std::vector<RefinedObservation> Refine(const std::vector<ObservationsOfFrame>& groups,
                                          const EdgesReader& reader, int threads) const {
     std::deque<FrameInUse> frames;

@@ -6,9 +6,10 @@
 
 namespace soslam {
 
-// initial.json and edges.h5 to refined.json and symmetry.h5: files "sequence", "table", "initial",
-// "edges", "output", "curves". Throws SettingsError for a descriptor without derivative where one
-// is needed, NothingUsableError when initial.json has no single-frame landmarks.
+// soslam-refine: initial.json and edges.h5 to refined.json and symmetry.h5: files "sequence",
+// "table", "initial", "edges", "output", "curves". Throws SettingsError for a descriptor without
+// derivative where one is needed, NothingUsableError when initial.json has no single-frame
+// landmarks.
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

@@ -36,11 +36,11 @@ std::vector<DatasetResult> ReadEvaluated(const fs::path& results) {
   return datasets;
 }
 
-// The Markdown file and, in the folder "tables" beside it, each table as CSV and LaTeX. Returns the
-// Markdown.
+// Writes the Markdown file and, in the folder "tables" beside it, each table as CSV and LaTeX.
+// Returns the Markdown.
 std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdown_file) {
   const fs::path folder = markdown_file.parent_path() / "tables";
-  std::error_code error;  // where it cannot be made, it cannot be written to
+  std::error_code error;  // a missing folder fails on writing below
   fs::create_directory(folder, error);
   std::string text;
   for (const Table& table : tables) {
@@ -52,7 +52,7 @@ std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdo
   return text;
 }
 
-// In the order of the report: the paper's tables, paired differences, single datasets.
+// All tables in the order of the report: the paper's tables, paired differences, single datasets.
 std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const Published& published,
                              const std::vector<Comparison>& comparisons) {
   std::vector<Table> tables = PaperTables(datasets, published);

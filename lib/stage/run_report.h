@@ -8,7 +8,7 @@
 
 namespace soslam {
 
-// A report always shows every dataset and variant, so that those from different runs can be
+// A report always contains all datasets and variants, so that reports of different runs can be
 // compared.
 struct ReportOptions {
   std::string compare =
@@ -24,10 +24,10 @@ struct ReportOptions {
 
 // Collects <dataset>/<variant>/metrics.json and the timing.json of the stages from folder "results"
 // into tables: those of the paper, beside the values in file "published" if there is one; paired
-// differences between variants; all metrics of each dataset. Prints them and writes them to file
-// "output" as Markdown, and each to the folder "tables" beside it as CSV and LaTeX. Throws
+// differences between variants; and all metrics of each dataset. Prints them and writes them to
+// file "output" as Markdown, and each to the folder "tables" beside it as CSV and LaTeX. Throws
 // NothingUsableError when there are no metrics at all, InputError for a file that is not valid,
-// SettingsError for comparisons that are none.
+// SettingsError for invalid comparisons.
 void RunReport(const ReportOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kOutcomeNames = {"same", "differs", "not rerun"};
 
-// A folder beside another one, removed with everything in it at the end.
+// Temporary folder beside another one, removed with its content at the end.
 class FolderBeside {
  public:
   explicit FolderBeside(const fs::path& folder) {
@@ -48,7 +48,7 @@ class FolderBeside {
 void Print(const Outcome& outcome) {
   fmt::print("{:<9}  {}{}\n", kOutcomeNames.at(static_cast<size_t>(outcome.kind)),
              outcome.path.string(), outcome.detail.empty() ? "" : ": " + outcome.detail);
-  std::fflush(stdout);  // the next run takes its time
+  std::fflush(stdout);  // the next run takes long
 }
 
 std::set<std::string> WrittenArgumentsOf(const std::string& executable) {
@@ -61,7 +61,7 @@ std::set<std::string> WrittenArgumentsOf(const std::string& executable) {
   return arguments;
 }
 
-using Counts = std::array<size_t, kOutcomeNames.size()>;  // by kind of outcome
+using Counts = std::array<size_t, kOutcomeNames.size()>;  // indexed by kind of outcome
 
 Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
   Counts counts = {};

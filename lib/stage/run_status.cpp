@@ -30,14 +30,15 @@ std::vector<std::string> PlannedDatasets(const fs::path& results) {
   return names;
 }
 
-// What is known of one dataset's runs.
+// Plan and states of one dataset's runs.
 class Status {
  public:
   Status(std::string name, const StatusOptions& options, const StageFiles& files,
          const StagesUnderWay& under_way)
       : name_(std::move(name)), folders_(ReadPlanFolders(files.at("results") / name_ / "plan.mk")) {
     folders_.results = files.at("results") / name_;
-    // So that changed settings and files count; without the dataset the last plan has to do.
+    // Plans again, so that changed settings and files count; without the dataset the last plan is
+    // used.
     const std::vector<std::string> planned = PlannedVariants(folders_.pipelines, folders_.results);
     if (IsFolder(folders_.dataset) && !planned.empty()) {
       RunPlan({.name = name_, .variants = fmt::format("{}", fmt::join(planned, " "))},
@@ -73,7 +74,7 @@ class Status {
     }
   }
 
-  // Each instance of the stage once, followed by those before it that have to run.
+  // Prints each instance of the stage once, followed by the earlier ones that have to run.
   void PrintReasons(const std::string& stage) const {
     std::set<std::string> printed;
     for (const VariantChain& variant : plan_.variants) {

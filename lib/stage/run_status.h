@@ -22,11 +22,11 @@ struct StatusOptions {
   }
 };
 
-// Plans the datasets in folder "results" anew, and prints which stages of which variants are done,
-// stale, failed or missing, or why one stage would run. "executables" is the folder of the stages'
-// programs; "under_way", if given, says what is queued or running, see ReadStagesUnderWay. Throws
-// InputError when that dataset was never planned; SettingsError for an unknown variant or stage,
-// and as RunPlan.
+// soslam-status: plans the datasets in folder "results" again, and prints which stages of which
+// variants are done, stale, failed or missing, or why one stage would run. "executables" is the
+// folder of the stages' programs; "under_way", if given, lists queued and running stages, see
+// ReadStagesUnderWay. Throws InputError when that dataset was never planned; SettingsError for an
+// unknown variant or stage, and as RunPlan.
 void RunStatus(const StatusOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

@@ -17,9 +17,9 @@ struct SynthesiseOptions {
   }
 };
 
-// From the scene description in file "scene" to the dataset folder "output", see WriteDataset.
-// Throws InputError for a scene that is not valid, SettingsError for a folder that must not be
-// replaced, and NothingUsableError when no object is detected in any frame.
+// soslam-synthesise: creates the dataset folder "output" from the scene description in file
+// "scene", see WriteDataset. Throws InputError for a scene that is not valid, SettingsError for a
+// folder that must not be replaced, and NothingUsableError when no object is detected in any frame.
 void RunSynthesise(const SynthesiseOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

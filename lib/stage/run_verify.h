@@ -13,12 +13,12 @@ struct VerifyOptions {
   void Describe(OptionVisitor&) {}
 };
 
-// The runs in folder "results", of datasets in folder "data_root"; without it they are where they
-// were. Throws as FindRuns of the folders.
+// The runs in folder "results", of datasets in folder "data_root"; without it the datasets are at
+// their recorded place. Throws as FindRuns of the folders.
 std::vector<DatasetRuns> FindRuns(const StageFiles& files);
 
-// Prints which files of folder "results" no longer are what their run.json says, one line each, and
-// a table of all datasets. The exit code: kFindings when there is any. Throws as FindRuns.
+// soslam-verify: prints which files of folder "results" differ from their run.json, one line each,
+// and a table of all datasets. The exit code is kFindings when there is any. Throws as FindRuns.
 int RunVerify(const VerifyOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

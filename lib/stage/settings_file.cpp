@@ -7,7 +7,7 @@
 namespace soslam {
 namespace {
 
-// What is bad input elsewhere is a bad setting here, and so has another exit code.
+// Converts InputError to SettingsError, which has another exit code.
 nlohmann::json ParseAsSettings(const std::filesystem::path& path) {
   try {
     return ParseJsonFile(path);

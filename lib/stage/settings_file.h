@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// The JSON object in a file that a user writes settings in. Throws SettingsError, naming the file,
-// when it cannot be read, is malformed or holds something else.
+// Reads a settings file written by a user, a JSON object. Throws SettingsError, naming the file,
+// when it cannot be read, is malformed or is not an object.
 nlohmann::json ReadSettingsFile(const std::filesystem::path& path);
 
 }  // namespace soslam

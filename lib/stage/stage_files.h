@@ -8,12 +8,12 @@
 
 namespace soslam {
 
-// The files a stage was called with, by argument name; absent when an optional one was not given.
-// The second and later files of a repeatable argument are named by RepeatedName.
+// The files that a stage was called with, keyed by argument name; absent when an optional one was
+// not given. The second and later files of a repeatable argument are named by RepeatedName.
 using StageFiles = std::map<std::string, std::filesystem::path>;
 
-// The name of the file that a repeatable argument gives at `index` (from 0): "sequence",
-// "sequence#1" and so on.
+// Name of the file that a repeatable argument gives at `index` (from 0): "sequence", "sequence#1"
+// and so on.
 inline std::string RepeatedName(const std::string& argument, size_t index) {
   return index == 0 ? argument : argument + "#" + std::to_string(index);
 }
