@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A matching that is optimal for the rows added so far. Each row has a column of its own behind the
-// given ones, which stands for no column, so that there always is a way to add a row.
+// A matching that is optimal for the rows added so far. Behind the given columns there is one dummy
+// column per row, which stands for no column, so that a row can always be added.
 class OptimalMatching {
  public:
   OptimalMatching(const Eigen::MatrixXd& costs, const Eigen::VectorXd& unassigned_costs)
@@ -22,10 +22,10 @@ class OptimalMatching {
 
   int RowOf(int column) const { return row_of_column_[static_cast<size_t>(column)]; }
 
-  // Along the shortest path (by reduced costs) from the row to a free column.
+  // Adds a row along the shortest path (by reduced costs) from it to a free column.
   void Add(int row) {
     Eigen::VectorXd distances = Eigen::VectorXd::Constant(columns_, kInfinity);
-    std::vector<int> before(static_cast<size_t>(columns_), kUnassigned);  // on the path there
+    std::vector<int> before(static_cast<size_t>(columns_), kUnassigned);  // predecessor on the path
     std::vector<bool> reached(static_cast<size_t>(columns_), false);
     std::vector<int> order;  // columns as they are reached
     int from_row = row;
@@ -60,7 +60,7 @@ class OptimalMatching {
     return column - costs_.cols() == row ? unassigned_costs_[row] : kInfinity;
   }
 
-  // Keeps reduced costs zero in the matching and nowhere negative.
+  // Keeps reduced costs zero in the matching and non-negative elsewhere.
   void UpdatePotentials(int row, const std::vector<int>& reached, const Eigen::VectorXd& distances,
                         double length) {
     row_potentials_[row] += length;

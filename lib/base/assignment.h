@@ -6,13 +6,14 @@
 
 namespace soslam {
 
-// What stands for no column.
+// Marks a row without a column.
 inline constexpr int kUnassigned = -1;
 
-// Gives each row a column of its own, or none, so that the sum of all costs is least; the column of
-// each row, or kUnassigned. `costs` (rows x columns) may be infinite where a row cannot have a
-// column; `unassigned_costs` (one per row, finite) is what a row without a column costs. Shortest
-// augmenting paths (the Hungarian method), O(rows^2 (rows + columns)).
+// Solves the linear assignment problem: gives each row at most one column of its own so that the
+// sum of all costs is minimal, and returns the column of each row or kUnassigned. `costs` (rows x
+// columns) may be infinite for forbidden pairs; `unassigned_costs` (one per row, finite) is the
+// cost of leaving a row without a column. Shortest augmenting paths (Hungarian method), O(rows^2
+// (rows + columns)).
 std::vector<int> Assign(const Eigen::MatrixXd& costs, const Eigen::VectorXd& unassigned_costs);
 
 }  // namespace soslam

@@ -6,7 +6,7 @@
 
 namespace soslam {
 
-// The bytes as RFC 4648 has them in base 64.
+// The bytes in base 64 (RFC 4648).
 std::string Base64(std::string_view bytes);
 
 }  // namespace soslam

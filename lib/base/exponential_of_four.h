@@ -9,7 +9,8 @@
 
 namespace soslam {
 
-// The first elements of a series sum over n of f_n x^n by f_0 and f_n / f_(n - 1).
+// The first kCount coefficients f_n of a series sum over n of f_n x^n, from f_0 and the ratios f_n
+// / f_(n - 1).
 template <size_t kCount, typename Ratio>
 constexpr std::array<double, kCount> SeriesByRatios(double first, Ratio ratio) {
   std::array<double, kCount> factors{first};
@@ -19,7 +20,8 @@ constexpr std::array<double, kCount> SeriesByRatios(double first, Ratio ratio) {
   return factors;
 }
 
-// Several x at once, as each step of one has to wait for the one before.
+// Sums the series for several x at once: the steps of one x depend on each other, those of
+// different x do not.
 template <size_t kSize, size_t kCount>
 SOSLAM_IN_WIDE_LOOPS void SumSeries(const std::array<double, kSize>& factors,
                                     const std::array<Four, kCount>& x,
@@ -30,17 +32,18 @@ SOSLAM_IN_WIDE_LOOPS void SumSeries(const std::array<double, kSize>& factors,
   }
 }
 
-// e^x, good to 1e-14 of it. x below -708 and NaN count as -708, x beyond 709 as 709: powers are
-// those of normal numbers.
+// e^x with a relative error of 1e-14. NaN and x below -708 count as -708, x above 709 as 709, so
+// that the powers of two are normal numbers.
 template <size_t kCount>
 SOSLAM_IN_WIDE_LOOPS void Exponential(std::array<Four, kCount> x,
                                       std::array<Four, kCount>* exponential) {
   constexpr double kLeast = -708.0, kMost = 709.0;
-  // Added to a number, it leaves no place for fractions: the lowest bits are the nearest integer.
+  // A double to which this is added has no bits left for its fraction: the lowest bits hold the
+  // nearest integer.
   constexpr double kRounding = 0x1.8p52;
   // ln 2 in two parts, the first with so few bits that its product with a power is exact.
   constexpr double kLn2 = 0x1.62e42feep-1, kRestOfLn2 = 0x1.a39ef35793c76p-33;
-  constexpr int kExponent = 52;  // the bit where it begins
+  constexpr int kExponent = 52;  // lowest bit of a double's exponent
   constexpr auto kFactors = SeriesByRatios<12>(1.0, [](double n) { return 1.0 / n; });
 
   std::array<FourMask, kCount> powers;

@@ -5,8 +5,8 @@
 
 namespace soslam {
 
-// What a path leads to. Where the file system will not say (no access, a circle of links, a name
-// that is too long), it leads to nothing.
+// Kind of a path, without exceptions. Where the file system gives no answer (no access, a loop of
+// links, too long a name), the path counts as missing.
 inline bool Exists(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored);

@@ -9,7 +9,7 @@ namespace soslam {
 
 // SHA-256 as 64 lower-case hexadecimal digits.
 std::string Sha256OfText(std::string_view text);
-// Of a file's bytes. Throws InputError when it cannot be read.
+// SHA-256 of a file's bytes. Throws InputError when the file cannot be read.
 std::string Sha256OfFile(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -5,10 +5,10 @@
 
 namespace soslam {
 
-// Where a program runs, as far as it matters for how long it takes.
+// The hardware that a program runs on, as far as it matters for run times.
 struct Machine {
-  std::string cpu;  // model name of the processor; "unknown" where the system does not say
-  int cores = 1;    // that this process may use, hyper-threads counted
+  std::string cpu;  // model name of the processor; "unknown" if the system does not report it
+  int cores = 1;    // available to this process, hyper-threads counted
 };
 
 Machine ThisMachine();

@@ -6,7 +6,7 @@
 namespace soslam {
 namespace {
 
-// Begin and end of a text in UTF-8.
+// The begin and the end of a long text in UTF-8, cut between characters.
 std::string WithoutMiddle(const std::string& text) {
   constexpr size_t kMaxHalf = 1000;
   if (text.size() <= 2 * kMaxHalf) return text;

@@ -5,8 +5,9 @@
 
 namespace soslam {
 
-// A message as one line that a terminal takes for text, as messages quote files, which may hold
-// anything; of a long one its begin and end, which have its place and what was expected.
+// The message as one line of printable text. Messages quote files, which may hold any bytes:
+// control characters are escaped. A long message keeps its begin and its end, which hold the place
+// of the error and what was expected.
 std::string OneLine(const std::string& message);
 
 }  // namespace soslam

@@ -47,7 +47,7 @@ class Reader : public OptionVisitor {
   }
   void Integer(const char* name, int* value, Range range, const char*) override {
     if (const auto* found = Find(name)) {
-      // 5.0 is an integer too, as JSON schemas have it.
+      // 5.0 is an integer too, as in JSON Schema.
       if (!found->is_number() || std::trunc(found->get<double>()) != found->get<double>()) {
         Refuse(name, *found, "an integer");
       }
@@ -113,7 +113,7 @@ class Reader : public OptionVisitor {
   std::set<std::string> known_;
 };
 
-// The end of an option's name that says its unit, and the unit.
+// Suffix of an option's name and the unit that it stands for.
 struct UnitSuffix {
   const char* suffix;
   const char* unit;

@@ -55,20 +55,20 @@ struct OptionRow {
   std::string name;
   std::string type;  // as in JSON schemas: "number", "integer", "boolean", "string"
   nlohmann::json default_value;
-  std::optional<OptionVisitor::Range> range;  // of numbers
-  std::vector<std::string> choices;           // of enumerations
+  std::optional<OptionVisitor::Range> range;  // of numbers only
+  std::vector<std::string> choices;           // of enumerations only
   std::string unit;                           // "px"; empty for none
   std::string group;                          // heading; empty before the first one
   std::string doc;
 };
 
 // The JSON schema (draft 7) of a settings file with these options: it takes what OptionsFromJson
-// takes. Units and groups are there as keywords "unit" and "group".
+// OptionsFromJson accepts. Units and groups are stored as keywords "unit" and "group".
 nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows, const std::string& title);
 
 namespace internal {
 
-// Visits with the struct's Describe as a plain callable, so that the visitors live in one .cpp.
+// A struct's Describe with its type erased, so that the visitors live in one .cpp.
 using DescribeFunction = void (*)(void* options, OptionVisitor& visitor);
 
 template <typename Options>

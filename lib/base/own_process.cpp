@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kOutOfMemory = 71;
 
-// What this process has of addresses: sanitizers take terabytes. None where the system does not
-// say.
+// Size of this process' address space (sanitizers take terabytes); none if the system does not
+// report it.
 std::optional<std::uint64_t> AddressBytes() {
   std::uint64_t pages = 0;
   std::ifstream stream("/proc/self/statm");
@@ -47,7 +47,7 @@ void Lower(__rlimit_resource resource, rlim_t value) {
     work();
   } catch (const std::bad_alloc&) {
     _exit(kOutOfMemory);
-  } catch (...) {  // thrown again where it is done in earnest
+  } catch (...) {  // thrown again when the caller does the work in its own process
   }
   _exit(0);
 }

@@ -8,17 +8,16 @@
 
 namespace soslam {
 
-// How much a process of its own may take before it is ended.
+// Limits of a child process, which is ended when it exceeds them.
 struct ProcessLimits {
-  std::uint64_t cpu_s = 120;                            // of all its threads
-  std::uint64_t memory_bytes = std::uint64_t{8} << 30;  // beyond what this one has
+  std::uint64_t cpu_s = 120;                            // of all its threads together
+  std::uint64_t memory_bytes = std::uint64_t{8} << 30;  // in addition to this process' own
 };
 
-// Does `work` in a process of its own, a copy of this one, whose memory and messages are lost with
-// it: for libraries that crash on damaged files. Says how that process ended where it did not come
-// to an end by itself, as in "signal 11 (Segmentation fault)", or that it took more than the
-// limits; none also where `work` throws anything but std::bad_alloc. Not while other threads are
-// running.
+// Runs `work` in a forked child process, whose memory and output are lost with it: for libraries
+// that crash on damaged files. Returns how the child died, as in "signal 11 (Segmentation fault)",
+// or the limit that it exceeded; none if it ended by itself, also where `work` throws anything but
+// std::bad_alloc. Must not be called while other threads are running.
 std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
                                              const ProcessLimits& limits = {});
 

@@ -6,12 +6,12 @@
 namespace soslam {
 
 // Calls work(0) .. work(count - 1), each once, on up to `threads` threads. Work items must not
-// share mutable state, so that results do not depend on the number of threads. They are begun in
-// that order, and no more once one is seen to have thrown; of the exceptions, that of the lowest
-// index, which is the same for any number of threads, is rethrown here.
+// share mutable state, so that results do not depend on the number of threads. Items start in order
+// of their index, and none starts after one was seen to throw. Of the exceptions, that of the
+// lowest index is rethrown here; it is the same for any number of threads.
 void ParallelFor(int count, int threads, const std::function<void(int)>& work);
 
-// The same for what takes long: shows how many of these ("frames") are done, see Progress.
+// The same for long loops: shows the progress in `what` ("frames"), see Progress.
 void ParallelFor(const char* what, int count, int threads, const std::function<void(int)>& work);
 
 }  // namespace soslam

@@ -9,16 +9,16 @@
 
 namespace soslam {
 
-// Where and how progress is shown: on a terminal as one line that is drawn again and again, else as
-// a line every few seconds.
+// Stream and format of the progress display: one line that is redrawn on a terminal, otherwise a
+// new line every few seconds.
 struct ProgressDisplay {
   std::ostream* stream;
   bool is_terminal;
-  std::string program;              // before each line that is not on a terminal
-  std::function<double()> seconds;  // from any moment on, never backwards
+  std::string program;              // prefix of each line that is not on a terminal
+  std::function<double()> seconds;  // monotonic clock with any origin
 };
 
-// While this lives, the progress of what begins is shown on stderr; otherwise nowhere.
+// While this lives, each new Progress is shown on stderr; otherwise progress is not shown.
 class ProgressOnStderr {
  public:
   explicit ProgressOnStderr(const std::string& program);
@@ -27,21 +27,21 @@ class ProgressOnStderr {
   ProgressOnStderr& operator=(const ProgressOnStderr&) = delete;
 };
 
-// How far a long loop is: the count, the rate, and the time left. Shows nothing about loops that
-// end within a moment. May be stepped from several threads.
+// Progress of a long loop: the count, the rate, and the time left. Shows nothing for loops that end
+// within a moment. May be stepped from several threads.
 class Progress {
  public:
   static constexpr int kUnknownCount = -1;
 
-  // `what` is counted, in the plural ("frames"), up to `count`, on the display of the program.
+  // Counts `what` (a plural, "frames") up to `count` and shows it on the program's display.
   Progress(std::string what, int count);
   Progress(std::string what, int count, ProgressDisplay display);
-  // Leaves the terminal as it was.
+  // Erases the progress line on a terminal.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // One more is done.
+  // Counts one item as done.
   void Step();
 
  private:
@@ -54,7 +54,7 @@ class Progress {
   std::mutex mutex_;
   int done_ = 0;
   double start_s_ = 0.0;
-  double shown_s_ = 0.0;  // when last shown
+  double shown_s_ = 0.0;  // time of the last display
   bool is_drawn_ = false;
 };
 

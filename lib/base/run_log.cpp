@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tells whether a file may have changed without reading it. Nobody but the system sets the last
-// one, the time of change.
+// Detects that a file may have changed, without reading it. Only the system sets changed_ns, the
+// time of the last change of content or attributes.
 struct Stamp {
   dev_t device;
   ino_t inode;
@@ -30,7 +30,7 @@ std::int64_t Nanoseconds(const timespec& time) {
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
-// Of a regular file; none where there is no such file.
+// The stamp of a regular file; none if there is no such file.
 std::optional<Stamp> StampOf(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
@@ -40,10 +40,10 @@ std::optional<Stamp> StampOf(const fs::path& path) {
 
 struct NotedInput {
   FileDigest digest;
-  Stamp stamp;  // from before the digest was taken
+  Stamp stamp;  // taken before the digest
 };
 
-// By absolute path.
+// Recorded files (keyed by absolute path) and seed of this program.
 struct Notes {
   std::mutex mutex;
   std::map<fs::path, NotedInput> inputs;
@@ -58,7 +58,7 @@ std::optional<Notes>& NotesOfProgram() {
 
 fs::path Key(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
 
-// None when the file cannot be read.
+// Stamp and digest of a file; none when it cannot be read.
 std::optional<NotedInput> Digest(const fs::path& path) {
   const std::optional<Stamp> stamp = StampOf(path);
   if (!stamp) return std::nullopt;

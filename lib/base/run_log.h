@@ -9,12 +9,12 @@
 namespace soslam {
 
 struct FileDigest {
-  std::filesystem::path path;  // as it was given
+  std::filesystem::path path;  // as the caller gave it
   std::string sha256;
 };
 
-// While this lives, the files that this program reads and writes are noted, each once; otherwise
-// the functions below note nothing. There is one at a time.
+// While this lives, the files that this program reads and writes are recorded, each once; otherwise
+// the functions below do nothing. Only one may exist at a time.
 class RunLog {
  public:
   RunLog();
@@ -22,29 +22,30 @@ class RunLog {
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;
 
-  // By absolute path.
+  // Sorted by absolute path.
   std::vector<FileDigest> Inputs() const;
   std::vector<FileDigest> Outputs() const;
   std::optional<int> Seed() const;
 };
 
-// For every reader of files, before it opens one: notes what the file holds. A file that cannot be
-// read is not noted, as its reader will say more. May be called by several threads at once.
+// Records the content of an input file. Every reader of files calls it before it opens one. A file
+// that cannot be read is not recorded; its reader reports the error in more detail. Thread-safe.
 void NoteInput(const std::filesystem::path& path);
 
-// SHA-256 of an input: of what it held when it was noted, else of what it holds. Throws InputError
-// when it cannot be read.
+// SHA-256 of an input file: as recorded, or of its current content if it was not recorded. Throws
+// InputError when it cannot be read.
 std::string DigestOfInput(const std::filesystem::path& path);
 
-// For every writer, before an output gets its name: a result must not be of files that are no
-// longer what they were when they were read. Files that the run replaces itself do not count.
-// Throws InputError, naming the file.
+// Throws InputError, naming the file, if an input has changed since it was read: a result must not
+// depend on content that no longer exists. Every writer calls it before an output gets its name.
+// Files that the run replaces itself are exempt.
 void CheckInputsUnchanged();
 
-// For every writer, after an output got its name. Throws InputError when it cannot be read back.
+// Records an output file. Every writer calls it after the output got its name. Throws InputError
+// when the file cannot be read back.
 void NoteOutput(const std::filesystem::path& path);
 
-// For what draws random numbers.
+// Records the seed of random numbers.
 void NoteSeed(int seed);
 
 }  // namespace soslam

@@ -120,7 +120,7 @@ std::string CsvText(const std::string& text) {
 }
 
 size_t WidthOf(const std::string& text) {
-  // Bytes of UTF-8 that continue a character do not count.
+  // Continuation bytes of UTF-8 do not count.
   return static_cast<size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }

@@ -7,7 +7,7 @@
 
 namespace soslam {
 
-// What a table shows where there is no value.
+// Text of a cell without a value.
 inline constexpr const char* kNoValue = "-";
 
 struct Cell {
@@ -37,10 +37,10 @@ std::string ToMarkdown(const Table& table);
 // Header and rows as in RFC 4180 with "\n" line ends; without title, notes and bold.
 std::string ToCsv(const Table& table);
 
-// A table* environment to \input; it needs the package booktabs. Cells without value are dashes.
+// A table* environment for \input; it needs the package booktabs. Cells without a value are dashes.
 std::string ToLatex(const Table& table);
 
-// A field of CSV, in quotes where it has to be (RFC 4180).
+// A CSV field, quoted if necessary (RFC 4180).
 std::string CsvText(const std::string& text);
 
 }  // namespace soslam

@@ -7,8 +7,8 @@
 
 namespace soslam {
 
-// Throws InputError, naming the file, for a text whose first byte is of the byte order mark of
-// UTF-16 or UTF-32, as some editors save it. No text in UTF-8 begins so.
+// Throws InputError, naming the file, if a text's first byte belongs to a byte order mark of UTF-16
+// or UTF-32, as some editors write it. No text in UTF-8 begins with these bytes.
 inline void CheckIsNotUtf16(int first_byte, const std::string& file) {
   if (first_byte != 0xFF && first_byte != 0xFE) return;
   throw InputError(file + ": is UTF-16 text; expected UTF-8: save it with that encoding");

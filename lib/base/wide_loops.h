@@ -6,13 +6,13 @@
 #include <cstddef>
 #include <cstring>
 
-// Before a function whose loops the compiler turns into vector code: compiles it twice, for any
-// processor and for those with AVX2, which take twice as many numbers at once; the program chooses
-// when it starts. Both do the same operations in the same order (AVX2 alone has no fused multiply
-// and add), so the results are the same to the last bit. Arrays come by `__restrict` where there
-// are more than compilers compare for overlap.
+// Attribute of functions with loops that the compiler vectorises: it compiles them twice, for any
+// processor and for AVX2 with its registers of twice the width, and the program chooses when it
+// starts. Both versions do the same operations in the same order (plain AVX2 has no fused
+// multiply-add), so the results are the same to the last bit. Arrays are passed as `__restrict`
+// where there are more than compilers check for overlap.
 //
-// ThreadSanitizer cannot start programs that choose.
+// Empty under ThreadSanitizer, which cannot start programs that choose functions at load time.
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
 #define SOSLAM_WIDE_LOOPS
@@ -26,10 +26,11 @@
 #define SOSLAM_WIDE_LOOPS
 #endif
 
-// Before what such a function calls: it is compiled for wide registers only as a part of it.
+// Attribute of functions called by those above: inlined, so that they are compiled for AVX2 as
+// well.
 #define SOSLAM_IN_WIDE_LOOPS [[gnu::always_inline]] inline
 
-// Before a function that is for processors with AVX2 only, where HasWideRegisters().
+// Attribute of functions for AVX2 only; to be called only where HasWideRegisters().
 #if defined(__x86_64__)
 #define SOSLAM_FOR_AVX2 [[gnu::target("avx2")]]
 #else
@@ -38,7 +39,7 @@
 
 namespace soslam {
 
-// Whether this processor has AVX2.
+// True if this processor has AVX2.
 inline bool HasWideRegisters() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx2") != 0;
@@ -47,16 +48,16 @@ inline bool HasWideRegisters() {
 #endif
 }
 
-// Four numbers side by side.
+// Four doubles in one SIMD vector.
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 using ThreeFours = std::array<Four, 3>;
-// What wide registers load at once. A compiler that is not told may align a Four, and whatever has
-// some as its members, by half of it: what a function of SOSLAM_WIDE_LOOPS gets is aligned by this.
+// Alignment that AVX2 loads need. Without it compilers may align a Four, and structs with such
+// members, to half of its size. Data passed to SOSLAM_WIDE_LOOPS functions is aligned to this.
 inline constexpr size_t kFourAlignment = sizeof(Four);
-// What comparing them gives: all bits of a number's place, or none.
+// Result of a comparison of two Fours: per element all bits set, or none.
 using FourMask = decltype(Four{} < Four{});
 
-// Among other numbers. (GCC would copy what std::memcpy takes by halves.)
+// A Four at any address of doubles. (GCC would split a std::memcpy into halves.)
 using FourInMemory
     [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] =
         double;
@@ -68,7 +69,7 @@ SOSLAM_IN_WIDE_LOOPS void Store(const Four& four, double* to) {
   *reinterpret_cast<FourInMemory*>(to) = four;
 }
 
-// Whether it holds for any of the four.
+// True if the mask is set for any of the four.
 SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
@@ -77,12 +78,12 @@ SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Four& of, Four* root) {
   for (size_t k = 0; k < 4; ++k) (*root)[k] = std::sqrt(of[k]);
 }
 
-// All four together.
+// Sum of the four elements.
 SOSLAM_IN_WIDE_LOOPS double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
-// Of four fours: the i-th sum is that of fours[i], added in the order of Sum.
+// Four sums at once: the i-th is that of fours[i], added in the order of Sum.
 SOSLAM_IN_WIDE_LOOPS void SumEach(const Four* fours, Four* sums) {
   std::array<Four, 2> pairs;
   for (size_t i = 0; i < 2; ++i) {
@@ -94,7 +95,7 @@ SOSLAM_IN_WIDE_LOOPS void SumEach(const Four* fours, Four* sums) {
           __builtin_shufflevector(pairs[0], pairs[1], 2, 3, 6, 7);
 }
 
-// Eight numbers of single precision side by side, and how they are compared and converted.
+// Eight floats in one SIMD vector, with the masks and integers to compare and convert them.
 using Eight [[gnu::vector_size(8 * sizeof(float))]] = float;
 using EightMask = decltype(Eight{} < Eight{});
 using EightIntegers [[gnu::vector_size(8 * sizeof(int))]] = int;
@@ -123,14 +124,14 @@ SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Eight& of, Eight* root) {
   for (size_t k = 0; k < 8; ++k) (*root)[k] = std::sqrt(of[k]);
 }
 
-// What is read from here on comes from memory. Compilers would take what they just stored, number
-// by number, out of the registers it came from, which takes longer where numbers are addresses.
+// Forces later reads of `stored` to come from memory. Otherwise compilers would extract values just
+// stored from vector registers one by one, which is slower if they are used as addresses.
 template <typename T>
 SOSLAM_IN_WIDE_LOOPS void ReadFromMemory(const T& stored) {
   asm volatile("" : : "r"(&stored) : "memory");
 }
 
-// All eight together, in double precision.
+// Sum of the eight elements, in double precision.
 SOSLAM_IN_WIDE_LOOPS double Sum(const Eight& eight) {
   using EightDoubles [[gnu::vector_size(8 * sizeof(double))]] = double;
   const EightDoubles numbers = __builtin_convertvector(eight, EightDoubles);
@@ -139,7 +140,7 @@ SOSLAM_IN_WIDE_LOOPS double Sum(const Eight& eight) {
   return Sum(halves[0] + halves[1]);
 }
 
-// Takes the numbers of `from` where the mask holds.
+// Takes the elements of `from` where the mask is set.
 SOSLAM_IN_WIDE_LOOPS void Replace(const FourMask& where, const Four& from, Four* to) {
   *to = where ? from : *to;
 }

@@ -20,7 +20,7 @@ bool DetectionResidual::Evaluate(double const* const* blocks, double* residuals,
   const Eigen::Matrix3d object_from_camera =
       landmark.frame_from_object.rotation.toRotationMatrix().transpose();
   const Eigen::Vector3d squared_axes = landmark.half_axes.cwiseAbs2();
-  if (!squared_axes.allFinite()) return false;  // a step too far: the solver shortens it
+  if (!squared_axes.allFinite()) return false;  // the step was too large: the solver shortens it
 
   Eigen::Matrix<double, 4, kLandmarkDof> by_landmark;
   for (int i = 0; i < 4; ++i) {

@@ -14,11 +14,12 @@ namespace soslam {
 
 // Detection constraint, eq. (2)-(4): the planes pi_i back-projected from the four edges of a box
 // are tangent to the landmark. Residual i is pi_i^T Q* pi_i / sqrt(variance), pi_i with unit
-// normal, so that the unweighted residual is in m^2: the squared extent of the body towards the
-// plane minus the squared distance of the plane from its centre.
+// normal, so that the unweighted residual is in m^2: the squared support value of the landmark in
+// the direction of the plane's normal minus the squared distance of the plane from its centre.
 //
 // Residuals: 4 (left, top, right, bottom). Blocks: world_from_camera, landmark in the world.
-// Defined everywhere; it does not tell a body in front of the camera from its reflection behind it.
+// Defined everywhere; it does not distinguish an object in front of the camera from its reflection
+// behind it.
 class DetectionResidual final : public ceres::SizedCostFunction<4, kPoseSize, kLandmarkSize> {
  public:
   // `variance` is the paper's Sigma_det, in m^4.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of each place in the batches, the least squared distance so far, and in which batch it is.
+// Per element of the batches: the smallest squared distance so far, and the index of its batch.
 struct Least {
   Batch squared = Batch::Constant(kInfinity);
   Batch batch = Batch::Zero();
@@ -25,7 +25,7 @@ SOSLAM_WIDE_LOOPS void Compare(const Eigen::Vector3d& point, const BatchOfVector
   for (int i = 0; i < kBatchSize; ++i) {
     const double dx = edges[0][i] - x, dy = edges[1][i] - y, dz = edges[2][i] - z;
     const double squared = dx * dx + dy * dy + dz * dz;
-    const bool is_less = squared < least->squared[i];  // not so of NaN
+    const bool is_less = squared < least->squared[i];  // false for NaN
     least->squared[i] = is_less ? squared : least->squared[i];
     least->batch[i] = is_less ? batch : least->batch[i];
   }

@@ -11,18 +11,18 @@
 
 namespace soslam {
 
-// Edge pixels where their rays meet a landmark's surface, eq. (19).
+// Intersections of edge pixels' rays with a landmark's surface, eq. (19).
 class EdgesOnSurface {
  public:
   EdgesOnSurface(const Camera& camera, const Landmark& landmark_in_camera,
                  const std::vector<Eigen::Vector2d>& edge_pixels);
 
-  // The edge pixel that is nearest in space; of several the first. None when no edge is on the
-  // surface.
+  // The edge pixel whose surface point is nearest to a point, in 3D; of several the first. None
+  // when no edge is on the surface.
   std::optional<Eigen::Vector2d> Nearest(const Eigen::Vector3d& point_in_object) const;
 
  private:
-  std::vector<BatchOfVectors> in_object_;  // what is left of the last one is NaN
+  std::vector<BatchOfVectors> in_object_;  // object frame, m; the last batch is padded with NaN
   std::vector<Eigen::Vector2d> pixels_;
 };
 

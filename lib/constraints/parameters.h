@@ -13,8 +13,8 @@
 namespace soslam {
 
 // Parameter blocks of the residuals. A pose is (qx, qy, qz, qw, tx, ty, tz); a landmark is its pose
-// followed by the logarithms of its half axes, which so stay positive without bounds. A plane is
-// two: its unit normal, which parallel planes share, and its offset.
+// followed by the logarithms of its half axes, which thus stay positive without bounds. A plane is
+// two blocks: its unit normal, which parallel planes share, and its offset.
 inline constexpr int kPoseSize = 7;
 inline constexpr int kLandmarkSize = 10;
 inline constexpr int kNormalSize = 3;
@@ -30,9 +30,9 @@ inline Plane UnpackPlane(const double* normal, const double* offset) {
   return {Eigen::Map<const Eigen::Vector3d>(normal), *offset};
 }
 
-// Jacobians are derived for a rotation vector w applied from the left, R -> exp(w) R. Ceres wants
-// them by quaternion coefficients; this 3 x 4 matrix, dw / d(qx, qy, qz, qw), chains one to the
-// other.
+// Jacobians are derived for a rotation vector w applied from the left, R -> exp(w) R. Ceres expects
+// derivatives by quaternion coefficients; this 3 x 4 matrix, dw / d(qx, qy, qz, qw), converts one
+// to the other.
 Eigen::Matrix<double, 3, 4> RotationVectorByQuaternion(const double* quaternion_xyzw);
 
 // kRows may be Eigen::Dynamic below.
@@ -62,10 +62,10 @@ void WriteLandmarkJacobian(const double* landmark_block,
   map.template rightCols<6>() = by_landmark.template rightCols<6>();
 }
 
-// An observation depends on camera_from_object and the half axes only. This evaluates that relative
-// pose and chains derivatives by its nine degrees of freedom (order of kLandmarkDof) to the blocks
-// world_from_camera and landmark in the world. Invariance to a rigid motion of the world follows by
-// construction.
+// An observation depends on camera_from_object and the half axes only. This class computes that
+// relative pose and chains derivatives by its nine degrees of freedom (order of kLandmarkDof) to
+// the blocks world_from_camera and landmark in the world. Invariance to a rigid motion of the world
+// follows by construction.
 class RelativeObservation {
  public:
   explicit RelativeObservation(double const* const* blocks,
@@ -73,14 +73,16 @@ class RelativeObservation {
 
   const Landmark& landmark_in_camera() const { return landmark_in_camera_; }
   const Eigen::Matrix3d& camera_from_world() const { return camera_from_world_; }  // rotation
-  const Eigen::Vector3d& offset_in_world() const { return offset_in_world_; }  // from the camera
+  const Eigen::Vector3d& offset_in_world() const {
+    return offset_in_world_;
+  }  // centre minus camera
 
   template <int kRows>
   void WriteJacobians(const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,
                       double const* const* blocks, double** jacobians) const {
     if (jacobians == nullptr) return;
     using Block = Eigen::Matrix<double, kRows, 3>;
-    // A turn w of a world_from_x rotation is a turn R^T w in the camera frame, R =
+    // A rotation w of a world_from_x rotation is a rotation R^T w in the camera frame, R =
     // world_from_camera.
     const Block by_rotation = by_landmark.template leftCols<3>() * camera_from_world_;
     const Block by_centre = by_landmark.template middleCols<3>(3) * camera_from_world_;

@@ -14,7 +14,7 @@ bool ScaleRatioResidual::Evaluate(double const* const* blocks, double* residuals
   const double a_by_c = std::exp(log_half_axes[0] - log_half_axes[2]);
   const double b_by_c = std::exp(log_half_axes[1] - log_half_axes[2]);
   if (!std::isfinite(a_by_c) || !std::isfinite(b_by_c))
-    return false;  // the solver shortens its step
+    return false;  // the step was too large: the solver shortens it
   residuals[0] = weight_ * (a_by_c - ratio_.x());
   residuals[1] = weight_ * (b_by_c - ratio_.y());
   if (jacobians != nullptr && jacobians[0] != nullptr) {

@@ -9,8 +9,8 @@
 
 namespace soslam {
 
-// Scale ratio constraint, eq. (9)-(11): (a / c, b / c) equals the label's entry of the semantic
-// table, divided by the square root of the variance. No unit.
+// Scale ratio constraint, eq. (9)-(11): (a / c, b / c) equals the label's entry in the semantic
+// table. Divided by the square root of the variance; no unit.
 //
 // Residuals: 2. Block: landmark (any frame).
 class ScaleRatioResidual final : public ceres::SizedCostFunction<2, kLandmarkSize> {

@@ -6,7 +6,8 @@ namespace soslam {
 bool StandingResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   const Landmark landmark = UnpackLandmark(blocks[0]);
-  if (!landmark.half_axes.allFinite()) return false;  // a step too far: the solver shortens it
+  if (!landmark.half_axes.allFinite())
+    return false;  // the step was too large: the solver shortens it
   Plane plane = UnpackPlane(blocks[1], blocks[2]);
   plane.normal *= side_;
   const Eigen::Matrix3d object_from_world =

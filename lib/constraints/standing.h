@@ -7,14 +7,14 @@
 
 namespace soslam {
 
-// A body of any shape stands upright on its support plane: eq. (5)-(8) with the height of the
-// centre over the plane, which is the half axis c, in place of pi^T Q* pi. In metres, so that a
-// flat body is held as firmly as a high one.
+// An object of any shape exponent stands upright on its support plane: eq. (5)-(8), with the height
+// of the centre over the plane, which must equal the half axis c, in place of pi^T Q* pi. In
+// metres, so that a flat object is constrained as strongly as a high one.
 //
 // Residuals: 3 (cosines of the x and y axis with the normal, height minus c), each divided by its
 // standard deviation. Blocks: landmark in the world; unit normal and offset of the plane in the
-// world. `side` is 1, or -1 where the plane's normal is the opposite of the block's, as a ceiling's
-// is that of the floor.
+// world. `side` is 1, or -1 if the plane's normal is opposite to the block's, as for a ceiling that
+// shares the floor's normal.
 class StandingResidual final
     : public ceres::SizedCostFunction<3, kLandmarkSize, kNormalSize, kOffsetSize> {
  public:

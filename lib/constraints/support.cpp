@@ -15,7 +15,7 @@ bool SupportResidual::Evaluate(double const* const* blocks, double* residuals,
                                double** jacobians) const {
   const Landmark landmark = UnpackLandmark(blocks[0]);
   const Eigen::Vector3d squared_axes = landmark.half_axes.cwiseAbs2();
-  if (!squared_axes.allFinite()) return false;  // a step too far: the solver shortens it
+  if (!squared_axes.allFinite()) return false;  // the step was too large: the solver shortens it
   const Eigen::Vector3d& normal = plane_in_world_.normal;
   const Eigen::Matrix3d object_from_world =
       landmark.frame_from_object.rotation.toRotationMatrix().transpose();

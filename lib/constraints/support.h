@@ -9,11 +9,11 @@
 namespace soslam {
 
 // Support constraint, eq. (5)-(8): the landmark's x and y axes are orthogonal to the support normal
-// (cosines, no unit), and the support plane is tangent to it (pi^T Q* pi, m^2). Each divided by the
-// square root of its variance.
+// (cosines, no unit), and the support plane is tangent to it (pi^T Q* pi, m^2). Each residual is
+// divided by the square root of its variance.
 //
 // Residuals: 3 (x axis, y axis, tangency). Block: landmark in the world. Defined everywhere;
-// it tells neither up from down nor above the plane from below: the start of a solve does.
+// it distinguishes neither up from down nor above the plane from below: the initial guess decides.
 class SupportResidual final : public ceres::SizedCostFunction<3, kLandmarkSize> {
  public:
   // `angle_variance` and `tangency_variance` are the paper's Sigma_theta and Sigma_pi (m^4).

@@ -9,7 +9,7 @@ namespace soslam {
 
 SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
     : box(own_box), maps(std::move(edge_maps)), smoothed_grey(maps.grey) {
-  // The pixels of the image from one edge of the box to the other.
+  // Range of pixels from one edge of the box to the other, within the image.
   const auto first = [](double edge, int size) {
     return static_cast<int>(std::ceil(std::max(0.0, std::min<double>(size, edge))));
   };
@@ -109,7 +109,7 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
     const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const {
   switch (descriptor_) {
     case Descriptor::kBrief:
-      return Value();  // two pixels are compared at once
+      return Value();  // compares two pixels directly
     case Descriptor::kGrey:
     case Descriptor::kDistanceTransform:
       return LookUp(pixel, with_jacobian, pixel_jacobian);

@@ -20,7 +20,7 @@
 
 namespace soslam {
 
-// What is compared between a pixel and its mirror pixel, section V-B.
+// Descriptors that are compared between a pixel and its mirror pixel, section V-B.
 enum class Descriptor {
   kGrey,               // grey value, 0 to 1
   kBrief,              // Hamming distance of BRIEF, mirrored sampling order; 0 to 1, no derivative
@@ -36,12 +36,12 @@ inline constexpr std::array kDescriptorNames = {"grey",
                                                 "improved_dt",
                                                 "improved_dt_linearised"};
 
-// What the descriptors look up, for one observation.
+// Image data that the descriptors of one observation look up.
 struct SymmetryImage {
-  // Takes the maps of the whole frame.
+  // Takes the maps of the whole frame, and the box of the observation.
   SymmetryImage(EdgeMaps edge_maps, const Box& own_box);
 
-  Box box;  // of the observation
+  Box box;
   EdgeMaps maps;
   SmoothedImage smoothed_grey;               // for BRIEF
   std::vector<Eigen::Vector2d> edge_pixels;  // in the box, row by row
@@ -53,7 +53,7 @@ class SymmetryDescriptor {
   struct Pair {
     double residual = 0.0;         // beta(u) - beta(u^S) of eq. (16), in the descriptor's unit
     Eigen::Vector2d mirror_pixel;  // u^S of eq. (14)
-    LandmarkJacobian1 jacobian;    // of the residual, only when asked for; nearest edges held
+    LandmarkJacobian1 jacobian;    // of the residual, only when asked for; nearest edges are fixed
   };
 
   SymmetryDescriptor(Descriptor descriptor, const SymmetryImage& image, const Camera& camera,
@@ -61,24 +61,24 @@ class SymmetryDescriptor {
 
   // The pair of a pixel. None when the pixel's ray misses the surface, the mirror pixel is behind
   // the camera or outside the image, or a nearest edge is not on the surface; with
-  // `min_viewing_cosine`, also when the camera sees one of both surface points under a flatter
-  // angle (or not at all). The mirror plane may lie beside the xz plane, see
-  // VisibleSurface::MirrorImage; visible is then what is visible without.
+  // `min_viewing_cosine`, also when the camera sees one of the two surface points at a smaller
+  // viewing cosine (or not at all). The mirror plane may be offset from the xz plane, see
+  // VisibleSurface::MirrorImage; visibility is then checked without the offset.
   std::optional<Pair> Evaluate(const Eigen::Vector2d& pixel,
                                std::optional<double> min_viewing_cosine, bool with_jacobian,
                                double mirror_plane = 0.0) const;
 
-  // The first half of Evaluate, which is the same for all descriptors: where the pixel's ray meets
-  // the surface.
+  // The first half of Evaluate, which is the same for all descriptors: the intersection of the
+  // pixel's ray with the surface.
   std::optional<VisibleSurface::Point> VisiblePoint(const Eigen::Vector2d& pixel,
                                                     std::optional<double> min_viewing_cosine,
                                                     bool with_jacobian) const;
-  // The second half, at the VisiblePoint of the same pixel on the same landmark, `with_jacobian` as
-  // there.
+  // The second half, at the VisiblePoint of the same pixel on the same landmark, with the same
+  // `with_jacobian`.
   std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                  bool with_jacobian, double mirror_plane = 0.0) const;
 
-  // The residuals of Evaluate for several mirror planes: NaN where there is no pair.
+  // The residuals of Evaluate for several mirror planes: NaN if there is no pair.
   Eigen::RowVectorXd Residuals(const Eigen::Vector2d& pixel, double min_viewing_cosine,
                                const std::vector<double>& mirror_planes) const;
 
@@ -87,7 +87,7 @@ class SymmetryDescriptor {
     double value = 0.0;
     LandmarkJacobian1 jacobian = LandmarkJacobian1::Zero();
   };
-  // A pixel, where its ray meets the surface, and its descriptor.
+  // A pixel, the intersection of its ray with the surface, and its descriptor.
   struct Side {
     Eigen::Vector2d pixel;
     VisibleSurface::Point point;
@@ -113,12 +113,12 @@ class SymmetryDescriptor {
   std::optional<EdgesOnSurface> edges_on_surface_;  // for kNearestEdge3d
 };
 
-// Symmetry constraint, eq. (16): the descriptor of a pixel equals that of its mirror pixel, divided
+// Symmetry constraint, eq. (16): the descriptor of a pixel equals that of its mirror pixel. Divided
 // by sigma (in the descriptor's unit). Nearest edges are looked up anew in every evaluation;
-// derivatives hold them fixed.
+// derivatives treat them as fixed.
 //
-// Residuals: 1. Blocks: world_from_camera, landmark in the world. Which pairs count is decided
-// before the solve. Evaluate fails where SymmetryDescriptor has no pair, which makes the solver
+// Residuals: 1. Blocks: world_from_camera, landmark in the world. The pairs to be used are chosen
+// before the solve. Evaluate fails if SymmetryDescriptor has no pair, which makes the solver
 // shorten its step. Not for kBrief, which has no derivative.
 class SymmetryResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize> {
  public:

@@ -7,7 +7,7 @@
 namespace soslam {
 namespace {
 
-// Boxes of a few pixels are not that precise.
+// Lower limit of sigma: boxes of a few pixels are not more precise than this.
 constexpr double kMinSigmaPx = 1.0;
 
 constexpr int kMaxNewtonSteps = 20;
@@ -52,8 +52,8 @@ double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera) {
   return Farthest(landmark_in_camera, edge.plane).point.z();
 }
 
-// Newton's method for the edge, moved outwards, that the body is tangent to. Its distance from the
-// tangent plane is convex in the movement, so that steps do not overshoot after the first.
+// Newton's method for the outward shift of the edge at which it is tangent to the silhouette. The
+// distance to the tangent plane is convex in the shift, so steps do not overshoot after the first.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian) {
   BoxEdge moved = edge;

@@ -7,11 +7,11 @@
 
 namespace soslam {
 
-// The kinds of variables that are estimated. A variable's values are its parameter block
+// Manifolds of the estimated variables. The values of a variable are its parameter block
 // (parameters.h); its steps are tangent vectors:
 //   pose      (rotation vector applied from the left, translation): 6
 //   landmark  the same and the logarithms of the half axes, in the order of kLandmarkDof: 9
-//   normal    along two axes at right angles to it: 2
+//   normal    along two axes orthogonal to it: 2
 //   offset    of a plane: 1
 //   bias      of a detector's left, top, right and bottom edges: 4
 enum class VariableKind { kPose, kLandmark, kNormal, kOffset, kBias };
@@ -48,27 +48,28 @@ constexpr int NumTangents(VariableKind kind) {
   }
 }
 
-// Where a step leads.
+// Applies a tangent step to the values (boxplus).
 void Move(VariableKind kind, const double* step, double* values);
 
-// d values / d step at a step of zero, NumValues x NumTangents: chains Jacobians by a block's
-// values to those by its steps.
+// d values / d step at a step of zero, NumValues x NumTangents: converts Jacobians by a block's
+// values to Jacobians by its steps.
 using ValuesByStep = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
                                    kLandmarkSize, kLandmarkDof>;
 ValuesByStep ByStep(VariableKind kind, const double* values);
 
-// Two axes at right angles to a unit normal, and to each other.
+// Two unit vectors that are orthogonal to a unit normal and to each other.
 Eigen::Matrix<double, 3, 2> AxesAcross(const Eigen::Vector3d& normal);
 
-// Of a unit quaternion (x, y, z, w), as RotationVectorByQuaternion is of the inverse.
+// d(qx, qy, qz, qw) / dw of a unit quaternion; the reverse of RotationVectorByQuaternion.
 Eigen::Matrix<double, 4, 3> QuaternionByRotationVector(const double* quaternion_xyzw);
 
-// A Jacobian as residual blocks write it, row by row.
+// A Jacobian as residual blocks write it, row-major.
 template <int kRows, int kColumns>
 using JacobianRows =
     Eigen::Matrix<double, kRows, kColumns, kColumns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
-// by_values ByStep(kKind, values). But for rotations and normals, values are steps, and are copied.
+// The product by_values ByStep(kKind, values). Except for rotations and normals, ByStep is the
+// identity, so that columns are copied.
 template <VariableKind kKind, int kRows>
 Eigen::Matrix<double, kRows, NumTangents(kKind)> ChainedToSteps(
     const double* values, const JacobianRows<kRows, NumValues(kKind)>& by_values) {

@@ -8,8 +8,8 @@
 namespace soslam {
 
 // The covariances of the paper's constraints, section VI: each squared residual is divided by its
-// own. The paper gives the numbers 10, 10, 10 and 1 without units. Read in metres and radians they
-// would let a body miss its box by its own size before it left the ratio prior; docs/paper.md
+// own. The paper gives the numbers 10, 10, 10 and 1 without units. In metres and radians they would
+// let an object miss its box by its own size before it violated the ratio prior; docs/paper.md
 // compares readings.
 struct ConstraintVariances {
   double detection_dm4 = 10.0;
@@ -28,7 +28,7 @@ struct ConstraintVariances {
     visit.Real("ratio_variance", &ratio, {1e-12, 1e12}, "Sigma_ssc of eq. (11): of ratios");
   }
 
-  // In the units of the residuals.
+  // Conversions to the units of the residuals.
   double DetectionM4() const { return 1e-4 * detection_dm4; }
   double SupportAngleRad2() const {
     return support_angle_deg2 * std::numbers::pi * std::numbers::pi / (180.0 * 180.0);

@@ -8,7 +8,7 @@
 namespace soslam {
 namespace {
 
-// One axis: from the input to the image, whose first pixel's centre is 0.
+// One axis: from the input to the image, where the first pixel's centre is 0.
 double ToImageAxis(double in_input, int start, int filled, int image) {
   const double from_corner = (in_input - start) * image / filled;
   return std::clamp(from_corner, 0.0, static_cast<double>(image)) - 0.5;
@@ -27,7 +27,7 @@ Letterbox::Letterbox(const cv::Size& image, const cv::Size& input) : image_(imag
 }
 
 cv::Mat Letterbox::Fit(const cv::Mat& image) const {
-  constexpr int kGrey = 114;  // what YOLO networks are trained with around their images
+  constexpr int kGrey = 114;  // padding in the training of YOLO networks
   cv::Mat fitted(input_, CV_8UC3, cv::Scalar::all(kGrey));
   cv::Mat part = fitted(filled_);
   cv::resize(image, part, filled_.size(), 0.0, 0.0, cv::INTER_LINEAR);

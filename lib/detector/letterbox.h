@@ -7,17 +7,17 @@
 
 namespace soslam {
 
-// How an image is fitted into the fixed input of a network without changing its proportions: scaled
-// as far as it fits, centred, the rest grey.
+// Fits an image into the fixed input of a network without changing its proportions: scaled to the
+// largest size that fits, centred, and padded with grey.
 class Letterbox {
  public:
   Letterbox(const cv::Size& image, const cv::Size& input);
 
-  // `image` has the size that was given, CV_8UC3; the result that of the network's input.
+  // `image` is CV_8UC3 of the size given above; the result has the size of the network's input.
   cv::Mat Fit(const cv::Mat& image) const;
 
-  // A box in pixels of the network's input, measured from its outer corner, as pixels of the image,
-  // cut at its border.
+  // Converts a box from pixels of the network's input, measured from its outer corner, to pixels of
+  // the image, cut at its border.
   Box ToImage(const Box& box_in_input) const;
 
  private:

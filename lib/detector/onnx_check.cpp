@@ -25,7 +25,7 @@ constexpr std::uint64_t kDims = 1, kDataType = 2, kName = 8, kRawData = 9;
 constexpr std::uint64_t kFloatData = 4, kInt32Data = 5, kInt64Data = 7, kDoubleData = 10;
 constexpr std::uint64_t kUint64Data = 11;
 
-// How numbers of a type are stored: in raw_data, or in a field of their own.
+// Storage of the numbers of a type: in raw_data, or in a field of their own.
 struct DataType {
   std::uint64_t type;
   std::uint64_t raw_bytes;
@@ -47,7 +47,7 @@ constexpr DataType kDataTypes[] = {
     {16, 2, kInt32Data},   // BFLOAT16
 };
 
-// What a field of numbers has in the place of each: packed or one by one.
+// Wire type of each number of a field, whether they are packed or one by one.
 Kind KindOfNumbers(std::uint64_t field) {
   if (field == kFloatData) return Kind::kFourBytes;
   return field == kDoubleData ? Kind::kEightBytes : Kind::kVarint;
@@ -60,7 +60,7 @@ std::uint64_t CountPacked(std::string_view bytes, Kind kind) {
       std::ranges::count_if(bytes, [](char c) { return static_cast<unsigned char>(c) < 0x80; }));
 }
 
-// What a tensor says about itself, and what there is.
+// The type and shape that a tensor states, and the data that it has.
 class Tensor {
  public:
   explicit Tensor(std::string_view message) {
@@ -114,7 +114,7 @@ class Tensor {
     count_ *= side;
   }
 
-  // Readers differ in what they take where a field is there twice.
+  // Sets a value that may be there only once: readers differ in which of two they take.
   void SetOnce(const ProtobufField& field, Kind kind, std::uint64_t number,
                std::optional<std::uint64_t>* value) const {
     if (field.kind != kind || *value) Refuse("is not as ONNX has it", "");
@@ -129,10 +129,10 @@ class Tensor {
   std::string_view name_;
   std::uint64_t count_ = 1;
   std::optional<std::uint64_t> type_, raw_bytes_;
-  std::map<std::uint64_t, std::uint64_t> numbers_;  // how many, by field
+  std::map<std::uint64_t, std::uint64_t> numbers_;  // count of numbers by field
 };
 
-// The messages that tensors are in.
+// The messages that contain tensors.
 enum class Message { kModel, kGraph, kNode, kAttribute, kTensor };
 
 struct Member {
@@ -161,7 +161,7 @@ void Check(Message message, std::string_view bytes, int depth) {
     if (field->kind != Kind::kBytes)
       throw InputError(fmt::format("field {} is not a message", field->number));
     const bool is_only_tensor = message == Message::kAttribute && member->field == 5;
-    if (is_only_tensor && std::exchange(has_tensor, true)) {  // would be joined to one
+    if (is_only_tensor && std::exchange(has_tensor, true)) {  // readers would merge the two
       throw InputError("an attribute has two tensors");
     }
     Check(member->is, field->bytes, depth + 1);

@@ -6,9 +6,9 @@
 
 namespace soslam {
 
-// Checks that an ONNX file is whole, and that each tensor in it has as many numbers as its shape
-// needs: OpenCV takes their number from the shape. Throws InputError, naming the file `name` and
-// the tensor.
+// Checks that an ONNX file is complete, and that each of its tensors has as many numbers as its
+// shape needs: OpenCV derives their number from the shape. Throws InputError, naming the file
+// `name` and the tensor.
 void CheckOnnx(std::string_view bytes, const std::string& name);
 
 }  // namespace soslam

@@ -6,16 +6,16 @@
 
 namespace soslam {
 
-// How a YOLO network lays out its output. N candidates, C classes; centre, width and height are
+// Layout of a YOLO network's output. N candidates, C classes; centre, width and height are in
 // pixels of the network's input.
 enum class YoloLayout {
   kV5,     // [1, N, 5 + C]: cx cy w h, objectness, a score of each class. Also YOLOv7.
-  kV8,     // [1, 4 + C, N]: the same turned on its side, without objectness. Also YOLO11.
-  kYolox,  // kV5's, cx cy in cells and the logarithms of w h in cells: YOLOX as it is published.
+  kV8,     // [1, 4 + C, N]: transposed, without objectness. Also YOLO11.
+  kYolox,  // as kV5, but cx cy in cells and w h as logarithms of cells: YOLOX as published.
 };
 inline constexpr const char* kYoloLayoutNames[] = {"v5", "v8", "yolox"};
 
-// What a network takes as the value of a pixel.
+// Pixel values that a network expects.
 enum class PixelValues {
   kRgbUnit,  // red, green, blue from 0 to 1: Ultralytics' networks
   kBgrByte,  // blue, green, red from 0 to 255: YOLOX

@@ -18,14 +18,14 @@ struct ProtobufField {
   std::string_view bytes;  // otherwise
 };
 
-// Reads the fields of a message of protobuf's wire format (protobuf.dev, "Encoding") in turn. What
-// it gives out lies within the message.
+// Reads the fields of a message of protobuf's wire format (protobuf.dev, "Encoding") in turn.
+// Returned bytes are views into the message.
 class ProtobufReader {
  public:
   explicit ProtobufReader(std::string_view message) : rest_(message) {}
-  // None at the end. Throws InputError, without the file's name, for what is no such message.
+  // None at the end. Throws InputError, without the file's name, for a malformed message.
   std::optional<ProtobufField> Next();
-  // The next of packed integers; none at the end. Throws likewise.
+  // The next integer of a packed field; none at the end. Throws likewise.
   std::optional<std::uint64_t> NextVarint();
 
  private:

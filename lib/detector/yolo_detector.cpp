@@ -19,7 +19,7 @@
 namespace soslam {
 namespace {
 
-// What OpenCV has to say, in one line.
+// OpenCV's error message, in one line.
 std::string Reason(const std::exception& error) {
   const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
   std::string text = of_opencv != nullptr ? of_opencv->err : error.what();
@@ -29,8 +29,8 @@ std::string Reason(const std::exception& error) {
   return begin == text.npos ? "no reason given" : text.substr(begin, end - begin + 1);
 }
 
-// Throws std::bad_alloc where that, or OpenCV's word for it, is what was thrown: not the network's
-// form is at fault.
+// Throws std::bad_alloc if `error` is that, or OpenCV's equivalent: the network file is not at
+// fault.
 void RethrowOutOfMemory(const std::exception& error) {
   const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
   if ((of_opencv != nullptr && of_opencv->code == cv::Error::StsNoMem) ||
@@ -52,14 +52,14 @@ std::string ReadNetwork(const std::filesystem::path& path) {
 
 cv::dnn::Net LoadNetwork(const std::filesystem::path& path) {
   const std::string bytes = ReadNetwork(path);
-  // OpenCV prints what it also throws.
+  // OpenCV prints the errors that it throws.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   try {
     cv::dnn::Net network = cv::dnn::readNetFromONNX(bytes.data(), bytes.size());
     network.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     network.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     return network;
-  } catch (const std::exception& error) {  // of OpenCV, or of what it is built on
+  } catch (const std::exception& error) {  // from OpenCV or its libraries
     RethrowOutOfMemory(error);
     throw InputError(fmt::format("{}: is not an ONNX network that OpenCV {} can load: {}",
                                  path.string(), CV_VERSION, Reason(error)));
@@ -99,7 +99,7 @@ cv::Mat YoloDetector::Forward(const cv::Mat& input) {
   try {
     network_.setInput(blob);
     network_.forward(outputs, network_.getUnconnectedOutLayersNames());
-  } catch (const std::exception& error) {  // of OpenCV, or of what it is built on
+  } catch (const std::exception& error) {  // from OpenCV or its libraries
     RethrowOutOfMemory(error);
     throw InputError(fmt::format("{}: cannot be run on an input of {} x {} pixels: {}", name_,
                                  input.cols, input.rows, Reason(error)));

@@ -18,9 +18,10 @@ class YoloDetector {
   // Throws InputError when the file is missing or is not a network that OpenCV can load.
   YoloDetector(const std::filesystem::path& network, int classes, const DetectorOptions& options);
 
-  // What is in an image (CV_8UC3, blue green red), by descending score. Boxes are pixels of the
-  // image, cut at its border. Throws InputError when the network does not take an input of the
-  // size in the options, or its output has another layout; NumericalError.
+  // Detections in an image (CV_8UC3, blue green red), by descending score. Boxes are in pixels of
+  // the image, cut at its border. Throws InputError when the network does not take an input of the
+  // size in the options, or its output has another layout; NumericalError for a box or score that
+  // is not finite.
   std::vector<YoloDetection> Detect(const cv::Mat& image);
 
  private:
@@ -32,9 +33,9 @@ class YoloDetector {
   cv::dnn::Net network_;
 };
 
-// Loads a network and runs it on an even image in a process of its own. Throws InputError when
-// OpenCV crashes: it trusts what networks say about their layers. Not while other threads are
-// running.
+// Loads a network and runs it on a uniform image in a child process. Throws InputError when OpenCV
+// crashes: it trusts what network files state about their layers. Must not be called while other
+// threads are running.
 void CheckNetworkRuns(const std::filesystem::path& network, int classes,
                       const DetectorOptions& options);
 

@@ -35,7 +35,7 @@ cv::Mat CandidateRows(const cv::Mat& output, YoloLayout layout, int classes,
 
 constexpr int kYoloxStrides[] = {8, 16, 32};
 
-// How many cells YOLOX's grids over an input have.
+// Number of cells of all grids of YOLOX over an input.
 int YoloxCells(const cv::Size& input) {
   int cells = 0;
   for (const int stride : kYoloxStrides) cells += (input.width / stride) * (input.height / stride);
@@ -48,8 +48,8 @@ double LargestSide(const cv::Mat& rows) {
   return largest;
 }
 
-// The rows with boxes in pixels, for boxes in cells of YOLOX's grids: each grid row by row, the
-// finest first. Throws InputError for boxes that are in pixels already.
+// Converts boxes from cells of YOLOX's grids to pixels. The rows are grid by grid, the finest
+// first, each row by row. Throws InputError for boxes that are in pixels already.
 cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
   if (rows.rows != YoloxCells(input)) {
     throw InputError(fmt::format(
@@ -83,7 +83,7 @@ cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::st
 }
 
 // Throws InputError for YOLOX's candidates in cells, which would pass for tiny boxes: logarithms of
-// widths and heights are small, and among that many boxes in pixels some are not.
+// widths and heights are small, whereas among that many boxes in pixels some are not.
 void CheckInPixels(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
   const double largest = LargestSide(rows);
   if (rows.rows != YoloxCells(input) || rows.empty() || largest >= kYoloxStrides[0]) return;

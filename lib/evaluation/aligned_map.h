@@ -10,18 +10,18 @@
 
 namespace soslam {
 
-// A landmark of a map in the world of the truth.
+// A landmark of a map, aligned with the true world.
 struct AlignedLandmark {
   int object_index = 0;  // into Sequence::objects
   int segment = 0;
   Landmark landmark_in_world;
 };
 
-// What a map says, moved into the world of the truth.
+// A map, aligned with the true world.
 struct AlignedMap {
   std::vector<AlignedLandmark> landmarks;               // by object
   std::vector<Rigid3d> world_from_camera;               // one per Sequence::frames
-  std::vector<std::optional<Plane>> plane_of_landmark;  // what each landmark stands on
+  std::vector<std::optional<Plane>> plane_of_landmark;  // support plane of each landmark
 };
 
 // `world_from_camera` and `planes_in_world` as in MapEstimate.

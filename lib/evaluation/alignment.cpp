@@ -12,8 +12,8 @@
 namespace soslam {
 namespace {
 
-// Below this root mean square distance from their mean, true camera centres are those of a camera
-// that stands still.
+// Below this root mean square distance of the true camera centres from their mean, the camera is
+// taken to stand still.
 constexpr double kStillM = 0.005;
 // Paths are unlike each other when the best similarity leaves more than this share of that
 // distance.
@@ -24,7 +24,7 @@ constexpr double kLineDeg = 0.5;
 // What exact paths are taken to err by at least, as a share of the distance above.
 constexpr double kLeastNoise = 1e-5;
 
-// Camera centres, and their means taken off.
+// Camera centres and their means.
 struct Centres {
   Eigen::Matrix3Xd estimated, truth;
   Eigen::Vector3d mean_estimated, mean_truth;
@@ -69,7 +69,7 @@ CameraPath PathOf(const Centres& centres) {
   return kDegPerRad * noise > kLineDeg * off_the_line ? CameraPath::kLine : CameraPath::kGeneral;
 }
 
-// The rotation nearest to all that lead from an estimated to a true camera (chordal mean).
+// The mean of the rotations from estimated to true cameras (chordal mean).
 Eigen::Matrix3d MeanRotation(const std::vector<PosePair>& pairs) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const auto& [estimated, truth] : pairs) {
@@ -81,7 +81,7 @@ Eigen::Matrix3d MeanRotation(const std::vector<PosePair>& pairs) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-// The scale with the smallest squared distances after this rotation.
+// The scale that minimises the squared distances after this rotation.
 double BestScale(const Centres& centres, const Eigen::Matrix3d& rotation) {
   const Eigen::Matrix3Xd estimated = centres.CentredEstimated();
   return centres.CentredTruth().cwiseProduct(rotation * estimated).sum() / estimated.squaredNorm();

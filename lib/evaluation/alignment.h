@@ -18,7 +18,7 @@ namespace soslam {
 enum class AlignmentKind { kNone, kRigid, kSimilarity };
 inline constexpr const char* kAlignmentKindNames[] = {"none", "rigid", "similarity"};
 
-// What the camera centres of two trajectories, compared, determine of a motion.
+// The part of an alignment that the camera centres of two trajectories determine.
 enum class CameraPath {
   kGeneral,    // all of it
   kLine,       // not the rotation about a line, or only within degrees
@@ -29,13 +29,13 @@ enum class CameraPath {
 inline constexpr const char* kCameraPathNames[] = {"general", "line", "still", "unrelated",
                                                    "few_poses"};
 
-// How estimates are moved onto the truth: x -> truth_from_scaled * (scale * x).
+// Transformation of estimates to the true world: x -> truth_from_scaled * (scale * x).
 struct Alignment {
   AlignmentKind kind = AlignmentKind::kNone;
   CameraPath path = CameraPath::kFewPoses;
   double scale = 1.0;
   Rigid3d truth_from_scaled;
-  int frames = 0;  // with an estimated and a true pose
+  int frames = 0;  // frames with an estimated and a true pose
   // Root mean square distance of the camera centres, aligned; none without frames.
   std::optional<double> rmse_m = std::nullopt;
 
@@ -47,9 +47,9 @@ struct Alignment {
   Plane Apply(const Plane& plane_in_world) const;
 };
 
-// The alignment with the smallest root mean square distance of camera centres (Umeyama). Where
-// these do not determine the rotation, it is the mean of what the cameras' rotations say. A
-// similarity whose scale they do not determine is refused: it becomes rigid.
+// The alignment with the smallest root mean square distance of camera centres (Umeyama). If these
+// do not determine the rotation, it is the mean over the cameras' relative rotations. A similarity
+// whose scale they do not determine is refused: it becomes rigid.
 Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 
 // One for each segment, as each has a world of its own. `world_from_camera`: the estimates, one per

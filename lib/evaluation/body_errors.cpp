@@ -12,14 +12,14 @@
 namespace soslam {
 namespace {
 
-// What a corrected part has to gain in IoU to be to blame.
+// Minimal gain in IoU by the correction of a part.
 constexpr double kLeastGain = 1e-6;
 
 Eigen::Vector3d Up(const Landmark& landmark) {
   return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
 }
 
-// The middle of what it stands on.
+// Contact point: the centre of the base.
 Eigen::Vector3d Foot(const Landmark& landmark) {
   return landmark.Centre() - landmark.half_axes.z() * Up(landmark);
 }
@@ -61,7 +61,8 @@ Landmark StraightOntoPlane(const Landmark& truth, const Landmark& estimate) {
   return WithFootAt(Upright(truth, estimate), Foot(estimate) - height * Up(truth));
 }
 
-// None where the line of sight does not lead there.
+// The estimate, moved along the line of sight onto the true plane; none if that does not meet the
+// plane.
 std::optional<Landmark> AlongSightOntoPlane(const Landmark& truth, const Landmark& estimate,
                                             const Eigen::Vector3d& camera_centre) {
   const Plane plane = PlaneUnder(truth);

@@ -10,13 +10,13 @@
 
 namespace soslam {
 
-// How a body differs from the true one as a solid: its axes get those names with which they are
-// nearest the true ones, so that a body whose axes are named otherwise is the same. Logarithms are
+// Differences between a landmark and the true one as solids: the estimate's axes are renamed to be
+// nearest the true ones, so that a body with other names for its axes is the same. Logarithms are
 // of estimate over truth.
 struct BodyErrors {
   double iou = 0.0;
   double centre_m = 0.0;
-  double centre_relative = 0.0;  // centre_m over the mean side of the true body, a cube's as large
+  double centre_relative = 0.0;  // centre_m over the side of a cube with the true volume
   Eigen::Vector3d log_size = Eigen::Vector3d::Zero();  // along the true x, y, z
   double log_scale = 0.0;                              // of the cube root of the volume
   double up_deg = 0.0;            // between the z axes as they are named, 180 for upside down
@@ -27,12 +27,12 @@ struct BodyErrors {
 BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
                          const Landmark& truth_in_frame);
 
-// The estimate with its axes named as above.
+// The estimate with its axes renamed as above.
 Landmark NamedLike(const Landmark& estimate, const Landmark& truth);
 
-// The plane that a landmark stands on against that of the true body.
+// Errors of a landmark's support plane against that of the true one.
 struct PlaneErrors {
-  double offset_m = 0.0;  // its height over the true foot, along its own normal
+  double offset_m = 0.0;  // height above the true contact point, along the plane's own normal
   double tilt_deg = 0.0;
 };
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
@@ -43,21 +43,21 @@ bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landm
 
 // The parts that make up a body on its plane.
 enum class BodyPart {
-  kPlane,  // what is up, and how high its foot is
+  kPlane,  // the up direction and the height of the contact point
   kSize,
   kYaw,
-  kPlace,  // where its foot is on the plane
+  kPlace,  // the contact point's position on the plane
 };
 inline constexpr const char* kBodyPartNames[] = {"plane", "size", "yaw", "place"};
 
-// The part that is most to blame: which alone, taken from the truth, raises IoU most.
+// The part with the largest error: its correction alone raises IoU most.
 struct WrongPart {
   BodyPart part = BodyPart::kPlane;
   double iou = 0.0;  // with the part corrected
 };
-// `camera_centre`: from where it was seen, about. A body whose plane is corrected goes straight
-// onto it, or along the line of sight, with its size, as a body would whose boxes had been put onto
-// that plane: whichever helps more. None where no part alone helps.
+// `camera_centre`: approximate viewpoint. An object whose plane is corrected moves straight onto
+// it, or along the line of sight with its size scaled, as an object would whose boxes had been
+// placed on that plane: whichever gives the higher IoU. None if no single correction helps.
 std::optional<WrongPart> FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
                                        const Landmark& truth_in_frame,
                                        const Eigen::Vector3d& camera_centre);

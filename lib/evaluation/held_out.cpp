@@ -11,11 +11,11 @@
 namespace soslam {
 namespace {
 
-// What one landmark is compared on.
+// A landmark and the counts of its evaluation.
 struct Judged {
   int object_index;
   Landmark landmark_in_world;
-  int segment;  // whose world that is
+  int segment;  // the segment that defines its world
   int in_sight = 0;
   int in_sight_matched = 0;
   std::vector<double> ious = {};
@@ -35,7 +35,7 @@ std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
   return judged;
 }
 
-// Compares the landmarks with the boxes of one frame.
+// Matches the landmarks to the boxes of one frame and updates their counts.
 void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
              const Rigid3d& world_from_camera, double border_px, std::vector<Judged>* judged) {
   const Camera& camera = sequence.CameraOf(held_out.frame);

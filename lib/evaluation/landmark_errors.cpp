@@ -10,7 +10,7 @@
 namespace soslam {
 namespace {
 
-// The landmark turned about its z axis until its x axis points as the estimate's does.
+// The landmark, rotated about its z axis until its x axis points as the estimate's does.
 Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
   const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
                                 (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());

@@ -9,7 +9,7 @@
 namespace soslam {
 
 // Errors of one landmark. Rotation and yaw are absent for rotationally symmetric objects, whose yaw
-// has no meaning; IoU then takes the estimate's yaw for the truth.
+// has no meaning; for IoU the truth is then rotated to the estimate's yaw.
 struct LandmarkErrors {
   double iou = 0.0;
   double centre_m = 0.0;

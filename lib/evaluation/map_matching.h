@@ -11,8 +11,8 @@
 
 namespace soslam {
 
-// The intersections over unions from which on a landmark is the true object that it is matched
-// with. Rows and reasons are those of the first.
+// Thresholds of IoU above which a landmark matches a true object. Rows and reasons are those of the
+// first threshold.
 inline constexpr std::array kMapIous = {0.25, 0.5};
 
 // Intersections over unions of boxes in the world: rows are the map's landmarks, columns the true
@@ -21,7 +21,7 @@ inline constexpr std::array kMapIous = {0.25, 0.5};
 Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map);
 
 // The true object of each landmark, or kUnassigned: one to one, so that the sum of their IoUs is
-// largest, among pairs with at least this IoU. Labels and ids are not looked at.
+// maximal, among pairs with at least this IoU. Labels and ids are ignored.
 std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou);
 
 // Whether a landmark is of things of which nobody says where they are, or that nobody asked for:

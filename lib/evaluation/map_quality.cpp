@@ -28,7 +28,7 @@ std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const ViewsOfTru
   return rows;
 }
 
-// Means of what holds for a landmark, where it does.
+// Mean over the landmarks that have this value.
 template <typename ValueOf>
 std::optional<double> MeanOver(const std::vector<LandmarkRow>& rows, const ValueOf& value_of) {
   std::vector<double> values;
@@ -162,7 +162,7 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
   const RowMaker maker(sequence, map, true_views);
   const ViewsOfTruth views = FindViews(sequence, true_views);
   const Eigen::MatrixXd ious = WorldIous(sequence, map);
-  for (size_t i = kMapIous.size(); i-- > 0;) {  // the first one last, as rows are its
+  for (size_t i = kMapIous.size(); i-- > 0;) {  // the first threshold last, as it defines the rows
     const std::vector<int> truth_of_landmark = MatchByIou(ious, kMapIous[i]);
     const ReasonInput input{sequence, estimates, map, views, ious, truth_of_landmark, kMapIous[i]};
     quality.objects = ObjectRows(sequence, views, truth_of_landmark);

@@ -15,42 +15,44 @@
 
 namespace soslam {
 
-// A map against all that is truly there, whoever says which detections are of which object.
+// A map compared with all true objects, whoever associated the detections with objects.
 
-// A landmark and its true object as the cameras see them that observed it, means over these
-// observations: estimated landmark by estimated pose against true landmark by true pose, or as the
-// dataset says of the frame.
+// Errors of a landmark in the frames of the cameras that observed it, means over these
+// observations: estimated landmark at the estimated pose against true landmark at the true pose, or
+// against the dataset's truth of that frame.
 struct InFrames {
   int observations = 0;
   double iou = 0.0;
   double centre_m = 0.0;
 };
 
-// A true object that is looked for: it stands still, and its label is one of those asked for.
+// A true object that the map should contain: it stands still, and its label is one of those asked
+// for.
 struct TrueObjectRow {
   int true_index = 0;       // into Sequence::true_objects
-  int detected_frames = 0;  // with a raw detection at its place
+  int detected_frames = 0;  // with a raw detection that overlaps it
   bool is_detectable = false;
-  std::optional<int> landmark = std::nullopt;      // that it matches, into AlignedMap::landmarks
-  std::optional<Explanation> miss = std::nullopt;  // why there is none
+  std::optional<int> landmark = std::nullopt;  // its matching landmark, into AlignedMap::landmarks
+  std::optional<Explanation> miss = std::nullopt;  // reason for a missing landmark
 };
 
-// A landmark of the map, with what it is compared with, if anything.
+// A landmark of the map, and its comparison with a true object if there is one.
 struct LandmarkRow {
   int object_index = 0;  // into Sequence::objects
   enum class Fate { kFound, kIgnored, kFalse } fate = Fate::kFalse;
-  std::optional<int> true_index = std::nullopt;     // of found ones, and of false ones to blame
-  std::optional<BodyErrors> errors = std::nullopt;  // against that
-  std::optional<WrongPart> wrong = std::nullopt;    // of found ones
-  std::optional<PlaneErrors> plane = std::nullopt;  // where there are planes
+  std::optional<int> true_index =
+      std::nullopt;  // for found ones; for false ones the most likely one
+  std::optional<BodyErrors> errors = std::nullopt;  // against that object
+  std::optional<WrongPart> wrong = std::nullopt;    // for found ones only
+  std::optional<PlaneErrors> plane = std::nullopt;  // if there are planes
   bool label_agrees = false;
-  std::optional<bool> id_agrees = std::nullopt;  // of most of its boxes, where the dataset says it
+  std::optional<bool> id_agrees = std::nullopt;  // by most of its boxes; none if they have no ids
   std::optional<InFrames> in_frames = std::nullopt;
   std::optional<Explanation> why_false = std::nullopt;
 };
 inline constexpr const char* kLandmarkFateNames[] = {"found", "ignored", "false"};
 
-// Over the found of one threshold.
+// Summary over the found landmarks for one IoU threshold.
 struct FoundSummary {
   std::optional<double> iou_mean, centre_m_mean, centre_relative_mean;
   std::array<std::optional<double>, 3> log_size_mean, log_size_abs_mean;
@@ -71,13 +73,14 @@ struct MapScore {
   int ignored = 0;
   int found = 0;
   int found_detectable = 0;
-  std::optional<double> precision, recall, f1;                   // of all true objects
-  std::optional<double> recall_of_detectable, f1_of_detectable;  // the others as if ignored
+  std::optional<double> precision, recall, f1;  // over all true objects
+  std::optional<double> recall_of_detectable,
+      f1_of_detectable;  // undetectable objects count as ignored
   FoundSummary of_found;
 };
 
-// Means over the landmarks that are compared in frames: the found ones, and those of an object's
-// boxes that are wrong in the world, as drift makes them.
+// Means over the landmarks that are compared in frames: the found ones, and those whose boxes are
+// of a true object but that are wrong in the world, as drift makes them.
 struct DriftSummary {
   int landmarks = 0;
   std::optional<double> iou_in_frames, iou_in_world;
@@ -89,11 +92,11 @@ struct MapQuality {
   std::array<MapScore, kMapIous.size()> scores;
   DriftSummary in_frames;
   std::vector<TrueObjectRow> objects;
-  std::vector<LandmarkRow> landmarks;  // as AlignedMap::landmarks
+  std::vector<LandmarkRow> landmarks;  // same order as AlignedMap::landmarks
   std::map<MapReason, int> misses, false_landmarks;
 };
 
-// None without true objects that are looked for. A map without landmarks misses them all.
+// None without true objects that the map should contain. A map without landmarks misses them all.
 // `world_from_camera` and `planes_in_world` as in MapEstimate.
 std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<ObjectEstimate>& estimates,

@@ -14,11 +14,11 @@
 namespace soslam {
 namespace {
 
-// How many of each kind of thing there are; ordered, so that equals have a first one.
+// Counts by kind; ordered, so that the first of equal counts is well defined.
 template <typename Kind>
 using Counts = std::map<Kind, int>;
 
-// The first of those that there are most of; none of nothing.
+// The kind with the largest count, the first of equals; none if there are no counts.
 template <typename Kind>
 std::optional<std::pair<Kind, int>> Most(const Counts<Kind>& counts) {
   const auto most = std::ranges::max_element(
@@ -45,12 +45,12 @@ std::optional<int> LandmarkOfTruth(const ReasonInput& input, int true_index) {
   return static_cast<int>(found - input.truth_of_landmark.begin());
 }
 
-// Whose boxes an object's are, by Sequence::true_objects.
+// Counts of an object's boxes by true object (Sequence::true_objects).
 struct Owners {
   int boxes = 0;
   Counts<int> of_truth;
 
-  // Whose more than half of them are.
+  // The true object of more than half of the boxes.
   std::optional<int> Majority() const {
     const auto most = Most(of_truth);
     return most && 2 * most->second > boxes ? std::optional(most->first) : std::nullopt;
@@ -121,7 +121,8 @@ Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index)
           detail + "; " + InWords(errors, plane_errors), true_index};
 }
 
-// The boxes at the place of a true object: by object of those in use, by reason of the others.
+// Frames and counts of the boxes at the place of a true object: used ones by object, the others by
+// reason.
 struct Fates {
   std::set<int> frames, frames_in_use;
   std::set<int> frames_before_association;  // in use, or left out by association

@@ -14,7 +14,7 @@
 
 namespace soslam {
 
-// Why a true object has no landmark, or a landmark no true object.
+// Reasons for a true object without landmark, or a landmark without true object.
 enum class MapReason {
   kNotDetected,        // boxes overlap it in fewer than kFewestViews frames
   kGated,              // so many boxes, but most were left out before association
@@ -27,10 +27,10 @@ enum class MapReason {
   kWrongSize,
   kWrongYaw,
   kWrongPlace,
-  kWrongInSeveral,  // so that no part alone helps
-  kDuplicate,       // a landmark at the place of one that matches better
-  kMoving,          // its boxes are of an object that moves
-  kBackground,      // its boxes are of no true object
+  kWrongInSeveral,  // no single correction helps
+  kDuplicate,       // overlaps a true object that another landmark matches better
+  kMoving,          // its boxes belong to a moving object
+  kBackground,      // its boxes belong to no true object
 };
 inline constexpr std::array kMapReasonNames = {
     "not_detected", "gated",       "lost_in_association", "split",
@@ -42,11 +42,11 @@ bool IsWrong(MapReason reason);
 
 struct Explanation {
   MapReason reason = MapReason::kNotDetected;
-  std::string detail;                             // with its numbers, for a person
-  std::optional<int> true_object = std::nullopt;  // of a false landmark: into true_objects
+  std::string detail;                             // with numbers, for a person
+  std::optional<int> true_object = std::nullopt;  // for a false landmark: into true_objects
 };
 
-// What a map and its sequence say, looked through backwards. `truth_of_landmark` is MatchByIou's.
+// Data to explain a map's errors. `truth_of_landmark` is the result of MatchByIou.
 struct ReasonInput {
   const Sequence& sequence;
   const std::vector<ObjectEstimate>& estimates;
@@ -57,9 +57,9 @@ struct ReasonInput {
   double min_iou = 0.0;
 };
 
-// Why a true object matches no landmark.
+// Reason for a true object without a matching landmark.
 Explanation ExplainMiss(const ReasonInput& input, int true_index);
-// Why a landmark, which is not ignored, matches no true object.
+// Reason for a landmark, which is not ignored, without a matching true object.
 Explanation ExplainFalse(const ReasonInput& input, int landmark);
 
 // FindWrongPart of a landmark and a true object of its segment.

@@ -14,8 +14,8 @@ namespace soslam {
 RowMaker::RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views)
     : sequence_(sequence), map_(map), views_(views), detections_(DetectionsByObject(sequence)) {}
 
-// Whether most of the boxes of which the dataset says whose they are are the true object's; none
-// where it says it of no box.
+// True if most of the boxes with a true object id in the dataset have that of the row's true
+// object; none if no box has an id.
 std::optional<bool> RowMaker::MostIdsAgree(const LandmarkRow& row) const {
   const int true_id = sequence_.true_objects[static_cast<size_t>(row.true_index.value())].id;
   int known = 0;

@@ -7,10 +7,10 @@
 
 namespace soslam {
 
-// Makes the rows of MapQuality.
+// Creates the rows of MapQuality.
 class RowMaker {
  public:
-  // All of these have to outlive it.
+  // The arguments must outlive this object.
   RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views);
 
   // One for each landmark: found as `input` matches it; otherwise ignored if things are there that
@@ -22,7 +22,7 @@ class RowMaker {
   LandmarkRow NotFound(const ReasonInput& input, size_t landmark) const;
   // Compares the row's landmark with its true object in the world.
   void CompareInWorld(size_t landmark, LandmarkRow* row) const;
-  // And in the frames of its observations, where the true object's place there is known.
+  // Compares them in the frames of its observations, if the true object's place there is known.
   void CompareInFrames(size_t landmark, LandmarkRow* row) const;
   std::optional<bool> MostIdsAgree(const LandmarkRow& row) const;
 

@@ -10,8 +10,8 @@
 namespace soslam {
 namespace {
 
-// Means over an object's observations (or its one landmark of the map): one that gave no landmark
-// has IoU 0 and no angles.
+// Means over an object's observations (or its one landmark of the map): an observation without
+// landmark has IoU 0 and no angles.
 ObjectMetrics Average(int object_index, int observations,
                       const std::vector<std::optional<LandmarkErrors>>& errors) {
   ObjectMetrics metrics;
@@ -53,8 +53,7 @@ MetricsSummary Summarise(const std::vector<ObjectMetrics>& objects) {
   return summary;
 }
 
-// By object: the errors of each of its observations that gave a landmark, in frame order; none for
-// one that did not.
+// Errors of each observation by object, in frame order; none for an observation without landmark.
 using ErrorsByObject = std::vector<std::vector<std::optional<LandmarkErrors>>>;
 ErrorsByObject ObservationErrors(const Sequence& sequence, const LandmarkEstimates& estimates) {
   ErrorsByObject errors(sequence.objects.size());
@@ -143,7 +142,7 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentC
   metrics.map_quality = EvaluateMapQuality(sequence, map.objects, map.world_from_camera,
                                            map.planes_in_world, alignment);
 
-  // Segments have worlds of their own.
+  // Each segment has a world of its own, so one alignment is not enough.
   if (!sequence.frames.empty() &&
       sequence.frames.front().segment != sequence.frames.back().segment) {
     return metrics;

@@ -12,8 +12,8 @@
 
 namespace soslam {
 
-// One ground-truth object: means over its observations (single frame), or its landmark's errors. An
-// observation or object without estimate counts with IoU 0 and has no angles.
+// Metrics of one ground-truth object: means over its observations (single frame), or its landmark's
+// errors. An observation or object without estimate has IoU 0 and no angles.
 struct ObjectMetrics {
   int object_index = 0;
   int observations = 0;  // detections of the object
@@ -24,7 +24,7 @@ struct ObjectMetrics {
   std::optional<double> yaw_deg;
 };
 
-// Over objects. Angles over the objects that have them.
+// Summary over objects. Angles: over the objects that have them.
 struct MetricsSummary {
   int objects = 0;       // with ground truth
   int observations = 0;  // that were compared
@@ -41,17 +41,17 @@ struct TrajectoryMetrics {
 struct Metrics {
   MetricsSummary summary;
   std::vector<ObjectMetrics> objects;
-  std::optional<MetricsSummary> first_observation;  // single-frame estimates only
-  std::optional<TrajectoryMetrics> trajectory;      // maps only, where the true poses are known
-  std::optional<HeldOutMetrics> held_out;           // where frames were held out
-  std::optional<MapQuality> map_quality;            // maps only, with true objects
+  std::optional<MetricsSummary> first_observation;  // for single-frame estimates only
+  std::optional<TrajectoryMetrics> trajectory;      // for maps only, if the true poses are known
+  std::optional<HeldOutMetrics> held_out;           // if frames were held out
+  std::optional<MapQuality> map_quality;            // for maps only, with true objects
 };
 
-// Single-frame estimates are compared in the frame of their camera, so that the trajectory's error
-// does not count, with the truth of that frame where there is one; estimates over several frames in
-// the world, where objects that move do not count. Neither do objects without ground truth, or with
-// fewer detections than one. The trajectory error is that of sequences in one segment. The
-// alignment is that of map_quality.
+// Single-frame estimates are compared in the frame of their camera, with the truth of that frame if
+// there is one, so that trajectory errors have no effect; estimates over several frames in the
+// world, without objects that move. Objects without ground truth or detections are left out. The
+// trajectory error is computed for sequences of one segment only. `alignment` is that of
+// map_quality.
 Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
                           AlignmentChoice alignment = AlignmentChoice::kAuto);
 Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map,

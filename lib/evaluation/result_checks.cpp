@@ -31,7 +31,7 @@ std::map<int, std::vector<double>> HeightsByObject(const LandmarkEstimates& esti
   return heights;
 }
 
-// How many times as high as its label's median an object is.
+// An object's height relative to the median height of its label.
 struct RelativeHeight {
   std::string name;  // of the object
   double log_ratio = 0.0;
@@ -52,12 +52,13 @@ std::vector<RelativeHeight> RelativeHeights(const LandmarkEstimates& estimates,
   return relative;
 }
 
-// The factor that all objects have in common, when their labels' spreads do not explain it.
+// The common factor of all objects, if the spread within labels does not account for it.
 std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
   constexpr size_t kFewest = 3;
   constexpr double kSmallestFactor = 1.5;
   constexpr double kSigmas = 3.0;
-  constexpr double kMedianSigma = 1.25;  // of a median of n normal values: 1.25 sigma / sqrt(n)
+  constexpr double kMedianSigma =
+      1.25;  // standard deviation of the median of n normal values: 1.25 sigma / sqrt(n)
   if (relative.size() < kFewest) return {};
   std::vector<double> log_ratios, log_sigmas;
   for (const RelativeHeight& object : relative) {
@@ -180,7 +181,7 @@ std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates) {
 }
 
 std::vector<Finding> CheckCost(const SolverSummary& solver) {
-  constexpr double kByChance = 2.0;  // half a square for each of four edges
+  constexpr double kByChance = 2.0;  // expected cost per box: 1/2 for each of four edges
   constexpr double kFarAbove = 10.0;
   const auto boxes = solver.residuals.find("detection");
   if (boxes == solver.residuals.end() || boxes->second == 0) return {};

@@ -11,32 +11,32 @@
 
 namespace soslam {
 
-// What results say about themselves, without ground truth: whether they are to be trusted.
+// Plausibility checks of results without ground truth.
 
-// Tries that gave no landmark, when they are more than a third; those of moving objects do not
-// count.
+// A finding if more than a third of the tries gave no landmark; those of moving objects are left
+// out.
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates);
 
-// The heights of landmarks against what their labels allow: one factor for all, as a wrong scale
-// gives, or single objects that are a multiple. The table's labels without a height do not count.
+// The heights of landmarks against those of their labels: one common factor, which indicates a
+// wrong scale, or single objects that are a multiple. Labels of the table without a height are
+// skipped.
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
                                 const SemanticTable& table);
 
-// The landmarks of objects that are flat or needles, as views alone make them that do not determine
-// all axes. Which of these is the height they do not say.
+// Landmarks of objects that are flat or needle-shaped, as results from views that do not determine
+// all axes. They do not show which of their axes is the height.
 std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates);
 // Landmarks that shrank to a point.
 std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates);
 
-// The cost that is left of boxes whose edges have a standard deviation, against what such boxes
-// leave by chance.
+// Final cost of boxes whose edges have a standard deviation, against the cost expected by chance.
 std::vector<Finding> CheckCost(const SolverSummary& solver);
 
-// Estimated planes, when they are nearly as many as the objects on them.
+// Estimated planes that are nearly as many as the objects on them.
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects);
 
-// How cameras are held, and so what is up, where other ways are about as probable and leave up open
-// by `tilt_variance`.
+// The way in which cameras are held, and thus the up direction, if other ways are about as probable
+// and leave up uncertain by `tilt_variance`.
 std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
                              double tilt_variance);
 

@@ -6,7 +6,7 @@
 
 namespace soslam {
 
-// Axes of a box named anew: the rotation (one of the 24 of the cube) from the new names to the old
+// Renaming of a box's axes: of the 24 rotations of the cube, the one from the new names to the old
 // ones that leaves the smallest angle (rad) to the axes of the truth.
 struct NearestAxes {
   Eigen::Matrix3d old_from_new;
@@ -16,7 +16,7 @@ NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
                           const Eigen::Quaterniond& frame_from_truth);
 
 // The paper's Rot, rad: the smallest rotation that brings the estimate's three axes onto any axes
-// of the truth, over the 24 rotations of the cube. It hides quarter turns.
+// of the truth, over the 24 rotations of the cube. It does not detect quarter turns.
 double RotationError(const Eigen::Quaterniond& frame_from_estimate,
                      const Eigen::Quaterniond& frame_from_truth);
 

@@ -6,7 +6,7 @@
 
 namespace soslam {
 
-// None of no values.
+// None if there are no values.
 std::optional<double> MeanOf(const std::vector<double>& values);
 std::optional<double> MedianOf(std::vector<double> values);
 

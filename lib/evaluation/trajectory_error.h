@@ -10,7 +10,7 @@ namespace soslam {
 
 // Absolute trajectory error, m: the root mean square distance between estimated and true camera
 // centres after the rigid alignment that makes it smallest (Umeyama, no scale). Frames without
-// truth do not count. None with fewer than three true poses.
+// truth are left out. None with fewer than three true poses.
 std::optional<double> AbsoluteTrajectoryError(
     const std::vector<Rigid3d>& world_from_camera,
     const std::vector<std::optional<Rigid3d>>& true_world_from_camera);

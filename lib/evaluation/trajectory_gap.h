@@ -13,25 +13,25 @@ struct PosePair {
   Rigid3d truth;
 };
 
-// How far apart two trajectories are, medians over frames.
+// Difference of two trajectories, medians over frames.
 struct TrajectoryGap {
   double rotation_deg = 0.0;
   double translation_m = 0.0;
 };
-// There has to be one pair at least.
+// `pairs` must not be empty.
 TrajectoryGap GapOf(const std::vector<PosePair>& pairs);
 
-// How far a camera moves (m): the diagonal of the box around its path.
+// Extent of a camera's path (m): the diagonal of the box around it.
 double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
 
 // Whether both cameras move about as far, by the medians of their distances from where they are
 // mostly.
 bool HaveSameScale(const std::vector<PosePair>& pairs);
 
-// Whether the gap is what odometry drifts, of a camera that moves so far.
+// True if the gap is no more than the usual drift of odometry over this extent.
 bool IsDrift(const TrajectoryGap& gap, double extent_m);
 
-// Whether both trajectories are of one world and one unit, apart by no more than drift.
+// True if both trajectories are in the same world and unit, apart from drift.
 bool AreInOneWorld(const std::vector<PosePair>& pairs);
 
 }  // namespace soslam

@@ -6,8 +6,8 @@
 namespace soslam {
 namespace {
 
-// What is not said of the shape of true objects: between a cuboid and an ellipsoid, as most things
-// are.
+// Assumed shape exponent of true objects, whose shape is unknown: between a cuboid and an
+// ellipsoid, like most things.
 constexpr double kOutlineShapeExponent = 1.25;
 
 // A raw detection, used or not.
@@ -33,7 +33,7 @@ std::vector<std::vector<RawBox>> RawBoxesByFrame(const Sequence& sequence) {
   return by_frame;
 }
 
-// What of the box is in the image; none where nothing is.
+// The part of the box that is in the image; none if there is no such part.
 std::optional<Box> CutToImage(const Box& box, const Camera& camera) {
   const Box cut = {std::max(box.x_min, -0.5), std::max(box.y_min, -0.5),
                    std::min(box.x_max, camera.width - 0.5),

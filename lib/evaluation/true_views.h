@@ -20,7 +20,7 @@ class TrueViews {
   // The sequence has to outlive it.
   explicit TrueViews(const Sequence& sequence);
 
-  // None where nobody says, as of an object that moves or is of another segment.
+  // None if unknown, as for an object that moves or is of another segment.
   std::optional<Landmark> InCamera(int frame_index, int true_index) const;
   // The same, where it does not depend on the odometry.
   std::optional<Landmark> KnownInCamera(int frame_index, int true_index) const;
@@ -32,27 +32,26 @@ class TrueViews {
                                    const TrueObject& object) const;
 
   std::map<std::pair<int, int>, const Landmark*> of_frame_;  // by frame and true object id
-  std::set<int> said_for_each_frame_;                        // true object ids
+  std::set<int> said_for_each_frame_;  // true object ids that have poses per frame
 };
 
-// A box, used or not, that is of a true object.
+// A box, used or not, that belongs to a true object.
 struct TrueView {
   int frame_index = 0;
   std::optional<int> detection_index = std::nullopt;  // into Sequence::detections,
   std::optional<int> rejected_index = std::nullopt;   // or Sequence::rejected
 };
 
-// A box overlaps a true object whose outline box, cut to the image, has at least this intersection
-// over union with it. Of those that it overlaps, it is of the one with the largest. Boxes with
-// lower scores are not looked at.
+// Minimal IoU of a box with the outline box of a true object, cut to the image, to overlap it. The
+// box belongs to the one with the largest IoU. Boxes with lower scores are ignored.
 inline constexpr double kMinViewIou = 0.5;
 inline constexpr double kMinViewScore = 0.25;
-// An object is detectable when boxes overlap it in at least so many frames.
+// An object is detectable when boxes overlap it in at least this many frames.
 inline constexpr int kFewestViews = 3;
 
 struct ViewsOfTruth {
   std::vector<std::vector<TrueView>> of_object;  // by Sequence::true_objects, frames ascending
-  std::vector<int> detected_frames;              // how many frames have a box that overlaps it
+  std::vector<int> detected_frames;              // number of frames with a box that overlaps it
   std::vector<std::optional<int>> object_of_detection;  // by Sequence::detections
 };
 ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views);

@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kCellsAcrossFace = 16;
 
-// A grid on the surface of the cube |x_i| <= 1, carried along the rays from the centre to the body.
+// A grid on the surface of the cube |x_i| <= 1, projected along rays from the centre to the body.
 class SurfaceGrid {
  public:
-  // A node is (i, j, k), 0 to cells() each; one of them at an end.
+  // A node (i, j, k), each from 0 to cells(); at least one of them is at an end.
   using Node = std::array<int, 3>;
 
   SurfaceGrid(const Eigen::Vector3d& half_axes, double shape_exponent)
@@ -23,7 +23,7 @@ class SurfaceGrid {
         is_cuboid_(BodySurface(half_axes, shape_exponent).IsCuboid()),
         q_(shape_exponent / (shape_exponent - 1.0)) {
     const int cells = is_cuboid_ ? 1 : kCellsAcrossFace;
-    // Equally spaced angles of superquadrics, which lie close where the body is curved (Barr,
+    // Equally spaced angles of superquadrics, which are dense where the surface is curved (Barr,
     // "Superquadrics and angle-preserving transformations", 1981): x / z = tan(angle)^(2 / q).
     for (int i = 0; i <= cells; ++i) {
       const double tangent = std::tan((2.0 * i / cells - 1.0) * std::numbers::pi / 4.0);
@@ -69,7 +69,7 @@ TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, double shape_exponent) {
       node[(axis + 2) % 3] = j + dj;
       return vertex(node);
     };
-    // Counter-clockwise about the axis, so seen from outside where the axis leads outside.
+    // Counter-clockwise about the axis, that is seen from outside if the axis points outside.
     std::array<std::uint32_t, 4> quad = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
     if (side == 0) std::swap(quad[1], quad[3]);
     mesh.triangles.push_back({quad[0], quad[1], quad[2]});

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of all labels of the worlds' objects, with a landmark or without.
+// Category ids of all labels of the worlds' objects, with a landmark or without.
 std::map<std::string, int> CategoryIds(const std::vector<World>& worlds) {
   std::map<std::string, int> coco_ids;
   for (size_t i = 0; i < CocoLabels().size(); ++i) {
@@ -35,7 +35,7 @@ std::map<std::string, int> CategoryIds(const std::vector<World>& worlds) {
   return ids;
 }
 
-// The part of the outline's box that is in the image, from the image's outer corner.
+// The part of the outline box that is in the image, measured from the image's outer corner.
 std::optional<Box> VisibleBox(const WorldFrame& frame, const Landmark& landmark_in_world) {
   const auto outline =
       OutlineBox(frame.camera, Transform(frame.world_from_camera.Inverse(), landmark_in_world));
@@ -48,7 +48,7 @@ std::optional<Box> VisibleBox(const WorldFrame& frame, const Landmark& landmark_
   return visible;
 }
 
-// Boxes of all landmarks with what results and annotations have in common.
+// Boxes of all landmarks, with the fields that results and annotations have in common.
 std::vector<std::pair<json, const WorldObject*>> VisibleBoxes(const std::vector<World>& worlds) {
   const std::map<std::string, int> category_ids = CategoryIds(worlds);
   std::vector<std::pair<json, const WorldObject*>> boxes;
@@ -69,7 +69,7 @@ std::vector<std::pair<json, const WorldObject*>> VisibleBoxes(const std::vector<
   return boxes;
 }
 
-// pycocotools takes an id of 0 for no match, and draws the segmentation.
+// pycocotools treats an id of 0 as no match, and draws the segmentation.
 json Annotations(const std::vector<World>& worlds) {
   json annotations = json::array();
   for (auto& [annotation, object] : VisibleBoxes(worlds)) {
@@ -100,14 +100,14 @@ std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations an
   json images = json::array();
   for (const World& world : worlds) {
     for (const WorldFrame& frame : world.frames) {
-      // Readers want a name even where there is no image.
+      // Readers require a name even if there is no image.
       images.push_back({{"id", frame.id},
                         {"file_name", frame.image.empty() ? std::to_string(frame.id) : frame.image},
                         {"width", frame.camera.width},
                         {"height", frame.camera.height}});
     }
   }
-  // Labels of which COCO has one are one category, with the first one's name.
+  // Labels that map to the same COCO label share a category, named by the first of them.
   std::map<int, std::string> names;
   for (const auto& [label, id] : CategoryIds(worlds)) names.emplace(id, label);
   json categories = json::array();

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of rotation, centre and log half axes, in the moved world.
+// Covariance of rotation, centre and log half axes in the moved world.
 Covariance9 Moved(const Covariance9& covariance, const Alignment& alignment) {
   const Eigen::Matrix3d rotation = alignment.truth_from_scaled.rotation.toRotationMatrix();
   Covariance9 jacobian = Covariance9::Identity();

@@ -8,12 +8,12 @@
 
 namespace soslam {
 
-// `quality` is map_quality of the metrics.json that was made of the map.
+// `quality` is map_quality of the metrics.json that belongs to the map.
 
-// Gives each landmark what its evaluation says of it.
+// Gives each landmark the verdict of its evaluation.
 void AddVerdicts(const nlohmann::json& quality, std::vector<World>* worlds);
 
-// Moves each world into that of the truth, as the alignment of its segment does; covariances along.
+// Moves each world to the true one by the alignment of its segment, including covariances.
 void AlignWorlds(const nlohmann::json& quality, std::vector<World>* worlds);
 
 }  // namespace soslam

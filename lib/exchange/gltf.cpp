@@ -59,7 +59,7 @@ json ExtrasOf(const WorldObject& object) {
   return extras;
 }
 
-// The document while it grows: JSON, and the one buffer that it refers to.
+// The document under construction: JSON, and the one buffer that it refers to.
 class GltfBuilder {
  public:
   GltfBuilder(const World& world, const LabelColours& colours) : colours_(colours) {
@@ -80,13 +80,13 @@ class GltfBuilder {
   const std::string& buffer() const { return buffer_; }
 
  private:
-  // Adds to a list of the document, which the first item makes, and returns the item's index.
+  // Appends to a list of the document, which the first item creates, and returns the item's index.
   size_t Add(const char* list, json item) {
     document_[list].push_back(std::move(item));
     return document_[list].size() - 1;
   }
 
-  // A view of the buffer from `begin` on.
+  // Adds a view of the buffer from `begin` to its end.
   size_t AddView(size_t begin, int target) {
     return Add("bufferViews", {{"buffer", 0},
                                {"byteOffset", begin},
@@ -94,7 +94,7 @@ class GltfBuilder {
                                {"target", target}});
   }
 
-  // Bounds are those of the rounded numbers, as the specification asks.
+  // The bounds are those of the rounded numbers, as the specification requires.
   size_t AddPositions(const std::vector<Eigen::Vector3d>& points) {
     const size_t begin = buffer_.size();
     Eigen::AlignedBox3f bounds;
@@ -139,7 +139,7 @@ class GltfBuilder {
     return materials_[label] = AddMaterial(label, colours_.at(label));
   }
 
-  // Below the root.
+  // Adds a node below the root.
   void AddNode(json node, const json& primitive) {
     node["mesh"] =
         Add("meshes", {{"name", node["name"]}, {"primitives", json::array({primitive})}});
@@ -160,7 +160,8 @@ class GltfBuilder {
             primitive);
   }
 
-  // From the first centre, so that positions far from the world's origin keep their precision.
+  // Positions are relative to the first centre, to keep their precision far from the world's
+  // origin.
   void AddTrajectory(const std::vector<WorldFrame>& frames) {
     const Eigen::Vector3d& first = frames.front().world_from_camera.translation;
     std::vector<Eigen::Vector3d> centres;

@@ -30,7 +30,7 @@ LabelColours ColoursOfLabels(const std::vector<World>& worlds) {
   for (const World& world : worlds) {
     for (const WorldObject& object : world.objects) colours[object.label];
   }
-  // Steps of the golden ratio never come near a hue that was taken a few steps before.
+  // Steps of the golden ratio keep their distance from the hues of the last few steps.
   double hue = 0.0;
   for (auto& [label, colour] : colours) {
     colour = ColourOfHue(hue);

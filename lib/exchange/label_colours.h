@@ -10,11 +10,12 @@
 
 namespace soslam {
 
-// Red, green, blue, 0 to 1, in sRGB.
+// Red, green and blue in sRGB, 0 to 1.
 using Colour = Eigen::Vector3d;
 using LabelColours = std::map<std::string, Colour>;
 
-// A colour for each label of the worlds' objects, far from those of its neighbours in the alphabet.
+// A colour for each label of the worlds' objects, clearly different from its alphabetical
+// neighbours'.
 LabelColours ColoursOfLabels(const std::vector<World>& worlds);
 
 }  // namespace soslam

@@ -41,10 +41,10 @@ constexpr std::array kHeader = {"id",
                                 "true_object",
                                 "iou",
                                 "reason"};
-// Of what an evaluation says, at the end.
+// Number of columns of the verdict, at the end.
 constexpr size_t kVerdictColumns = 4;
 
-// From centre to shape exponent.
+// The values from centre to shape exponent.
 std::vector<double> LandmarkValues(const WorldObject& object) {
   const Landmark& landmark = *object.estimate.landmark_in_world;
   const Eigen::Vector3d& centre = landmark.Centre();
@@ -64,7 +64,7 @@ std::vector<double> LandmarkValues(const WorldObject& object) {
           landmark.shape_exponent};
 }
 
-// Of centre, half axes and yaw.
+// Standard deviations of centre, half axes and yaw.
 std::vector<double> Sigmas(const WorldObject& object) {
   const Covariance9& covariance = *object.estimate.covariance;
   const Eigen::Matrix<double, 9, 1> sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

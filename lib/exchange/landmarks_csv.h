@@ -8,11 +8,10 @@
 
 namespace soslam {
 
-// A table of all objects, a row each below a header, fields quoted as RFC 4180 says. Metres, and
-// degrees where a column says so; centre and quaternion are world_from_object. `yaw_deg` is about
-// the support normal. Standard deviations (`sigma_`) are empty where there is no covariance, all
-// that is of a landmark where there is none, and what an evaluation says (`fate` and on) without
-// it.
+// A table of all objects, one row each below a header, fields quoted as in RFC 4180. Metres, and
+// degrees if a column's name contains it; centre and quaternion are world_from_object. `yaw_deg` is
+// about the support normal. Empty are: standard deviations (`sigma_`) without a covariance, all
+// values of a missing landmark, and the verdict (`fate` and following) without an evaluation.
 std::string LandmarksCsvText(const std::vector<World>& worlds);
 
 }  // namespace soslam

@@ -8,8 +8,8 @@
 
 namespace soslam {
 
-// The landmarks as one mesh in the world frame, metres, in ASCII PLY: a body's vertices follow each
-// other, in the colour of its label. `colours` has all labels of the world.
+// The landmarks as one mesh in the world frame, metres, in ASCII PLY: the vertices of each body are
+// consecutive, in the colour of its label. `colours` must have all labels of the world.
 std::string PlyText(const World& world, const LabelColours& colours);
 
 }  // namespace soslam

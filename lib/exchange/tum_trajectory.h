@@ -8,7 +8,7 @@
 namespace soslam {
 
 // The poses in the text format of the TUM RGB-D benchmark: a line "timestamp tx ty tz qx qy qz qw"
-// per frame, world_from_camera, below a comment that says so. Numbers read back bit for bit.
+// per frame, world_from_camera, below a comment that states this. Numbers round-trip exactly.
 std::string TumTrajectoryText(const World& world);
 
 }  // namespace soslam

@@ -7,7 +7,7 @@
 namespace soslam {
 namespace {
 
-// The frames that have a pose, in worlds of their segments.
+// The frames that have a pose, one world per segment.
 std::vector<World> WorldsOfFrames(const Sequence& sequence,
                                   const std::vector<std::optional<Rigid3d>>& world_from_camera) {
   std::vector<World> worlds;
@@ -23,8 +23,8 @@ std::vector<World> WorldsOfFrames(const Sequence& sequence,
   return worlds;
 }
 
-// The segment of an object that these detections are of: the only one, or that of the first
-// detection; none when nobody knows.
+// The segment of an object with these detections: the only segment, or that of the first detection;
+// none if unknown.
 std::optional<int> SegmentOf(const Sequence& sequence, const std::vector<int>& detections) {
   const int first_segment = sequence.frames.front().segment;
   if (sequence.frames.back().segment == first_segment) return first_segment;

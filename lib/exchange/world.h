@@ -13,56 +13,56 @@
 
 namespace soslam {
 
-// A frame with the pose that is exported.
+// A frame with its exported pose.
 struct WorldFrame {
   int id = 0;
   double timestamp = 0.0;  // seconds
-  std::string image;       // path relative to the dataset folder; empty: there is no image
+  std::string image;       // path relative to the dataset folder; empty without an image
   Camera camera;
   Rigid3d world_from_camera;
 };
 
-// What an evaluation says of a landmark (docs/evaluation.md).
+// Evaluation of a landmark (docs/evaluation.md).
 struct LandmarkVerdict {
   std::string fate;                               // found, ignored, false
   std::optional<int> true_object = std::nullopt;  // its id
-  std::optional<double> iou = std::nullopt;       // with that
-  std::string reason = {};                        // of a false one
+  std::optional<double> iou = std::nullopt;       // with the true object
+  std::string reason = {};                        // for a false landmark
 };
 
-// An object with what is exported of it; it may have no landmark, see `failure` of the estimate.
+// An object with its exported data; without a landmark, `failure` of the estimate has the reason.
 struct WorldObject {
   int id = 0;
   std::string label;
-  std::optional<int> segment;      // none: in no frame of several segments, and without a landmark
+  std::optional<int> segment;  // none if unknown: several segments, no detection and no landmark
   Eigen::Vector3d support_normal;  // in the world, unit length
   double score = 1.0;              // mean of its detections; 1 without any
   ObjectEstimate estimate;
   std::optional<LandmarkVerdict> verdict = std::nullopt;  // none without an evaluation
 };
 
-// What can be shown together: the frames and objects of one segment, see Frame::segment. Objects of
-// no known segment are with those of the first.
+// Frames and objects of one segment, which can be shown together, see Frame::segment. Objects of
+// unknown segment belong to the first.
 struct World {
   int segment = 0;
   std::vector<WorldFrame> frames;
   std::vector<WorldObject> objects;
 };
 
-// The poses and objects of a map of the sequence, a world for each of its segments.
+// The poses and objects of a map of the sequence, one world per segment.
 std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map);
-// The poses that the sequence has as estimates; no objects.
+// The poses that the sequence has as estimates (odometry); no objects.
 std::vector<World> WorldsOfOdometry(const Sequence& sequence);
-// The ground truth: frames that have true poses, all true objects of their segments. What is known
-// of a true shape are its half axes: landmarks are cuboids, with their z axes for support normals.
-// Objects that move have none, and the failure "moving".
+// The ground truth: frames with true poses, and all true objects of their segments. Only the half
+// axes of true shapes are known: landmarks are cuboids, with their z axes as support normals.
+// Objects that move have no landmark, and the failure "moving".
 std::vector<World> WorldsOfTruth(const Sequence& sequence);
 
 // The support normal (in the world) that most objects with a landmark share to about 25 degrees;
-// the z axis without objects.
+// the z axis if there are no objects.
 Eigen::Vector3d UpOf(const World& world);
 
-// The yaw (rad) of the object's landmark, which it must have, about its support normal.
+// The yaw (rad) of the object's landmark about its support normal. The object must have a landmark.
 double YawOf(const WorldObject& object);
 
 }  // namespace soslam

@@ -11,7 +11,7 @@ namespace soslam {
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-// Between two directions, of any length above 0: 0 to 180.
+// Angle between two directions of any length above 0, in degrees, from 0 to 180.
 inline double AngleBetweenDeg(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   return kDegPerRad * std::atan2(one.cross(other).norm(), one.dot(other));
 }

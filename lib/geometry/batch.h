@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// Numbers that loops take together: many enough for the processor to work on several at once, few
-// enough to stay in its nearest cache.
+// Number of elements that vectorised loops process together: enough to fill SIMD registers, few
+// enough for the nearest cache.
 inline constexpr int kBatchSize = 32;
 using Batch = Eigen::Array<double, kBatchSize, 1>;
 using BatchOfPixels = std::array<Batch, 2>;

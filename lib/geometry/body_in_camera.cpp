@@ -6,7 +6,7 @@
 namespace soslam {
 namespace {
 
-// The rays (x, y, 1) in the object frame.
+// Rotates the rays (x, y, 1) into the object frame.
 SOSLAM_WIDE_LOOPS void TurnBack(const Eigen::Matrix3d& rotation, const double* x, const double* y,
                                 BatchOfVectors* rays) {
   for (int i = 0; i < 3; ++i) {

@@ -9,12 +9,12 @@
 
 namespace soslam {
 
-// A landmark's surface, met by many viewing rays.
+// A landmark's surface in the camera frame, for intersection with many viewing rays.
 struct BodyInCamera {
   explicit BodyInCamera(const Landmark& landmark_in_camera);
 
-  // Where kBatchSize rays of the camera frame, (x, y, 1), meet the surface; all in the object
-  // frame.
+  // Intersects kBatchSize rays (x, y, 1) of the camera frame with the surface. All of `rays` is in
+  // the object frame.
   void Meet(const double* x, const double* y, RayBatch* rays) const;
 
   Eigen::Matrix3d rotation;  // camera_from_object

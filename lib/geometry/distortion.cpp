@@ -16,17 +16,17 @@ cv::Matx33d Intrinsics(const Camera& camera) {
   return intrinsics;
 }
 
-// In OpenCV's order.
+// Coefficients in OpenCV's order.
 constexpr std::array kCoefficients = {
     &Distortion::k1, &Distortion::k2, &Distortion::p1,    &Distortion::p2,   &Distortion::k3,
     &Distortion::k4, &Distortion::k5, &Distortion::k6,    &Distortion::s1,   &Distortion::s2,
     &Distortion::s3, &Distortion::s4, &Distortion::tau_x, &Distortion::tau_y};
 
-// How many of them OpenCV takes.
+// Numbers of coefficients that OpenCV accepts.
 constexpr std::array<size_t, 5> kCounts = {4, 5, 8, 12, 14};
 
-// Points along the four edges. An edge that bows out by b px between two corners is met to within
-// b / kIntervals^2, a thousandth of its bow.
+// Points along the four edges of a box. For an edge that bows out by b px between two corners, they
+// miss the outermost point by at most b / kIntervals^2, a thousandth of the bow.
 std::vector<Eigen::Vector2d> Outline(const Box& box) {
   constexpr int kIntervals = 32;
   std::vector<Eigen::Vector2d> points;
@@ -85,7 +85,8 @@ std::vector<std::optional<Eigen::Vector2d>> UndistortPixels(
   if (distorted.empty()) return {};
   std::vector<cv::Point2d> points;
   for (const Eigen::Vector2d& pixel : distorted) points.emplace_back(pixel.x(), pixel.y());
-  // The inverse is iterated. Where it does not converge, distorting the result does not lead back.
+  // OpenCV iterates to invert the model. Where it does not converge, distorting the result does not
+  // give the input back.
   const cv::TermCriteria iterations(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-9);
   constexpr double kTolerancePx = 1e-3;
   std::vector<cv::Point2d> solutions;

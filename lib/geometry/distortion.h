@@ -11,11 +11,10 @@
 
 namespace soslam {
 
-// How a lens bends the image of a pinhole camera: OpenCV's model, radial k1 to k6 (k4 to k6 in the
-// denominator), tangential p1, p2, of a thin prism s1 to s4, dimensionless, and of a tilted sensor
-// tau_x, tau_y in radians (docs.opencv.org, "Camera Calibration and 3D Reconstruction"). Pixels of
-// images that the lens took are called distorted; the camera's own intrinsics hold before and
-// after.
+// Lens distortion in OpenCV's model: radial k1 to k6 (k4 to k6 in the denominator), tangential p1,
+// p2 and thin prism s1 to s4, all dimensionless, and the tilt of the sensor tau_x, tau_y in radians
+// (docs.opencv.org, "Camera Calibration and 3D Reconstruction"). Pixels of images that the lens
+// took are called distorted; the intrinsics are the same before and after undistortion.
 struct Distortion {
   double k1 = 0.0;
   double k2 = 0.0;
@@ -35,27 +34,26 @@ struct Distortion {
   bool operator==(const Distortion&) const = default;
 };
 
-// The coefficients in the order above, which is OpenCV's: 5, 8, 12 or 14, as few as hold all that
-// are not 0.
+// The coefficients in the order above, which is OpenCV's: the first 5, 8, 12 or 14, the smallest of
+// these numbers that includes all that are not 0.
 std::vector<double> DistortionCoefficients(const Distortion& distortion);
 // The model with these coefficients; none unless there are 4, 5, 8, 12 or 14 of them.
 std::optional<Distortion> DistortionOfCoefficients(std::span<const double> coefficients);
 
-// Where the lens puts what a pinhole camera would see at each of `pixels`.
+// Distorted positions of the pixels of a pinhole camera.
 std::vector<Eigen::Vector2d> DistortPixels(const Camera& camera, const Distortion& distortion,
                                            const std::vector<Eigen::Vector2d>& pixels);
 
-// Where a pinhole camera would see what the lens puts at each of `distorted`. A pixel has none
-// where the model cannot be inverted, which is so far out for lenses whose coefficients were not
-// calibrated there.
+// Pixels of a pinhole camera for distorted pixels. None where the model cannot be inverted, which
+// happens far outside the region in which the lens was calibrated.
 std::vector<std::optional<Eigen::Vector2d>> UndistortPixels(
     const Camera& camera, const Distortion& distortion,
     const std::vector<Eigen::Vector2d>& distorted);
 
-// The smallest upright box around the outline of `distorted`, undistorted. The edges of a box
-// become curves, whose outermost points are often in their middle: a box around the four corners
-// alone would cut off what touched the edge there. None when a point of the outline has no
-// undistorted pixel.
+// The smallest upright box around the undistorted outline of `distorted`. The edges of a box become
+// curves, whose outermost points are often in their middle: a box around the four corners alone
+// would cut off the part of the object that touches the edge there. None when a point of the
+// outline has no undistorted pixel.
 std::optional<Box> UndistortBox(const Camera& camera, const Distortion& distortion,
                                 const Box& distorted);
 

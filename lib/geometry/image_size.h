@@ -5,10 +5,10 @@
 
 namespace soslam {
 
-// More than cameras have; a size beyond it is damaged, or made to fill the memory.
+// More pixels than cameras have; a larger size is damaged, or made to exhaust the memory.
 inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
 
-// Whether an image can have this many columns and rows.
+// True if an image can have this many columns and rows.
 inline bool IsImageSize(std::int64_t width, std::int64_t height) {
   return width > 0 && height > 0 && width <= kMaxPixels / height;
 }

@@ -12,8 +12,8 @@
 namespace soslam {
 namespace {
 
-// A direction orthogonal to the normal: the projection of x, or of y where x is (nearly) the
-// normal.
+// A unit vector orthogonal to the normal: the projection of x, or of y where x is nearly parallel
+// to the normal.
 Eigen::Vector3d HorizontalReference(const Eigen::Vector3d& normal) {
   const Eigen::Vector3d seed =
       std::abs(normal.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
@@ -90,9 +90,9 @@ bool IsInFront(const Landmark& landmark_in_camera) {
 std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
                                        const Eigen::Vector2d& direction,
                                        const Eigen::Vector3d& start) {
-  // Points of the body project inside its outline. The one that reaches farthest beyond the plane
-  // through the camera centre and the image line direction . u = t projects beyond that line, until
-  // the plane is tangent: Newton's method for a convex function of t.
+  // All points of the body project inside its silhouette. The support point for the plane through
+  // the camera centre and the image line direction . u = t projects beyond that line, until the
+  // plane is tangent: Newton's method for a convex function of t.
   const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
   Eigen::Vector3d line(direction.x(), direction.y(), 0.0);
   OutlinePoint outline{start, -std::numeric_limits<double>::infinity()};

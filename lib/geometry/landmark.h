@@ -13,8 +13,8 @@
 
 namespace soslam {
 
-// An object as a convex body, in the paper an ellipsoid: 9 degrees of freedom and a shape.
-// Variables say the frame it lives in: landmark_in_world, landmark_in_camera. Object frame: origin
+// An object as a convex superquadric, in the paper an ellipsoid: 9 degrees of freedom and a shape
+// exponent. Variables name their frame: landmark_in_world, landmark_in_camera. Object frame: origin
 // at the centre, z away from the support plane, x the front, so that the mirror plane of a
 // symmetric object is its xz plane.
 struct Landmark {
@@ -28,11 +28,12 @@ struct Landmark {
 // The same landmark in the target frame.
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source);
 
-// Of the ellipsoid with the landmark's half axes, whatever its shape exponent:
-// Q* = Z diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object: pi^T Q* pi = 0 iff pi is tangent.
+// Dual quadric of the ellipsoid with the landmark's half axes, whatever its shape exponent: Q* = Z
+// diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object; pi^T Q* pi = 0 iff the plane pi is tangent.
 Eigen::Matrix4d DualQuadric(const Landmark& landmark);
 
-// Q with x^T Q x = 0 on the surface, < 0 inside, > 0 outside (the paper's Theta).
+// Quadric Q of the same ellipsoid: x^T Q x = 0 on the surface, < 0 inside, > 0 outside (the paper's
+// Theta).
 Eigen::Matrix4d Quadric(const Landmark& landmark);
 
 // The landmark of a dual quadric (any scale and sign). Half axes come in ascending order along x,
@@ -45,27 +46,27 @@ struct DualQuadricLandmark {
 };
 std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d& dual_quadric);
 
-// The point of the landmark that reaches farthest in a direction (of any length), and how far: the
-// largest direction . x over the body. All in the landmark's frame.
+// Support point of the landmark in a direction (of any length), and its support value: the largest
+// direction . x over the body. All in the landmark's frame.
 struct FarthestPoint {
   Eigen::Vector3d point;
   double distance;
 };
 FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction);
 
-// The plane that it stands on: where its -z axis leaves it, across that axis.
+// The support plane: tangent to the landmark at the end of its -z axis, with its z axis as normal.
 Plane PlaneUnder(const Landmark& landmark);
 
-// Whether all of its numbers are finite and its half axes positive.
+// True if all numbers are finite and the half axes positive.
 bool HasExtent(const Landmark& landmark);
 
-// Whether the whole landmark is in front of the camera.
+// True if the whole landmark is in front of the camera.
 bool IsInFront(const Landmark& landmark_in_camera);
 
-// The farthest that the landmark's outline reaches in the image: the largest direction . pixel (px;
-// unit direction), and the point of the landmark (camera frame) that does. Looked for from any
-// point of the landmark, found the sooner the nearer that is. None when the way there leads behind
-// the camera.
+// The silhouette's extreme point in an image direction: `end_px` is the largest direction . pixel
+// (px; unit direction), `point` the tangent point (camera frame) that attains it. The search starts
+// at `start`, any point of the landmark; it is faster the nearer that is to the result. None when
+// an iterate is behind the camera.
 struct OutlinePoint {
   Eigen::Vector3d point;
   double end_px;
@@ -74,16 +75,16 @@ std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& lan
                                        const Eigen::Vector2d& direction,
                                        const Eigen::Vector3d& start);
 
-// The tight box around the outline of the landmark; not cut at the image border. None unless the
+// The tight box around the landmark's silhouette; not cut at the image border. None unless the
 // whole landmark is in front of the camera.
 std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_camera);
 
-// The root mean square distance (px) between the edges of the landmark's outline box and the box;
-// infinite when the landmark is not wholly in front of the camera.
+// The root mean square distance (px) between the edges of the landmark's outline box and those of
+// `box`; infinite unless the whole landmark is in front of the camera.
 double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box);
 
-// Where a ray from `origin` first meets the surface (eq. 13): origin + depth * direction, depth >
-// 0. None when the ray misses the surface, or the surface is behind the origin or around it.
+// Depth at which a ray first meets the surface (eq. 13): origin + depth * direction, depth > 0.
+// None when the ray misses the surface, or the surface is behind the origin or around it.
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction);
 
@@ -96,7 +97,7 @@ Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& support_normal, double
 // The yaw of a rotation's x axis, in (-pi, pi]; the counterpart of UprightRotation.
 double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& frame_from_object);
 
-// The landmark turned about its own z axis by `angle` (rad); centre and half axes stay.
+// The landmark rotated about its own z axis by `angle` (rad); centre and half axes stay.
 Landmark Turned(const Landmark& landmark, double angle);
 
 // The difference of two yaws modulo pi, in [-pi/2, pi/2): an xz mirror plane has no front or back.

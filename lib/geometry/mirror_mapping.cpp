@@ -19,7 +19,7 @@ Eigen::Vector3d VisibleSurface::RayInObject(const Eigen::Vector2d& pixel) const 
 }
 
 LandmarkJacobian3 VisibleSurface::FixedPointJacobian(const Eigen::Vector3d& point_in_object) const {
-  // Turning R to exp(w) R takes R^T v to R^T (v - w x v), v = R point_in_object.
+  // R replaced by exp(w) R changes R^T v to R^T (v - w x v), v = R point_in_object.
   LandmarkJacobian3 jacobian = LandmarkJacobian3::Zero();
   jacobian.leftCols<3>() = camera_from_object_rotation_.transpose() *
                            Skew(camera_from_object_rotation_ * point_in_object);
@@ -36,7 +36,7 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vect
   Point point;
   point.in_object = camera_in_object_ + *depth * ray;
   if (with_jacobian) {
-    // F = 1 holds while the depth along the ray gives way.
+    // Implicit derivative: the depth along the ray changes such that F = 1 still holds.
     const Eigen::Vector3d gradient = surface_.Gradient(point.in_object);
     point.jacobian = FixedPointJacobian(point.in_object);
     LandmarkJacobian1 change = gradient.transpose() * point.jacobian;

@@ -35,20 +35,21 @@ class VisibleSurface {
   VisibleSurface(const Camera& camera, const Landmark& landmark_in_camera);
 
   // P-dagger, eq. (13): the nearer intersection of the pixel's ray with the surface. None when the
-  // ray misses.
+  // ray misses the surface.
   std::optional<Point> FromPixel(const Eigen::Vector2d& pixel, bool with_jacobian = false) const;
 
-  // Eq. (23): where the pixel's ray meets the plane tangent to the surface at `contact`, a surface
-  // point. None when the ray is parallel to it or meets it behind the camera.
+  // The intersection of the pixel's ray with the plane that is tangent to the surface at `contact`,
+  // a surface point (eq. 23). None when the ray is parallel to the plane or meets it behind the
+  // camera.
   std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel, const Point& contact,
                                                bool with_jacobian = false) const;
 
-  // S, the mirror image in the xz plane; again a surface point. Or in the plane y = mirror_plane *
-  // size, size the cubic root of the half axes' product: then near the surface where that is flat,
-  // and maybe beside the body.
+  // S, the mirror image in the xz plane; again a surface point. With another `mirror_plane`, in the
+  // plane y = mirror_plane * size, where size is the cubic root of the half axes' product: the
+  // image is then near the surface where that is flat, and may lie beside the body.
   Point MirrorImage(const Point& point, double mirror_plane = 0.0) const;
 
-  // P: the pixel of a point, whether visible or not. None behind the camera.
+  // P: the projection of a point to its pixel, visible or not. None behind the camera.
   std::optional<Pixel> ToPixel(const Point& point, bool with_jacobian = false) const;
 
   // The cosine between the outward normal at a surface point and the direction to the camera; > 0
@@ -57,7 +58,7 @@ class VisibleSurface {
 
  private:
   Eigen::Vector3d RayInObject(const Eigen::Vector2d& pixel) const;
-  // The derivative of R^T (x - t), for a point x fixed in the camera frame.
+  // The derivative of R^T (x - t) for a point x fixed in the camera frame.
   LandmarkJacobian3 FixedPointJacobian(const Eigen::Vector3d& point_in_object) const;
 
   Camera camera_;

@@ -32,15 +32,16 @@ SOSLAM_IN_WIDE_LOOPS void StoreOnes(const EightMask& mask, int* to) {
   std::memcpy(to, &ones, sizeof(ones));
 }
 
-// Whether v, the dot product of normal and direction to the camera, is at least cosine |normal|
-// |direction|.
+// Tests whether v, the dot product of the normal and the direction to the camera, is at least
+// cosine |normal| |direction|.
 SOSLAM_IN_WIDE_LOOPS void IsSeen(const Four& v, const Four& squared_normal,
                                  const Four& squared_to_camera, double squared_cosine,
                                  FourMask* is_seen) {
   *is_seen = (v >= 0.0) & (v * v >= squared_cosine * squared_normal * squared_to_camera);
 }
 
-// Visible is what the camera sees on both sides. `image_from_object` is 3 x 4.
+// Mirror images of the intersections, and masks. Visible: the camera sees both the point and its
+// mirror image. `image_from_object` is the 3 x 4 projection matrix.
 SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d& camera,
                                      const Eigen::Matrix<double, 3, 4>& image_from_object,
                                      double min_viewing_cosine, MirroredBatch* mirrored) {
@@ -78,7 +79,7 @@ SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d
   }
 }
 
-// An ellipsoid in coordinates that make it the unit ball.
+// An ellipsoid in coordinates in which it is the unit ball.
 struct UnitBall {
   UnitBall(const Landmark& landmark, const Camera& camera) {
     const Eigen::Matrix3d rotation = landmark.frame_from_object.rotation.toRotationMatrix();
@@ -99,17 +100,17 @@ struct UnitBall {
   Eigen::Matrix<float, 3, 4> image_from_ball;
 };
 
-// A batch of single precision, eight side by side; and of vectors.
+// A batch of floats, eight in each SIMD vector; and a batch of vectors.
 using Eights = std::array<Eight, kBatchSize / 8>;
 using ThreeEights = std::array<Eights, 3>;
 
-// In the coordinates of the ball.
+// Rays in the coordinates of the ball.
 struct RaysInBall {
   ThreeEights direction;
-  Eights squared;           // of the direction
+  Eights squared;           // squared length of the direction
   Eights by_squared;        // 1 / squared
-  Eights depth_of_closest;  // of the point that is closest to the centre
-  Eights length_in_camera;  // squared, of the direction
+  Eights depth_of_closest;  // depth of the point that is closest to the centre
+  Eights length_in_camera;  // squared length of the direction in the camera frame
 };
 
 SOSLAM_IN_WIDE_LOOPS void TurnToBall(const UnitBall& ball, const double* rays_x,
@@ -140,12 +141,12 @@ SOSLAM_IN_WIDE_LOOPS void TurnToBall(const UnitBall& ball, const double* rays_x,
 struct PointsOnBall {
   std::array<EightMask, kBatchSize / 8> exist;
   Eights squared_half_chord;
-  Eights half_chord;  // in lengths of the direction; NaN for a ray that misses
+  Eights half_chord;  // in units of the direction's length; NaN for a ray that misses
   ThreeEights mirror_image;
 };
 
-// Rays are followed from the point that is closest to the centre: from the camera, rounding would
-// be larger by the ratio of its distance to the body's size.
+// Intersects the rays with the ball, starting from the point closest to the centre: from the
+// camera, rounding errors would be larger by the ratio of its distance to the body's size.
 SOSLAM_IN_WIDE_LOOPS void MeetBall(const UnitBall& ball, const RaysInBall& rays,
                                    PointsOnBall* points) {
   for (size_t i = 0; i < rays.squared.size(); ++i) {
@@ -168,8 +169,8 @@ SOSLAM_IN_WIDE_LOOPS void MeetBall(const UnitBall& ball, const RaysInBall& rays,
   }
 }
 
-// The normal is p / axes, its product with a direction that of p with the direction in the ball,
-// where p is the point there.
+// With p the point in the ball, the normal is p / axes, and its dot product with a direction is
+// that of p with the direction in the ball.
 SOSLAM_IN_WIDE_LOOPS void FindVisible(const UnitBall& ball, const RaysInBall& rays,
                                       const PointsOnBall& points, float squared_cosine,
                                       MirroredBatch* mirrored) {
@@ -205,12 +206,13 @@ SOSLAM_IN_WIDE_LOOPS void Project(const Eigen::Matrix<float, 3, 4>& image_from_b
   }
 }
 
-// As BodySurface::Meet and MirrorVisible, in single precision. Each step is that of a whole batch:
-// the roots and divisions of one ray wait for each other, those of many do not.
+// BodySurface::Meet and MirrorVisible for ellipsoids, in single precision. Each step runs over a
+// whole batch: the roots and divisions of one ray depend on each other, those of different rays do
+// not.
 SOSLAM_WIDE_LOOPS void MirrorVisibleOnEllipsoid(const UnitBall& ball, const PixelRays& rays,
                                                 double min_viewing_cosine,
                                                 std::vector<MirroredBatch>* mirrored) {
-  const UnitBall copy = ball;  // what is written may be anything to the compiler
+  const UnitBall copy = ball;  // a local copy cannot overlap the output
   const auto squared_cosine = static_cast<float>(min_viewing_cosine * min_viewing_cosine);
   const double* x = rays.x.data();
   const double* y = rays.y.data();
@@ -262,10 +264,12 @@ void MirroredPoints::Find(const Landmark& landmark_in_camera, const PixelRays& r
 }
 
 void MirroredPoints::Pack(size_t num_rays) {
-  // Every ray is written where the next one that counts belongs.
+  // Every ray is written at the place of the next visible one, which advances only if it is
+  // visible.
   ray.resize(num_rays);
   for (auto& coordinate : in_image) coordinate.resize(num_rays + kBatchSize);
-  // Copies, as what is written may be anything to the compiler.
+  // Local copies of the pointers, as the compiler cannot rule out that the output overlaps the
+  // members.
   const auto [x, y, depth] = std::tuple(in_image[0].data(), in_image[1].data(), in_image[2].data());
   size_t* const rays = ray.data();
   size_t hits = 0, found = 0, next = 0;

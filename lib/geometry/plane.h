@@ -8,7 +8,7 @@
 namespace soslam {
 
 // The points x with normal . x + offset = 0; unit normal, offset in metres. A support plane's
-// normal points away from what supports, towards the supported object.
+// normal points towards the supported object.
 struct Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset = 0.0;

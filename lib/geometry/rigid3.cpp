@@ -7,7 +7,7 @@ namespace soslam {
 
 Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector) {
   const double half_angle = 0.5 * rotation_vector.norm();
-  // sin(x) / x by its series where the quotient loses digits.
+  // sin(x) / x, by its series where the quotient loses digits.
   const double sinc =
       half_angle > 1e-4 ? std::sin(half_angle) / half_angle : 1.0 - half_angle * half_angle / 6.0;
   Eigen::Quaterniond rotation;

@@ -6,10 +6,10 @@
 namespace soslam {
 namespace {
 
-// A flat body, from its side.
+// Support of a flat body across its plane.
 SupportValue NoExtent() { return {0.0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
 
-// h = || (a m_1, b m_2, c m_3) ||.
+// Support function of an ellipsoid, h = || (a m_1, b m_2, c m_3) ||.
 SupportValue OfEllipsoid(const Eigen::Vector3d& half_axes, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d scaled = half_axes.cwiseProduct(direction);
   const double extent = scaled.norm();
@@ -18,7 +18,7 @@ SupportValue OfEllipsoid(const Eigen::Vector3d& half_axes, const Eigen::Vector3d
   return {extent, inverse * half_axes.cwiseProduct(scaled), inverse * scaled.cwiseAbs2()};
 }
 
-// |m_i|
+// The rounded |m_i|.
 Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_exponent) {
   return (direction.array().square() + SquaredRounding(shape_exponent) * direction.squaredNorm())
       .sqrt();
@@ -33,7 +33,7 @@ Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm)
   }
   const double largest = u.maxCoeff();
   const Eigen::Array3d ratio = u / largest;
-  // r^p = r r^(p - 1): one power serves both, and none is of a number above 1.
+  // r^p = r r^(p - 1): one power serves both, and no base exceeds 1.
   const Eigen::Array3d power(std::pow(ratio.x(), p - 1.0), std::pow(ratio.y(), p - 1.0),
                              std::pow(ratio.z(), p - 1.0));
   const double sum = (ratio * power).sum();

@@ -5,21 +5,21 @@
 
 namespace soslam {
 
-// Shape exponents p of bodies: 1 is the cuboid, 2 the ellipsoid, superquadrics in between.
+// Shape exponents p: 1 is the cuboid, 2 the ellipsoid, superquadrics in between.
 inline constexpr double kCuboidExponent = 1.0;
 inline constexpr double kEllipsoidExponent = 2.0;
 
-// How far a body with half axes (a, b, c) reaches in a direction m of the object frame, of any
-// length: its support function h_p(m) = || (a m_1, b m_2, c m_3) ||_p. The body itself is
-// || (x / a, y / b, z / c) ||_q <= 1 with 1 / p + 1 / q = 1.
+// Support function of a superquadric with half axes (a, b, c) in a direction m of the object frame,
+// of any length: h_p(m) = || (a m_1, b m_2, c m_3) ||_p, the maximum of m . x over the body. The
+// body itself is || (x / a, y / b, z / c) ||_q <= 1 with 1 / p + 1 / q = 1.
 //
-// For p -> 1 the norm has kinks where a component of m vanishes. |m_i| is therefore
-// sqrt(m_i^2 + e^2 |m|^2) with e = kEdgeRounding (2 - p): exactly the norm at p = 2, and else still
-// convex and homogeneous, so the support function of a body whose edges are rounded by a thousandth
-// of its size.
+// For p -> 1 the norm has kinks where a component of m vanishes. |m_i| is therefore replaced by
+// sqrt(m_i^2 + e^2 |m|^2) with e = kEdgeRounding (2 - p): the exact norm at p = 2, otherwise still
+// convex and homogeneous, hence the support function of a body whose edges are rounded by a
+// thousandth of its size.
 struct SupportValue {
   double extent;                     // h, in metres where |m| = 1
-  Eigen::Vector3d contact;           // dh / dm: the point of the body that reaches farthest
+  Eigen::Vector3d contact;           // dh / dm: the support point
   Eigen::Vector3d by_log_half_axes;  // dh / d log (a, b, c)
 };
 inline constexpr double kEdgeRounding = 1e-3;
@@ -28,7 +28,7 @@ constexpr double SquaredRounding(double shape_exponent) {  // e^2
   return rounding * rounding;
 }
 
-// 1 <= shape_exponent <= 2, half_axes >= 0, direction not zero.
+// Requires 1 <= shape_exponent <= 2, half_axes >= 0, and a direction that is not zero.
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object);
 

@@ -8,7 +8,7 @@
 
 namespace soslam {
 
-// h = || u ||_p and dh / d log u, of four u at once; 1 <= p <= 2, u >= 0 or, for p = 2, of any
+// h = || u ||_p and dh / d log u for four u at once; 1 <= p <= 2, u >= 0 or, for p = 2, of any
 // sign.
 SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* h,
                                            ThreeFours* by_log_u) {
@@ -34,7 +34,7 @@ SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* 
   }
 }
 
-// Of the rounded |m_i|.
+// Squares of the rounded |m_i|: m_i^2 + e^2 |m|^2.
 SOSLAM_IN_WIDE_LOOPS void SquaresOfRounded(double shape_exponent, const ThreeFours& m,
                                            ThreeFours* squares) {
   for (size_t i = 0; i < 3; ++i) (*squares)[i] = m[i] * m[i];
@@ -50,15 +50,15 @@ SOSLAM_IN_WIDE_LOOPS void FindRounded(double shape_exponent, const ThreeFours& m
   for (size_t i = 0; i < 3; ++i) SquareRoot(squares[i], &(*rounded)[i]);
 }
 
-// SupportFunction of a body towards four directions m, not zero, at once.
+// SupportFunction of one body in four directions m, not zero, at once.
 struct SupportOfFour {
-  ThreeFours inverse_squares;  // 1 / |m_i|^2, rounded; of an ellipsoid not there
+  ThreeFours inverse_squares;  // 1 / |m_i|^2, rounded; unset for an ellipsoid
   Four extent;                 // h
-  Four inverse;                // 1 / h; 0 of a flat body from its side
+  Four inverse;                // 1 / h; 0 for a flat body across its plane
   ThreeFours by_log_half_axes;
-  ThreeFours shares;  // those over |m_i|^2
+  ThreeFours shares;  // by_log_half_axes / |m_i|^2, rounded
 
-  // dh / dm.
+  // The support point dh / dm.
   SOSLAM_IN_WIDE_LOOPS ThreeFours Contact(double shape_exponent, const ThreeFours& m) const {
     const Four rounding = SquaredRounding(shape_exponent) * (shares[0] + shares[1] + shares[2]);
     ThreeFours contact;

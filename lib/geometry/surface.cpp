@@ -13,15 +13,15 @@
 namespace soslam {
 namespace {
 
-// Sharper edges than this are those of a cuboid.
+// Superquadrics with a larger q, which have sharper edges, are treated as cuboids.
 constexpr double kLargestQ = 200.0;
 constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;
-// Newton's steps square the error: what is left after one of this size is near rounding.
+// Newton's method converges quadratically: after a step of this size the error is near rounding.
 constexpr double kBatchNewtonTolerance = 1e-8;
 
-// The part of a ray's line inside the cuboid |x_i| <= 1; none when the line misses it, or the
-// cuboid is behind the origin.
+// Depths at which a ray's line enters and leaves the cuboid |x_i| <= 1; none when the line misses
+// it, or the cuboid is behind the origin.
 std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& origin,
                                                         const Eigen::Vector3d& direction) {
   double entry = -std::numeric_limits<double>::infinity();
@@ -40,10 +40,10 @@ std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& o
   return std::pair(entry, exit);
 }
 
-// As QuadricEntry and Gradient, for many rays.
+// QuadricEntry and Gradient for many rays.
 SOSLAM_WIDE_LOOPS void MeetQuadric(const Eigen::Vector3d& origin,
                                    const Eigen::Vector3d& inverse_axes, RayBatch* rays) {
-  // With half axes of one.
+  // Coordinates in which all half axes are 1.
   const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes);
   const double c = o.squaredNorm() - 1.0;
   for (int at = 0; at < kBatchSize; at += 4) {
@@ -56,7 +56,7 @@ SOSLAM_WIDE_LOOPS void MeetQuadric(const Eigen::Vector3d& origin,
       half_b += o[i] * d;
     }
     SquareRoot(half_b * half_b - a * c, &root);
-    // NaN for a ray that misses, negative for one that leads away; of an origin inside, none.
+    // NaN for a ray that misses, negative for one that leads away or if the origin is inside.
     Four depth = Four{} - 1.0;
     if (c > 0.0) depth = c / (root - half_b);
     Store(depth, rays->depth.data() + at);
@@ -68,7 +68,7 @@ SOSLAM_WIDE_LOOPS void MeetQuadric(const Eigen::Vector3d& origin,
   }
 }
 
-// The same for many rays: from entry to exit where entry < exit and exit > 0.
+// CuboidInterval for many rays: a ray hits if entry < exit and exit > 0.
 struct CuboidIntervals {
   CuboidIntervals(const Eigen::Vector3d& origin, const BatchOfVectors& direction) {
     for (size_t i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ struct CuboidIntervals {
   Batch exit = Batch::Constant(std::numeric_limits<double>::infinity());
 };
 
-// Rays that have not met the surface yet, the first `count` of each.
+// Rays whose intersection is not found yet: the first `count` elements of each array.
 struct OpenRays {
   void Add(int number, const BatchOfVectors& directions, int from, double at, double until) {
     ray[static_cast<size_t>(count)] = number;
@@ -95,7 +95,7 @@ struct OpenRays {
     exit[count] = until;
     ++count;
   }
-  // In whole steps of the processor's loops, so that what a ray meets does not depend on its place.
+  // The count padded to whole SIMD steps, so that the result of a ray does not depend on its place.
   int PaddedCount() const { return (count + 7) / 8 * 8; }
 
   int count = 0;
@@ -107,7 +107,7 @@ struct OpenRays {
 
 using NumbersOfRays = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBatchSize, 1>;
 
-// |x|^exponent, exponent >= 0. Most shape exponents (1.1, 1.2, 1.4, 1.5) have a q of whole halves:
+// |x|^exponent, exponent >= 0. For most shape exponents (1.1, 1.2, 1.4, 1.5) 2 q is an integer:
 // products and a root then take a fraction of the time of logarithms.
 NumbersOfRays AbsolutePower(const NumbersOfRays& x, double exponent) {
   constexpr double kRounding = 1e-12;  // of q = p / (p - 1)
@@ -125,7 +125,7 @@ NumbersOfRays AbsolutePower(const NumbersOfRays& x, double exponent) {
   return power;
 }
 
-// F^q along rays inside the cuboid, with half axes of one.
+// F^q along rays inside the cuboid, in coordinates in which all half axes are 1.
 struct PowersAlongRays {
   PowersAlongRays(const Eigen::Vector3d& origin, const OpenRays& rays, double q) {
     const int size = rays.PaddedCount();
@@ -141,21 +141,21 @@ struct PowersAlongRays {
   }
 
   std::array<NumbersOfRays, 3> x;
-  std::array<NumbersOfRays, 3> power;  // |x_k|^(q - 2): serves the sum, its slope and the gradient
+  std::array<NumbersOfRays, 3> power;  // |x_k|^(q - 2): shared by F^q, its slope and the gradient
   NumbersOfRays excess;                // F^q - 1, at most 2
-  NumbersOfRays slope;                 // of F^q
+  NumbersOfRays slope;                 // derivative of F^q by depth
 };
 
-// Newton's step to F = 1, F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q; its
-// series to the third power of u, which is not more. F is closer to linear than F^q is, and convex
-// as well, so that steps do not pass the root.
+// Newton's step to F = 1 from F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q,
+// as a series to the third power of u, which is not larger. F is closer to linear than F^q and
+// convex as well, so that steps do not pass the root.
 double StepToSurface(double excess, double slope, double q) {
   const double second = 0.5 * (1.0 - 1.0 / q);
   const double third = second / 3.0 * (1.0 + 1.0 / q);
   return excess * (1.0 + excess * (second - excess * third)) / -slope;
 }
 
-// As SuperquadricEntry and Gradient, for many rays. Depths are -1 where there is none.
+// SuperquadricEntry and Gradient for many rays. The depth of a ray that misses is -1.
 void MeetSuperquadric(const Eigen::Vector3d& origin, const BatchOfVectors& direction, double q,
                       Batch* depth, BatchOfVectors* gradient) {
   const CuboidIntervals interval(origin, direction);
@@ -167,7 +167,7 @@ void MeetSuperquadric(const Eigen::Vector3d& origin, const BatchOfVectors& direc
       rays.Add(i, direction, i, std::max(interval.entry[i], 0.0), interval.exit[i]);
     }
   }
-  // Those still open in the end graze the surface.
+  // Rays that are still open after the last step graze the surface.
   for (int step = 0; step < kMaxNewtonSteps && rays.count > 0; ++step) {
     const PowersAlongRays at(origin, rays, q);
     const int count = std::exchange(rays.count, 0);
@@ -199,7 +199,7 @@ BodySurface::BodySurface(const Eigen::Vector3d& half_axes, double shape_exponent
 
 std::optional<double> BodySurface::Entry(const Eigen::Vector3d& origin,
                                          const Eigen::Vector3d& direction) const {
-  // With half axes of one.
+  // Coordinates in which all half axes are 1.
   const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
   const Eigen::Vector3d d = direction.cwiseProduct(inverse_axes_);
   return q_ == kEllipsoidExponent ? QuadricEntry(o, d) : SuperquadricEntry(o, d);
@@ -211,7 +211,7 @@ std::optional<double> BodySurface::QuadricEntry(const Eigen::Vector3d& origin,
   const double half_b = origin.dot(direction);
   const double c = origin.squaredNorm() - 1.0;
   const double discriminant = half_b * half_b - a * c;
-  // c <= 0: the origin is inside, so there is no visible outside. half_b >= 0: the ray leads away.
+  // c <= 0: the origin is inside, so the outside is not visible. half_b >= 0: the ray leads away.
   if (!(discriminant >= 0.0) || !(c > 0.0) || !(half_b < 0.0)) return std::nullopt;
   return c / (-half_b + std::sqrt(discriminant));
 }
@@ -222,8 +222,8 @@ std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& orig
   if (!interval) return std::nullopt;
   if (is_cuboid_) return interval->first > 0.0 ? std::optional(interval->first) : std::nullopt;
   // F is convex along the ray and at least 1 where it enters the cuboid: Newton's steps from there
-  // approach the root without passing it. They start at the origin when the cuboid, but not the
-  // body, is around it.
+  // approach the root without passing it. If the origin is inside the cuboid but outside the body,
+  // they start at the origin.
   double depth = std::max(interval->first, 0.0);
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const Eigen::Array3d x = (origin + depth * direction).array();
@@ -250,7 +250,7 @@ void BodySurface::Meet(const Eigen::Vector3d& origin, RayBatch* rays) const {
     MeetQuadric(origin, inverse_axes_, rays);
     return;
   }
-  // With half axes of one.
+  // Coordinates in which all half axes are 1.
   const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
   BatchOfVectors d;
   for (size_t i = 0; i < 3; ++i) {

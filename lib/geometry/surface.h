@@ -8,39 +8,40 @@
 
 namespace soslam {
 
-// Rays from one origin, and where they first meet a surface.
+// Rays from one origin, and their first intersections with a surface.
 struct RayBatch {
   BatchOfVectors direction;
-  Batch depth;  // point = origin + depth * direction; not positive (maybe NaN) where there is none
+  Batch
+      depth;  // point = origin + depth * direction; not positive (maybe NaN) for a ray that misses
   BatchOfVectors point;
   BatchOfVectors gradient;  // see BodySurface::Gradient
 };
 
 // The surface of a body in its own frame: F(x) = || (x / a, y / b, z / c) ||_q = 1 with
 // 1 / p + 1 / q = 1, p the shape exponent of SupportFunction. p = 2 is the paper's quadric (eq.
-// 13), p = 1 the cuboid, for which F is the largest of the three.
+// 13), p = 1 the cuboid, for which F is the largest |component|.
 class BodySurface {
  public:
   BodySurface(const Eigen::Vector3d& half_axes, double shape_exponent);
 
-  // Edges too sharp to tell from a cuboid's are a cuboid's.
+  // True for the cuboid and for superquadrics whose edges are too sharp to distinguish from it.
   bool IsCuboid() const { return is_cuboid_; }
 
-  // Where a ray first meets the surface: origin + depth * direction, depth > 0. None when the ray
-  // misses, or the surface is behind the origin or around it.
+  // Depth at which a ray first meets the surface: origin + depth * direction, depth > 0. None when
+  // the ray misses, or the surface is behind the origin or around it.
   std::optional<double> Entry(const Eigen::Vector3d& origin,
                               const Eigen::Vector3d& direction) const;
 
-  // The same for many rays: fills what comes after the directions.
+  // Entry and Gradient for many rays: fills the members after the directions.
   void Meet(const Eigen::Vector3d& origin, RayBatch* rays) const;
 
   // dF / dx at a surface point: along the outward normal, with Gradient(x) . x = 1. On an edge of
-  // the cuboid, that of one of its faces.
+  // the cuboid, the gradient of one of its faces.
   Eigen::Vector3d Gradient(const Eigen::Vector3d& point) const;
 
-  // How Gradient changes: d gradient_i / d x_i, (others are 0 on the surface up to a multiple of
-  // the gradient, which leaves the tangent plane gradient . x = 1 as it is) and the k of d
-  // gradient_i / d log s_i = -k gradient_i.
+  // Derivatives of Gradient: d gradient_i / d x_i (mixed ones are 0 on the surface up to a multiple
+  // of the gradient, which leaves the tangent plane gradient . x = 1 unchanged), and the factor k
+  // of d gradient_i / d log s_i = -k gradient_i, s the half axes.
   Eigen::Vector3d GradientByPoint(const Eigen::Vector3d& point) const;
   double GradientByLogHalfAxes() const { return is_cuboid_ ? 1.0 : q_; }
 

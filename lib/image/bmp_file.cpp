@@ -10,7 +10,7 @@ using namespace std::string_view_literals;
 
 constexpr ByteOrder kOrder = ByteOrder::kLittleEndian;
 
-// What the headers of a bitmap say, that of Windows (40 bytes and more) or of OS/2 (12).
+// Header of a bitmap, in the format of Windows (40 bytes and more) or of OS/2 (12).
 struct Bitmap {
   std::uint64_t pixels_begin;
   std::int64_t width, height;
@@ -19,7 +19,7 @@ struct Bitmap {
 
 bool IsBmp(std::string_view first_bytes) { return first_bytes.starts_with("BM"sv); }
 
-// None of those that are packed.
+// None for compressed bitmaps.
 std::optional<Bitmap> ReadBitmap(const ImageBytes& file) {
   const std::string bytes = file.UpTo(0, 34);
   const auto number = [&](size_t at, size_t count) {

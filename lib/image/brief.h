@@ -14,11 +14,10 @@ namespace soslam {
 // (ECCV 2010). One bit per pair of pixels of a 31 x 31 px patch: is the first one darker?
 using BriefBits = std::bitset<256>;
 
-// The smoothing that makes single pixels comparable (Calonder et al.: sigma 2 px). CV_8UC1 to
-// CV_8UC1.
+// Smoothing that makes single pixels comparable (Calonder et al.: sigma 2 px). CV_8UC1 to CV_8UC1.
 cv::Mat SmoothForBrief(const cv::Mat& grey);
 
-// An image that is smoothed when it is first asked for. By several threads, if need be.
+// An image that is smoothed on first use. Thread-safe.
 class SmoothedImage {
  public:
   explicit SmoothedImage(const cv::Mat& grey) : grey_(grey) {}
@@ -30,16 +29,16 @@ class SmoothedImage {
     cv::Mat image;
   };
   cv::Mat grey_;
-  std::shared_ptr<Smoothed> smoothed_ = std::make_shared<Smoothed>();  // by all copies
+  std::shared_ptr<Smoothed> smoothed_ = std::make_shared<Smoothed>();  // shared by all copies
 };
 
-// The descriptor of the patch around the pixel that `pixel` lies in. `mirrored` reads the pattern
-// with its x offsets negated (section V-B, fig. 3(a)): what it gives at a mirror pixel equals what
-// the plain pattern gives at the original. None when the patch reaches out of the image.
+// The descriptor of the patch around the pixel that contains `pixel`. `mirrored` negates the x
+// offsets of the pattern (section V-B, fig. 3(a)): its descriptor at a mirror pixel equals the
+// plain one at the original pixel. None when the patch reaches out of the image.
 std::optional<BriefBits> BriefDescriptor(const cv::Mat& smoothed_grey, const Eigen::Vector2d& pixel,
                                          bool mirrored);
 
-// The share of bits that differ, in [0, 1].
+// Fraction of bits that differ, in [0, 1].
 inline double HammingDistance(const BriefBits& a, const BriefBits& b) {
   return static_cast<double>((a ^ b).count()) / static_cast<double>(a.size());
 }

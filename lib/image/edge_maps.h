@@ -38,13 +38,13 @@ struct EdgesOptions {
   void Check() const;
 };
 
-// What the symmetry descriptors need from one image. All maps have the image's size. Without any
+// Data of one image for the symmetry descriptors. All maps have the image's size. Without any
 // edge every nearest edge is (-1, -1) and every distance infinite.
 struct EdgeMaps {
-  cv::Mat grey;                          // CV_8UC1
-  cv::Mat edges;                         // CV_8UC1: 255 on an edge pixel, 0 elsewhere
-  cv::Mat distance;                      // CV_32FC1, px: to the nearest edge pixel, eq. (17)
-  cv::Mat nearest_edge;                  // CV_16SC2: (x, y) of that pixel, u^E of eq. (20)
+  cv::Mat grey;          // CV_8UC1
+  cv::Mat edges;         // CV_8UC1: 255 on an edge pixel, 0 elsewhere
+  cv::Mat distance;      // CV_32FC1, px: distance to the nearest edge pixel, eq. (17)
+  cv::Mat nearest_edge;  // CV_16SC2: (x, y) of that pixel, u^E of eq. (20)
   std::vector<Eigen::Vector2f> corners;  // pixels, strongest first
 };
 

@@ -12,23 +12,23 @@ namespace soslam {
 
 enum class ByteOrder { kLittleEndian, kBigEndian };
 
-// At most eight bytes as a number.
+// An unsigned integer stored in at most eight bytes.
 std::uint64_t NumberFromBytes(std::string_view bytes, ByteOrder order);
 
-// The bytes of a file, in memory or where they lie: only what is asked for is read.
+// Access to the bytes of a file, in memory or on disk: reads only the bytes that are requested.
 class ImageBytes {
  public:
-  // `read` gives `count` bytes from `begin` on, fewer at the end.
+  // `read` returns `count` bytes from `begin` on, fewer at the end of the file.
   using ReadAt = std::function<std::string(std::uint64_t begin, size_t count)>;
   explicit ImageBytes(ReadAt read) : read_(std::move(read)) {}
-  // Those of `bytes`, which must outlive it.
+  // Reads from `bytes`, which must outlive this object.
   explicit ImageBytes(std::string_view bytes);
 
-  // At most `count` bytes from `begin` on: as many as there are.
+  // Up to `count` bytes from `begin` on, fewer at the end of the file.
   std::string UpTo(std::uint64_t begin, size_t count) const { return read_(begin, count); }
-  // Exactly so many; none when there are fewer.
+  // Exactly `count` bytes; none when there are fewer.
   std::optional<std::string> At(std::uint64_t begin, size_t count) const;
-  // The same as a number.
+  // The same bytes as an unsigned integer.
   std::optional<std::uint64_t> NumberAt(std::uint64_t begin, size_t count, ByteOrder order) const;
 
  private:

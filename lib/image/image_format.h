@@ -11,26 +11,27 @@
 
 namespace soslam {
 
-// A format of image files. OpenCV decodes more of them, some of which allocate whatever a few bytes
-// ask for, or have other files read.
+// A format of image files. OpenCV decodes more formats; some of them allocate as much memory as a
+// few bytes demand, or read other files.
 struct ImageFormat {
   const char* name;
-  bool (*has_signature)(std::string_view first_bytes);  // kSignatureSize of them, or all
-  // None where there is no size, or one that a decoder might read otherwise.
+  bool (*has_signature)(
+      std::string_view first_bytes);  // kSignatureSize bytes, or all if the file has fewer
+  // The header of a file. None if it has no size, or one that a decoder might read differently.
   std::optional<ImageHeader> (*header)(const ImageBytes& file);
-  // How many bytes the image takes, as phones and others append what they like. None where it is
-  // cut short: decoders fill in what is missing, without an error. Where there is a header, its
-  // size is one that images can have.
+  // Number of bytes that the image takes: phones and others append data of their own. None if the
+  // file is truncated: decoders fill in the missing part without an error. If there is a header,
+  // its size must have passed IsImageSize.
   std::optional<size_t> (*length)(std::string_view file);
-  const char* whole;  // how a whole one is told from one that is cut short
-  // Has the file say orientation 1, where decoders turn images without being asked; null elsewhere.
+  const char* whole;  // how to distinguish a complete file from a truncated one, for error messages
+  // Sets the file's orientation to 1, for formats whose decoders turn images unasked; else null.
   void (*clear_orientation)(std::span<char> file) = nullptr;
 };
 inline constexpr size_t kSignatureSize = 12;
 
 extern const ImageFormat kJpegFormat, kPngFormat, kWebpFormat, kBmpFormat, kTiffFormat;
 
-// The format of a file by its first bytes; null where it is none of these.
+// The format of a file by its first bytes; null if it is none of these.
 const ImageFormat* FindImageFormat(std::string_view first_bytes);
 
 }  // namespace soslam

@@ -13,7 +13,7 @@ std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   const ImageBytes file([&](std::uint64_t begin, size_t count) {
     std::string bytes(count, '\0');
-    stream.clear();  // of an end that was met
+    stream.clear();  // clears an earlier end of file
     stream.seekg(static_cast<std::streamoff>(begin));
     stream.read(bytes.data(), static_cast<std::streamsize>(count));
     bytes.resize(static_cast<size_t>(std::max<std::streamsize>(0, stream.gcount())));

@@ -14,21 +14,21 @@ struct ImageSize {
   std::int64_t height = 0;
 };
 
-// What an image file claims to hold, before any pixel is decoded.
+// Properties that an image file states before any pixel is decoded.
 struct ImageHeader {
-  ImageSize stored;     // of the pixels that the file stores
+  ImageSize stored;     // size of the pixels that the file stores
   int orientation = 1;  // EXIF's, 1 to 8: 1 upright, 3 upside down, 5 to 8 turned by a quarter
 
   bool IsTurnedByAQuarter() const { return orientation >= 5; }
-  // The size of the image that is read with this setting.
+  // The size of the image when it is read with this setting.
   ImageSize Size(ImageOrientation read_as) const {
     const bool swaps = read_as == ImageOrientation::kUpright && IsTurnedByAQuarter();
     return swaps ? ImageSize{stored.height, stored.width} : stored;
   }
 };
 
-// Reads no more of the file than that takes, usually a few hundred bytes. None for what cannot be
-// opened, is no image of the formats of image_format.h, or is cut short before its size.
+// Reads only the necessary part of the file, usually a few hundred bytes. None for a file that
+// cannot be opened, has none of the formats of image_format.h, or ends before its size.
 std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -7,24 +7,25 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// JPEG, ITU-T T.81, annex B: segments of a marker, 0xFF and another byte, and a length that counts
-// its own two bytes. Coded data follow a scan's header, in which 0xFF is followed by 0.
+// JPEG, ITU-T T.81, annex B: segments have a marker (0xFF and another byte) and a length that
+// includes its own two bytes. Coded data follow the header of a scan; 0xFF is followed by 0 in
+// them.
 constexpr std::uint64_t kStartOfImage = 0xD8, kEndOfImage = 0xD9, kStartOfScan = 0xDA, kApp1 = 0xE1;
 constexpr std::uint64_t kFill = 0xFF;
 constexpr ByteOrder kOrder = ByteOrder::kBigEndian;
 constexpr int kMaxSegments = 1 << 16;
 
-// Whether a segment is one that begins a frame, SOF0 to SOF15; DHT, JPG and DAC are between them.
+// True for segments that begin a frame, SOF0 to SOF15; DHT, JPG and DAC lie between them.
 bool BeginsFrame(std::uint64_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-// Whether a marker is one that has no length after it: stuffing, TEM, RST0 to RST7, SOI, EOI.
+// True for markers that no length follows: stuffing, TEM, RST0 to RST7, SOI, EOI.
 bool StandsAlone(std::uint64_t marker) {
   return marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD9);
 }
 
-// Whether a segment may come after coded data: tables, the next scan, what applications write.
+// True for segments that may follow coded data: tables, the next scan, application data.
 bool MayFollowScan(std::uint64_t marker) {
   return marker == 0xC4 || marker == 0xCC || (marker >= 0xDA && marker <= 0xDD) ||
          (marker >= 0xE0 && marker <= 0xEF) || marker == 0xFE;
@@ -40,8 +41,8 @@ std::optional<int> OrientationInSegment(const ImageBytes& file, std::uint64_t be
   return ExifOrientation(std::string_view(data).substr(kName.size()));
 }
 
-// What comes before the first scan. None of the markers without a length does, but decoders skip
-// them.
+// Reads the segments before the first scan. No marker without a length belongs there, but decoders
+// skip such markers.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   std::optional<ImageSize> size;
   std::optional<int> orientation;
@@ -69,14 +70,14 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
   return ImageHeader{*size, orientation.value_or(1)};
 }
 
-// Up to the marker EOI that is not within a segment, as those of thumbnails are.
+// Length up to the marker EOI that is not within a segment, as those of thumbnails are.
 std::optional<size_t> Length(std::string_view file) {
   bool is_after_scan = false;
   size_t begin = 2;
   while ((begin = file.find('\xff', begin)) != file.npos && begin + 1 < file.size()) {
     const std::uint64_t marker = NumberFromBytes(file.substr(begin + 1, 1), kOrder);
     if (marker == kEndOfImage) return begin + 2;
-    if (marker == kStartOfImage) return std::nullopt;  // of another image
+    if (marker == kStartOfImage) return std::nullopt;  // another image begins
     if (marker == kFill) {
       ++begin;
     } else if (StandsAlone(marker)) {

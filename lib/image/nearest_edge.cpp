@@ -12,29 +12,29 @@
 
 // cv::distanceTransform gives the nearest edge pixel as a label, but only together with a chamfer
 // mask: on real images a tenth to a quarter of the labels are wrong and lead to an edge pixel up to
-// 5 px farther than the nearest one. Hence an exact algorithm in two passes, as that of Meijster,
+// 5 px farther than the nearest one. Hence an exact algorithm in two passes, like that of Meijster,
 // Roerdink and Hesselink, "A general algorithm for computing distance transforms in linear time"
 // (2000): first the nearest edge pixel in the same column, then the nearest of these along the row.
-// There their stack of parabolas ends in a branch a pixel that nobody can predict. Here wide
-// registers compare columns, and few come into question: nearest columns along a row are row minima
-// of a totally monotone matrix (Aggarwal, Klawe, Moran, Shor and Wilber, "Geometric applications of
-// a matrix-searching algorithm", 1987), which halving finds.
+// Their second pass, a stack of parabolas, has an unpredictable branch for every pixel. Here SIMD
+// registers compare columns, and only few columns are candidates: the nearest columns along a row
+// are row minima of a totally monotone matrix (Aggarwal, Klawe, Moran, Shor and Wilber, "Geometric
+// applications of a matrix-searching algorithm", 1987), which bisection finds.
 
 namespace soslam {
 namespace {
 
 constexpr std::int16_t kNone = -1;
 
-// Column and row of a pixel, as cv::Vec2s has them in memory.
+// Column and row of a pixel in the memory layout of cv::Vec2s.
 static_assert(std::endian::native == std::endian::little);
 SOSLAM_IN_WIDE_LOOPS int PixelInMemory(int column, int row) { return column | row << 16; }
 
 // The row of the nearest edge pixel in the same column, CV_16SC1; kNone in columns without edges.
-// Row by row, so that the compiler takes many columns at once.
+// Computed row by row, so that the compiler vectorises over columns.
 cv::Mat NearestEdgeRowInColumn(const cv::Mat& edges) {
   const int width = edges.cols;
-  // Distances to the next edge pixel in a column; without one they count on from here, larger than
-  // any distance, and never overflow.
+  // Distances to the next edge pixel in a column. Without one they count on from kFar, which is
+  // larger than any distance, and never overflow.
   constexpr std::uint16_t kFar = 32768;
   cv::Mat up(edges.size(), CV_16UC1);
   std::vector<std::uint16_t> previous(static_cast<size_t>(width), kFar);
@@ -63,14 +63,14 @@ cv::Mat NearestEdgeRowInColumn(const cv::Mat& edges) {
   return nearest_row;
 }
 
-// From a row y, pixel x sees the edge pixel of column u at the squared distance
+// The squared distance from pixel x of a row y to the edge pixel of column u is
 //   (x - u)^2 + (row(u) - y)^2 = x^2 + constant(u) - 2 x u.
-// Without x^2, which no column changes, it fits 32 bits: both squares are below 2^30. Along a row
-// the nearest column never goes back to the left, so between two pixels whose nearest columns are
-// known only columns between these come into question.
+// Without x^2, which is the same for all columns, it fits 32 bits: both squares are below 2^30.
+// Along a row the nearest column never moves to the left, so between two pixels whose nearest
+// columns are known only the columns between those are candidates.
 class RowSearch {
  public:
-  // Columns with edges, from left to right; not none.
+  // `columns` are those with edges, from left to right; not empty.
   RowSearch(int width, const std::vector<int>& columns)
       : width_(width),
         blocks_(static_cast<size_t>((width + kLanes - 1) / kLanes)),
@@ -83,7 +83,7 @@ class RowSearch {
     columns_.resize(count_ + kLanes);
   }
 
-  // Writes the nearest edge pixel of each x (PixelInMemory); of several the one of the leftmost
+  // Writes the nearest edge pixel of each x (PixelInMemory); of several that of the leftmost
   // column.
   SOSLAM_WIDE_LOOPS void Find(const std::int16_t* nearest_row_of_columns, int y, int* nearest) {
     const std::int16_t* __restrict row = nearest_row_of_columns;
@@ -103,7 +103,8 @@ class RowSearch {
   static constexpr int kLanes = 8;  // pixels of a block
   static constexpr EightIntegers kLane = {0, 1, 2, 3, 4, 5, 6, 7};
 
-  // For the first pixel of each block and the last of the row, halving the steps between them.
+  // Nearest columns of the first pixel of each block and of the last pixel of the row, by
+  // bisection.
   SOSLAM_IN_WIDE_LOOPS void FindAtBlocks() {
     nearest_[0] = Nearest(0, 0, count_ - 1);
     nearest_[blocks_] = Nearest(width_ - 1, nearest_[0], count_ - 1);
@@ -115,7 +116,8 @@ class RowSearch {
     }
   }
 
-  // Of columns_[first] to columns_[last]. It may look at further ones, which are not nearer.
+  // The nearest of columns_[first] to columns_[last]. It may examine further ones, which are not
+  // nearer.
   SOSLAM_IN_WIDE_LOOPS size_t Nearest(int x, size_t first, size_t last) const {
     EightIntegers least = EightIntegers{} + std::numeric_limits<int>::max();
     EightIntegers nearest = {};
@@ -153,15 +155,16 @@ class RowSearch {
 
   int width_;
   size_t blocks_;
-  size_t count_;  // of columns; after as many follow what is read with the last one
+  size_t
+      count_;  // number of columns; arrays are longer by kLanes, as whole SIMD registers are read
   std::vector<int> columns_;
-  std::vector<int> constants_;   // of columns; then what is never nearest
-  std::vector<int> edges_;       // of columns: their edge pixels
-  std::vector<size_t> nearest_;  // index of a column, for the first pixel of each block
-  std::vector<int> found_;       // edges, for each pixel of the blocks
+  std::vector<int> constants_;   // by column; padded with values that are never nearest
+  std::vector<int> edges_;       // edge pixel of each column
+  std::vector<size_t> nearest_;  // index of the nearest column, for the first pixel of each block
+  std::vector<int> found_;       // nearest edge pixel, for each pixel of the blocks
 };
 
-// Moves those of columns with edges together, from left to right.
+// Moves the entries of columns with edges together, from left to right; returns these columns.
 std::vector<int> CompactColumns(cv::Mat* nearest_row) {
   std::vector<int> columns;
   for (int u = 0; u < nearest_row->cols; ++u) {
@@ -194,7 +197,8 @@ cv::Mat NearestEdgeMap(const cv::Mat& edges) {
 cv::Mat DistanceMap(const cv::Mat& nearest_edge) {
   CV_Assert(nearest_edge.type() == CV_16SC2);
   cv::Mat distance(nearest_edge.size(), CV_32FC1);
-  // Of integers below 2^24 single precision takes the same root as double precision.
+  // For integers below 2^24 the root in single precision equals the rounded root in double
+  // precision.
   const bool is_small =
       std::int64_t{distance.cols} * distance.cols + std::int64_t{distance.rows} * distance.rows <
       1 << 24;

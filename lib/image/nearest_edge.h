@@ -5,13 +5,12 @@
 
 namespace soslam {
 
-// For each pixel the nearest edge pixel u^E of eq. (20), exactly: CV_16SC2, (x, y); of several at
-// the same distance the leftmost, of those in its column the upper one. (-1, -1) everywhere when
-// there is no edge. `edges` is CV_8UC1, edge pixels are those that are not 0, at most 32767 pixels
-// a side.
+// The nearest edge pixel u^E of each pixel, eq. (20), exact: CV_16SC2, (x, y). Of several at the
+// same distance it is the leftmost, and in a column the upper one. (-1, -1) everywhere when there
+// is no edge. `edges` is CV_8UC1, not 0 on edge pixels, with at most 32767 pixels a side.
 cv::Mat NearestEdgeMap(const cv::Mat& edges);
 
-// The distance (px) of each pixel to its entry in such a map, eq. (17): CV_32FC1; infinite where
+// Distance (px) from each pixel to its entry in such a map, eq. (17): CV_32FC1; infinite where
 // there is no edge.
 cv::Mat DistanceMap(const cv::Mat& nearest_edge);
 

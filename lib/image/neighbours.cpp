@@ -8,8 +8,8 @@
 namespace soslam {
 namespace {
 
-// From the pixel centre before `least` to that after `largest`, both in 0 to size - 1; two of them
-// at least. Without bounds (NaN, or the largest below the least) all there is.
+// First and last index from the pixel centre before `least` to that after `largest`, both within 0
+// to size - 1 and at least two indices. Without bounds (NaN, or largest < least) the whole axis.
 std::array<int, 2> Range(float least, float largest, int size) {
   const float last = static_cast<float>(size - 1);
   if (!(least <= largest)) return {0, size - 1};
@@ -27,7 +27,7 @@ cv::Rect Part(const PixelBounds& bounds, float margin, const cv::Mat& map) {
 }  // namespace
 
 void Neighbours::Cover(const PixelBounds& bounds) {
-  // Pixels of what is not exactly there, and enough for what is looked up next.
+  // Margins in pixels: for rounding errors, and to cover the next lookups as well.
   constexpr float kRounding = 1.0F, kMargin = 24.0F;
   const cv::Rect needed = Part(bounds, kRounding, map_);
   if ((needed & part_) == needed) return;

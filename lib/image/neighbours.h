@@ -13,29 +13,29 @@
 
 namespace soslam {
 
-// Pixels from the least to the largest.
+// Smallest and largest coordinates of a set of pixels.
 struct PixelBounds {
   float least_x, least_y, largest_x, largest_y;
 };
 
 // The part of a map that is looked up, in single precision: pixels are off by 1e-7 of the map's
-// size, which is for costs that are only compared, and have no derivatives. Each pixel has the one
-// below it as its neighbour in memory, so that the four around a point are loaded at once.
+// size, which suffices for costs that are only compared and not differentiated. Each pixel is
+// followed in memory by the one below it, so that the four around a point are loaded at once.
 class Neighbours {
  public:
-  // CV_32FC1, of at least 2 x 2 pixels.
+  // The map is CV_32FC1 with at least 2 x 2 pixels.
   explicit Neighbours(const cv::Mat& map) : map_(map) {
     CV_Assert(map.type() == CV_32FC1 && map.cols >= 2 && map.rows >= 2);
   }
 
-  // Before what lies there is looked up.
+  // Prepares the part of the map within the bounds; to be called before lookups there.
   void Cover(const PixelBounds& bounds);
-  // Whether what lies there is in the map with all that rounding may do to it.
+  // True if the bounds are inside the map, rounding errors included.
   bool AreInside(const PixelBounds& bounds) const;
 
   struct View {
-    const float* values;  // from the top left of the part: pixels and those below them in turn
-    cv::Rect part;        // of the map, to its last pixels
+    const float* values;  // each pixel followed by the one below it, from the top left of the part
+    cv::Rect part;        // within the map, last pixels included
   };
   View view() const { return {values_.data(), part_}; }
 
@@ -45,12 +45,13 @@ class Neighbours {
   std::vector<float> values_;
 };
 
-// Where the pixels of a batch lie between the pixel centres of a map, as Cells of sample_batch.h.
+// Position of each pixel of a batch between the pixel centres of a map, like Cells of
+// sample_batch.h.
 struct CellsOfEight {
   static constexpr size_t kCount = kBatchSize / 8;
 
-  // Eight pixels, the i-th ones of the batch. Those outside of the part are outside of the map;
-  // there are none unless `may_be_outside`.
+  // Locates eight pixels, the i-th eight of the batch. Pixels outside the part count as outside the
+  // map; unless `may_be_outside`, the caller guarantees that there are none.
   template <bool may_be_outside>
   SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& view, const Eight& x, const Eight& y,
                                    size_t i) {
@@ -60,7 +61,7 @@ struct CellsOfEight {
       const Eight top = Eight{} + static_cast<float>(view.part.y);
       const Eight right = left + static_cast<float>(view.part.width - 1);
       const Eight bottom = top + static_cast<float>(view.part.height - 1);
-      inside_x = x > left ? x : left;  // so of NaN
+      inside_x = x > left ? x : left;  // also for NaN
       inside_y = y > top ? y : top;
       inside_x = inside_x < right ? inside_x : right;
       inside_y = inside_y < bottom ? inside_y : bottom;
@@ -82,17 +83,17 @@ struct CellsOfEight {
     }
   }
 
-  std::array<Eight, kCount> dx;  // from the centre to the top left; NaN outside of the map
+  std::array<Eight, kCount> dx;  // from the centre to the top left, px; NaN outside the map
   std::array<Eight, kCount> dy;
-  std::array<EightIntegers, kCount> top_left;  // how many pixels into the part that centre is
+  std::array<EightIntegers, kCount> top_left;  // index of that centre in the part
 };
 
-// What is between the pixel centres around the i-th eight pixels: NaN or infinite where there is
-// nothing.
+// Bilinear interpolation at the i-th eight pixels: NaN or infinite where the map has no value.
 SOSLAM_IN_WIDE_LOOPS void Interpolate(const Neighbours::View& view, const CellsOfEight& cells,
                                       size_t i, Eight* value) {
   using FourFloats [[gnu::vector_size(4 * sizeof(float))]] = float;
-  // Of the k-th pixel and of the one four further on: left and the one below, right and below.
+  // Values around the k-th and the (k + 4)-th pixel: top left, bottom left, top right, bottom
+  // right.
   const auto load = [&](size_t k, Eight* two) {
     FourFloats one, other;
     std::memcpy(&one, view.values + 2 * std::ptrdiff_t{cells.top_left[i][k]}, sizeof(one));

@@ -16,7 +16,7 @@ constexpr int kMaxChunks = 1 << 16;
 
 bool IsPng(std::string_view first_bytes) { return first_bytes.starts_with(kSignature); }
 
-// EXIF may come before or after the pixels.
+// The chunk with EXIF data may come before or after the pixels.
 std::optional<int> Orientation(const ImageBytes& file) {
   constexpr size_t kMaxExif = 1 << 16;
   std::uint64_t begin = kSignature.size();
@@ -32,8 +32,8 @@ std::optional<int> Orientation(const ImageBytes& file) {
   return std::nullopt;
 }
 
-// The chunk IHDR comes first: width, height. Where it does not, decoders go by one that comes
-// later.
+// Width and height from the chunk IHDR, which comes first. None if it does not, as decoders then
+// use one that comes later.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto ihdr = file.At(kSignature.size(), kHead + 8);
   if (!ihdr || !ihdr->starts_with("\0\0\0\rIHDR"sv)) return std::nullopt;

@@ -25,9 +25,10 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
   }
   NoteInput(path);
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);  // whose place is its size
+  std::ifstream stream(
+      path, std::ios::binary | std::ios::ate);  // opened at its end, which gives the size
   const std::streamoff size = std::max<std::streamoff>(0, stream.tellg());
-  constexpr std::streamoff kMaxSize = std::numeric_limits<int>::max();  // what OpenCV decodes
+  constexpr std::streamoff kMaxSize = std::numeric_limits<int>::max();  // limit of OpenCV's decoder
   if (size > kMaxSize) {
     throw InputError(fmt::format("{}: has {} bytes; expected an image of at most {}", path.string(),
                                  size, kMaxSize));
@@ -41,18 +42,18 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-// HEIF and what is made after it (ISO/IEC 14496-12), as newer phones write.
+// HEIF and formats derived from it (ISO/IEC 14496-12), which newer phones write.
 bool IsHeif(std::string_view file) { return file.size() > 8 && file.substr(4, 4) == "ftyp"; }
 
 constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
 
-// The format and header of an image that can be decoded, whose `bytes` end with it from here on.
+// Format and header of an image that can be decoded.
 struct CheckedFile {
   const ImageFormat* format;
   ImageHeader header;
 };
 
-// Before anything of its size is allocated.
+// Checks a file before anything of its size is allocated, and cuts `bytes` at the image's end.
 CheckedFile Check(const std::filesystem::path& path, std::vector<char>* bytes) {
   const std::string_view file(bytes->data(), bytes->size());
   const ImageFormat* format = FindImageFormat(file.substr(0, kSignatureSize));

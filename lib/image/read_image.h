@@ -8,9 +8,9 @@
 
 namespace soslam {
 
-// An image as grey values, CV_8UC1. JPEG, PNG, WebP, BMP or TIFF, of the latter the first page;
-// bytes after the image do not count. Throws InputError when the file is missing, empty, cut short,
-// not such an image, or larger than can be processed.
+// Reads an image as grey values, CV_8UC1. JPEG, PNG, WebP, BMP or TIFF, of the latter the first
+// page; bytes after the image are ignored. Throws InputError when the file is missing, empty,
+// truncated, not such an image, or larger than can be processed.
 cv::Mat ReadGreyImage(const std::filesystem::path& path,
                       ImageOrientation orientation = ImageOrientation::kUpright);
 
@@ -18,7 +18,7 @@ cv::Mat ReadGreyImage(const std::filesystem::path& path,
 cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height,
                       ImageOrientation orientation = ImageOrientation::kUpright);
 
-// An image in colour, CV_8UC3: blue, green, red. Otherwise as ReadGreyImage.
+// Reads an image in colour, CV_8UC3: blue, green, red. Otherwise like ReadGreyImage.
 cv::Mat ReadColourImage(const std::filesystem::path& path,
                         ImageOrientation orientation = ImageOrientation::kUpright);
 cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,

@@ -13,10 +13,10 @@
 
 namespace soslam {
 
-// A map whose values lie in memory row by row.
+// View of a map whose values are stored row by row.
 template <typename Scalar>
 struct MapView {
-  // At least 2 x 2 pixels, which the matrix keeps.
+  // The map has at least 2 x 2 pixels and must outlive the view.
   explicit MapView(const cv::Mat& map)
       : values(map.ptr<Scalar>()),
         step(static_cast<int>(map.step1())),
@@ -24,29 +24,29 @@ struct MapView {
         rows(map.rows) {}
 
   const Scalar* values;
-  int step;  // from row to row
+  int step;  // number of elements from row to row
   int columns;
   int rows;
 };
 
 using FourIntegers [[gnu::vector_size(4 * sizeof(int))]] = int;
 
-// GCC 12 converts vectors of integers in halves, but not their elements.
+// Element by element: GCC 12 would convert a vector of integers in halves.
 SOSLAM_IN_WIDE_LOOPS void Convert(const FourIntegers& from, Four* to) {
   *to = Four{static_cast<double>(from[0]), static_cast<double>(from[1]),
              static_cast<double>(from[2]), static_cast<double>(from[3])};
 }
 
-// Where the pixels of a batch lie between the pixel centres of a map. They are all located before
-// any is looked up: a processor then works on many, whereas both together have it wait.
+// Position of each pixel of a batch between the pixel centres of a map. All pixels are located
+// before any is looked up: alternating would make the processor wait for each lookup.
 struct alignas(kFourAlignment) Cells {
-  // The pixels from number i on.
+  // Locates the pixels from number i on.
   template <typename Scalar>
   SOSLAM_IN_WIDE_LOOPS void Locate(const MapView<Scalar>& map, const Four& x, const Four& y,
                                    size_t i) {
     const Four last_x = Four{} + (map.columns - 1.0);
     const Four last_y = Four{} + (map.rows - 1.0);
-    Four inside_x = x > 0.0 ? x : Four{};  // so of NaN
+    Four inside_x = x > 0.0 ? x : Four{};  // also for NaN
     Four inside_y = y > 0.0 ? y : Four{};
     inside_x = inside_x < last_x ? inside_x : last_x;
     inside_y = inside_y < last_y ? inside_y : last_y;
@@ -65,17 +65,17 @@ struct alignas(kFourAlignment) Cells {
     dy[i / 4] = inside_y - top;
   }
 
-  std::array<Four, kBatchSize / 4> dx;  // from the centre to the top left; NaN outside of the map
+  std::array<Four, kBatchSize / 4> dx;  // from the centre to the top left, px; NaN outside the map
   std::array<Four, kBatchSize / 4> dy;
   std::array<FourIntegers, kBatchSize / 4> top_left;  // offset of that centre in the map
 };
 
-// A map at the pixel centres around four pixels.
+// Map values at the four pixel centres around each of four pixels.
 struct FourCorners {
   Four top_left, top_right, bottom_left, bottom_right;
 };
 
-// Neighbours of a row are loaded together, and made numbers of in wide registers.
+// Loads horizontal neighbours in pairs and converts them in SIMD registers.
 SOSLAM_IN_WIDE_LOOPS void LoadPairs(const float* row, const FourIntegers& at, Four* left,
                                     Four* right) {
   using FourPairs [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;
@@ -120,27 +120,27 @@ SOSLAM_IN_WIDE_LOOPS void LoadCorners(const MapView<std::uint8_t>& map,
 
 // SampleBilinear at four pixels.
 struct SampleOfFour {
-  // From the number i of a batch.
+  // Takes the four pixels of a batch from number i on.
   template <typename Scalar>
   SOSLAM_IN_WIDE_LOOPS SampleOfFour(const MapView<Scalar>& map, const Cells& cells, size_t i)
       : dx(cells.dx[i / 4]), dy(cells.dy[i / 4]) {
     LoadCorners(map, cells.top_left[i / 4], &corners);
   }
 
-  // NaN or infinite where there is none.
+  // NaN or infinite where the map has no value.
   SOSLAM_IN_WIDE_LOOPS void Interpolate(Four* value) const {
     const Four top = (1.0 - dx) * corners.top_left + dx * corners.top_right;
     const Four bottom = (1.0 - dx) * corners.bottom_left + dx * corners.bottom_right;
     *value = (1.0 - dy) * top + dy * bottom;
   }
 
-  // By x and y; 0 where there is none.
+  // Derivatives by x and y; 0 where the map has no value.
   SOSLAM_IN_WIDE_LOOPS void Differentiate(Four* by_x, Four* by_y) const {
     const Four x = (1.0 - dy) * (corners.top_right - corners.top_left) +
                    dy * (corners.bottom_right - corners.bottom_left);
     const Four y = (1.0 - dx) * (corners.bottom_left - corners.top_left) +
                    dx * (corners.bottom_right - corners.top_right);
-    // x - x is NaN for what is infinite or NaN.
+    // x - x is NaN if x is infinite or NaN.
     const FourMask is_known = (x - x) + (y - y) == 0.0;
     *by_x = is_known ? x : Four{};
     *by_y = is_known ? y : Four{};

@@ -68,7 +68,7 @@ SOSLAM_WIDE_LOOPS void SampleFloats(const MapView<float>& map, const BatchOfPixe
 
 }  // namespace
 
-bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel) {  // not so of NaN
+bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel) {  // false for NaN
   return map.cols >= 2 && map.rows >= 2 &&                                      //
          pixel.x() >= 0.0 && pixel.x() <= map.cols - 1.0 &&                     //
          pixel.y() >= 0.0 && pixel.y() <= map.rows - 1.0;

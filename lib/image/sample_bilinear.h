@@ -14,15 +14,15 @@ struct Sample {
   Eigen::Vector2d gradient;  // d value / d pixel, of the bilinear patch (one-sided on its border)
 };
 
-// A CV_8UC1 or CV_32FC1 map between its pixel centres. Domain: [0, width - 1] x [0, height - 1] of
+// Bilinear interpolation of a CV_8UC1 or CV_32FC1 map. Domain: [0, width - 1] x [0, height - 1] of
 // maps of at least 2 x 2 pixels; none outside it (no clamping, which would have zero gradients),
 // and none where one of the four pixels around is not finite.
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
-// Whether a pixel is in that domain, but for values that are not finite.
+// True if a pixel is in that domain, whatever the map's values.
 bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel);
 
-// The values of many pixels: NaN or infinite where there is none. `gradients` may be null; they are
-// 0 where there is none.
+// The values at many pixels: NaN or infinite where there is none. `gradients` may be null; they are
+// 0 where there is no value.
 Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels,
                      BatchOfPixels* gradients = nullptr);
 

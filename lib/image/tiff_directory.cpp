@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr size_t kEntrySize = 12;  // tag 2, type 2, count 4, value or its place 4
+constexpr size_t kEntrySize = 12;  // tag 2, type 2, count 4, value or its offset 4
 
 std::optional<ByteOrder> OrderOf(std::string_view head) {
   if (head == "II*\0"sv) return ByteOrder::kLittleEndian;
@@ -16,7 +16,7 @@ std::optional<ByteOrder> OrderOf(std::string_view head) {
   return std::nullopt;
 }
 
-// The bytes of a BYTE, SHORT or LONG; 0 for other types.
+// Bytes per number of type BYTE, SHORT or LONG; 0 for other types.
 size_t BytesEach(std::uint64_t type) {
   constexpr size_t kBytes[] = {0, 1, 0, 2, 4};
   return type < std::size(kBytes) ? kBytes[type] : 0;

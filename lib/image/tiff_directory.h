@@ -12,26 +12,28 @@ namespace soslam {
 
 inline constexpr std::uint64_t kTiffOrientation = 274;
 
-// Numbers that a TIFF file has under a tag.
+// A tag of a TIFF file and its numbers.
 struct TiffEntry {
   std::uint64_t tag;
-  size_t bytes_each;    // 0: not whole numbers without sign
+  size_t bytes_each;    // bytes per number; 0 if they are not unsigned integers
   std::uint64_t count;  // as the file claims
-  std::uint64_t begin;  // in the file
+  std::uint64_t begin;  // offset in the file
 };
 
-// The first directory of a TIFF file (TIFF 6.0, section 2). EXIF is such a file within others.
+// The first directory of a TIFF file (TIFF 6.0, section 2). EXIF data are a TIFF file within
+// another.
 class TiffDirectory {
  public:
-  // None where it is no TIFF file, or cut short before the directory's end.
+  // None if the file is no TIFF file, or ends before the directory does.
   static std::optional<TiffDirectory> Read(const ImageBytes& file);
 
   ByteOrder order() const { return order_; }
-  // The first entry with this tag; none where there is none, or it has no whole numbers.
+  // The first entry with this tag; none if there is none, or its numbers are not unsigned integers.
   std::optional<TiffEntry> Find(std::uint64_t tag) const;
-  // How many entries have this tag.
+  // Number of entries with this tag.
   std::ptrdiff_t Count(std::uint64_t tag) const;
-  // The first number of the first entry; none where there is none, or it is not in the file.
+  // The first number of the first entry with this tag; none if there is none, or it is not in the
+  // file.
   std::optional<std::uint64_t> Number(std::uint64_t tag, const ImageBytes& file) const;
 
  private:
@@ -42,7 +44,7 @@ class TiffDirectory {
   std::vector<TiffEntry> entries_;
 };
 
-// The orientation that EXIF data say, 1 to 8; none where they say none.
+// The orientation in EXIF data, 1 to 8; none if they have none.
 std::optional<int> ExifOrientation(std::string_view exif);
 std::optional<int> ExifOrientation(const TiffDirectory& exif, const ImageBytes& file);
 

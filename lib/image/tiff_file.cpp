@@ -26,8 +26,9 @@ bool IsOneOf(std::uint64_t number, std::initializer_list<std::uint64_t> numbers)
   return std::ranges::find(numbers, number) != numbers.end();
 }
 
-// Whether pixels are stored in a way that is read: 1, 8 or 16 bits, up to four of them each;
-// plain, or packed by LZW, JPEG, deflate or runs; in strips, or in tiles that are not absurd.
+// True if the pixels are stored in a supported way: 1, 8 or 16 bits per sample, up to four samples;
+// uncompressed, or packed by LZW, JPEG, deflate or run lengths; in strips, or in tiles of a
+// plausible size.
 bool IsReadable(const TiffDirectory& directory, const ImageBytes& file) {
   constexpr std::uint64_t kMaxTileSide = 1 << 13;
   const auto number = [&](std::uint64_t tag, std::uint64_t otherwise) {
@@ -39,7 +40,7 @@ bool IsReadable(const TiffDirectory& directory, const ImageBytes& file) {
          number(kTileWidth, 0) <= kMaxTileSide && number(kTileHeight, 0) <= kMaxTileSide;
 }
 
-// Whether decoders cannot take another number than the first.
+// True if decoders cannot use any other value than the first: no tag is there twice.
 bool IsUnambiguous(const TiffDirectory& directory) {
   return std::ranges::all_of(
       std::initializer_list<std::uint64_t>{kWidth, kHeight, kBitsPerSample, kCompression,
@@ -49,7 +50,7 @@ bool IsUnambiguous(const TiffDirectory& directory) {
       [&](std::uint64_t tag) { return directory.Count(tag) <= 1; });
 }
 
-// What the first page claims.
+// Header of the first page.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto directory = TiffDirectory::Read(file);
   if (!directory || !IsUnambiguous(*directory) || !IsReadable(*directory, file)) {
@@ -62,7 +63,8 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
                      ExifOrientation(*directory, file).value_or(1)};
 }
 
-// Whether all numbers of two entries are in the file, and so is what they say: places and lengths.
+// True if all numbers of both entries are in the file, and so are the blocks (offset and length)
+// that they state.
 bool AreInFile(const TiffEntry& places, const TiffEntry& lengths, ByteOrder order,
                std::string_view file) {
   const auto number = [&](const TiffEntry& entry, std::uint64_t i) {
@@ -77,7 +79,7 @@ bool AreInFile(const TiffEntry& places, const TiffEntry& lengths, ByteOrder orde
   return true;
 }
 
-// Pages lie in any order: all of the file.
+// The size of the whole file, as pages lie in any order.
 std::optional<size_t> Length(std::string_view file) {
   const auto directory = TiffDirectory::Read(ImageBytes(file));
   if (!directory) return std::nullopt;
@@ -92,7 +94,7 @@ void ClearOrientation(std::span<char> file) {
   const ImageBytes bytes({file.data(), file.size()});
   const auto directory = TiffDirectory::Read(bytes);
   const auto entry = directory ? directory->Find(kTiffOrientation) : std::nullopt;
-  if (!entry || !directory->Number(kTiffOrientation, bytes)) return;  // not in the file
+  if (!entry || !directory->Number(kTiffOrientation, bytes)) return;  // value is not in the file
   const auto number = file.subspan(entry->begin, entry->bytes_each);
   std::ranges::fill(number, '\0');
   (directory->order() == ByteOrder::kBigEndian ? number.back() : number.front()) = 1;

@@ -18,7 +18,7 @@ bool IsWebp(std::string_view first_bytes) {
          first_bytes.size() == kSignatureSize;
 }
 
-// The canvas of a file of several chunks (VP8X), or the picture that is all there is, packed with
+// The canvas of a file of several chunks (VP8X), or the size of its only picture, compressed with
 // loss (VP8) or without (VP8L).
 std::optional<ImageSize> Size(const ImageBytes& file) {
   const auto chunk = file.At(kFirstChunk, kHead + 10);
@@ -47,7 +47,8 @@ std::optional<int> Orientation(const ImageBytes& file) {
     const std::uint64_t length = NumberFromBytes(std::string_view(*head).substr(4), kOrder);
     if (head->starts_with("EXIF"sv)) {
       const std::string data = file.UpTo(begin + kHead, std::min<size_t>(length, kMaxExif));
-      const bool has_name = data.starts_with("Exif\0\0"sv);  // as in JPEG, which some writers keep
+      const bool has_name =
+          data.starts_with("Exif\0\0"sv);  // prefix as in JPEG, which some writers keep
       return ExifOrientation(std::string_view(data).substr(has_name ? 6 : 0));
     }
     begin += kHead + length + length % 2;

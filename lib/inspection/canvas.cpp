@@ -22,7 +22,7 @@ std::string AsciiOf(std::string text) {
   std::string ascii;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool is_continuation = (byte & 0xc0) == 0x80;  // of a character in UTF-8
+    const bool is_continuation = (byte & 0xc0) == 0x80;  // of a UTF-8 character
     if (!is_continuation) ascii += byte >= 32 && byte < 127 ? c : '?';
   }
   return ascii;
@@ -54,7 +54,7 @@ Canvas::Canvas(const Camera& camera, cv::Mat* picture)
       scale_(static_cast<double>(picture->cols) / static_cast<double>(camera.width)) {}
 
 cv::Point Canvas::Place(const Eigen::Vector2d& pixel) const {
-  // (0, 0) is the centre of the first pixel, of the camera and of the picture.
+  // (0, 0) is the centre of the first pixel, both of the camera and of the picture.
   const Eigen::Vector2d place =
       (1 << kFractionBits) *
       (scale_ * (pixel + Eigen::Vector2d::Constant(0.5)) - Eigen::Vector2d::Constant(0.5));
@@ -99,7 +99,7 @@ void Canvas::Segment(const Eigen::Vector3d& begin_in_camera, const Eigen::Vector
 void Canvas::Arrow(const Eigen::Vector3d& begin_in_camera, const Eigen::Vector3d& end_in_camera,
                    const Stroke& stroke) {
   if (begin_in_camera.z() < kNearM || end_in_camera.z() < kNearM) return;
-  constexpr double kHeadPx = 9.0;  // of the picture
+  constexpr double kHeadPx = 9.0;  // in pixels of the picture
   const Eigen::Vector2d begin = *camera_.Project(begin_in_camera);
   const Eigen::Vector2d end = *camera_.Project(end_in_camera);
   const Eigen::Vector2d shaft = end - begin;

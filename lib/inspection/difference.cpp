@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-// Compares numbers of two arrays of one length; none when all are equal.
+// Compares two arrays of numbers of the same length; none when all are equal.
 std::optional<Difference> CompareNumbers(const std::string& place, const std::vector<double>& one,
                                          const std::vector<double>& two, double tolerance) {
   Difference found{place, "", "", 0.0, 0.0, 0, one.size()};
@@ -29,7 +29,7 @@ std::optional<Difference> CompareNumbers(const std::string& place, const std::ve
     const double size = std::max(std::abs(one[i]), std::abs(two[i]));
     if (absolute <= tolerance * std::max(size, 1.0)) continue;
     ++found.differing;
-    // Not a number counts as farther than any.
+    // NaN counts as a larger difference than any other.
     if (found.one.empty() || absolute > *found.absolute || std::isnan(absolute)) {
       found.absolute = absolute;
       found.one = fmt::format("{}", one[i]);
@@ -40,7 +40,7 @@ std::optional<Difference> CompareNumbers(const std::string& place, const std::ve
   return found.differing > 0 ? std::optional(found) : std::nullopt;
 }
 
-// Appends the numbers of arrays within arrays; false where there is anything else.
+// Appends the numbers of nested arrays; false if there is anything other than numbers.
 bool Flatten(const json& value, std::vector<double>* numbers) {
   if (value.is_number()) numbers->push_back(value.get<double>());
   if (!value.is_array()) return value.is_number();
@@ -87,7 +87,7 @@ class JsonComparison {
     for (const std::string& key : keys) CompareItems(find(one, key), find(two, key), place / key);
   }
 
-  // Null: only the other one has it.
+  // A null pointer means that only the other artefact has the item.
   void CompareItems(const json* one, const json* two, const json::json_pointer& place) {
     if (one != nullptr && two != nullptr) return Compare(*one, *two, place);
     const auto text = [](const json* value) { return value == nullptr ? "" : Excerpt(*value); };
@@ -108,7 +108,7 @@ class Hdf5Comparison {
                  std::vector<Difference>* differences)
       : one_(one), two_(two), tolerance_(tolerance), differences_(differences) {}
 
-  // `group` ends in a slash; both have it.
+  // `group` ends in a slash and is in both files.
   void CompareGroup(const std::string& group) {
     CompareAttributes(group);
     for (const std::string& name : Union(one_.Children(group), two_.Children(group))) {
@@ -134,7 +134,7 @@ class Hdf5Comparison {
     return all;
   }
 
-  // All but the artefact's header.
+  // Compares all attributes except the artefact's header.
   void CompareAttributes(const std::string& owner) {
     for (const std::string& name : Union(one_.Attributes(owner), two_.Attributes(owner))) {
       if (owner == "/" && name == kHeaderAttribute) continue;

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// How many rows have each value of a field.
+// Number of rows for each value of a field.
 std::string FrequenciesInWords(const json& rows, const char* field) {
   std::map<std::string, int> counts;
   for (const json& row : rows) ++counts[row.at(field)];

@@ -41,8 +41,8 @@ std::vector<ValueColumn> EstimateColumns() {
           {"failure", ""}};
 }
 
-// Centre, half axes, shape exponent and yaw about the object's own z axis; empty cells without a
-// landmark.
+// Centre, half axes, shape exponent and yaw about the object's own z axis; empty cells if there is
+// no landmark.
 std::vector<Value> CellsOf(const std::optional<Landmark>& landmark) {
   if (!landmark) return std::vector<Value>(8);
   const Eigen::Vector3d& centre = landmark->Centre();
@@ -58,8 +58,8 @@ std::vector<Value> CellsOf(const std::optional<Landmark>& landmark) {
           kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)};
 }
 
-// Standard deviations: of the centre, over all directions; of the yaw; of the half axes, the root
-// mean square of all three.
+// Standard deviations: of the centre over all directions, of the yaw, and the root mean square over
+// the three half axes.
 std::vector<Value> SigmasOf(const ObjectEstimate& estimate) {
   if (!estimate.covariance || !estimate.landmark_in_world) return std::vector<Value>(3);
   const Covariance9& covariance = *estimate.covariance;
@@ -106,7 +106,7 @@ std::vector<Value> ObjectRow(const json& fields, const std::optional<Sequence>& 
   return row;
 }
 
-// How many of the rows have a landmark.
+// Number of rows that have a landmark.
 std::string FoundInWords(const json& rows, const char* name, const char* field) {
   const auto found = std::ranges::count_if(
       rows, [&](const json& row) { return !row.at(field).empty() && !row.at(field).is_null(); });
@@ -143,7 +143,7 @@ std::vector<Fact> SolverInWords(const json& solver) {
   return facts;
 }
 
-// The length of the way from frame to frame.
+// Length of the path from frame to frame.
 std::string TrajectoryInWords(const json& trajectory) {
   double length = 0.0;
   for (size_t i = 1; i < trajectory.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What was found in images: rows are the frames of edges, the observations of symmetry.
+// Results from images: rows are the frames for edges, the observations for symmetry.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ std::vector<Value> FrameRow(int frame_id, const EdgeMaps& maps) {
   const auto pixels = static_cast<double>(maps.edges.total());
   double farthest = 0.0;
   cv::minMaxLoc(maps.distance, nullptr, &farthest);
-  const bool has_edges = edges > 0;  // distances are infinite otherwise
+  const bool has_edges = edges > 0;  // otherwise distances are infinite
   return {frame_id,
           maps.grey.cols,
           maps.grey.rows,

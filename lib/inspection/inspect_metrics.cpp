@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Metrics: rows are objects, or landmarks where nobody says which object is which.
+// Metrics: rows are objects, or landmarks if their true objects are unknown.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::string OrDash(const json& number, int decimals) {
   return number.is_null() ? "-" : fmt::format("{:.{}f}", number.get<double>(), decimals);
 }
 
-// Mean and median of what has both.
+// Means and medians of a summary.
 std::string SummaryInWords(const json& summary) {
   const auto both = [&](const std::string& name, int decimals) {
     return fmt::format("{} (median {})", OrDash(summary.at(name + "_mean"), decimals),
@@ -52,7 +52,7 @@ std::vector<Value> Cells(const json& object, const std::vector<const char*>& fie
   return cells;
 }
 
-// One row per object with ground truth, and per landmark that was looked for in held-out frames.
+// One row per object with ground truth, and per landmark that was evaluated in held-out frames.
 ValueTable ObjectTable(const json& document) {
   std::map<int, json> by_id;
   for (const json& object : document.at("objects")) by_id[object.at("object")] = object;

@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-// "1 sofa, 3 armchair (lowest_cost)": of its views, where no reason is named.
+// "1 sofa, 3 armchair (lowest_cost)"; without a reason if the plane follows from an object's own
+// views.
 std::string ObjectsOn(const json& plane, const json& objects) {
   std::vector<std::string> words;
   for (const json& object : objects) {

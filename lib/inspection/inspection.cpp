@@ -71,7 +71,7 @@ std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
   return facts;
 }
 
-// Broken between words where it is too wide; lines after the first are indented.
+// Breaks a text between words where it is too wide; lines after the first are indented.
 std::string Wrapped(const std::string& text, size_t indent) {
   std::istringstream words(text);
   std::string wrapped;

@@ -12,24 +12,25 @@
 
 namespace soslam {
 
-// One thing that is said about an artefact in words.
+// A statement about an artefact in words.
 struct Fact {
   std::string name;  // "trajectory"
   std::string text;
 };
 
-// An artefact as a person reads it.
+// A readable summary of an artefact.
 struct Inspection {
-  std::string title;  // what it is
+  std::string title;  // file, kind and description
   std::vector<Fact> facts;
   ValueTable table;
 };
 
-// Reads an artefact of any kind. `sequence`, where it is known, gives objects their labels. Throws
-// InputError for what is no artefact, of an unknown kind, newer than this software or damaged.
+// Reads an artefact of any kind. `sequence`, if known, supplies the labels of objects. Throws
+// InputError for a file that is no artefact, of an unknown kind, newer than this software or
+// damaged.
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
 
-// For a terminal: title, facts, table. `is_coloured`: with escape sequences.
+// Text for a terminal: title, facts, table. `is_coloured`: with escape sequences.
 std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 
 // "3 near_border, 2 duplicate", the most frequent first; "none" when there are none.

@@ -5,7 +5,7 @@
 
 namespace soslam {
 
-// What is in an artefact of each kind: Inspect adds title and provenance. Errors as there.
+// Contents of an artefact of each kind; Inspect adds title and provenance. Errors as there.
 Inspection InspectAssociations(const std::filesystem::path& file);
 Inspection InspectEdges(const std::filesystem::path& file);
 Inspection InspectLandmarks(const std::filesystem::path& file,
@@ -18,7 +18,7 @@ Inspection InspectSequence(const std::filesystem::path& file);
 Inspection InspectSymmetry(const std::filesystem::path& file,
                            const std::optional<Sequence>& sequence);
 
-// The label of an object by its id; nothing without a sequence that has it.
+// The label of an object by its id; null without a sequence that has it.
 Value LabelOf(const std::optional<Sequence>& sequence, int object_id);
 
 }  // namespace soslam

@@ -33,7 +33,7 @@ std::string ScoreInWords(const json& score) {
       OrDash(score.at("f1_of_detectable"), 3));
 }
 
-// Means of absolute values.
+// Means over the found landmarks, of absolute values.
 std::string FoundInWords(const json& score) {
   const json& found = score.at("of_found");
   const json& log_size = found.at("log_size_abs_mean");

@@ -8,11 +8,11 @@
 
 namespace soslam {
 
-// What map_quality of metrics.json says of the map as a whole, and why objects are missed and
-// landmarks false, one by one as far as they are few.
+// Summary of map_quality of metrics.json: the map as a whole, and the reasons for missed objects
+// and false landmarks, one by one if they are few.
 std::vector<Fact> MapQualityFacts(const nlohmann::json& quality);
 
-// A row for each landmark.
+// One row for each landmark.
 ValueTable MapQualityTable(const nlohmann::json& quality);
 
 }  // namespace soslam

@@ -28,7 +28,7 @@ std::string CaptionOf(const Object& object) {
   return fmt::format("{} {}", object.id, object.label);
 }
 
-// A point of a landmark by its coordinates in multiples of the half axes.
+// A point of a landmark, given in multiples of the half axes.
 Eigen::Vector3d PointOf(const Landmark& landmark, const Eigen::Vector3d& multiples) {
   return landmark.frame_from_object * landmark.half_axes.cwiseProduct(multiples);
 }
@@ -62,7 +62,7 @@ void DrawBody(const OverlayInput::Body& body, const Camera& camera, Canvas* canv
   DrawAxes(body.landmark_in_camera, kLandmarkStroke, kLandmarkAxis, canvas);
 }
 
-// On top of all lines.
+// Drawn last, on top of all lines.
 void DrawCaptions(const OverlayInput& input, Canvas* canvas) {
   for (const auto& [landmark, caption] : input.landmarks) {
     const auto outline = OutlineBox(input.camera, landmark);
@@ -78,11 +78,11 @@ void DrawCaptions(const OverlayInput& input, Canvas* canvas) {
 struct Grid {
   Rigid3d camera_from_plane;
   double cell;
-  Eigen::Vector2i first, last;  // lines, by their number from the plane's origin
+  Eigen::Vector2i first, last;  // numbers of lines, counted from the plane's origin
 };
 
-// Around the feet, with as large a cell that there are few lines, and wide enough to be seen from
-// the camera.
+// A grid around the contact points, with cells large enough for few lines, and wide enough to be
+// seen from the camera.
 Grid GridOf(const OverlayInput::Ground& ground) {
   constexpr std::array kCells = {0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0};
   constexpr double kMaxCells = 10.0;
@@ -127,7 +127,8 @@ void DrawGrid(const Grid& grid, const Camera& camera, cv::Mat* image) {
   *image = (1.0 - kGridOpacity) * *image + kGridOpacity * drawn;
 }
 
-// Feet of detections by plane; `planes_in_camera`, where not empty, replace those of detections.
+// Contact points of detections by plane; `planes_in_camera`, if not empty, replace those of
+// detections.
 std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_index,
                                             const std::vector<Plane>& planes_in_camera) {
   std::map<int, OverlayInput::Ground> by_plane;
@@ -148,7 +149,7 @@ std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_
   return grounds;
 }
 
-// The landmarks of objects whose outline reaches into the image. Those that are not detected there
+// The landmarks of objects whose outline box overlaps the image. Those that are not detected there
 // have captions.
 std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
                                               const std::vector<ObjectEstimate>& estimates,

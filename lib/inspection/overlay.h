@@ -16,7 +16,7 @@
 
 namespace soslam {
 
-// What is drawn over one frame's image. Everything is in the frame of its camera.
+// Items to draw over one frame's image. All are in the frame of its camera.
 struct OverlayInput {
   struct DetectedBox {
     Box box;
@@ -24,11 +24,11 @@ struct OverlayInput {
   };
   struct Body {
     Landmark landmark_in_camera;
-    std::string caption;  // empty where the detection has it
+    std::string caption;  // empty if the detection has the caption
   };
   struct Ground {
     Plane plane_in_camera;
-    std::vector<Eigen::Vector3d> feet_in_camera;  // on the plane: a grid is drawn around them
+    std::vector<Eigen::Vector3d> feet_in_camera;  // contact points: a grid is drawn around them
   };
 
   Camera camera = {};
@@ -38,25 +38,26 @@ struct OverlayInput {
   std::vector<Body> landmarks = {};
 };
 
-// What a frame of the sequence says: its detections, the ground truth of what was detected, and the
-// support planes below.
+// The data of a frame of the sequence: its detections, the ground truth of the detected objects,
+// and the support planes.
 OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index);
 
-// The same, and the landmarks of the frame's observations: the best hypothesis of each; or where
-// there are no estimates from single frames, those of the objects that are in the image, seen from
-// the estimated pose.
+// The same, and the landmarks of the frame's observations: the best hypothesis of each. If there
+// are no single-frame estimates, the landmarks of the objects that are in the image, seen from the
+// estimated pose.
 OverlayInput OverlayOfLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
                                 int frame_index);
 
 // The same, and the landmarks of the map that are in the image, with poses and planes of the map.
 OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int frame_index);
 
-// Draws on `image`, CV_8UC3, what the camera of `input` sees, of its size or a whole multiple of it
-// (see DrawingGround): detections as boxes, landmarks by their outline and axes, the ground truth
-// as boxes circumscribed about it, as for IoU, support planes as grids. An arrow is a body's front.
+// Draws on `image` (CV_8UC3), which shows the view of `input`'s camera in its size or a whole
+// multiple of it (see DrawingGround): detections as boxes, landmarks by their silhouette and axes,
+// the ground truth as circumscribed boxes as for IoU, support planes as grids. An arrow marks an
+// object's front.
 void DrawOverlay(const OverlayInput& input, cv::Mat* image);
 
-// What DrawOverlay draws, for WithCaption.
+// Legend of DrawOverlay, for WithCaption.
 std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input);
 
 }  // namespace soslam

@@ -12,7 +12,7 @@
 namespace soslam {
 namespace {
 
-// A camera of which only the size matters: for drawing in pixels.
+// A camera of which only the size matters, for drawing in pixels.
 Camera CameraOfSize(const cv::Mat& image) { return {.width = image.cols, .height = image.rows}; }
 
 cv::Mat WithCorners(const EdgeMaps& maps, int min_width) {
@@ -24,7 +24,7 @@ cv::Mat WithCorners(const EdgeMaps& maps, int min_width) {
   return picture;
 }
 
-// Infinite distances, of an image without edges, are dark.
+// Infinite distances (an image without edges) are dark.
 cv::Mat DistancePicture(const cv::Mat& distance, double largest) {
   cv::Mat scaled = cv::Mat::zeros(distance.size(), CV_8UC1);
   if (largest > 0.0) distance.convertTo(scaled, CV_8U, 255.0 / largest);
@@ -40,7 +40,7 @@ cv::Vec3b HueOf(const cv::Point2f& direction) {
   return {hue, 200, 255};
 }
 
-// The colours of all directions, at the lower right.
+// A legend of the colours of all directions, at the lower right.
 void DrawColourWheel(cv::Mat* hues) {
   const int radius = std::min(hues->rows, hues->cols) / 10;
   const cv::Point centre(hues->cols - radius - 4, hues->rows - radius - 4);
@@ -54,7 +54,7 @@ void DrawColourWheel(cv::Mat* hues) {
   }
 }
 
-// Edge pixels, and all where there are none, are black.
+// Edge pixels are black; without edges all pixels are.
 cv::Mat DirectionPicture(const cv::Mat& nearest_edge) {
   cv::Mat hues = cv::Mat::zeros(nearest_edge.size(), CV_8UC3);
   for (int y = 0; y < hues.rows; ++y) {
@@ -94,7 +94,7 @@ cv::Mat LayerPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& t
   }
 }
 
-// The part of an image around pairs of pixels, with as much around it as it is large.
+// The part of an image around pairs of pixels, with a margin in proportion to its size.
 cv::Rect AroundPairs(const SymmetryRecord& record, const cv::Size& size) {
   std::vector<cv::Point2f> points;
   for (const auto* pixels : {&record.samples, &record.mirrored}) {

@@ -10,16 +10,16 @@
 
 namespace soslam {
 
-// What a picture of a frame's edge maps shows.
+// Layers of a picture of a frame's edge maps.
 enum class EdgeLayer { kAll, kGrey, kEdges, kDistance, kNearest };
 inline constexpr std::array kEdgeLayerNames = {"all", "grey", "edges", "distance", "nearest"};
 
-// The layer, or all of them side by side, in colour (CV_8UC3), each with a caption: the image with
-// its corners; the edges; the distance transform, bright where it is large; the direction to the
+// One layer, or all of them side by side, in colour (CV_8UC3), each with a caption: the image with
+// its corners; the edges; the distance transform, bright for large distances; the direction to the
 // nearest edge as hue.
 cv::Mat EdgesPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title);
 
-// The pixels that count for symmetry and their mirror pixels, joined in pairs, on the part of
+// The pixels that are used for symmetry and their mirror pixels, joined in pairs, on the part of
 // `image` (CV_8UC1) around them.
 cv::Mat SymmetryPicture(const SymmetryRecord& record, const cv::Mat& image,
                         const std::string& title);

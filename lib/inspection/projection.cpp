@@ -12,7 +12,7 @@ namespace {
 constexpr int kOutlineDirections = 90;
 constexpr double kOutlineTolerancePx = 0.5;
 constexpr double kGridSpacingM = 0.5;
-constexpr double kGridMarginM = 0.5;  // around what stands on the plane
+constexpr double kGridMarginM = 0.5;  // around the contact points
 
 }  // namespace
 

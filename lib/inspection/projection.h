@@ -15,23 +15,23 @@ using Polygon = std::vector<Eigen::Vector2d>;         // px, closed by its first
 using LineSegment2 = std::array<Eigen::Vector2d, 2>;  // px
 using LineSegment3 = std::array<Eigen::Vector3d, 2>;  // m
 
-// The outline of the landmark in the image, from its corners or 90 directions; empty unless the
+// The silhouette of the landmark in the image, from its corners or 90 directions; empty unless the
 // whole landmark is in front of the camera.
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera);
 
-// The axes from the landmark's centre to the middle of its faces x (the front), y and z; none
-// unless all of these are in front of the camera.
+// The axes from the landmark's centre to the centres of its faces x (the front), y and z; none
+// unless all of these points are in front of the camera.
 std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
                                                          const Landmark& landmark_in_camera);
 
-// The part of a segment that is farther than kNearM (m) in front of the camera: what is nearer
-// leaves any image. None when nothing is.
+// The part of a segment that is farther than kNearM (m) in front of the camera. None if there is no
+// such part.
 inline constexpr double kNearM = 0.05;
 std::optional<LineSegment2> ProjectSegment(const Camera& camera, const LineSegment3& in_camera);
 
-// Lines of a square grid on the plane around points on or near it, both ways, half a metre apart
-// or, on planes larger than kMaxGridLines such squares, so many times farther that they are no
-// more. At least one point. In the plane's frame.
+// Lines in both directions of a square grid on the plane, around points on or near it. Half a metre
+// apart, or by a multiple that keeps the number of lines within kMaxGridLines. `points` must not be
+// empty. In the plane's frame.
 inline constexpr int kMaxGridLines = 12;
 std::vector<LineSegment3> PlaneGrid(const Plane& plane, const std::vector<Eigen::Vector3d>& points);
 

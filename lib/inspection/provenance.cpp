@@ -48,8 +48,8 @@ const std::vector<Maker>& Makers() {
   return makers;
 }
 
-// Headers do not name the stage: it is the one whose options have the names of the settings, of
-// which older versions may have fewer.
+// Headers do not name the stage. It is the one whose options share most names with the settings
+// (older versions may have fewer).
 const Maker* MakerOf(const std::string& kind, const json& settings) {
   const Maker* best = nullptr;
   size_t most = 0;
@@ -75,7 +75,7 @@ std::string SettingsInWords(const json& settings, const json& defaults) {
   return words.empty() ? "all as by default" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-// By name; many of one extension, such as images, by their number.
+// Lists inputs by name; if many have the same extension, such as images, by their number.
 std::string InputsInWords(const json& inputs) {
   constexpr size_t kMaxNames = 6;
   std::map<std::string, std::vector<std::string>> by_extension;

@@ -8,8 +8,8 @@
 
 namespace soslam {
 
-// What an artefact's header says of its making: stage and software, inputs, and the settings that
-// are not those that the stage has by default.
+// Provenance of an artefact by its header: stage and software, inputs, and the settings that differ
+// from the stage's defaults.
 std::vector<Fact> Provenance(const nlohmann::json& header);
 
 }  // namespace soslam

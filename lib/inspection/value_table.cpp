@@ -30,7 +30,7 @@ std::string NameForCsv(const ValueColumn& column) {
   return column.name + "_" + (column.unit == "%" ? "percent" : column.unit);
 }
 
-// A column as it is printed: name, unit, then one text per row.
+// A column as printed: name, unit, then one text per row.
 struct PrintedColumn {
   std::vector<std::string> texts;
   size_t width = 0;
@@ -54,7 +54,7 @@ std::vector<PrintedColumn> PrintedColumns(const ValueTable& table) {
   return printed;
 }
 
-// Texts to the left, numbers to the right.
+// Texts are aligned left, numbers right.
 std::string PrintedLine(const std::vector<PrintedColumn>& columns, size_t line) {
   std::string text;
   for (const PrintedColumn& column : columns) {

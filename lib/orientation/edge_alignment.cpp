@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// What the points of a batch are where the landmark is.
+// The points of a batch, transformed and projected for one landmark.
 struct Projection {
   BatchOfVectors in_object;
   BatchOfVectors from_centre;  // in the camera frame
@@ -56,12 +56,12 @@ SOSLAM_WIDE_LOOPS void Project(const Camera& camera, const Landmark& landmark,
   }
 }
 
-// D / sqrt(1 + D^2 / tau^2) of a distance, tau where there is none: the limit of ever larger ones;
-// and its derivative. Both 0 for what is not a point.
+// D / sqrt(1 + D^2 / tau^2) of a distance D, and its derivative. If there is no distance, tau, the
+// limit for large ones. Both are 0 for padding.
 void Truncate(const Batch& distance, const Batch& is_point, double tau, Batch* residual,
               Batch* slope) {
   const Batch inverse_root = (1.0 + (distance / tau).square()).sqrt().inverse();
-  const auto is_seen = inverse_root > 0.0;  // not so of NaN
+  const auto is_seen = inverse_root > 0.0;  // false for NaN
   *residual = is_point * is_seen.select(distance * inverse_root, tau);
   *slope = is_point * is_seen.select(inverse_root.cube(), 0.0);
 }
@@ -73,7 +73,7 @@ SOSLAM_WIDE_LOOPS void Differentiate(const Camera& camera, const Eigen::Matrix3d
   const double fx = camera.fx, fy = camera.fy;
   auto& [w_x, w_y, w_z, c_x, c_y, c_z, log_a, log_b, log_c] = batch->by_landmark;
   for (int i = 0; i < kBatchSize; ++i) {
-    // By the point in the camera frame.
+    // Derivatives by the point in the camera frame.
     const bool is_seen = slope[i] > 0.0;
     const double seen_inverse_depth = is_seen ? at.inverse_depth[i] : 0.0;
     const double scale = slope[i] * seen_inverse_depth;
@@ -118,7 +118,7 @@ EdgeTerm::EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
                         : std::cos(options.edge_direction_tolerance_deg * kRadPerDeg)) {
   std::vector<ModelPoint> points =
       VisibleModelPoints(camera, start_in_camera, options.edge_spacing_px);
-  // Of a body that is not in front of the camera no point counts.
+  // A landmark that is not in front of the camera has no usable points.
   const auto count = static_cast<double>(std::max<size_t>(1, points.size()));
   std::erase_if(points, [&](const ModelPoint& point) { return !Counts(point, start_in_camera); });
   points_that_do_not_count_ = count - static_cast<double>(points.size());

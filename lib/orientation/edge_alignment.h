@@ -16,40 +16,42 @@
 
 namespace soslam {
 
-// What edges are compared with in one frame.
+// Edges of one image, with which the edges of landmarks are compared.
 struct FrameEdges {
   explicit FrameEdges(EdgeMaps edge_maps);
 
   EdgeMaps maps;
-  cv::Mat slope_x, slope_y;  // CV_32FC1: across the edge through each edge pixel, of any length
+  cv::Mat slope_x,
+      slope_y;  // CV_32FC1: image gradient, orthogonal to the edge through each edge pixel
 };
 
-// The same for one observation.
+// The edges as seen by one observation.
 struct EdgeImage {
   std::shared_ptr<const FrameEdges> frame;
   Box box;                        // of the observation
-  std::vector<Box> nearer_boxes;  // of objects that may hide this one
+  std::vector<Box> nearer_boxes;  // of objects that may occlude this one
 };
 
-// How far the visible edges of a body lie from edges in the image. Each model point costs its
-// distance to the nearest edge pixel (px / sigma), truncated softly (Geman-McClure). Points count
-// as one observation for every options.edge_correlation_px of the box's perimeter, since neighbours
-// on an edge say the same.
+// Distance of an object's visible edges from edges in the image. Each model point costs its
+// distance to the nearest edge pixel (px / sigma) under a Geman-McClure loss. All points together
+// have the weight of one observation per options.edge_correlation_px of the box's perimeter, since
+// errors of neighbouring points are correlated.
 //
-// Which points count is decided where the term is made, on the start: those inside the image,
-// outside nearer boxes, and with an image edge nearest to them that runs their way. The others cost
-// as much as a point far from any edge: an edge that is not seen speaks for no landmark.
+// The points to use are chosen at construction, for the initial landmark: those inside the image,
+// outside nearer boxes, and whose nearest image edge has about their direction. The others cost as
+// much as a point far from any edge, whatever the landmark: an edge that is not seen supports no
+// landmark.
 class EdgeTerm final : public LandmarkCost {
  public:
   EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
            const Landmark& start_in_camera, const EdgeOptions& options);
 
-  // Those that count.
+  // Number of points that are used.
   int NumPoints() const { return num_points_; }
-  // The share of the largest possible cost that a landmark near the start does not have: 1 when all
+  // Fraction of the largest possible cost that a landmark near the initial one avoids: 1 when all
   // its points lie on edges, 0 when none is near one.
   double Support(const Landmark& landmark_in_camera) const;
-  // Scales the cost.
+  // Multiplies the cost by a factor.
   void Weigh(double factor) { weight_ *= factor; }
 
   double Value(const Landmark& landmark_in_camera) const override;
@@ -60,7 +62,7 @@ class EdgeTerm final : public LandmarkCost {
  private:
   bool Counts(const ModelPoint& point, const Landmark& start_in_camera) const;
   void Keep(const std::vector<ModelPoint>& points);
-  // Of one point.
+  // Largest cost of one point.
   double LargestCost() const {
     return 0.5 * weight_ * options_.edge_truncation_px * options_.edge_truncation_px;
   }
@@ -68,17 +70,17 @@ class EdgeTerm final : public LandmarkCost {
   std::shared_ptr<const EdgeImage> image_;
   Camera camera_;
   EdgeOptions options_;
-  double least_cosine_;  // of the angle between a model point's direction and its edge's
+  double least_cosine_;  // cosine of edge_direction_tolerance_deg
   std::vector<BatchOfVectors> in_unit_body_;
-  std::vector<Batch> is_point_;  // 1, and 0 behind the last point of the last batch
+  std::vector<Batch> is_point_;  // 1 for points, 0 for the padding of the last batch
   int num_points_ = 0;
   double points_that_do_not_count_ = 0.0;
-  double weight_;  // of a squared distance in px
+  double weight_;  // of a squared distance in px^2
 };
 
-// The same for the back end, its cost multiplied by `weight` and by the square of the start's
-// support: where a body's edges are not seen in the image, as those of a chair's cuboid are not,
-// what they happen to lie near says nothing.
+// EdgeTerm for the back end, with its cost multiplied by `weight` and by the square of the start's
+// support: if an object's model edges are not visible in the image, as for the cuboid of a chair,
+// the edges that happen to be near carry no information.
 EdgeTerm SupportedEdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
                            const Landmark& start_in_camera, const EdgeOptions& options,
                            double weight);

@@ -9,8 +9,8 @@
 namespace soslam {
 namespace {
 
-// A texture counts as symmetric when it costs less than this share of the largest possible cost:
-// when most of its pairs are.
+// A texture counts as symmetric when its cost is below this fraction of the largest possible cost,
+// that is when most of its pairs are symmetric.
 constexpr double kSymmetricShare = 0.5;
 
 }  // namespace
@@ -26,7 +26,7 @@ std::optional<int> MirrorPlanes(const std::vector<double>& grid,
         nearest = i;
       }
     }
-    // The grid may be coarser than the dip is wide.
+    // The grid may be coarser than the minimum is wide, so its neighbours are included.
     const size_t n = grid.size();
     double lowest = options.asymmetry_cost;
     for (const size_t i : {nearest + n - 1, nearest, nearest + 1}) {

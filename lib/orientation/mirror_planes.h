@@ -8,9 +8,9 @@
 
 namespace soslam {
 
-// In how many vertical planes a texture is symmetric, from its TextureAsymmetry::Cost over a grid
-// of yaws (rad, half a turn): where it is low at `yaw` and a quarter turn from it, 2; where at
-// `yaw` alone, 1; else 0. None where too few pairs are visible to tell, which costs all of options'
+// Number of vertical planes in which a texture is symmetric, from its TextureAsymmetry::Cost over a
+// grid of yaws (rad, half a turn): 2 if it is low at `yaw` and a quarter turn from it, 1 if low at
+// `yaw` alone, else 0. None if too few pairs are visible to decide, where the cost is options'
 // asymmetry_cost.
 std::optional<int> MirrorPlanes(const std::vector<double>& grid,
                                 const std::vector<double>& texture_cost, double yaw,

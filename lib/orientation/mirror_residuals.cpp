@@ -21,7 +21,7 @@ struct MirrorImages {
   BatchOfPixels pixels;
 };
 
-// `place` (m) is that of the mirror plane along the object's y axis.
+// `place` (m) is the offset of the mirror plane along the object's y axis.
 SOSLAM_WIDE_LOOPS void Mirror(const Camera& camera, const BodyInCamera& body,
                               const BatchOfVectors& points, double place, MirrorImages* images) {
   const Eigen::Matrix3d rotation = body.rotation;
@@ -43,8 +43,8 @@ SOSLAM_WIDE_LOOPS void Mirror(const Camera& camera, const BodyInCamera& body,
   }
 }
 
-// The derivative of a map's value at a mirror image's pixel by that image; in the object frame, 0
-// where `scale` is.
+// The derivative of a map's value at the pixel of a mirror image by that image, in the object
+// frame; 0 where `scale` is 0.
 SOSLAM_WIDE_LOOPS void ByImage(const Camera& camera, const Eigen::Matrix3d& rotation,
                                const MirrorImages& images, const BatchOfPixels& gradients,
                                const Batch& scale, BatchOfVectors* by_image) {
@@ -67,16 +67,16 @@ SOSLAM_WIDE_LOOPS void ByImage(const Camera& camera, const Eigen::Matrix3d& rota
   }
 }
 
-// What v . d(mirror image) is by the landmark, all in the object frame: x the point on the ray d
-// where the body is met, n its gradient there (n . x = 1). A change of the body moves x by k d
+// Writes v . d(mirror image) / d landmark, all in the object frame: x is the intersection of the
+// ray d with the surface, n the gradient there (n . x = 1). A change of the landmark moves x by k d
 // along the ray, k (n . d) = n . dc + dw . (x x n) + sum_i x_i n_i dlog(s_i). The plane y = m
-// mirrors x, and turns and moves with the body.
+// mirrors x, and rotates and moves with the landmark.
 SOSLAM_WIDE_LOOPS void ByBody(const RayBatch& rays, const BatchOfVectors& v, double m,
                               ResidualBatch* rows) {
   auto& [w_x, w_y, w_z, c_x, c_y, c_z, log_a, log_b, log_c] = rows->by_landmark;
   for (int i = 0; i < kBatchSize; ++i) {
     const double v_x = v[0][i], v_y = v[1][i], v_z = v[2][i];
-    // A ray that meets nothing has no point, and nothing that changes with it.
+    // A ray that misses the surface has no point and no derivative.
     const bool is_still = v_x == 0.0 && v_y == 0.0 && v_z == 0.0;
     const double x = is_still ? 0.0 : rays.point[0][i];
     const double y = is_still ? 0.0 : rays.point[1][i];
@@ -95,7 +95,7 @@ SOSLAM_WIDE_LOOPS void ByBody(const RayBatch& rays, const BatchOfVectors& v, dou
     c_x[i] = k * n_x;
     c_y[i] = k * n_y + 2.0 * v_y;
     c_z[i] = k * n_z;
-    // The mirror plane's place is a share of the body's size.
+    // The offset of the mirror plane is proportional to the object's size.
     const double by_size = 2.0 / 3.0 * v_y * m;
     log_a[i] = k * x * n_x + by_size;
     log_b[i] = k * y * n_y + by_size;
@@ -112,7 +112,7 @@ void TurnToCamera(const Eigen::Matrix3d& rotation, Batch* vector) {
 
 }  // namespace
 
-// The pixels on one landmark.
+// The pixels with respect to one landmark.
 class MirrorResiduals::View {
  public:
   View(const MirrorResiduals& residuals, const Landmark& landmark_in_camera)
@@ -120,7 +120,7 @@ class MirrorResiduals::View {
         body_(landmark_in_camera),
         place_(residuals.mirror_plane_ * std::cbrt(landmark_in_camera.half_axes.prod())) {}
 
-  // A batch's residuals, and their derivatives unless null: only then the rest of the rows is
+  // A batch's residuals and, if asked for, their derivatives; otherwise the remaining rows are not
   // written.
   void Find(size_t batch, bool with_derivatives, ResidualBatch* rows) {
     const PixelRays& rays = residuals_.rays_;
@@ -135,7 +135,7 @@ class MirrorResiduals::View {
         (rays_.depth > 0.0).select(residuals_.values_[batch] - mirrored, kNone);
     const double squared_scale = residuals_.scale_ * residuals_.scale_;
     const Batch inverse_norm = (difference.square() + squared_scale).sqrt().inverse();
-    const auto is_pair = inverse_norm > 0.0;  // not so of NaN
+    const auto is_pair = inverse_norm > 0.0;  // false for NaN
     const Batch& is_pixel = residuals_.is_pixel_[batch];
     rows->residual = is_pixel * is_pair.select(difference * inverse_norm, 1.0);
     if (!with_derivatives) return;
@@ -151,7 +151,7 @@ class MirrorResiduals::View {
  private:
   const MirrorResiduals& residuals_;
   BodyInCamera body_;
-  double place_;  // of the mirror plane, m
+  double place_;  // offset of the mirror plane, m
   RayBatch rays_;
   MirrorImages images_;
 };

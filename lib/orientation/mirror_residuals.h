@@ -12,18 +12,18 @@
 
 namespace soslam {
 
-// How much a map's values at some pixels differ from those at their mirror pixels (eq. 16), on the
-// surfaces of landmarks near to each other: d / sqrt(d^2 + scale^2) of each difference d, 1 where a
-// pixel or its mirror image has no value. SymmetryDescriptor says the same pair by pair.
+// Residuals between a map's values at some pixels and at their mirror pixels (eq. 16), on the
+// surfaces of similar landmarks: d / sqrt(d^2 + scale^2) for each difference d, 1 if a pixel or its
+// mirror image has no value. The batched equivalent of SymmetryDescriptor.
 class MirrorResiduals {
  public:
-  // `unit` is that of the map's values, `mirror_plane` as in VisibleSurface::MirrorImage.
+  // `unit` is the unit of the map's values, `mirror_plane` as in VisibleSurface::MirrorImage.
   MirrorResiduals(const cv::Mat& map, double unit, const Camera& camera,
                   const std::vector<Eigen::Vector2d>& pixels, double mirror_plane, double scale);
 
-  // Half the sum of their squares.
+  // Half the sum of squared residuals.
   double Value(const Landmark& landmark_in_camera) const;
-  // The same, multiplied by a weight.
+  // Adds the same, multiplied by a weight, and its derivatives to `sum`.
   void AddTo(const Landmark& landmark_in_camera, double weight, LandmarkModel* sum) const;
 
  private:
@@ -35,8 +35,8 @@ class MirrorResiduals {
   double mirror_plane_;
   double scale_;
   PixelRays rays_;
-  std::vector<Batch> values_;    // at the pixels
-  std::vector<Batch> is_pixel_;  // 1, and 0 behind the last one
+  std::vector<Batch> values_;    // map values at the pixels
+  std::vector<Batch> is_pixel_;  // 1 for pixels, 0 for the padding of the last batch
 };
 
 }  // namespace soslam

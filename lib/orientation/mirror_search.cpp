@@ -17,11 +17,11 @@ namespace soslam {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-// Bounds may be off by what rounding does to a sum.
+// Tolerance of lower bounds for rounding errors of sums.
 constexpr double kRounding = 1.0 + 1e-9;
 
-// Pixels come row by row. Taken in this many turns, each batch has some of all rows, and the first
-// one already says much about a place.
+// Interleaved order. Pixels come row by row; with this stride each batch has pixels from all rows,
+// so that the first batch is already representative.
 std::vector<size_t> InTurns(size_t count) {
   constexpr size_t kTurns = 16;
   std::vector<size_t> order;
@@ -38,7 +38,7 @@ std::vector<T> Ordered(const std::vector<T>& values, const std::vector<size_t>& 
   return ordered;
 }
 
-// Of the pixels of grey values 0 to 1, or of distances in px.
+// Map of a descriptor: grey values from 0 to 1, or distances in px.
 cv::Mat MapOf(const EdgeMaps& maps, Descriptor descriptor) {
   if (descriptor != Descriptor::kGrey) return maps.distance;
   cv::Mat grey;
@@ -57,7 +57,7 @@ Points PointsOf(const MirroredPoints& points, const std::vector<float>& values) 
   return {{x.data(), y.data(), depth.data()}, values.data()};
 }
 
-// The pixels of all points at both shifts; NaN where one is behind the camera.
+// Bounds of the pixels of all points at both shifts; NaN if a point is behind the camera.
 SOSLAM_WIDE_LOOPS void FindBounds(const Points& points, size_t batches,
                                   const std::array<Eigen::Vector3f, 2>& shifts,
                                   PixelBounds* bounds) {
@@ -91,13 +91,13 @@ SOSLAM_WIDE_LOOPS void FindBounds(const Points& points, size_t batches,
   }
 }
 
-// How they compare with a map.
+// The map, and the squared scale of the loss.
 struct Comparison {
   Neighbours::View map;
   float squared_scale;
 };
 
-// Where the points of a batch are when shifted.
+// Position of each point of a batch in the map, when shifted.
 template <bool may_be_outside>
 SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& map, const Points& points, size_t batch,
                                  const Eigen::Vector3f& shift, CellsOfEight* cells) {
@@ -117,7 +117,7 @@ SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& map, const Points& poin
   }
 }
 
-// d^2 of the i-th eight points of the batch; NaN or infinite where there is no pair.
+// d^2 for the i-th eight points of the batch; NaN or infinite if there is no pair.
 SOSLAM_IN_WIDE_LOOPS void FindSquares(const Comparison& comparison, const Points& points,
                                       size_t batch, const CellsOfEight& cells, size_t i,
                                       Eight* squares) {
@@ -128,16 +128,16 @@ SOSLAM_IN_WIDE_LOOPS void FindSquares(const Comparison& comparison, const Points
   *squares = differences * differences;
 }
 
-// d^2 / (d^2 + squared_scale); NaN where there is no pair.
+// d^2 / (d^2 + squared_scale); NaN if there is no pair.
 SOSLAM_IN_WIDE_LOOPS void ToShare(const Comparison& comparison, Eight* square) {
   *square = *square / (*square + comparison.squared_scale);
 }
 
-// Adds batches to what each place comes to.
+// Adds batches of points to the sums of each candidate.
 template <bool may_be_outside>
 SOSLAM_IN_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points, size_t first,
                               size_t end, std::span<MirrorSearch::Place* const> places) {
-  const Comparison copy = comparison;  // what is written may be anything to the compiler
+  const Comparison copy = comparison;  // a local copy cannot overlap the output
   for (MirrorSearch::Place* place : places) {
     const Eigen::Vector3f shift = place->shift;
     double differences = place->differences;
@@ -147,7 +147,7 @@ SOSLAM_IN_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points
       CellsOfEight cells;
       Locate<may_be_outside>(copy.map, points, batch, shift, &cells);
       ReadFromMemory(cells);
-      // Divided after all of them are found: none waits then for another's division.
+      // Divisions follow in a loop of their own, so that none waits for another.
       std::array<Eight, CellsOfEight::kCount> shares;
       for (size_t i = 0; i < shares.size(); ++i) {
         FindSquares(copy, points, batch, cells, i, &shares[i]);
@@ -176,7 +176,7 @@ SOSLAM_WIDE_LOOPS void AddAnywhere(const Comparison& comparison, const Points& p
   Add<true>(comparison, points, first, end, places);
 }
 
-// Which ones of a batch are pairs.
+// Finds which points of a batch form pairs.
 SOSLAM_WIDE_LOOPS void FindPairs(const Comparison& comparison, const Points& points, size_t batch,
                                  const Eigen::Vector3f& shift,
                                  std::array<bool, kBatchSize>* is_pair) {
@@ -218,7 +218,7 @@ void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_co
   shift_by_place_ = rays_.camera.Intrinsics() * (2.0 * size * y_axis);
 }
 
-// A point's pixel moves along a line from place to place.
+// The pixel of a point moves along a line with the offset, so two ends bound all in between.
 void MirrorSearch::Cover(double least_place, double largest_place) {
   PixelBounds bounds;
   FindBounds(PointsOf(points_, values_of_points_), points_.NumBatches(),
@@ -241,8 +241,8 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
   Cover(least_place, largest_place);
   places_.assign(places.size(), {});
   for (size_t i = 0; i < places.size(); ++i) places_[i].shift = Shift(places[i]);
-  // The place that was the last landmark's goes first: others need not be looked at to the end,
-  // which takes turns, as a processor does not wait then for what each comes to.
+  // The best candidate for the last landmark comes first: its mean rejects others early. Those are
+  // interleaved batch by batch, so that the processor need not wait for each one's sum.
   Place& likely = places_[last_least_ < places.size() ? last_least_ : 0];
   Add(0, batches, scale, std::array{&likely});
   const double enough = likely.NumPairs() < min_pairs

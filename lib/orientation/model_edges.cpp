@@ -7,7 +7,7 @@
 namespace soslam {
 namespace {
 
-// Up to this shape exponent a body has edges of its own, beyond it only an outline.
+// Up to this shape exponent an object has edges of its own, beyond it only a silhouette.
 constexpr double kMaxEdgyExponent = 1.3;
 constexpr int kOutlineDirections = 90;
 
@@ -16,13 +16,13 @@ class PointSampler {
   PointSampler(const Camera& camera, const Landmark& landmark_in_camera, double spacing_px)
       : camera_(camera), landmark_(landmark_in_camera), spacing_px_(spacing_px) {}
 
-  // Adds the points of a straight piece, in the middle of equal parts of it.
+  // Adds points along a straight segment, each in the middle of one of equal parts.
   void AddSegment(const Eigen::Vector3d& unit_start, const Eigen::Vector3d& unit_end) {
     const auto start = Project(unit_start);
     const auto end = Project(unit_end);
     if (!start || !end) return;
     const double length = (*end - *start).norm();
-    // A piece shorter than the spacing counts with the probability that a point falls on it.
+    // A segment shorter than the spacing carries its fraction of a point over to the next ones.
     carried_ += length / spacing_px_;
     const int count = static_cast<int>(carried_);
     carried_ -= count;

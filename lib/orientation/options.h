@@ -10,7 +10,7 @@
 
 namespace soslam {
 
-// How the projected edges of a body are compared with those of the image.
+// Comparison of an object's projected edges with those of the image.
 struct EdgeOptions {
   double edge_sigma_px = 2.0;
   double edge_truncation_px = 8.0;
@@ -34,7 +34,7 @@ struct EdgeOptions {
   }
 };
 
-// What the texture's symmetry says about a yaw.
+// Comparison of the texture with its mirror image, as evidence for a yaw.
 struct TextureOptions {
   double asymmetry_cost = 2.0;
   double asymmetry_scale = 0.03;
@@ -57,8 +57,7 @@ struct TextureOptions {
   }
 };
 
-// What the orientation profile of an observation is made of, besides box, ratio prior and world
-// axes.
+// Parts of an observation's orientation profile besides box, ratio prior and world axes.
 struct ProfileOptions {
   bool edge_alignment = true;
   bool texture_symmetry = true;
@@ -80,8 +79,8 @@ struct ProfileOptions {
 };
 
 enum class RefinementMethod {
-  kTurn,     // section V: the landmark is turned to where its texture is most symmetric
-  kProfile,  // the landmark that is best for each yaw; the best yaw of all
+  kTurn,     // section V: the landmark is rotated to the yaw at which its texture is most symmetric
+  kProfile,  // the best landmark for each yaw, and the best yaw of all
 };
 inline constexpr std::array kRefinementMethodNames = {"turn", "profile"};
 

@@ -16,9 +16,9 @@
 namespace soslam {
 namespace {
 
-// Hypotheses beyond these are far less likely.
+// Further hypotheses are far less likely.
 constexpr size_t kMaxHypotheses = 6;
-// Which points of the body's edges are visible depends on the body: fitted twice.
+// The visible points of an object's edges depend on the landmark, so it is fitted twice.
 constexpr int kEdgeRounds = 2;
 
 class OrientationProfile {
@@ -78,7 +78,7 @@ class OrientationProfile {
   TextureAsymmetry asymmetry_;
 };
 
-// `texture_costs` are those of the sweep's landmarks.
+// `texture_costs` are those of the landmarks of the sweep, in order.
 void RecordCurves(const YawSweep& sweep, const std::vector<double>& texture_costs,
                   const ProfileOptions& options, SymmetryRecord* record) {
   record->yaw = sweep.yaw;
@@ -95,7 +95,7 @@ void RecordCurves(const YawSweep& sweep, const std::vector<double>& texture_cost
   }
 }
 
-// Sweeps, and keeps the texture's part of the costs of the landmarks it finds, yaw by yaw.
+// Sweeps the yaw, and records the texture costs of the landmarks found, yaw by yaw.
 YawSweep SweepYaw(const UprightObservation& observation, YawObjective objective, double step,
                   std::vector<double>* texture_costs) {
   if (objective.extra_cost) {

@@ -11,11 +11,11 @@
 
 namespace soslam {
 
-// The landmark of one detection from its orientation profile: at each yaw of a sweep the landmark
-// that box, ratio prior and image edges together make best, its cost, and on top the symmetry of
-// its texture on that landmark's own surface. The best optima become the hypotheses, with their
-// costs; the curves of all parts, the yaw and its standard deviation go into the record. Failures:
-// no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
+// Estimates the landmark of one detection from its orientation profile. At each yaw of a sweep,
+// box, ratio prior and image edges together determine the best landmark and its cost; the symmetry
+// of the texture on that landmark's surface is added. The best minima become the hypotheses, with
+// their costs; the curves of all parts, the yaw and its standard deviation go into the record.
+// Failures: no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
 RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
                                      const std::shared_ptr<const FrameEdges>& edges,
                                      const std::optional<ShapePrior>& prior,

@@ -15,12 +15,12 @@
 namespace soslam {
 namespace {
 
-// Places of the mirror plane to either side of the centre.
+// Number of offsets of the mirror plane on either side of the centre.
 constexpr int kMirrorPlaneSteps = 8;
 
 double Size(const Landmark& landmark) { return std::cbrt(landmark.half_axes.prod()); }
 
-// In the descriptor's unit.
+// The scale s of MirroredTexture, in the descriptor's unit.
 double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptions& options) {
   switch (descriptor) {
     case Descriptor::kDistanceTransform:
@@ -48,7 +48,7 @@ std::vector<double> MirrorPlanePlaces(double range) {
   return places;
 }
 
-// Whether a descriptor is a map's value at a pixel.
+// True if a descriptor is a map's value at a pixel.
 bool IsInAMap(Descriptor descriptor) {
   return descriptor == Descriptor::kGrey || descriptor == Descriptor::kDistanceTransform;
 }
@@ -116,7 +116,7 @@ std::optional<MirroredTexture> TextureAsymmetry::FindPairByPair(
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
   const auto samples = SamplePixels(image_, camera_, landmark_in_camera, symmetry_options_);
-  // One row per sample, one column per place; NaN where there is no pair.
+  // One row per sample, one column per offset; NaN if there is no pair.
   Eigen::ArrayXXd residuals(samples.size(), places_.size());
   for (size_t i = 0; i < samples.size(); ++i) {
     residuals.row(static_cast<Eigen::Index>(i)) =

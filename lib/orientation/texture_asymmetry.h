@@ -16,38 +16,37 @@
 
 namespace soslam {
 
-// Throws SettingsError for a mirror plane that may lie beside the xz plane and a descriptor that is
-// measured on the surface, where mirror points are not any more.
+// Throws SettingsError if the mirror plane may be offset from the xz plane but the descriptor is
+// measured on the surface, on which mirror points then no longer lie.
 void CheckMirrorPlane(const TextureOptions& options, Descriptor descriptor);
 
 // The visible mirrored pairs of the texture in one detection's box, on the landmark's own surface,
-// at the place of the mirror plane (see VisibleSurface::MirrorImage) within
-// options.mirror_plane_range where they differ least. Mirror pixels may then lie beside the
-// landmark: how wide the object is, is known no better than where its middle is.
+// with the offset of the mirror plane (see VisibleSurface::MirrorImage) within
+// options.mirror_plane_range at which they differ least. Mirror pixels may then lie outside the
+// landmark: the width of an object is not known better than its centre.
 struct MirroredTexture {
-  // The mean over the pairs of d^2 / (d^2 + s^2), d the descriptor difference of eq. (16), s what
-  // counts as no symmetry: 0 to 1; a pair that differs wholly counts no more than one that differs
-  // clearly.
+  // The mean over the pairs of d^2 / (d^2 + s^2), d the descriptor difference of eq. (16), s the
+  // difference from which on a pair counts as asymmetric: 0 to 1. The loss saturates, so that a
+  // completely different pair has no more weight than a clearly different one.
   double asymmetry = 1.0;
   double mirror_plane = 0.0;
   std::vector<Eigen::Vector2d> pixels;  // one of each pair
 };
 
-// Finds it for many landmarks. None where too few pairs are visible. Not for several threads at
-// once.
+// Finds the mirrored texture of many landmarks. None if too few pairs are visible. Not thread-safe.
 class TextureAsymmetry {
  public:
-  // `image` has to outlive it.
+  // `image` must outlive this object.
   TextureAsymmetry(const SymmetryImage& image, const Camera& camera, const TextureOptions& options,
                    const SymmetryOptions& symmetry_options);
 
   std::optional<MirroredTexture> Find(const Landmark& landmark_in_camera);
-  // What it costs a landmark, as a negative logarithm of a likelihood: options.asymmetry_cost times
-  // the asymmetry; all of it where too few pairs are visible.
+  // Cost of a landmark as a negative log likelihood: options.asymmetry_cost times the asymmetry,
+  // with an asymmetry of 1 if too few pairs are visible.
   double Cost(const Landmark& landmark_in_camera);
 
  private:
-  // Without pixels.
+  // Leaves `pixels` empty.
   std::optional<MirroredTexture> FindByMap(const Landmark& landmark_in_camera);
   std::optional<MirroredTexture> FindPairByPair(const Landmark& landmark_in_camera) const;
 
@@ -55,20 +54,20 @@ class TextureAsymmetry {
   Camera camera_;
   TextureOptions options_;
   SymmetryOptions symmetry_options_;
-  std::vector<double> places_;          // of the mirror plane
-  std::optional<MirrorSearch> search_;  // where the descriptor and the samples allow it
+  std::vector<double> places_;          // candidate offsets of the mirror plane
+  std::optional<MirrorSearch> search_;  // only if the descriptor and the samples allow it
 };
 
-// The same for the back end, of the pairs and the mirror plane that are the start's, multiplied by
-// `weight`. A pair whose pixel leaves the surface counts as asymmetric, the limit of one that
-// differs more and more. Not for kBrief, which has no derivative.
+// The asymmetry cost for the back end, with the pairs and the mirror plane of the initial landmark
+// fixed, multiplied by `weight`. A pair whose pixel leaves the surface counts as fully asymmetric,
+// the limit for large differences. Not for kBrief, which has no derivative.
 class AsymmetryTerm final : public LandmarkCost {
  public:
   AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
                 const Landmark& start_in_camera, const TextureOptions& options,
                 const SymmetryOptions& symmetry_options, double weight);
 
-  // None where too few are visible.
+  // 0 if too few pairs are visible.
   int NumPairs() const { return static_cast<int>(texture_.pixels.size()); }
 
   double Value(const Landmark& landmark_in_camera) const override;
@@ -81,8 +80,8 @@ class AsymmetryTerm final : public LandmarkCost {
   Descriptor descriptor_;
   MirroredTexture texture_;
   double scale_;                           // s
-  double weight_;                          // of one pair's share
-  std::optional<MirrorResiduals> by_map_;  // where the descriptor is a map's value
+  double weight_;                          // of one pair
+  std::optional<MirrorResiduals> by_map_;  // only if the descriptor is a map's value
 };
 
 }  // namespace soslam

@@ -21,17 +21,17 @@ struct CatalogueModel {
 // file, line and field.
 std::vector<CatalogueModel> ReadFurnitureCatalogue(const std::filesystem::path& path);
 
-// Which models count as which label: a name, in one category or in any.
+// The models that have a label: those with a name, in one category or in any.
 struct CatalogueName {
   std::string name;
-  std::string category;  // empty: any
+  std::string category;  // empty for any
 };
 using CatalogueNames = std::map<std::string, std::vector<CatalogueName>>;  // by label
 
 // Reads schemas/furniture_labels.schema.json. Throws InputError.
 CatalogueNames ReadCatalogueNames(const std::filesystem::path& path);
 
-// Whether a model goes by one of the names, whatever their case.
+// True if a model has one of the names, whatever their case.
 bool GoesBy(const CatalogueModel& model, const std::vector<CatalogueName>& names);
 
 }  // namespace soslam

@@ -14,11 +14,11 @@
 namespace soslam {
 namespace {
 
-// The logarithms that a label's objects are described by.
+// The logarithms that are learned for a label.
 enum Quantity { kDepthRatio, kWidthRatio, kHeight, kNumQuantities };
 using Logs = std::array<std::vector<double>, kNumQuantities>;
 
-// All that is known of a row's objects.
+// All data for a row.
 struct RowData {
   Logs logs;
   std::vector<double> shape_exponents;
@@ -27,14 +27,14 @@ struct RowData {
   size_t Count() const { return logs[kHeight].size(); }
 };
 
-// What the labels have in common.
+// Statistics pooled over labels.
 struct Pooled {
   std::array<double, kNumQuantities> log_sigma{};
   double correlation = 0.0;
 };
 
-constexpr double kTypicalLogSigma = 0.3;  // where no label has enough objects
-constexpr size_t kMinPooled = 5;          // objects of a label that counts in what is common
+constexpr double kTypicalLogSigma = 0.3;  // if no label has enough objects
+constexpr size_t kMinPooled = 5;          // minimal number of objects for a label to be pooled
 constexpr double kMaxCorrelation = 0.95;
 
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
@@ -55,7 +55,7 @@ void Add(const std::string& source, const LabelFacts& facts, RowData* data) {
   data->cited.push_back(fmt::format("{} of {}", facts.half_axes.size(), source));
 }
 
-// By label of the row; labels that are aliases count for their row.
+// Data by label of the row; labels that are aliases contribute to their row.
 std::map<std::string, RowData> DataByRow(const SemanticRows& base,
                                          const std::vector<PriorSource>& sources) {
   std::map<std::string, std::string> label_of;  // by normalised name
@@ -116,7 +116,7 @@ class Learner {
   Learner(const Pooled& pooled, const LearnPriorsOptions& options)
       : pooled_(pooled), options_(options) {}
 
-  // A row that the base table has.
+  // Updates a row of the base table.
   SemanticRow Improved(const SemanticRow& base, const RowData& data) const {
     const bool update = options_.base_rows == BaseRows::kUpdate;
     SemanticRow row = base;
@@ -147,7 +147,7 @@ class Learner {
     return row;
   }
 
-  // A row of a label that the base table lacks.
+  // Creates a row for a label that the base table lacks.
   SemanticRow New(const std::string& label, double shape_exponent, const RowData& data) const {
     SemanticRow row;
     row.label = label;
@@ -270,7 +270,7 @@ SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource
   std::sort(
       learned.rows.begin(), learned.rows.end(),
       [](const SemanticRow& one, const SemanticRow& other) { return one.label < other.label; });
-  LookUpTable(learned);  // refuses names that are not unique
+  LookUpTable(learned);  // throws if names are not unique
   return learned;
 }
 

@@ -12,8 +12,8 @@ namespace soslam {
 namespace {
 
 constexpr double kHuberDelta = 1.0;      // of residuals in standard deviations
-constexpr double kStep = 0.01;           // finer than boxes can tell
-constexpr double kSigmaFraction = 0.02;  // of an edge, by the side of its box
+constexpr double kStep = 0.01;           // finer than boxes can resolve
+constexpr double kSigmaFraction = 0.02;  // of an edge, as a fraction of the side of its box
 
 double HuberLoss(double residual) {
   const double size = std::abs(residual);
@@ -31,7 +31,7 @@ double Loss(const Sequence& sequence, const Detection& detection, double shape_e
   return loss;
 }
 
-// Of a body that reaches behind the camera an edge may have no tangent point in view.
+// Detections of objects wholly in front of the camera; otherwise an edge may have no tangent point.
 std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>& detections) {
   std::vector<int> in_front;
   std::copy_if(detections.begin(), detections.end(), std::back_inserter(in_front), [&](int index) {

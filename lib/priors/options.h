@@ -7,10 +7,10 @@
 
 namespace soslam {
 
-// What becomes of rows that the base table has.
+// Treatment of rows that the base table has.
 enum class BaseRows {
-  kKeep,    // ratio, spread and shape stay; height, correlation are learned where they are missing
-  kUpdate,  // they are what is known before the data
+  kKeep,    // ratio, spread and shape stay; height and correlation are learned if they are missing
+  kUpdate,  // they serve as prior and are updated with the data
 };
 inline constexpr std::array kBaseRowsNames = {"keep", "update"};
 

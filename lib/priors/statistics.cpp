@@ -10,7 +10,7 @@ namespace {
 
 // 1 / (0.75 quantile of the standard normal distribution).
 constexpr double kSigmaByMad = 1.4826;
-// Beyond it, a value counts as this far out (in robust sigmas).
+// Values are clipped at this distance from the median (in robust sigmas).
 constexpr double kFarthest = 2.5;
 
 std::vector<double> Standardised(const std::vector<double>& values, double sigma) {
@@ -52,7 +52,7 @@ NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values
   const double squares = prior.sigma_weight * prior.sigma * prior.sigma +
                          (n - 1.0) * sigma * sigma +
                          prior.mean_weight * n / belief.mean_weight * shift * shift;
-  // Without a prior mean, one of the values is spent on the mean.
+  // Without a prior mean, one degree of freedom is used for the mean.
   if (prior.mean_weight == 0.0) belief.sigma_weight -= 1.0;
   belief.sigma = std::sqrt(squares / belief.sigma_weight);
   return belief;

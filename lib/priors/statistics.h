@@ -7,15 +7,15 @@
 
 namespace soslam {
 
-// Of at least one value; of an even number, the mean of the middle two.
+// The median of at least one value; for an even number of values, the mean of the middle two.
 double Median(std::vector<double> values);
 
 // 1.4826 times the median absolute deviation from the median: the standard deviation of normal
-// values, whatever less than half of them are (Rousseeuw and Croux 1993). 0 for a single value.
+// values, robust to less than half of outliers (Rousseeuw and Croux 1993). 0 for a single value.
 double RobustSigma(const std::vector<double>& values);
 
-// A normal quantity whose mean and spread are both learned: the mean is worth `mean_weight` values,
-// the spread `sigma_weight`.
+// Belief about a normal quantity whose mean and spread are both learned. The weights are in units
+// of observed values.
 struct NormalBelief {
   double mean = 0.0;
   double mean_weight = 0.0;
@@ -28,12 +28,12 @@ struct NormalBelief {
 // deviation.
 NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values, double min_sigma);
 
-// The standard deviation of a value that is still to come: the belief's own, and what its mean may
-// be off by. (The scale of the predictive Student distribution.)
+// The standard deviation of a future value: the belief's own spread and the uncertainty of its
+// mean. (The scale of the predictive Student distribution.)
 double PredictiveSigma(const NormalBelief& belief);
 
-// The correlation of pairs, each coordinate in robust sigmas from its median, at most 2.5. None for
-// fewer than three pairs and where a coordinate does not vary.
+// The correlation of pairs; each coordinate is measured in robust sigmas from its median and
+// clipped at 2.5. None for fewer than three pairs, or if a coordinate does not vary.
 std::optional<double> RobustCorrelation(const std::vector<std::pair<double, double>>& pairs);
 
 }  // namespace soslam

@@ -53,7 +53,7 @@ Table DatasetTable(const DatasetResult& dataset) {
     const auto ate = MetricsNumber(variant, kOdometryAte);
     if (ate) odometry.insert(fmt::format("{:.4f} m", *ate));
   }
-  // One value, unless variants were given different trajectories.
+  // One value, unless variants started from different trajectories.
   if (!odometry.empty()) {
     table.notes.push_back(fmt::format("ATE of the odometry alone: {}", fmt::join(odometry, ", ")));
   }

@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// All that the metrics of one dataset say, one row per variant: the paper's variants always, those
-// without metrics with "-"; others where they have metrics.
+// All summary metrics of one dataset, one row per variant: the paper's variants always, with "-" if
+// they have no metrics; others if they have metrics.
 Table DatasetTable(const DatasetResult& dataset);
 
 }  // namespace soslam

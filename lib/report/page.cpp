@@ -29,10 +29,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Images shrink to this share of a page before anything else is left out.
+// Images shrink to this fraction of a page before anything else is left out.
 constexpr double kLeastShareOfImages = 0.125;
 
-// Collects what the page of a dataset shows. Variants share files, which are read once.
+// Collects the data of a dataset's page. Files that variants share are read once.
 class DatasetPage {
  public:
   DatasetPage(const DatasetResult& dataset, const ImageSourceOf& images) : images_(images) {
@@ -147,9 +147,9 @@ class DatasetPage {
 
   const ImageSourceOf& images_;
   json data_;
-  std::deque<LoadedSequence> sequences_;  // stays where it is: image sources refer to it
+  std::deque<LoadedSequence> sequences_;  // a deque, as image sources refer to its elements
   std::set<int> shown_ids_;
-  std::map<fs::path, size_t> sequence_of_, symmetry_of_;  // by the file that links lead to
+  std::map<fs::path, size_t> sequence_of_, symmetry_of_;  // by resolved path
 };
 
 }  // namespace

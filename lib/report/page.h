@@ -11,19 +11,19 @@
 
 namespace soslam {
 
-// The images of a sequence, which outlives the source.
+// Access to the images of a sequence. The sequence must outlive the source.
 using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 
-// All that the page of a dataset shows, in at most max_bytes as the page has it.
+// The data of a dataset's page, in at most max_bytes as the page stores them.
 //   dataset: its name; url: its folder's
-//   images: "data:" URLs by frame id, of frames that are shown; what frames and detections are is
-//     selected by FramesToShow of the first sequence
+//   images: "data:" URLs by frame id, of the frames that are shown; FramesToShow of the first
+//     sequence selects these frames and their detections
 //   sequences: see PageSequence; symmetries: curves and descriptors, see PageCurves and
-//     PageDescriptors. Variants of one file share its entry
+//     PageDescriptors. Variants that share a file share its entry
 //   variants: see PageVariant, each with the index of its sequence, of its symmetry or null, and
-//     whether there was room for its numbers_only; those with metrics that can be read, in order
-//   unfinished: name, state ("failed: ...", "incomplete: ...") and is_shown of variants that are
-//     not what was planned, or cannot be shown
+//     whether there was room for its numbers_only; all variants with readable metrics, in order
+//   unfinished: name, state ("failed: ...", "incomplete: ...") and is_shown of variants that
+//     differ from the plan, or cannot be shown
 //   detailed: see DetailedVariants; findings: see PageFindings
 //   notes: sentences on what was left out for lack of room
 //   problems: sentences on images that cannot be shown
@@ -31,7 +31,7 @@ using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 nlohmann::json PageData(const DatasetResult& dataset, const ImageSourceOf& images, size_t max_bytes,
                         int threads);
 
-// What the page of all datasets shows: of each what its page says of it, and each variant's
+// The data of the page of all datasets: a summary of each dataset's page, and each variant's
 // metrics.
 nlohmann::json OverviewData(const std::vector<nlohmann::json>& pages);
 

@@ -51,14 +51,15 @@ json PageCurve(const SymmetryRecord& record, int detection_index) {
   return curve;
 }
 
-// What one cost says over all observations.
+// Statistics of one cost over all observations.
 struct DescriptorFacts {
   std::vector<double> errors_deg;
-  std::vector<double> errors_where_known_deg;  // of those that have a cost at the true yaw
+  std::vector<double> errors_where_known_deg;  // only those with a cost at the true yaw
   double minima = 0.0;
 };
 
-// Of a curve over a whole turn, whose ends are neighbours; gaps hold no minimum.
+// Number of local minima of a curve over a whole turn, whose ends are neighbours; gaps contain
+// none.
 int LocalMinima(const std::vector<double>& cost) {
   int minima = 0;
   const size_t n = cost.size();
@@ -97,7 +98,7 @@ void AddRecord(const SymmetryRecord& record, std::map<std::string, DescriptorFac
   }
 }
 
-// NaN of none.
+// Fraction of the errors within the limit; NaN if there are none.
 double ShareWithin(const std::vector<double>& errors_deg, double limit_deg) {
   const auto near =
       std::ranges::count_if(errors_deg, [&](double error_deg) { return error_deg <= limit_deg; });

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// Each has one more part than the other.
+// Pairs of variants, of which the first has one more part.
 const std::array<Comparison, 10> kParts = {{{"InitP", "Init1-1"},
                                             {"InitPT", "InitP"},
                                             {"InitS", "InitP"},

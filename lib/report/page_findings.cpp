@@ -20,13 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// In the order in which stages write them.
+// Artefacts in the order in which stages write them.
 constexpr std::array kArtefacts = {"sequence.json", "associations.json", "planes.json",
                                    "initial.json",  "refined.json",      "map.json",
                                    "metrics.json"};
 constexpr std::array kTexts = {"severity", "check", "found", "expected", "cause", "remedy"};
 
-// None in what cannot be read, which the page names elsewhere.
+// Empty for a file that cannot be read; the page lists such files elsewhere.
 json FindingsIn(const fs::path& file) {
   try {
     const json document = ParseJsonFile(file);
@@ -48,7 +48,7 @@ json TextsOf(const json& finding) {
 }  // namespace
 
 json PageFindings(const DatasetResult& dataset) {
-  std::map<fs::path, json> findings_of;  // by the file that links lead to
+  std::map<fs::path, json> findings_of;  // by resolved path
   json findings = json::array();
   for (const char* artefact : kArtefacts) {
     std::vector<std::pair<json, std::vector<std::string>>> found;  // with the variants' names

@@ -27,7 +27,7 @@ void KeepNumbersOnly(json* variant) {
   variant->at("numbers_only") = true;
 }
 
-// Of variants, as far as needed. Returns their names.
+// Keeps only the numbers of as many variants as necessary. Returns their names.
 std::vector<std::string> KeepNumbersOnlyOfSome(size_t max_bytes, const BytesOfPage& bytes_of,
                                                json* data) {
   std::vector<std::string> names;

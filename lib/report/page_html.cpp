@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// The text with the value of each {{name}}, in which nothing is replaced.
+// The text with each {{name}} replaced by its value; values are not searched for names.
 std::string Filled(std::string_view text, const std::map<std::string, std::string>& values) {
   std::string filled;
   for (size_t begin = text.find("{{"); begin != std::string_view::npos; begin = text.find("{{")) {
@@ -53,7 +53,7 @@ std::string UrlOf(const std::string& name) {
 }
 
 std::string PageText(const json& data) {
-  return Escaped(Dump(data), '<', "\\u003c");  // it would begin or end elements
+  return Escaped(Dump(data), '<', "\\u003c");  // '<' would begin or end elements
 }
 
 std::string HtmlText(const std::string& text) {
@@ -80,7 +80,7 @@ std::string PageHtml(const std::string& title, const std::string& content, const
   const auto& files = EmbeddedPageFiles();
   std::string script_elements, licences;
   if (scripts == PageScripts::kDataset) {
-    // Libraries first; of ours the functions that others use.
+    // Libraries first; of our files, those with functions that others use.
     for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js", "elements.js",
                              "overlay.js", "charts.js", "yaw_curves.js", "above.js", "bodies.js",
                              "map.js", "figures.js", "objects.js", "frames.js", "main.js"}) {

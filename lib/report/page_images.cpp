@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kJpegQuality = 75;
 constexpr std::array kWidthsPx = {800, 640, 480, 320, 200};  // tried in turn
-constexpr size_t kBytesAround = 64;                          // what a page has around each image
+constexpr size_t kBytesAround = 64;                          // bytes of the page around each image
 
 cv::Mat ScaledTo(const cv::Mat& image, int max_width) {
   if (image.cols <= max_width) return image;
@@ -77,7 +77,7 @@ size_t TotalBytes(const std::vector<EncodedImages::Image>& images) {
   return bytes;
 }
 
-// Every other one.
+// Keeps every other image.
 void Halve(std::vector<EncodedImages::Image>* images) {
   std::vector<EncodedImages::Image> kept;
   for (size_t i = 1; i < images->size(); i += 2) kept.push_back(std::move((*images)[i]));

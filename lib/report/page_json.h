@@ -11,8 +11,8 @@
 
 namespace soslam {
 
-// Short forms for pages, which are to stay small. Lengths are rounded to a tenth of a millimetre,
-// pixels to a tenth, the rest to five significant digits. What is not finite becomes null.
+// Short forms for pages, to keep them small. Lengths are rounded to a tenth of a millimetre, pixels
+// to a tenth, other numbers to five significant digits. Numbers that are not finite become null.
 
 nlohmann::json PageNumber(double value);
 nlohmann::json PageNumbers(const std::vector<double>& values);

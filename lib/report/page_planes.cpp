@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// What is less upright than this is a wall.
+// Planes that are less upright than this are walls.
 constexpr double kMinUprightCosine = 0.2;
 
 using PointsByPlane = std::vector<std::vector<Eigen::Vector3d>>;
@@ -112,7 +112,8 @@ Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
       upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
     }
   }
-  if (upright.norm() < kMinUprightCosine) upright = Eigen::Vector3d::UnitZ();  // looks all around
+  if (upright.norm() < kMinUprightCosine)
+    upright = Eigen::Vector3d::UnitZ();  // the camera looks in all directions
   upright.normalize();
   Eigen::Vector3d up = upright;
   double best = kMinUprightCosine;

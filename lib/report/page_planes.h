@@ -11,31 +11,31 @@
 
 namespace soslam {
 
-// The lines of a grid on each of Sequence::planes, in the world; none on planes without anything.
+// The lines of a grid on each of Sequence::planes, in the world; none for planes without objects.
 using PlaneGrids = std::vector<std::vector<LineSegment3>>;
 
-// On the sequence's planes, around true centres where they are known, else around what its cameras
-// see there.
+// Grids on the sequence's planes, around true centres if they are known, else around the contact
+// points that its cameras see.
 PlaneGrids GridsOfSequence(const Sequence& sequence);
-// On the map's planes, around its landmarks.
+// Grids on the map's planes, around its landmarks.
 PlaneGrids GridsOfMap(const MapEstimate& map, const Sequence& sequence);
 
-// By plane: lines [x, y, z, x, y, z] in the world.
+// Lines [x, y, z, x, y, z] in the world, by plane.
 nlohmann::json PageGrids(const PlaneGrids& grids);
 
-// What a frame's camera sees of the planes of its detections: lines as pixels [x, y, x, y]. Where
-// the camera is may depend on the detection.
+// The part of the grids that a frame's camera sees on the planes of its detections: lines as pixels
+// [x, y, x, y]. The pose of the camera may depend on the detection.
 nlohmann::json PageGridInFrame(
     const Sequence& sequence, int frame_index, const PlaneGrids& grids,
     const std::function<Rigid3d(const Detection&)>& camera_from_world_for);
 
-// Where the camera of a detection is to see the sequence's own planes: given ones from the true
-// pose where it is known, estimated ones where the detection's plane_in_camera is, which odometry
-// need not agree with.
+// The camera pose (camera_from_world) from which the sequence's own planes are drawn for a
+// detection: for given planes the true pose if it is known; for estimated planes the pose that
+// moves the plane to the detection's plane_in_camera, with which odometry need not agree.
 Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 
-// The direction in a segment's world that is up: the normal of that plane of its detections which
-// is closest to upright in its images; without such planes, upright in its images.
+// The up direction in a segment's world: the normal of that plane of its detections which is
+// closest to upright in its images; without such planes, the mean upright direction of its images.
 Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment);
 
 }  // namespace soslam

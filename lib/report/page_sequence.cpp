@@ -12,14 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-// As evaluation compares landmarks: the cuboid around the object.
+// The cuboid around the object, as for the comparison of landmarks.
 Landmark AsCuboid(Landmark landmark) {
   landmark.shape_exponent = kCuboidExponent;
   return landmark;
 }
 
-// In the order of objects: in which segment's world an object is. Where it was detected; one that
-// never was can only be where all are.
+// The segment of each object, in their order: the one in which it was detected; for an object
+// without detections the only segment, if there is just one.
 std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
   std::vector<std::optional<int>> segments(sequence.objects.size());
   for (const Detection& detection : sequence.detections) {

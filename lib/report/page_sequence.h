@@ -8,13 +8,12 @@
 
 namespace soslam {
 
-// What pages show of a sequence whatever the method; frames and detections are those selected, and
-// files' indices those in these lists:
+// The data of a sequence on a page, whatever the method. Frames and detections are the selected
+// ones, and indices refer to these lists:
 //   counts: frames, objects, detections of the whole sequence
 //   frames: id, timestamp, segment, width, height, pose (odometry) and true_pose or null, shown;
 //     of those shown grid: see PageGridInFrame
-//   objects: id, label, segment (null where nobody knows), plane (index or null), truth (landmark
-//     or null)
+//   objects: id, label, segment (null if unknown), plane (index or null), truth (landmark or null)
 //   detections: frame and object (indices), box, truth (outline or null); the truth is the cuboid
 //     around the object, with which estimates are compared
 //   planes: see PageGrids

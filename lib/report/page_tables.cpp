@@ -55,7 +55,7 @@ std::string Section(const std::string& id, const std::string& title, const std::
                      HtmlText(title), content);
 }
 
-// A column of the numbers of all variants: where in metrics.json they are.
+// A column of the numbers of all variants, with its JSON pointer into metrics.json.
 struct Column {
   const char* title;
   const char* pointer;
@@ -71,7 +71,7 @@ constexpr std::array<Column, 6> kColumns = {{
     {"held-out IoU", "/held_out/iou_mean", 3, true},
 }};
 
-// Left out where no variant has a value. What reads the same as the best is bold, too.
+// Adds a column, unless no variant has a value. Values that look equal to the best are bold, too.
 void AddColumn(const Column& column, const std::vector<json>& variants, Table* table) {
   std::vector<json> values;
   std::optional<double> best;
@@ -126,7 +126,7 @@ std::string NumbersSection(const json& page) {
                      tables);
 }
 
-// The maps of a dataset against all that is true, however their ids are; nothing without such.
+// Comparison of a dataset's maps with all true objects, independent of ids; empty without maps.
 std::string QualityHtml(const std::string& dataset, const std::vector<json>& variants) {
   std::vector<NamedMetrics> named;
   for (const json& variant : variants) {
@@ -140,7 +140,7 @@ std::string QualityHtml(const std::string& dataset, const std::vector<json>& var
   return html;
 }
 
-// What each map misses and what is false in it, and why.
+// The missed objects and false landmarks of each map, with their reasons.
 std::string Mistakes(const std::vector<json>& variants) {
   std::string html;
   for (const json& variant : variants) {
@@ -164,7 +164,7 @@ std::string QualitySection(const json& page) {
                      table + Mistakes(page.at("variants")));
 }
 
-// An object of a variant; its metrics are null where it has none.
+// An object of a variant; its metrics are null if there are none.
 struct ObjectRow {
   size_t index;
   json metrics;
@@ -176,7 +176,7 @@ struct ObjectRow {
   }
 };
 
-// Objects that were observed: with the lowest IoU first, without one last.
+// Observed objects in ascending order of IoU; those without IoU come last.
 std::vector<ObjectRow> WorstFirst(const json& objects, const json& variant) {
   std::map<int, json> metrics_of;
   for (const json& metrics : variant.at("metrics").at("objects")) {
@@ -222,7 +222,7 @@ std::string ObjectsTable(const json& objects, const json& variant) {
   return HtmlTable(table, indices);
 }
 
-// A table for each variant, of which scripts show one at a time.
+// A table for each variant; scripts show one of them at a time.
 std::string ObjectsSection(const json& page) {
   std::string tables;
   for (const size_t index : DetailedVariants(page)) {
@@ -240,7 +240,7 @@ std::string Signed(const json& value, int decimals) {
   return value.is_number() ? fmt::format("{:+.{}f}", value.get<double>(), decimals) : "–";
 }
 
-// A mean difference with its interval, bold where that leaves out zero.
+// A mean difference with its interval, bold if that excludes zero.
 Cell IntervalCell(const json& difference, int decimals) {
   const std::string mean = Signed(difference.at("mean"), decimals);
   if (difference.at("low").is_null()) return mean;
@@ -249,7 +249,7 @@ Cell IntervalCell(const json& difference, int decimals) {
           low * high > 0.0};
 }
 
-// Ablations: what one more part changes, paired by object.
+// Ablations: the effect of one more part, paired by object.
 std::string AblationSection(const json& page) {
   Table table;
   table.header = {"", "objects", "IoU", "Rot, °", "yaw error, °"};
@@ -288,7 +288,7 @@ std::vector<Cell> StagesRow(const json& variant) {
   return row;
 }
 
-// What came out of the stages of each variant.
+// Results of the stages of each variant.
 std::string StagesSection(const json& page) {
   Table table;
   table.name = "sentences";
@@ -305,7 +305,7 @@ std::string StagesSection(const json& page) {
                      HtmlTable(table));
 }
 
-// What was planned and is not there, or is older than the plan: a row for each state.
+// Planned variants that are missing or older than the plan: a row for each state.
 std::string UnfinishedTable(const json& unfinished) {
   std::vector<std::pair<std::string, std::vector<std::string>>> names_by_state;
   for (const json& variant : unfinished) {
@@ -326,7 +326,7 @@ std::string UnfinishedTable(const json& unfinished) {
   return HtmlTable(table);
 }
 
-// What is not to be trusted, what is not on the page, and why.
+// Findings, unfinished variants, and notes on what is not on the page.
 std::string Remarks(const json& page) {
   std::string remarks = FindingsHtml(page.at("findings")) + UnfinishedTable(page.at("unfinished"));
   for (const char* key : {"problems", "notes"}) {

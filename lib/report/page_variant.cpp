@@ -26,7 +26,7 @@ json SigmasOf(const std::vector<double>& variances) {
   return PageNumbers(sigmas);
 }
 
-// As the order of Covariance9 has it.
+// Adds the covariance, in the order of Covariance9.
 void AddCovariance(const Covariance9& covariance, const Landmark& landmark, json* object) {
   const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Matrix3d of_centre = covariance.block<3, 3>(3, 3);
@@ -54,7 +54,7 @@ json PageObjectEstimate(const ObjectEstimate& estimate) {
   return object;
 }
 
-// In the order of the sequence's objects.
+// Estimates in the order of the sequence's objects.
 json PageObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
   std::vector<json> objects(sequence.objects.size(), PageObjectEstimate({}));
   for (const ObjectEstimate& estimate : estimates) {
@@ -63,7 +63,7 @@ json PageObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& s
   return objects;
 }
 
-// How each camera sees the landmarks in the world.
+// Outlines of the landmarks in the world, as each camera sees them.
 json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence,
                        const std::vector<Rigid3d>& world_from_camera,
                        const PageSelection& selection) {
@@ -97,7 +97,7 @@ json PageSolver(const SolverSummary& solver) {
           {"gated", solver.gated}};
 }
 
-// Planes that are given are the same in the map.
+// Given planes are the same in the map and are not added.
 void AddPlanes(const MapEstimate& map, const Sequence& sequence, const PageSelection& selection,
                json* variant) {
   const bool are_given = std::ranges::none_of(sequence.planes, [](const SupportPlane& plane) {
@@ -137,7 +137,7 @@ void AddViews(const LandmarkEstimates& estimates, const Sequence& sequence,
       OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence), selection);
 }
 
-// Of each object its first observation that has a landmark.
+// The first observation of each object that has a landmark.
 std::vector<ObjectEstimate> FirstEstimates(const LandmarkEstimates& estimates,
                                            const Sequence& sequence) {
   std::vector<ObjectEstimate> first(sequence.objects.size());

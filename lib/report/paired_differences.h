@@ -10,15 +10,15 @@
 
 namespace soslam {
 
-// What a change is worth: the errors of `variant` minus those of `baseline`.
+// A comparison of two variants: the errors of `variant` minus those of `baseline`.
 struct Comparison {
   std::string variant;
   std::string baseline;
 };
 
-// All comparisons within each list of variants: each with those before it. Lists are divided by
-// commas, variants by blanks: "InitS InitST, OursS OursST". Throws SettingsError for a list of
-// fewer than two.
+// All comparisons within each list of variants: each variant with those before it. Lists are
+// separated by commas, variants by blanks: "InitS InitST, OursS OursST". Throws SettingsError for a
+// list of fewer than two variants.
 std::vector<Comparison> ParseComparisons(const std::string& lists);
 
 struct Interval {
@@ -29,19 +29,19 @@ struct Interval {
 struct PairedDifference {
   int objects = 0;
   double mean = 0.0;
-  // For the mean: t interval, which takes the objects' differences as independent and normal. None
-  // of fewer than two.
+  // Confidence interval of the mean by Student's t, which assumes independent normal differences of
+  // the objects. None for fewer than two objects.
   std::optional<Interval> confidence_95;
 };
 
-// The t of which a Student variable with that many degrees of freedom (>= 1) stays below in
-// absolute value with probability 0.95.
+// The t that the absolute value of a Student variable with this many degrees of freedom (>= 1) does
+// not exceed with probability 0.95.
 double StudentT95(int degrees_of_freedom);
 
-// Of at least one difference.
+// Requires at least one difference.
 PairedDifference MeanDifference(const std::vector<double>& differences);
 
-// By object: of those for which both variants have the quantity, in the order of `variant`.
+// Differences of the objects for which both variants have the quantity, in the order of `variant`.
 std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
                                         const Quantity& quantity);
 

@@ -9,7 +9,7 @@
 namespace soslam {
 namespace {
 
-// Which observations a row of measured values is over, and what it is called.
+// Kind of a row of measured values: its observations and its name.
 struct RowKind {
   Observations observations;
   const char* title;
@@ -59,7 +59,7 @@ std::vector<Layout> Layouts() {
            kMapRows}};
 }
 
-// One per column.
+// One mean per column.
 using Means = std::vector<std::optional<ObjectMean>>;
 
 bool HasAny(const Means& means) {
@@ -80,7 +80,7 @@ std::string ValueText(const ObjectMean& mean, const Quantity& quantity) {
   return fmt::format("{:.{}f}", mean.mean, quantity.decimals);
 }
 
-// The best value as it is shown, so that values that look equal are equally good.
+// The best value as displayed, so that values that look equal are equally good.
 std::string BestText(const Means& means, const Quantity& quantity) {
   const ObjectMean* best = nullptr;
   for (const auto& mean : means) {
@@ -127,7 +127,7 @@ std::vector<Cell> PublishedRowOf(const PublishedRow& published, const Layout& la
   return row;
 }
 
-// Means of the datasets that have a value in each column where any has one.
+// Means of the datasets that have a value in every column in which any dataset has one.
 struct Complete {
   std::vector<std::string> datasets;
   std::vector<Means> means;
@@ -168,8 +168,8 @@ Means Averages(const Complete& complete) {
   return averages;
 }
 
-// One row per dataset and kind, for each dataset followed by what is published of it: the published
-// datasets in their order, then the others.
+// One row per dataset and kind, followed by the published values of the dataset: first the
+// published datasets in their order, then the others.
 void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedTable* published,
                     const Layout& layout, Table* table) {
   const auto add_measured = [&](const DatasetResult& dataset) {

@@ -11,7 +11,7 @@
 
 namespace soslam {
 
-// Of single-frame variants: which observations of an object count.
+// The observations of an object that are used, for single-frame variants.
 enum class Observations { kAll, kFirst };
 
 // A quantity averaged over the objects that have it.
@@ -21,18 +21,21 @@ struct ObjectMean {
   int observations = 0;  // of all objects that were compared
 };
 
-// None without the quantity; the first observation only of single-frame variants. metrics.json does
-// not say how many objects have an angle in their first observation: those that have one in any.
+// None without the quantity; the first observation exists for single-frame variants only. The
+// number of objects is that of objects with an angle in any observation, as metrics.json does not
+// have it for first observations.
 std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
                                           Observations observations);
 
-// Weighted by objects, as the averages of the paper are. Of at least one mean.
+// Mean weighted by the number of objects, like the averages of the paper. Requires at least one
+// mean.
 ObjectMean WeightedMean(const std::vector<ObjectMean>& means);
 
 // Tables I to IV of the paper: datasets by variants, its own and ours, with the published values in
 // rows of their own. The best measured value of a row is bold if it is over all of the row's
-// objects; values over fewer have their number behind them. The average is over datasets in which
-// every variant has a value that has one in any. Tables without a measured value are left out.
+// objects; values over fewer objects have their number in brackets. The average is over datasets
+// that have a value for every variant with a value in any dataset. Tables without a measured value
+// are left out.
 std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
                                const Published& published);
 

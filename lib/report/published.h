@@ -39,7 +39,7 @@ struct PublishedTimes {
   std::vector<PublishedTime> values;
 };
 
-// What the paper's tables say.
+// The values in the paper's tables.
 struct Published {
   std::vector<PublishedTable> tables;
   PublishedTimes times;

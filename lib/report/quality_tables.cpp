@@ -28,8 +28,8 @@ std::string Range(const std::vector<double>& values) {
   return first == last ? first : first + " to " + last;
 }
 
-// The distance (m) that the alignments of a map leave between camera centres: root mean square over
-// the frames of all segments.
+// The residual distance (m) between camera centres after the alignments of a map: root mean square
+// over the frames of all segments.
 std::optional<double> ResidualOf(const json& alignments) {
   double squares = 0.0;
   int frames = 0;
@@ -42,7 +42,7 @@ std::optional<double> ResidualOf(const json& alignments) {
   return frames == 0 ? std::nullopt : std::optional(std::sqrt(squares / frames));
 }
 
-// "alignment similarity, scale 2.31 to 2.34, cameras 0.01 m apart", of the maps of a dataset.
+// "alignment similarity, scale 2.31 to 2.34, cameras 0.01 m apart", for the maps of a dataset.
 std::string AlignmentInWords(const std::vector<NamedMetrics>& maps) {
   std::set<std::string> kinds;
   std::vector<double> scales, residuals;

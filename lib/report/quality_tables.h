@@ -14,8 +14,8 @@ namespace soslam {
 // A variant's name and its metrics.json.
 using NamedMetrics = std::pair<std::string, nlohmann::json>;
 
-// Maps against all that is true (map_quality of metrics.json), a row for each variant that has it:
-// what is found, and the errors of that. No table where none has it.
+// Maps compared with all true objects (map_quality of metrics.json), a row for each variant that
+// has it: counts of found objects, and their errors. Empty if no variant has it.
 std::vector<Table> QualityTables(const std::string& dataset,
                                  const std::vector<NamedMetrics>& variants);
 std::vector<Table> QualityTables(const DatasetResult& dataset);

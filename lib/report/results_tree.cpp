@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Place in the order of variants; equal for all that are neither the paper's nor ours.
+// Rank in the order of variants; equal for all that are neither the paper's nor ours.
 size_t VariantRank(const std::string& name) {
   const auto paper = std::find(kPaperVariants.begin(), kPaperVariants.end(), name);
   if (paper != kPaperVariants.end()) return static_cast<size_t>(paper - kPaperVariants.begin());

@@ -15,14 +15,14 @@ namespace soslam {
 // The methods that the paper compares, in its order.
 inline constexpr std::array kPaperVariants = {"SVD",     "Init1-1", "InitP", "InitPT",
                                               "Quadric", "OursP",   "OursPT"};
-// Those that this project adds: the same steps for bodies of any shape.
+// Variants that this project adds: the same steps with superquadrics.
 inline constexpr std::array kShapeVariants = {"MultiView", "InitS",  "InitST", "InitSTE",
                                               "OursS",     "OursST", "OursSTE"};
 
 // An error that metrics.json has for each object and, as a mean over objects, in its summaries.
 struct Quantity {
-  const char* title;      // "Rot deg"
-  const char* key;        // of an object, "rotation_deg"; its mean has "_mean" at the end
+  const char* title;  // "Rot deg"
+  const char* key;    // of an object, "rotation_deg"; the key of its mean has the suffix "_mean"
   const char* file_name;  // as part of the name of a table's files
   int decimals;
   bool higher_is_better;
@@ -31,7 +31,7 @@ inline constexpr Quantity kIou = {"IoU", "iou", "iou", 3, true};
 inline constexpr Quantity kRotation = {"Rot deg", "rotation_deg", "rotation", 2, false};
 inline constexpr Quantity kYawError = {"yaw error deg", "yaw_error_deg", "yaw_error", 2, false};
 
-// How long a run of a stage took: its timing.json.
+// Run time of a stage, from its timing.json.
 struct StageTiming {
   double wall_s = 0.0;
   double cpu_s = 0.0;
@@ -39,22 +39,23 @@ struct StageTiming {
   std::optional<Machine> machine;  // none in files from before it was recorded
 };
 
-// One run of a stage that a variant is made of.
+// One run of a stage of a variant.
 struct StageRun {
   std::string stage;                  // "initialise"
   std::filesystem::path folder;       // <dataset>/shared/<stage>-<key>
-  std::optional<StageTiming> timing;  // none when there is no timing.json
+  std::optional<StageTiming> timing;  // none without timing.json
 };
 
 // <dataset>/<variant>/: a folder with metrics.json, stages.txt or both.
 struct VariantResult {
   std::string name;
   std::filesystem::path folder;
-  nlohmann::json metrics = {};  // metrics.json (schemas/metrics.schema.json); null without one
+  nlohmann::json metrics = {};        // metrics.json (schemas/metrics.schema.json); null without it
   std::vector<StageRun> stages = {};  // in the order in which they run; empty without stages.txt
-  // The runs, <stage>-<key>, that the other files of the folder are of; `stages` may be newer.
+  // The runs, <stage>-<key>, that produced the other files of the folder; `stages` may be newer.
   std::vector<std::string> shown_runs = {};
-  std::string unreadable = {};  // why metrics.json or a timing.json is not valid; empty: they are
+  std::string unreadable =
+      {};  // error of an invalid metrics.json or timing.json; empty if they are valid
 };
 
 // <results>/<dataset>/: at least one variant.
@@ -62,20 +63,21 @@ struct DatasetResult {
   std::string name;
   std::vector<VariantResult> variants;  // the paper's in its order, ours, then others by name
 
-  // The variant of that name that has metrics; null when there is none.
+  // The variant with that name if it has metrics, else null.
   const VariantResult* Evaluated(const std::string& variant) const;
 };
 
-// The names of the folders in a folder, sorted; none when it is not there.
+// The names of the folders in a folder, sorted; empty if the folder does not exist.
 std::vector<std::string> SubfoldersOf(const std::filesystem::path& folder);
 
-// Where a dataset was when its runs were planned: the first line of shared/dataset.txt in its
-// results. Empty without one.
+// The dataset's folder at the time when its runs were planned: the first line of shared/dataset.txt
+// in its results. Empty without that file.
 std::filesystem::path DatasetFolderOf(const std::filesystem::path& results_of_dataset);
 
-// All datasets in a results folder by name, those without metrics too; empty when the folder does
-// not exist. A metrics.json or timing.json that is not valid is refused with an InputError that
-// names file and field, or noted with its variant, which then has neither metrics nor stages.
+// All datasets in a results folder by name, including those without metrics; empty if the folder
+// does not exist. A metrics.json or timing.json that is not valid either leads to an InputError
+// that names file and field, or is noted with its variant, which then has neither metrics nor
+// stages.
 enum class DamagedFiles { kRefused, kNoted };
 std::vector<DatasetResult> ReadResults(const std::filesystem::path& results,
                                        DamagedFiles damaged = DamagedFiles::kRefused);
@@ -84,7 +86,7 @@ std::vector<DatasetResult> ReadResults(const std::filesystem::path& results,
 // absent.
 std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer);
 
-// A quantity of one object, by its id in the dataset; objects that do not have it are left out.
+// A quantity of one object, by its id in the dataset; objects without it are left out.
 struct ObjectValue {
   int object_id = 0;
   double value = 0.0;

@@ -13,7 +13,7 @@ namespace soslam {
 namespace fs = std::filesystem;
 
 std::vector<std::string> RunsIn(const fs::path& list) {
-  constexpr size_t kMaxName = 255;  // bytes, of files and folders on Linux
+  constexpr size_t kMaxName = 255;  // bytes; limit of names on Linux
   NoteInput(list);
   std::vector<std::string> runs;
   std::ifstream lines(list);

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// One clock of a timing, and what its rows are called.
+// One of the clocks of a timing, and the name of its rows.
 struct Clock {
   const char* title;
   double StageTiming::*seconds;
@@ -33,7 +33,7 @@ std::optional<double> Seconds(const StageRun& run, const Clock& clock) {
   return (*run.timing).*clock.seconds;
 }
 
-// None when a run has no timing, and of no runs.
+// Sum over the runs; none if a run has no timing, or if there are no runs.
 std::optional<double> TotalSeconds(const std::vector<StageRun>& runs, const Clock& clock) {
   double total = 0.0;
   for (const StageRun& run : runs) {
@@ -44,7 +44,7 @@ std::optional<double> TotalSeconds(const std::vector<StageRun>& runs, const Cloc
   return runs.empty() ? std::nullopt : std::optional(total);
 }
 
-// The runs that count per landmark.
+// The runs that are counted in the time per landmark.
 std::vector<StageRun> LandmarkRuns(const VariantResult& variant, bool is_map) {
   std::vector<StageRun> runs;
   for (const StageRun& run : variant.stages) {
@@ -88,7 +88,8 @@ constexpr std::array<TimeRow, 3> kTimeRows = {{{"wall ms", &LandmarkTime::wall_m
                                                {"CPU ms", &LandmarkTime::cpu_ms},
                                                {"observations", &LandmarkTime::observations}}};
 
-// In the order of TimedVariants(). Variants share sequences, which can be large: each is read once.
+// Times in the order of TimedVariants(). Variants share sequences, which can be large: each is read
+// once.
 std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
   std::map<std::filesystem::path, SequenceCounts> counts;
   std::vector<std::optional<LandmarkTime>> times;
@@ -135,7 +136,7 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
   table->notes.push_back(fmt::format("Published: {}, on {}.", published.source, published.machine));
 }
 
-// Stages in the order of the pipeline, as far as any variant has them.
+// Stages that any variant has, in the order of the pipeline.
 std::vector<std::string> StagesOf(const std::vector<DatasetResult>& datasets) {
   std::vector<std::string> stages;
   for (const char* stage :

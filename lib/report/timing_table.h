@@ -11,7 +11,7 @@
 
 namespace soslam {
 
-// What one landmark takes. Single-frame variants: edges, initialisation and refinement, per
+// Run time per landmark. Single-frame variants: edges, initialisation and refinement, per
 // observation; SVD and MultiView: the same, per object; maps: the back end alone, per object.
 struct LandmarkTime {
   double wall_ms = 0.0;
@@ -19,10 +19,10 @@ struct LandmarkTime {
   double observations = 0.0;  // mean number per landmark
 };
 
-// Of a sequence.json.
+// Counts of a sequence.json.
 struct SequenceCounts {
   int observations = 0;
-  int objects = 0;  // that were observed
+  int objects = 0;  // objects that were observed
 };
 
 // Throws InputError for a file that cannot be read or has no detections of objects.
@@ -36,8 +36,8 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
 // variant has a time. Throws InputError as CountObservations.
 Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published);
 
-// Wall and CPU seconds of each stage that a variant is made of, and their sums. A run that variants
-// share counts in each; what has no timing is "-", and then so is the sum.
+// Wall and CPU seconds of each stage of a variant, and their sums. A run that variants share is
+// counted in each; a missing timing is "-", and so is then the sum.
 Table StageTimeTable(const std::vector<DatasetResult>& datasets);
 
 }  // namespace soslam

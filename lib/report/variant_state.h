@@ -7,12 +7,13 @@
 
 namespace soslam {
 
-// Why the variant's folder does not show what was planned: "failed: refine: exit code 3: ..." or
-// "incomplete: refine has not run"; empty when it does, and of folders without stages.txt.
+// The reason why the variant's folder does not show the planned results: "failed: refine: exit code
+// 3: ..." or "incomplete: refine has not run"; empty if it does, and for folders without
+// stages.txt.
 std::string WhyUnfinished(const VariantResult& variant);
 
-// Whether what the variant's folder shows was made by this stage as well: as its list of stages
-// says or, in folders without, the stage's file in it.
+// True if this stage contributed to the results in the variant's folder: by its list of stages or,
+// without one, by the stage's file in it.
 bool ShowsStage(const VariantResult& variant, const std::string& stage, const std::string& file);
 
 }  // namespace soslam

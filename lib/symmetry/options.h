@@ -18,7 +18,7 @@ enum class Sampling {
 };
 inline constexpr std::array kSamplingNames = {"corners", "uniform", "corners_and_uniform", "edges"};
 
-// Which pixels of an observation are compared with their mirror pixels, and how.
+// Choice of the pixels of an observation to compare with their mirror pixels, and the comparison.
 struct SymmetryOptions {
   Descriptor descriptor = Descriptor::kImprovedDt;
   Sampling sampling = Sampling::kCornersAndUniform;
@@ -51,8 +51,8 @@ struct SymmetryOptions {
 };
 
 enum class RefinementParameters {
-  kYaw,  // the landmark is turned about its z axis, centre and half axes stay
-  kAll,  // then all nine, together with the constraints of eq. (12)
+  kYaw,  // the landmark is rotated about its z axis, centre and half axes stay
+  kAll,  // the yaw, then all nine parameters, together with the constraints of eq. (12)
 };
 inline constexpr std::array kRefinementParametersNames = {"yaw", "all"};
 

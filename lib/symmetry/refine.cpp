@@ -14,7 +14,7 @@
 namespace soslam {
 namespace {
 
-// One observation, with what all steps of its refinement share.
+// One observation, and the data that all steps of its refinement share.
 struct Refinement {
   const Sequence& sequence;
   const Detection& detection;
@@ -30,8 +30,8 @@ double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
   return Yaw(refinement.detection.plane_in_camera.normal, landmark.frame_from_object.rotation);
 }
 
-// Eq. (12) plus eq. (16) over all nine parameters. Pairs are chosen at the start. None when the
-// solver fails.
+// Minimises eq. (12) plus eq. (16) over all nine parameters. Pairs are chosen at the start. None
+// when the solver fails.
 std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& start) {
   const RefineOptions& options = refinement.options;
   const Camera& camera = refinement.observation.camera;
@@ -88,8 +88,8 @@ void RecordPairs(const Refinement& refinement, const Landmark& landmark, Symmetr
   }
 }
 
-// The hypothesis, among those that explain the box as well as the first, whose texture is most
-// symmetric near its yaw.
+// The hypothesis with the most symmetric texture near its yaw, among those that fit the box as well
+// as the first.
 Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection,
                             const std::vector<Hypothesis>& hypotheses, const EdgeMaps& maps,
                             const Eigen::Vector2d& ratio, const RefineOptions& options) {
@@ -123,7 +123,7 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
   return *chosen;
 }
 
-// The refined landmark, or why there is none.
+// Writes the refined landmark; otherwise returns the reason of the failure.
 std::string Refine(const Refinement& refinement, Landmark* refined) {
   if (refinement.image->edge_pixels.empty()) return "no_edges";
   if (!refinement.best_turn) return "too_few_visible_pairs";

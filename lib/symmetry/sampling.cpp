@@ -12,7 +12,7 @@ SampleCandidates::SampleCandidates(const SymmetryImage& image, const SymmetryOpt
     : max_corners(static_cast<size_t>(options.max_corners)) {
   const Box& box = image.box;
   if (options.sampling == Sampling::kEdges) {
-    // Thinned evenly.
+    // Every stride-th edge pixel, so that they are thinned evenly.
     const auto max_count = static_cast<size_t>(options.max_edge_pixels);
     const size_t stride =
         std::max<size_t>(1, (image.edge_pixels.size() + max_count - 1) / max_count);

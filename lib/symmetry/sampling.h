@@ -11,19 +11,20 @@
 
 namespace soslam {
 
-// The pixels to compare as far as their rays meet a landmark, section V-D: corners in the box
-// and/or a uniform grid over it, or its edge pixels. Corners first, strongest first.
+// The candidates of pixels to compare, provided that their rays meet a landmark, section V-D:
+// corners in the box and/or a uniform grid over it, or its edge pixels. Corners first, strongest
+// first.
 struct SampleCandidates {
   SampleCandidates(const SymmetryImage& image, const SymmetryOptions& options);
 
   std::vector<Eigen::Vector2d> corners;
-  // Of those corners that meet the landmark, no more than this. When there are no more in all, all
-  // candidates that meet it are compared, whichever they are.
+  // Limit on the corners whose rays meet the landmark. If there are no more corners in all, every
+  // candidate whose ray meets the landmark is compared.
   size_t max_corners;
   std::vector<Eigen::Vector2d> others;
 };
 
-// Those whose rays meet the landmark.
+// The candidates whose rays meet the landmark.
 std::vector<Eigen::Vector2d> SamplePixels(const SymmetryImage& image, const Camera& camera,
                                           const Landmark& landmark_in_camera,
                                           const SymmetryOptions& options);

@@ -9,7 +9,7 @@ namespace soslam {
 namespace {
 
 // A ray in the object frame, in units of the half axes, so that the body is the unit box, ball or
-// cylinder. Depths along it are those along the original ray.
+// cylinder. Depths are the same as along the original ray.
 struct UnitRay {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -20,7 +20,7 @@ Eigen::Vector3d ToUnitBody(const Landmark& landmark, const Eigen::Vector3d& poin
   return (pose.rotation.conjugate() * (point - pose.translation)).cwiseQuotient(landmark.half_axes);
 }
 
-// Depths at which a line is inside some convex set; empty when enter > leave.
+// Depths at which a line enters and leaves a convex set; empty when enter > leave.
 struct Interval {
   double enter = -std::numeric_limits<double>::infinity();
   double leave = std::numeric_limits<double>::infinity();
@@ -33,7 +33,7 @@ struct Interval {
 constexpr Interval kEmpty = {std::numeric_limits<double>::infinity(),
                              -std::numeric_limits<double>::infinity()};
 
-// The slab |x_axis| <= 1.
+// The interval inside the slab |x_axis| <= 1.
 Interval InsideSlab(const UnitRay& ray, int axis) {
   const double origin = ray.origin[axis];
   const double direction = ray.direction[axis];
@@ -43,7 +43,7 @@ Interval InsideSlab(const UnitRay& ray, int axis) {
   return {std::min(first, second), std::max(first, second)};
 }
 
-// The endless cylinder x^2 + y^2 <= 1.
+// The interval inside the infinite cylinder x^2 + y^2 <= 1.
 Interval InsideTube(const UnitRay& ray) {
   const Eigen::Vector2d origin = ray.origin.head<2>();
   const Eigen::Vector2d direction = ray.direction.head<2>();
@@ -75,8 +75,8 @@ std::optional<Box> CuboidOutline(const Camera& camera, const Landmark& landmark_
   return box;
 }
 
-// A cylinder is the convex hull of its two rims, and a rim is a flat ellipsoid, whose dual quadric
-// is as good as any other.
+// A cylinder is the convex hull of its two rims. A rim is a flat ellipsoid, and OutlineBox handles
+// it like any other.
 std::optional<Box> CylinderOutline(const Camera& camera, const Landmark& landmark_in_camera) {
   std::optional<Box> rims[2];
   for (int end = 0; end < 2; ++end) {

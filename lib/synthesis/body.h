@@ -12,8 +12,8 @@ namespace soslam {
 
 enum class Shape { kBox, kEllipsoid, kCylinder };
 
-// A solid with pose and half axes of a landmark: the ellipsoid itself, the box around it, or the
-// upright (elliptic) cylinder between, with its axis along z.
+// A solid with the pose and half axes of a landmark: the ellipsoid itself, the box around it, or
+// the upright (elliptic) cylinder between them, with its axis along z.
 struct Body {
   Shape shape = Shape::kEllipsoid;
   Landmark landmark;
@@ -22,19 +22,19 @@ struct Body {
 // The same body in the target frame.
 Body Transform(const Rigid3d& target_from_source, const Body& body_in_source);
 
-// Where a ray from `origin`, outside the body, first meets it: origin + depth * direction, depth >
-// 0. All in the frame that the body lives in. None when it misses.
+// Depth at which a ray from `origin`, outside the body, first meets it: origin + depth * direction,
+// depth > 0. All in the body's frame. None when the ray misses.
 std::optional<double> NearestIntersection(const Body& body, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction);
 
-// Whether the body, its surface included, holds the point.
+// True if the point is inside the body or on its surface.
 bool Contains(const Body& body, const Eigen::Vector3d& point);
 
 // The outward unit normal at a surface point; both in the object frame.
 Eigen::Vector3d OutwardNormal(const Body& body, const Eigen::Vector3d& point_in_object);
 
-// The tight box around the outline of the body, exact, not cut at the image border. None unless the
-// whole body is in front of the camera.
+// The tight box around the silhouette of the body, exact, not cut at the image border. None unless
+// the whole body is in front of the camera.
 std::optional<Box> OutlineBox(const Camera& camera, const Body& body_in_camera);
 
 }  // namespace soslam

@@ -46,7 +46,7 @@ fs::path Sibling(const fs::path& folder, const std::string& purpose) {
          fmt::format(".{}.{}-{}", folder.filename().string(), purpose, getpid());
 }
 
-// The errno when something of a folder's disk could not be written, else 0.
+// Flushes the disk of a folder; returns the errno of a failure, else 0.
 int SyncDiskOf(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return errno;
@@ -55,7 +55,7 @@ int SyncDiskOf(const fs::path& folder) {
   return error;
 }
 
-// At once, so that a folder of the name is there at any moment. Not all file systems can do that.
+// Atomic, so that there is a folder of that name at any moment. Not all file systems support it.
 bool Exchange(const fs::path& one, const fs::path& other) {
   return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
 }

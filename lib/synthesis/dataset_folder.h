@@ -6,25 +6,25 @@
 
 namespace soslam {
 
-// The first line of a synthesised folder's README.md starts with this, and says that the folder may
+// Begin of the first line of a synthesised folder's README.md; the line states that the folder may
 // be replaced.
 inline constexpr std::string_view kSynthesisedMark = "<!-- Written by soslam-synthesise";
 
-// A synthesised folder that appears whole or not at all: fill Temporary(), then Commit().
+// A synthesised folder that appears completely or not at all: fill Temporary(), then Commit().
 class DatasetFolder {
  public:
-  // Creates the temporary beside `folder`. Throws SettingsError when `folder` is not a folder,
-  // holds anything but an earlier synthesised dataset, or cannot be written.
+  // Creates the temporary folder beside `folder`. Throws SettingsError when `folder` is not a
+  // folder, contains anything but an earlier synthesised dataset, or cannot be written.
   explicit DatasetFolder(const std::filesystem::path& folder);
-  // Removes the temporary, or what it replaced.
+  // Removes the temporary folder, or the one that it replaced.
   ~DatasetFolder();
   DatasetFolder(const DatasetFolder&) = delete;
   DatasetFolder& operator=(const DatasetFolder&) = delete;
 
   const std::filesystem::path& Temporary() const { return temporary_; }
 
-  // Puts the temporary in the place of `folder`. Throws SettingsError when the disk refuses,
-  // InputError as CheckInputsUnchanged.
+  // Moves the temporary folder to the place of `folder`. Throws SettingsError when the disk
+  // refuses, InputError as CheckInputsUnchanged.
   void Commit();
 
  private:

@@ -44,7 +44,7 @@ Trajectory RandomDrive(double length, int frames, std::mt19937* random) {
   return trajectory;
 }
 
-// Places objects one by one, keeping count of the frames that see each.
+// Places objects one by one and counts the frames that see each of them.
 class Placement {
  public:
   Placement(Scene* scene, std::mt19937* random)
@@ -64,7 +64,7 @@ class Placement {
   }
 
  private:
-  // Sizes at random, and a place somewhere ahead of some frame's camera.
+  // Draws random sizes, and a position ahead of the camera of some frame.
   void Draw(SceneObject* object) {
     object->half_axes.x() = Uniform(0.12, 0.45, &random_);
     object->half_axes.y() = Uniform(0.12, 0.45, &random_);
@@ -77,7 +77,7 @@ class Placement {
     object->position_on_plane = place_in_world.head<2>();
   }
 
-  // Whether the object touches no other one, and leaves the robot its way.
+  // True if the object touches no other one and does not block the robot's path.
   bool HasRoom(const SceneObject& object) const {
     constexpr double kGap = 0.1;    // metres
     constexpr double kRobot = 0.4;  // metres, half its width

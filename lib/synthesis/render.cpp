@@ -19,8 +19,8 @@ constexpr int kSamplesPerSide = 3;
 struct Solid {
   Body body_in_camera;
   Rigid3d object_from_camera;
-  std::optional<SurfaceTexture> texture;  // none: a table
-  std::optional<Box> outline;             // none: may be anywhere in the image
+  std::optional<SurfaceTexture> texture;  // none for a table
+  std::optional<Box> outline;             // none if it may be anywhere in the image
 
   bool MayCoverRow(int v) const {
     return !outline || (outline->y_min <= v + 0.5 && outline->y_max >= v - 0.5);

@@ -7,8 +7,9 @@
 
 namespace soslam {
 
-// The scene as the camera sees it, CV_8UC3 in blue, green, red, by casting 3 x 3 rays per pixel:
-// soft light from above, no mirrors, shadows only where objects touch their plane. Without noise.
+// The camera's view of the scene, CV_8UC3 in blue, green, red, by casting 3 x 3 rays per pixel:
+// soft light from above, no reflections, shadows only where objects touch their plane. Without
+// noise.
 cv::Mat RenderFrame(const Scene& scene, const Rigid3d& world_from_camera);
 
 }  // namespace soslam

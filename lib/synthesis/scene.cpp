@@ -23,12 +23,12 @@ Eigen::Vector3d CatmullRom(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1,
                 (3.0 * p1 - p0 - 3.0 * p2 + p3) * t * t * t);
 }
 
-// The camera on the curve through the waypoints; `parameter` counts waypoints.
+// The camera on the curve through the waypoints; `parameter` is in units of waypoints.
 Waypoint Interpolate(const std::vector<Waypoint>& waypoints, double parameter) {
   const int last = static_cast<int>(waypoints.size()) - 1;
   const int segment = std::clamp(static_cast<int>(parameter), 0, std::max(last - 1, 0));
   const double t = parameter - segment;
-  // Beyond its ends the curve goes on straight.
+  // The curve continues straight beyond its ends.
   const auto point = [&](Eigen::Vector3d Waypoint::*member, int index) -> Eigen::Vector3d {
     if (last == 0) return waypoints[0].*member;
     if (index < 0) return 2.0 * waypoints[0].*member - waypoints[1].*member;
@@ -42,7 +42,7 @@ Waypoint Interpolate(const std::vector<Waypoint>& waypoints, double parameter) {
   return {on_curve(&Waypoint::position_in_world), on_curve(&Waypoint::look_at_in_world)};
 }
 
-// A camera without roll: its x axis is horizontal. None when that leaves its direction open.
+// A camera without roll: its x axis is horizontal. None if that does not determine the pose.
 std::optional<Rigid3d> LookingPose(const Waypoint& waypoint, const Eigen::Vector3d& up) {
   constexpr double kMinSine = 1e-6;
   const Eigen::Vector3d forward = waypoint.look_at_in_world - waypoint.position_in_world;

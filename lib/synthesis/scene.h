@@ -13,8 +13,8 @@
 
 namespace soslam {
 
-// The top of a table: a rectangular slab under its plane, with four legs. Drawn, and hides what is
-// behind it, but is not an object of the scene.
+// The top of a table: a rectangular slab under its plane, with four legs. It is rendered and
+// occludes, but is not an object of the scene.
 struct TableTop {
   Eigen::Vector2d position_on_plane = Eigen::Vector2d::Zero();  // of the slab's middle, metres
   Eigen::Vector2d half_size = Eigen::Vector2d::Ones();          // metres
@@ -23,7 +23,7 @@ struct TableTop {
   double leg_length = 0.0;  // metres, below the slab; 0: no legs
 };
 
-// A support plane. Without a table it is a floor without end. Its own frame: origin at the point
+// A support plane. Without a table it is an infinite floor. Its own frame: origin at the point
 // nearest to the world's origin, z the normal, x the direction of yaw 0; for a level plane in a
 // world with z up these are the world's x and y axes.
 struct ScenePlane {
@@ -45,7 +45,7 @@ struct SceneObject {
   int texture_seed = 0;
 };
 
-// Where the camera is, and the point in the middle of its image.
+// Position of the camera, and the point in the middle of its image.
 struct Waypoint {
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d look_at_in_world = Eigen::Vector3d::UnitX();
@@ -59,19 +59,19 @@ struct Trajectory {
   double frame_interval = 0.1;  // seconds
 };
 
-// How the simulated measurements differ from the truth. All zero: not at all.
+// Noise of the simulated measurements. All zero: none.
 struct SceneNoise {
   double box_edge_sigma = 0.0;    // of each box edge, as a fraction of the box's width or height
   double box_sigma_px = 0.0;      // of each box edge, in addition, pixels
-  double miss_probability = 0.0;  // that a detection is missing
+  double miss_probability = 0.0;  // probability that a detection is missing
   double odometry_translation_sigma = 0.0;   // random walk on each axis, metres per sqrt(metre)
   double odometry_scale_sigma = 0.0;         // one scale error for the whole trajectory
   double odometry_rotation_sigma_deg = 0.0;  // random walk, degrees per sqrt(metre + turn / 30 deg)
   double image_sigma = 0.0;                  // grey levels, per pixel and channel
 };
 
-// All that a synthetic sequence is made from. planes[0] says what is up for the camera. Objects and
-// planes are sorted by id.
+// All data that define a synthetic sequence. The normal of planes[0] is the camera's up direction.
+// Objects and planes are sorted by id.
 struct Scene {
   std::string name;
   Camera camera;
@@ -83,17 +83,17 @@ struct Scene {
   int seed = 0;  // of all noise
 };
 
-// From a plane's own frame to the world, see ScenePlane.
+// Transformation from a plane's own frame to the world, see ScenePlane.
 Rigid3d WorldFromPlane(const Plane& plane_in_world);
 
 // The object's solid in the world: tangent to its plane, its z axis along the plane's normal.
 Body ObjectBody(const Scene& scene, const SceneObject& object);
 
-// What stands around without being an object, in the world: slabs and legs of the tables.
+// Solids that are not objects, in the world: slabs and legs of the tables.
 std::vector<Body> Furniture(const Scene& scene);
 
 // The true pose of each frame. Throws InputError when the camera looks straight up or down, or at
-// its own position, which leaves its roll open.
+// its own position, which leaves its roll undefined.
 std::vector<Rigid3d> TruePoses(const Scene& scene);
 
 }  // namespace soslam

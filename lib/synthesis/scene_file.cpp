@@ -28,7 +28,7 @@ Eigen::Vector3d Vector3(const json& values) {
 }
 
 Plane ParsePlane(const json& document, const std::string& where) {
-  constexpr double kTolerance = 1e-6;  // what a rounded unit vector may be off
+  constexpr double kTolerance = 1e-6;  // rounding of a unit vector
   const Eigen::Vector3d normal = Vector3(document.at("normal"));
   if (!(std::abs(normal.norm() - 1.0) <= kTolerance)) {
     throw InputError(

@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-// The box with noise on each edge, cut at the image border; none when missed, or nothing is left.
+// The box with noise on each edge, cut at the image border; none if it is missed or empty.
 std::optional<Box> NoisyBox(const Scene& scene, int frame_index, const SceneObject& object,
                             const Box& exact) {
   auto random = NoiseGenerator(scene.seed, NoiseKind::kDetection, frame_index, object.id);
@@ -38,7 +38,8 @@ std::optional<Box> NoisyBox(const Scene& scene, int frame_index, const SceneObje
 
 // The true motions with noise, integrated from the first true pose.
 std::vector<Rigid3d> NoisyOdometry(const Scene& scene, const std::vector<Rigid3d>& true_poses) {
-  constexpr double kTurn = std::numbers::pi / 6.0;  // that counts like a metre, 30 degrees
+  constexpr double kTurn =
+      std::numbers::pi / 6.0;  // turn with the same noise as a metre, 30 degrees
   const SceneNoise& noise = scene.noise;
   auto random = NoiseGenerator(scene.seed, NoiseKind::kOdometry, 0, 0);
   std::normal_distribution<double> normal;

@@ -17,20 +17,20 @@ struct SimulatedBox {
   Box box;
 };
 
-// What sensors say about a scene, and the truth. Boxes are sorted by frame, then by object.
+// Simulated measurements of a scene, and the truth. Boxes are sorted by frame, then by object.
 struct Simulation {
   std::vector<Rigid3d> true_world_from_camera;
   std::vector<Rigid3d> odometry_world_from_camera;  // starts at the first true pose
   std::vector<SimulatedBox> exact_boxes;            // of every object in sight
-  std::vector<SimulatedBox> detections;             // exact boxes with noise, less those missed
+  std::vector<SimulatedBox> detections;             // exact boxes with noise, without missed ones
 };
 
-// An object is in sight when it is wholly inside the image and nothing comes between the camera and
-// its centre; boxes are of the whole object all the same. Without noise detections are exact_boxes
-// and odometry is the truth.
+// An object is in sight when it is wholly inside the image and its centre is not occluded; boxes
+// are always of the whole object. Without noise, detections are exact_boxes and odometry is the
+// truth.
 Simulation Simulate(const Scene& scene, bool noise);
 
-// Whether nothing in the scene comes between a camera and the object's centre.
+// True if nothing in the scene occludes the object's centre.
 bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
                      const Eigen::Vector3d& camera_in_world);
 
@@ -38,15 +38,15 @@ bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
 std::optional<Box> BoxInImage(const Camera& camera, const Rigid3d& world_from_camera,
                               const Body& body_in_world);
 
-// The exact landmark and symmetries of an object. Symmetric about its xz plane, shape and texture;
-// the texture leaves no other mirror plane. Rotational symmetry is of the shape alone.
+// The exact landmark and symmetries of an object. Shape and texture are symmetric about its xz
+// plane; the texture has no other mirror plane. Rotational symmetry is of the shape alone.
 GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object);
 
 // The path of a frame's image in its dataset folder.
 std::string ImageName(int frame_index);
 
-// The simulation as a sequence in memory, with ground truth and without images on disk. Support
-// planes are given to each detection as the true camera sees them.
+// The simulation as a sequence in memory, with ground truth and without images on disk. Each
+// detection has its support plane as the true camera sees it.
 Sequence SyntheticSequence(const Scene& scene, bool noise);
 
 }  // namespace soslam

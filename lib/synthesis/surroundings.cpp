@@ -16,7 +16,7 @@ const Colour kTableColour(84, 118, 152);
 const Colour kWallColour(176, 183, 186);
 const Colour kSkirtingColour(164, 171, 174);
 const Colour kHazeColour(214, 208, 202);
-constexpr double kHazeDistance = 40.0;    // metres, to 1/e of the colour
+constexpr double kHazeDistance = 40.0;    // metres, at which 1/e of the colour is left
 constexpr double kSkirtingHeight = 0.09;  // metres
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -25,7 +25,7 @@ double SmoothStep(double from, double to, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// A number in [-1, 1) that looks random, the same for the same cell.
+// A pseudo-random number in [-1, 1), the same for the same cell.
 double CellNoise(int x, int y) {
   uint32_t hash = static_cast<uint32_t>(x) * 0x8da6b343u ^ static_cast<uint32_t>(y) * 0xd8163841u;
   hash = (hash ^ (hash >> 15)) * 0x2c1b3c6du;
@@ -33,12 +33,12 @@ double CellNoise(int x, int y) {
   return static_cast<double>(hash ^ (hash >> 15)) / 2147483648.0 - 1.0;
 }
 
-// Tiles of half a metre, in grey levels about 0; fades with the distance, where it would flicker.
+// Tiles of half a metre, in grey levels about 0; fades with distance, where it would alias.
 double TilePattern(const Eigen::Vector3d& point_in_plane, double distance) {
   constexpr double kTile = 0.5;
   constexpr double kHalfJoint = 0.004;
   constexpr double kFadeDistance = 4.0;
-  constexpr double kMaxDistance = 100.0;  // beyond it cells are too small to be worth counting
+  constexpr double kMaxDistance = 100.0;  // beyond it the pattern has faded
   if (distance > kMaxDistance) return 0.0;
   const Eigen::Array2d scaled = point_in_plane.head<2>().array() / kTile;
   const Eigen::Array2d cell = scaled.floor();
@@ -69,7 +69,7 @@ Surroundings::Surroundings(const Scene& scene) : scene_(scene) {
   for (const ScenePlane& plane : scene.planes) {
     plane_from_world_.push_back(WorldFromPlane(plane.plane_in_world).Inverse());
   }
-  // From above, a little from the side, so that the faces of a box differ.
+  // Light from above, a little from the side, so that the faces of a box differ.
   light_in_world_ = WorldFromPlane(scene.planes.at(0).plane_in_world).rotation *
                     Eigen::Vector3d(-0.42, -0.25, 0.87).normalized();
 }

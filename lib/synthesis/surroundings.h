@@ -8,21 +8,21 @@
 
 namespace soslam {
 
-// How the scene looks apart from its objects: floors, walls and tables in faint textures that an
-// edge detector overlooks, under one soft light. Colours are blue, green, red, in grey levels.
+// Appearance of the scene apart from its objects: floors, walls and tables in faint textures that
+// an edge detector overlooks, under one soft light. Colours are blue, green, red, in grey levels.
 // Keeps a reference to the scene.
 class Surroundings {
  public:
   explicit Surroundings(const Scene& scene);
 
-  // How much of its own colour a surface with that normal shows, at most 1.
+  // Brightness of a surface with that normal, as a factor on its colour, at most 1.
   double Light(const Eigen::Vector3d& normal_in_world) const;
 
-  // Of a table at a point of its surface, lit.
+  // Lit colour of a table at a point of its surface.
   Eigen::Vector3d TableColour(const Eigen::Vector3d& point_in_world,
                               const Eigen::Vector3d& normal_in_world) const;
 
-  // Of the floor or wall that a ray meets first, or of the haze; lit.
+  // Lit colour of the floor or wall that a ray meets first, or of the haze.
   Eigen::Vector3d BackgroundColour(const Eigen::Vector3d& origin_in_world,
                                    const Eigen::Vector3d& direction_in_world) const;
 
@@ -31,7 +31,7 @@ class Surroundings {
                               double distance) const;
   Eigen::Vector3d WallColour(const Plane& wall_in_world,
                              const Eigen::Vector3d& point_in_world) const;
-  // A soft dark stain under and around what stands on the plane, as a factor on its colour.
+  // Soft shadow under and around the objects on the plane, as a factor on its colour.
   double ContactShadow(int plane_index, const Eigen::Vector3d& point_in_plane) const;
 
   const Scene& scene_;

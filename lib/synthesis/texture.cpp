@@ -12,9 +12,9 @@ namespace soslam {
 namespace {
 
 constexpr int kPatches = 24;    // on the half with y >= 0
-constexpr int kCandidates = 8;  // per patch, of which the one furthest from other patches is taken
+constexpr int kCandidates = 8;  // per patch; the one farthest from other patches is taken
 
-// Blue, green, red. Pale enough against the patches for an edge detector at usual thresholds.
+// Blue, green, red. Pale enough for an edge detector to find the patches at usual thresholds.
 const std::array<Eigen::Vector3d, 5> kBaseColours = {
     Eigen::Vector3d(205, 230, 242), Eigen::Vector3d(240, 226, 208), Eigen::Vector3d(212, 236, 216),
     Eigen::Vector3d(214, 218, 244), Eigen::Vector3d(228, 232, 234)};
@@ -23,7 +23,8 @@ const std::array<Eigen::Vector3d, 7> kPatchColours = {
     Eigen::Vector3d(28, 118, 222), Eigen::Vector3d(118, 46, 98), Eigen::Vector3d(124, 104, 0),
     Eigen::Vector3d(44, 40, 40)};
 
-// Where the ray from the body's centre in that direction leaves it, in the object frame.
+// The point where the ray from the object's centre in that direction leaves it, in the object
+// frame.
 Eigen::Vector3d SurfacePoint(const SceneObject& object, const Eigen::Vector3d& direction) {
   double gauge = direction.norm();
   if (object.shape == Shape::kBox) gauge = direction.cwiseAbs().maxCoeff();
@@ -33,7 +34,7 @@ Eigen::Vector3d SurfacePoint(const SceneObject& object, const Eigen::Vector3d& d
   return (direction / gauge).cwiseProduct(object.half_axes);
 }
 
-// The radius of a disc with a patch's share of the surface, roughly.
+// The approximate radius of a disc with the mean area of a patch.
 double MeanPatchRadius(const Eigen::Vector3d& half_axes) {
   constexpr double kShareOfBoundingBox = 0.65;  // of its surface; the ellipsoid's is about half
   const double half_surface = kShareOfBoundingBox * 4.0 *

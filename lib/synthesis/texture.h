@@ -8,9 +8,9 @@
 
 namespace soslam {
 
-// The colour of an object's surface: flat patches with crisp borders, dark on pale, all around it.
-// A patch is where a ball around a surface point cuts the surface. Exactly mirror-symmetric about
-// the object's xz plane, and about no other plane or axis.
+// The colour of an object's surface: flat patches with sharp borders, dark on pale, all around it.
+// A patch is the intersection of a ball around a surface point with the surface. Exactly
+// mirror-symmetric about the object's xz plane, and about no other plane or axis.
 class SurfaceTexture {
  public:
   // Determined by the object's shape, half axes and texture_seed.
@@ -27,7 +27,7 @@ class SurfaceTexture {
   };
 
   Eigen::Vector3d base_colour_;
-  std::vector<Patch> patches_;  // the first one that holds a point gives its colour
+  std::vector<Patch> patches_;  // the first patch that contains a point gives its colour
 };
 
 }  // namespace soslam

@@ -117,7 +117,7 @@ TEST_F(Hdf5ChecksTest, PackedTwice) {
   ExpectRefused({"bad.h5", "/values", "packed"});
 }
 
-// As other programs store numbers, and as this one does.
+// Storage layouts of other programs, and of this one.
 TEST_F(Hdf5ChecksTest, AnyPackingOfTheLibraryIsRead) {
   const std::vector<double> values = {1.0 / 3.0, -2.0, 5e-324, 4.0};
   const auto expect_read = [&](const char* name, hid_t creation) {

@@ -30,7 +30,7 @@ SymmetryRecord FullRecord() {
   return record;
 }
 
-// Of an observation without landmark and ground truth.
+// The record of an observation without landmark and ground truth.
 SymmetryRecord BareRecord() {
   SymmetryRecord record;
   record.frame_id = 2;

@@ -176,7 +176,7 @@ TEST(AssociateTest, TheOrderWithinAFrameDoesNotMatter) {
   }
   std::ranges::reverse(reversed.objects);
   SortDetections(&reversed);
-  // By what they are, as their indices differ.
+  // Compares detections by frame and box, as their indices differ.
   const auto boxes = [](const Sequence& of, const Association& association) {
     std::set<std::set<std::pair<int, double>>> objects;
     for (const std::set<int>& detections : Partition(association)) {

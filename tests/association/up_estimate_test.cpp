@@ -17,7 +17,7 @@ namespace {
 
 double RandomNormal() { return std::normal_distribution<double>()(TestRandom()); }
 
-// Of a camera that looks along the world's x axis, z being up.
+// The rotation of a camera that looks along the world's x axis, with z up.
 Eigen::Quaterniond LevelCamera() {
   Eigen::Matrix3d axes;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;

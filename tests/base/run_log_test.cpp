@@ -19,7 +19,7 @@ class RunLogTest : public testing::Test {
  protected:
   RunLogTest() : input_(folder_ / "input.txt") { WriteBytes(input_, "before"); }
 
-  // As programs do that write a file whole: under another name first.
+  // Replaces the file like programs that write a whole file under another name first.
   void Replace(const std::string& bytes) const {
     WriteBytes(folder_ / "new", bytes);
     fs::rename(folder_ / "new", input_);

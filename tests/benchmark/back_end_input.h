@@ -10,7 +10,7 @@
 
 namespace soslam {
 
-// As pipelines/variants/OursST.json, without covariances, which the paper has none of.
+// Options of pipelines/variants/OursST.json, without covariances, which the paper does not compute.
 inline OptimiseOptions OptionsOfOursST() {
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;
@@ -29,7 +29,7 @@ struct OneObject {
   OneObject(const Sequence& all, size_t object_index, size_t textures);
   OneObject(const OneObject&) = delete;  // input refers to sequence
 
-  // Of the result with the truth.
+  // IoU of the result with the truth.
   double Iou(const MapEstimate& map) const;
 
   Sequence sequence;

@@ -15,7 +15,7 @@
 namespace soslam {
 namespace {
 
-// As ComputeEdgeMaps finds edges.
+// Edges as in ComputeEdgeMaps.
 cv::Mat Edges(const cv::Mat& grey) {
   const EdgesOptions options;
   cv::Mat blurred, edges;
@@ -70,7 +70,7 @@ void ImageToArtefact(benchmark::State& state, EdgeMaps (*maps)(const cv::Mat& gr
   int frame_id = 0;
   for (auto _ : state) writer.Write(frame_id++, maps(RoomAImage()));
 }
-// As soslam-edges makes them, with corners and the grey image.
+// All maps of soslam-edges, with corners and the grey image.
 BENCHMARK_CAPTURE(ImageToArtefact, all, [](const cv::Mat& grey) {
   return ComputeEdgeMaps(grey, EdgesOptions());
 })->Name("edges/image_to_artefact");

@@ -54,7 +54,7 @@ void MirrorPixel(benchmark::State& state) {
 }
 BENCHMARK(MirrorPixel)->Name("geometry/mirror_pixel")->Apply(Shapes);
 
-// Of two boxes that lie across each other.
+// IoU of two boxes that are rotated against each other.
 void Iou(benchmark::State& state) {
   Landmark one = AheadOfCamera(kEllipsoidExponent);
   const Landmark other = Turned(one, 0.4);

@@ -5,8 +5,8 @@
 
 #include "base/machine.h"
 
-// As benchmark_main, with memory and OpenCV's threads as stages have them, and with the processor's
-// name in the result.
+// Like benchmark_main, with the settings of stages for memory and OpenCV's threads, and with the
+// processor's name in the result.
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   benchmark::AddCustomContext("cpu", soslam::ThisMachine().cpu);

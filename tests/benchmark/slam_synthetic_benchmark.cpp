@@ -65,7 +65,7 @@ std::vector<Rigid3d> DeadReckoning(const Sequence& sequence) {
   return world_from_camera;
 }
 
-// Of the centres, m.
+// Median error of the centres, m.
 double MedianError(const Sequence& sequence, const MapEstimate& map) {
   std::vector<double> errors;
   for (const ObjectEstimate& object : map.objects) {

@@ -152,7 +152,7 @@ Landmarks PaperAllFrames() {
 
 // ---- Comparison.
 
-// Of a method's landmarks, made once.
+// Mean IoU of a method's landmarks, computed once.
 double IouOf(Landmarks (*method)()) {
   static std::map<Landmarks (*)(), double> known;
   const auto found = known.find(method);

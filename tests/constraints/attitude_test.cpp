@@ -9,7 +9,7 @@
 namespace soslam {
 namespace {
 
-// Of two directions that up is orthogonal to, as far as known: semidefinite.
+// Information from two directions that are orthogonal to up: semidefinite.
 Eigen::Matrix3d RandomInformation() {
   const Eigen::Vector3d one = RandomVector(-3, 3);
   const Eigen::Vector3d other = RandomVector(-3, 3);

@@ -14,7 +14,7 @@ using Bounds = std::array<bool, 4>;  // left, top, right, bottom
 constexpr Bounds kNone = {false, false, false, false};
 constexpr Bounds kBottom = {false, false, false, true};
 
-// Of each box, with the others in the same frame.
+// Bound edges of each box, given the others in the same frame.
 std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction = 0.7) {
   ListBoxesInView(sequence, &sequence);
   for (Detection& detection : sequence.detections) {

@@ -12,7 +12,7 @@
 namespace soslam {
 namespace {
 
-// As ROS' camera_calibration writes it.
+// A file of ROS' camera_calibration.
 constexpr const char* kRos = R"(image_width: 640
 image_height: 480
 camera_name: head
@@ -31,7 +31,7 @@ rectification_matrix:
   data: [1, 0, 0, 0, 1, 0, 0, 0, 1]
 )";
 
-// As `ros2 topic echo` writes a CameraInfo.
+// A CameraInfo in the format of `ros2 topic echo`.
 constexpr const char* kRosMessage = R"(header:
   stamp:
     sec: 1

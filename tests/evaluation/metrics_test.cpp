@@ -71,7 +71,7 @@ TEST(Metrics, ARoundObjectTakesTheEstimatesYawAndHasNoRotation) {
   EXPECT_LT(CompareLandmarks(estimate, truth, truth.landmark_in_world).iou, 0.9);
 }
 
-// Of an object that moves, each frame has a truth of its own.
+// An object that moves has a truth of its own in each frame.
 TEST(Metrics, TheTruthOfADetectionGoesBeforeThatOfItsObject) {
   Sequence sequence = TestSequence();
   LandmarkEstimates estimates = TrueEstimates(sequence);

@@ -19,7 +19,7 @@ using nlohmann::json;
 class GltfTest : public testing::Test {
  protected:
   GltfDocument Export() const { return ParseGlb(GlbBytes(world_, ColoursOfLabels({world_}))); }
-  // Of the objects of the world, in their order; then the trajectory.
+  // Nodes of the world's objects, in their order; then the trajectory.
   static const json& Node(const GltfDocument& document, size_t child) {
     const auto index = document.json.at("nodes").at(0).at("children").at(child).get<size_t>();
     return document.json["nodes"].at(index);

@@ -36,7 +36,7 @@ class FuzzTarget {
   using Read = void (*)(const HostileInput& input);
 
   FuzzTarget(const std::string& name, Read read);
-  // By name.
+  // All targets by name.
   static std::map<std::string, Read>& All();
 };
 

@@ -9,7 +9,7 @@
 namespace soslam {
 namespace {
 
-// As those without wide registers have it, which are checked against numbers.
+// Compares with SupportFunction, whose derivatives are checked numerically elsewhere.
 TEST(SupportOfFour, IsTheSupportFunctionOfEach) {
   for (const double p : kShapeExponents) {
     const Eigen::Vector3d half_axes = RandomVector(0.1, 0.8);

@@ -20,7 +20,8 @@ cv::Mat RandomEdges(int width, int height, double density) {
   return edges;
 }
 
-// By trying every edge pixel, column by column from the top left; the first of several wins.
+// Tries every edge pixel, column by column from the top left; the first of several nearest ones
+// wins.
 cv::Vec2s NearestByBruteForce(const cv::Mat& edges, int x, int y) {
   cv::Vec2s nearest(-1, -1);
   int least = std::numeric_limits<int>::max();

@@ -79,7 +79,7 @@ TEST(NearerBoxesTest, OnlyTheSameFrameCounts) {
   EXPECT_THAT(NearerThan(sequence, 0), ElementsAre(11));
 }
 
-// As when a box is moved to ask what would hide it there.
+// A box may be moved to find out which boxes would occlude it there.
 TEST(NearerBoxesTest, TheDetectionNeedNotBeTheSequencesOwn) {
   const Sequence sequence = LevelSequence({{10, 100, 20, 300}, {11, 100, 20, 340}});
   Detection moved = sequence.detections[0];

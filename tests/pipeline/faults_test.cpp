@@ -124,7 +124,7 @@ TEST_F(FaultsTest, TwoRunsAtOnce) {
   ExpectThatARunGives(undisturbed);
 }
 
-// As when everything was made an hour ahead of the clock of now.
+// All files are an hour newer than the current time.
 TEST_F(FaultsTest, ClockSetBack) {
   EXPECT_EQ(Run().exit_code, 0);
   for (const auto& entry : fs::recursive_directory_iterator(pipeline_.Folder())) {

@@ -29,7 +29,7 @@ std::string PngThatClaims(const std::string& side) {
          std::string("\x08\0\0\0\0\0\0\0\0IEND\xae\x42\x60\x82", 17);
 }
 
-// Of the dataset, replaced by a symbolic link to a file of the same content elsewhere.
+// Replaces a file of the dataset by a symbolic link to a file with the same content elsewhere.
 Spoil MovedOut(const std::string& file) {
   return [=](const StageChain& chain) {
     const fs::path elsewhere = chain.pipeline().Folder() / "elsewhere";

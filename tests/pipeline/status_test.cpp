@@ -119,7 +119,8 @@ TEST_F(StatusTest, CrashIsAFailure) {
               ContainsRegex("evaluate-[0-9a-f]+: its last run failed: exit code 139"));
 }
 
-// As a run leaves it: whoever runs stages has the lock, and what began has not ended.
+// State during a run: the process that runs stages has the lock, and a stage has begun but not
+// ended.
 TEST_F(StatusTest, WhatBeganRunsAsLongAsTheLockIsHeld) {
   const fs::path stage = fs::canonical(pipeline_.Results() / "InitP/metrics.json").parent_path();
   WriteBytes(stage / "done.begun", "");

@@ -53,7 +53,7 @@ void ExpectGiven(const Sequence& sequence, const PlanesEstimate& estimate, doubl
   }
 }
 
-// Of the first plane's three degrees of freedom.
+// Squared Mahalanobis error of the first plane's three degrees of freedom.
 double NormalisedErrorSquared(const Sequence& sequence, const PlanesEstimate& estimate) {
   const EstimatedPlane& plane = estimate.planes[0];
   const Plane& truth = sequence.planes[0].plane_in_world;

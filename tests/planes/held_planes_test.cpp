@@ -135,7 +135,7 @@ TEST(EstimateHeldPlanes, VerticalsThatBodiesContradictAreDoubted) {
   EXPECT_LT(error->angle, 3.0 * kRadPerDeg);
 }
 
-// As long and wide as high: it may lie on any side, but its camera is not below what it stands on.
+// A cube may lie on any side, but its camera is not below its support plane.
 TEST(EstimateHeldPlanes, ACubeLeavesItOpen) {
   Scene scene = RandomScene(3, 1, 20, {Shape::kBox});
   scene.objects[0].half_axes.setConstant(0.3);

@@ -40,7 +40,7 @@ TEST(FindLevels, GroupsHeightsByTheirUncertainty) {
   EXPECT_THAT(levels_of(0.0001).level_of, ElementsAre(3, 0, 2, 1));
 }
 
-// Of two objects, 0.5 * (0.2 / (sqrt(2) sigma))^2 is what one level costs more.
+// One level for two objects costs 0.5 * (0.2 / (sqrt(2) sigma))^2 more than two levels.
 TEST(FindLevels, OpensALevelWhereItIsWorthItsCost) {
   const double sigma = 0.2 / (std::sqrt(2.0) * std::sqrt(2.0 * kNewLevel));
   const auto count = [&](double factor) {

@@ -15,7 +15,7 @@ TEST(CameraAbovePlane, SeesEstimatedPlanesWhereTheDetectionDoes) {
   Sequence sequence = CuboidSequence(3, 5);
   sequence.planes[kFloor].attitude_information = Eigen::Matrix3d::Identity();
   for (Detection& detection : sequence.detections) {
-    // As the boxes of one frame have it: off odometry by some degrees and centimetres.
+    // The boxes of one frame differ from odometry by some degrees and centimetres.
     const Rigid3d off = {ExpRotation(RandomVector(-0.1, 0.1)), RandomVector(-0.1, 0.1)};
     detection.plane_in_camera = Transform(off, detection.plane_in_camera);
     const Rigid3d camera_from_world = CameraAbovePlane(sequence, detection);

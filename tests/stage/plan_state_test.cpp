@@ -62,7 +62,7 @@ class PlanStateTest : public testing::Test {
   std::vector<std::string> Reasons(const std::string& stage) const {
     return StatesOf(plan_, folders_, folder_ / "bin").at(InstanceOf(stage).Id()).reasons;
   }
-  // Of import, initialise and evaluate.
+  // States of import, initialise and evaluate.
   std::vector<std::string> States() const {
     const auto states = StatesOf(plan_, folders_, folder_ / "bin");
     std::vector<std::string> names;

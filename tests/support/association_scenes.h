@@ -25,7 +25,7 @@ inline Scene LabelledScene(int seed, int objects, int frames,
   return scene;
 }
 
-// Of an ordinary detector, and of the odometry that AssociateOptions are for.
+// Noise of an ordinary detector, and of the odometry that AssociateOptions are meant for.
 inline SceneNoise OrdinaryNoise() {
   SceneNoise noise;
   noise.box_edge_sigma = 0.02;
@@ -36,7 +36,7 @@ inline SceneNoise OrdinaryNoise() {
   return noise;
 }
 
-// A table that knows no label: as long and wide as high, give or take a factor of e^0.5.
+// A table that knows no label: cube proportions with a standard deviation of 0.5 in the log ratios.
 inline SemanticTable UnknowingTable() {
   SemanticTable table;
   table.default_prior = ShapePrior{{1.0, 1.0}, {0.5, 0.5}, 1.1};

@@ -50,7 +50,7 @@ class BackgroundCommand {
   // kill -9 to the program alone.
   void KillFirst() const { ::kill(process_, SIGKILL); }
 
-  // Of the program alone; what it started may live on.
+  // Waits for the program alone; processes that it started may continue.
   CommandResult Wait() {
     int status = 0;
     ::waitpid(process_, &status, 0);

@@ -45,7 +45,7 @@ struct Truth {
   std::vector<Rigid3d> world_from_camera;
 };
 
-// By detection.
+// Edge images by detection.
 using EdgeImages = std::map<int, std::shared_ptr<const EdgeImage>>;
 
 // What the errors are, and what the back end takes them for.
@@ -53,7 +53,8 @@ struct Case {
   int scenes = 500;
   double shape_exponent = kCuboidExponent;
   double assumed_exponent = kCuboidExponent;
-  // Of a / c and b / c: clearly longer than deep, so that a view or two show the yaw.
+  // Ranges of a / c and b / c: clearly longer than deep, so that one or two views determine the
+  // yaw.
   std::array<double, 4> ratio_range = {0.5, 0.7, 1.2, 1.6};
   double arc_rad = 2.5;  // around the object, over all frames
   OptimiseOptions assumed = ModelOptions();

@@ -37,7 +37,7 @@ struct GltfDocument {
     return numbers;
   }
 
-  // Of a POSITION accessor, whose bounds have to be exact.
+  // Points of a POSITION accessor, whose bounds must be exact.
   std::vector<Eigen::Vector3d> Positions(size_t accessor_index) const {
     const std::vector<float> numbers = Numbers<float>(accessor_index, 5126, 3);
     std::vector<Eigen::Vector3d> points;

@@ -35,7 +35,7 @@ inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& land
   }
 }
 
-// Of one residual r, J^T J is that of the gradient J^T r: its square over r^2.
+// For a single residual r with gradient g = J^T r: J^T J = g g^T / r^2.
 inline void ExpectInformationOfOneResidual(const LandmarkCost& cost, const Landmark& landmark) {
   LandmarkModel model;
   cost.AddTo(landmark, &model);

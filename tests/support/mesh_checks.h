@@ -12,8 +12,8 @@
 
 namespace soslam {
 
-// Of ||(x / a, y / b, z / c)||_q <= 1 with 1 / p + 1 / q = 1 (Dirichlet's integral); p = 1 gives
-// 8 a b c, p = 2 gives 4 / 3 pi a b c.
+// Volume of ||(x / a, y / b, z / c)||_q <= 1 with 1 / p + 1 / q = 1 (Dirichlet's integral); p = 1
+// gives 8 a b c, p = 2 gives 4 / 3 pi a b c.
 inline double BodyVolume(const Eigen::Vector3d& half_axes, double shape_exponent) {
   const double inverse_q = 1.0 - 1.0 / shape_exponent;
   return 8.0 * half_axes.prod() * std::pow(std::tgamma(1.0 + inverse_q), 3) /

@@ -45,7 +45,7 @@ struct MeanNetwork {
   int input_height = 64;
   std::string weights_of_conv = "weights";  // the name of another tensor makes it invalid
 
-  // As an ONNX file (field numbers of onnx.proto, opset 12):
+  // The network as an ONNX file (field numbers of onnx.proto, opset 12):
   // GlobalAveragePool -> [1, 3, 1, 1] -> 1 x 1 Conv -> [1, numbers, 1, 1] -> Reshape.
   std::string Onnx() const {
     const auto numbers = static_cast<std::int64_t>(constants.size());

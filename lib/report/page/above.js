@@ -37,7 +37,7 @@ function convexHull(points) {
   return [...chain(sorted), ...chain(sorted.reverse())];
 }
 
-// What the cuboid around a body covers, however it is turned, and the way from its centre to its front.
+// The footprint of the cuboid around a body in any orientation, and the line from its centre to its front.
 function footprint(landmark, ground) {
   const centre = landmark.pose.slice(0, 3), turn = landmark.pose.slice(3);
   const place = (signs) => ground.place(
@@ -47,7 +47,7 @@ function footprint(landmark, ground) {
   return { outline: [...hull, hull[0]], centre: place([0, 0, 0]), front: [place([0, 0, 0]), place([1, 0, 0])] };
 }
 
-// Of two standard deviations.
+// Two standard deviations of the centre, projected to the ground.
 function uncertaintyEllipse(object, ground) {
   const rows = object.centre_covariance;
   const project = (u, v) => u.reduce((sum, ui, i) => sum + v.reduce((inner, vk, k) => inner + ui * rows[i][k] * vk, 0), 0);
@@ -61,7 +61,7 @@ function uncertaintyEllipse(object, ground) {
   });
 }
 
-// A metre is as long to the right as upwards: the axis with room to spare shows more.
+// Equal scales on both axes: the axis with more room shows a larger range.
 const kEqualScales = {
   id: "equal_scales",
   afterLayout(chart) {
@@ -77,7 +77,7 @@ const kEqualScales = {
   },
 };
 
-// Names below what they are of, where there is room for them.
+// Names below their objects, if there is room for them.
 function namesOf(named) {
   return {
     id: "names",

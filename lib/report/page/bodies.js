@@ -1,5 +1,5 @@
 "use strict";
-// What the map in three dimensions shows, made for three.js in the world's own frame.
+// Meshes and lines of the map in three dimensions, for three.js, in the world's own frame.
 
 // A body whose support function is ||(a n1, b n2, c n3)||_p is the unit ball of the norm with the
 // exponent q, 1/p + 1/q = 1, scaled by its half axes.

@@ -5,7 +5,7 @@ function chartColours() {
   return ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31", "#7f7f7f"];
 }
 
-// The numbers of curves over one axis, for those who do not see them.
+// The numbers of curves over one axis, as a table for screen readers.
 function numbersOfCurves(xTitle, curves) {
   const short = (value) => String(Number(value.toPrecision(5)));
   const xs = [...new Set(curves.flatMap(({ data }) => data.map(({ x }) => x)))].sort((one, other) => one - other);

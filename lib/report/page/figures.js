@@ -19,7 +19,7 @@ function sameSequence(variants) {
   return variants.filter((variant) => variant && variant.sequence === (variants.find(Boolean) || {}).sequence);
 }
 
-// Of fewer than two there is nothing to compare.
+// Views of the same detections by several variants; empty for fewer than two variants.
 function comparison(page, all, names, count) {
   const variants = sameSequence(names.map((name) => all.find((variant) => variant.name === name)));
   if (variants.length < 2) return [];

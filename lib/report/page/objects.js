@@ -53,7 +53,7 @@ function evidence(page, variant, index) {
   ];
 }
 
-// Of the tables of all variants one is shown at a time; each row leads to the object's observations.
+// Shows the table of one variant at a time; each row leads to the object's observations.
 function showEvidenceInObjects(holder, page, variants) {
   const tables = [...holder.querySelectorAll("details")].map((details) => {
     details.remove();

@@ -57,7 +57,7 @@ Medians ReadMedians(const nlohmann::json& document) {
   return medians;
 }
 
-// Of one thread; of what runs programs, on the clock.
+// Time of one thread; wall time for benchmarks that run programs.
 double Seconds(const nlohmann::json& median) {
   static const std::map<std::string, double> units = {
       {"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}};
@@ -162,7 +162,7 @@ Table PipelineTable(const Medians& medians) {
   return table;
 }
 
-// Of one frame where a benchmark goes through several.
+// Name of a row; its time is per frame if a benchmark runs through several frames.
 Cell PartName(const std::string& part, const nlohmann::json& median) {
   return median.contains("seconds_per_frame") ? part + ", per frame" : part;
 }
