@@ -75,7 +75,7 @@ void AtomicFile::Commit() {
     Sync(FolderOf(path_));
   }
   temporary_.clear();
-  NoteOutput(path_);
+  RecordOutput(path_);
 }
 
 void WriteTextFile(const fs::path& path, std::string_view text) {

@@ -60,12 +60,12 @@ bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
 // Lock on the library for one thread. A thread-safe build of the library has an error stack per
 // thread: it is not printed, and is cleared at the end, as the library leaks it when the thread
 // ends.
-class LibraryTurn {
+class Hdf5Lock {
  public:
-  LibraryTurn() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-  ~LibraryTurn() { H5Eclear2(H5E_DEFAULT); }
-  LibraryTurn(const LibraryTurn&) = delete;
-  LibraryTurn& operator=(const LibraryTurn&) = delete;
+  Hdf5Lock() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+  ~Hdf5Lock() { H5Eclear2(H5E_DEFAULT); }
+  Hdf5Lock(const Hdf5Lock&) = delete;
+  Hdf5Lock& operator=(const Hdf5Lock&) = delete;
 
  private:
   static std::mutex& Mutex() {
@@ -101,7 +101,7 @@ Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
   if (!IsFile(path)) {
     throw InputError(fmt::format("{}: no such file; expected an HDF5 file", path.string()));
   }
-  NoteInput(path);
+  RecordInput(path);
   const Hdf5Handle access = Hdf5FileAccess();
   Hdf5File file(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()));
   if (file.file_.valid()) return file;
@@ -272,7 +272,7 @@ void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<i
   std::optional<std::string> chunk;
   std::span<std::byte> values;
   {
-    const LibraryTurn turn;
+    const Hdf5Lock turn;
     const Hdf5Element element = Hdf5ElementOf(depth);
     if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
     const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};

@@ -73,12 +73,13 @@ void RefuseNonFinite(const json& value, const json::json_pointer& place, const s
 }  // namespace
 
 json ParseJsonFile(const std::filesystem::path& path) {
-  NoteInput(path);
+  RecordInput(path);
   const std::string file = path.string();
   std::ifstream stream(path, std::ios::binary);
   if (!stream || IsFolder(path)) {
-    throw InputError(file +
-                     (std::filesystem::exists(path) ? ": cannot be read" : ": no such file") +
+    std::error_code error;
+    const bool is_missing = !std::filesystem::exists(path, error) && !error;
+    throw InputError(file + (is_missing ? ": no such file" : ": cannot be read") +
                      "; expected a JSON file");
   }
   return ParseJsonText(stream, file);

@@ -110,7 +110,7 @@ TrueObject TrueObjectFromJson(const json& json) {
 
 // Fills true_objects of files before version 1.7, in which only detected objects had a ground
 // truth.
-void SayWhatIsTrueOfObjects(Sequence* sequence) {
+void AddTruthOfOldVersions(Sequence* sequence) {
   for (const Object& object : sequence->objects) {
     if (!object.ground_truth) continue;
     sequence->true_objects.push_back(
@@ -410,7 +410,7 @@ ImageOrientation OrientationFromJson(const json& json) {
 
 // Ground truth that does not depend on detections; since version 1.7.
 void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* sequence) {
-  if (!json.contains("true_objects")) SayWhatIsTrueOfObjects(sequence);
+  if (!json.contains("true_objects")) AddTruthOfOldVersions(sequence);
   for (const auto& object : json.value("true_objects", nlohmann::json::array())) {
     sequence->true_objects.push_back(TrueObjectFromJson(object));
   }

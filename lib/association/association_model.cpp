@@ -61,16 +61,15 @@ std::optional<Prediction> AssociationModel::Predict(const Track& track, int fram
   return boxes_.Predict(*track.fit, nearest, frame_index);
 }
 
-std::optional<Explanation> AssociationModel::Explain(const Track& track,
-                                                     const Prediction& prediction,
-                                                     const Detection& detection) const {
+std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Prediction& prediction,
+                                                const Detection& detection) const {
   if (PlaneOf(detection) != track.plane_index) return std::nullopt;
   const double label_cost = labels_.Cost(WinningLabel(track.votes), LabelOf(detection));
   if (!std::isfinite(label_cost)) return std::nullopt;
-  auto explanation = boxes_.Explain(prediction, detection);
-  if (!explanation) return std::nullopt;
-  explanation->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
-  return explanation->cost < NewObjectCost(detection) ? explanation : std::nullopt;
+  auto match = boxes_.Match(prediction, detection);
+  if (!match) return std::nullopt;
+  match->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
+  return match->cost < NewObjectCost(detection) ? match : std::nullopt;
 }
 
 double AssociationModel::NewObjectCost(const Detection& detection) const {

@@ -40,9 +40,9 @@ class AssociationModel {
 
   // Likelihood of a detection's box and label given the track. None when an unseen object is more
   // likely, or the detection is on another plane.
-  std::optional<Explanation> Explain(const Track& track, const Prediction& prediction,
-                                     const Detection& detection) const;
-  // Cost of assigning the detection to an unseen object, comparable to Explanation::cost.
+  std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
+                                const Detection& detection) const;
+  // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.
   double NewObjectCost(const Detection& detection) const;
 
  private:

@@ -117,14 +117,14 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
   return prediction;
 }
 
-std::optional<Explanation> BoxLikelihood::Explain(const Prediction& prediction,
-                                                  const Detection& detection) const {
+std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
+                                             const Detection& detection) const {
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_bound,
                               options_.box_sigma_fraction);
   const Innovation innovation = InnovationOf(prediction, detection.box, edges);
   if (IsOutOfReach(innovation)) return std::nullopt;
   const double p = options_.cut_edge_probability;
-  Explanation best;
+  BoxMatch best;
   best.overlap = BoxOverlap(prediction.outline, detection.box);
   const NormalDensity whole = DensityOf(innovation, {0, 1, 2, 3});
   best.cost = whole.cost - 2.0 * std::log(1.0 - 4.0 * p);

@@ -12,7 +12,7 @@
 namespace soslam {
 
 // Fit of an object's predicted outline to a detection's box.
-struct Explanation {
+struct BoxMatch {
   double overlap = 0.0;   // intersection over union of the box and the outline box
   double distance = 0.0;  // Mahalanobis distance of the box to the expected one
   // Edge (left, top, right, bottom) that does not belong to the object, if this is more likely.
@@ -44,8 +44,7 @@ class BoxLikelihood {
                                     int frame_index) const;
 
   // None when the box is so far off that CostOfAnyBox is certainly lower.
-  std::optional<Explanation> Explain(const Prediction& prediction,
-                                     const Detection& detection) const;
+  std::optional<BoxMatch> Match(const Prediction& prediction, const Detection& detection) const;
 
   // Cost of the box of an unseen object: uniform over all positions and sizes in the image.
   double CostOfAnyBox(const Detection& detection) const;

@@ -48,7 +48,7 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
     expected.frame_index = frame;
     expected.object_index = kNoObject;
     expected.box = box;
-    expected.plane_in_camera = PlaneUnder(prediction->landmark_in_camera);
+    expected.plane_in_camera = SupportPlaneOf(prediction->landmark_in_camera);
     const std::vector<Box> nearer = NearerBoxes(sequence, expected);
     const bool is_hidden = std::ranges::any_of(
         nearer, [&](const Box& other) { return CoveredShare(box, other) >= kHiddenShare; });

@@ -110,7 +110,7 @@ std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vecto
   std::optional<Landmark> landmark;
   if (up) {
     const auto body =
-        BodyOfFreeHeight(observation, up->up_in_world, options.yaw_grid_deg * kRadPerDeg);
+        FitBodyAtFreeHeight(observation, up->up_in_world, options.yaw_grid_deg * kRadPerDeg);
     if (body) landmark = body->landmark;
     observation.plane_in_world = {up->up_in_world, 0.0};
   } else {

@@ -106,16 +106,16 @@ class FrameLinker {
     const auto columns = static_cast<Eigen::Index>(states_.size());
     Eigen::MatrixXd costs =
         Eigen::MatrixXd::Constant(rows, columns, std::numeric_limits<double>::infinity());
-    std::vector<std::vector<std::optional<Explanation>>> explanations(
-        detections.size(), std::vector<std::optional<Explanation>>(states_.size()));
+    std::vector<std::vector<std::optional<BoxMatch>>> matches(
+        detections.size(), std::vector<std::optional<BoxMatch>>(states_.size()));
     for (Eigen::Index column = 0; column < columns; ++column) {
       const auto track = static_cast<size_t>(column);
       if (!states_[track].prediction) continue;
       for (Eigen::Index row = 0; row < rows; ++row) {
-        auto& explanation = explanations[static_cast<size_t>(row)][track];
-        explanation = model_.Explain(association_.tracks[track], *states_[track].prediction,
-                                     At(detections[static_cast<size_t>(row)]));
-        if (explanation) costs(row, column) = explanation->cost;
+        auto& match = matches[static_cast<size_t>(row)][track];
+        match = model_.Match(association_.tracks[track], *states_[track].prediction,
+                             At(detections[static_cast<size_t>(row)]));
+        if (match) costs(row, column) = match->cost;
       }
     }
     Eigen::VectorXd costs_of_new_objects(rows);
@@ -128,7 +128,7 @@ class FrameLinker {
       if (track == kUnassigned) {
         Start(detections[row]);
       } else {
-        Extend(track, *explanations[row][static_cast<size_t>(track)], detections[row]);
+        Extend(track, *matches[row][static_cast<size_t>(track)], detections[row]);
       }
     }
   }
@@ -143,15 +143,15 @@ class FrameLinker {
     Add(decision.track, detection);
   }
 
-  void Extend(int track_index, const Explanation& explanation, int detection) {
+  void Extend(int track_index, const BoxMatch& match, int detection) {
     Track& track = association_.tracks[static_cast<size_t>(track_index)];
     State& state = states_[static_cast<size_t>(track_index)];
     DetectionDecision& decision = DecisionOn(detection);
     decision.decision = state.was_out_of_image ? LinkDecision::kRevisited : LinkDecision::kLinked;
     decision.track = track_index;
-    decision.overlap = explanation.overlap;
-    decision.distance = explanation.distance;
-    decision.cut_edge = explanation.cut_edge;
+    decision.overlap = match.overlap;
+    decision.distance = match.distance;
+    decision.cut_edge = match.cut_edge;
     decision.frames_since_seen =
         At(detection).frame_index - At(track.detections.back()).frame_index;
     Add(track_index, detection);

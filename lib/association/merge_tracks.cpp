@@ -109,11 +109,10 @@ class TrackMerger {
       if (merge.explained + merge.tried - i < needed) return std::nullopt;
       const Detection& detection = At(boxes[static_cast<size_t>(i)]);
       const auto prediction = model_.Predict(large, detection.frame_index);
-      const auto explanation =
-          prediction ? model_.Explain(large, *prediction, detection) : std::nullopt;
-      if (!explanation) continue;
+      const auto match = prediction ? model_.Match(large, *prediction, detection) : std::nullopt;
+      if (!match) continue;
       ++merge.explained;
-      merge.cost += explanation->cost;
+      merge.cost += match->cost;
     }
     if (merge.explained < needed) return std::nullopt;
     merge.shared_frames = SharedFrames(large, small);

@@ -10,9 +10,9 @@
 #include "geometry/angles.h"
 #include "geometry/rigid3.h"
 #include "initialisation/multi_view.h"
-#include "planes/camera_attitude.h"
 #include "planes/choose_holding.h"
 #include "planes/search_up.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 namespace {
@@ -90,7 +90,7 @@ std::optional<double> MeanCost(const std::vector<MultiViewObservation>& boxes,
   return count == 0 ? std::nullopt : std::optional(sum / count);
 }
 
-UpEstimate UpOf(const CameraAttitude& attitude, double tilt_variance) {
+UpEstimate UpOf(const UpPrior& attitude, double tilt_variance) {
   const Eigen::Vector3d& up = attitude.up_in_world;
   // Rotations about these two axes move up by their cross products with it.
   Eigen::Matrix<double, 3, 2> axes;
@@ -105,14 +105,14 @@ UpEstimate UpOf(const CameraAttitude& attitude, double tilt_variance) {
 
 UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
                 const AssociateOptions& options) {
-  std::vector<CameraAttitude> attitudes;
+  std::vector<UpPrior> attitudes;
   std::vector<HoldingEvidence> evidence;
   for (const CameraHolding holding : kHoldings) {
-    const CameraAttitude attitude =
-        AttitudeOf(segment.world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
-                   options.camera_pitch_sigma_deg * kRadPerDeg,
-                   options.view_correlation_deg * kRadPerDeg, holding);
-    const bool is_known = std::ranges::any_of(attitudes, [&](const CameraAttitude& other) {
+    const UpPrior attitude =
+        UpPriorFromCameras(segment.world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
+                           options.camera_pitch_sigma_deg * kRadPerDeg,
+                           options.view_correlation_deg * kRadPerDeg, holding);
+    const bool is_known = std::ranges::any_of(attitudes, [&](const UpPrior& other) {
       return IsSameUp(other.up_in_world, attitude.up_in_world);
     });
     if (is_known) continue;

@@ -23,9 +23,9 @@ constexpr std::array<double, kCount> SeriesByRatios(double first, Ratio ratio) {
 // Sums the series for several x at once: the steps of one x depend on each other, those of
 // different x do not.
 template <size_t kSize, size_t kCount>
-SOSLAM_IN_WIDE_LOOPS void SumSeries(const std::array<double, kSize>& factors,
-                                    const std::array<Four, kCount>& x,
-                                    std::array<Four, kCount>* sums) {
+SOSLAM_FORCE_INLINE void SumSeries(const std::array<double, kSize>& factors,
+                                   const std::array<Four, kCount>& x,
+                                   std::array<Four, kCount>* sums) {
   *sums = {};
   for (size_t n = kSize; n-- > 0;) {
     for (size_t i = 0; i < kCount; ++i) (*sums)[i] = factors[n] + x[i] * (*sums)[i];
@@ -35,8 +35,8 @@ SOSLAM_IN_WIDE_LOOPS void SumSeries(const std::array<double, kSize>& factors,
 // e^x with a relative error of 1e-14. NaN and x below -708 count as -708, x above 709 as 709, so
 // that the powers of two are normal numbers.
 template <size_t kCount>
-SOSLAM_IN_WIDE_LOOPS void Exponential(std::array<Four, kCount> x,
-                                      std::array<Four, kCount>* exponential) {
+SOSLAM_FORCE_INLINE void Exponential(std::array<Four, kCount> x,
+                                     std::array<Four, kCount>* exponential) {
   constexpr double kLeast = -708.0, kMost = 709.0;
   // A double to which this is added has no bits left for its fraction: the lowest bits hold the
   // nearest integer.

@@ -89,7 +89,7 @@ std::vector<FileDigest> RunLog::Outputs() const {
 
 std::optional<int> RunLog::Seed() const { return NotesOfProgram()->seed; }
 
-void NoteInput(const fs::path& path) {
+void RecordInput(const fs::path& path) {
   std::optional<Notes>& notes = NotesOfProgram();
   if (!notes) return;
   const fs::path key = Key(path);
@@ -103,7 +103,7 @@ void NoteInput(const fs::path& path) {
 }
 
 std::string DigestOfInput(const fs::path& path) {
-  NoteInput(path);
+  RecordInput(path);
   if (std::optional<Notes>& notes = NotesOfProgram()) {
     const std::scoped_lock lock(notes->mutex);
     const auto input = notes->inputs.find(Key(path));
@@ -128,7 +128,7 @@ void CheckInputsUnchanged() {
   }
 }
 
-void NoteOutput(const fs::path& path) {
+void RecordOutput(const fs::path& path) {
   std::optional<Notes>& notes = NotesOfProgram();
   if (!notes) return;
   const FileDigest output = {path, Sha256OfFile(path)};

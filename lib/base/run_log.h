@@ -30,7 +30,7 @@ class RunLog {
 
 // Records the content of an input file. Every reader of files calls it before it opens one. A file
 // that cannot be read is not recorded; its reader reports the error in more detail. Thread-safe.
-void NoteInput(const std::filesystem::path& path);
+void RecordInput(const std::filesystem::path& path);
 
 // SHA-256 of an input file: as recorded, or of its current content if it was not recorded. Throws
 // InputError when it cannot be read.
@@ -43,7 +43,7 @@ void CheckInputsUnchanged();
 
 // Records an output file. Every writer calls it after the output got its name. Throws InputError
 // when the file cannot be read back.
-void NoteOutput(const std::filesystem::path& path);
+void RecordOutput(const std::filesystem::path& path);
 
 // Records the seed of random numbers.
 void NoteSeed(int seed);

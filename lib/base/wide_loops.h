@@ -15,22 +15,22 @@
 // Empty under ThreadSanitizer, which cannot start programs that choose functions at load time.
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
-#define SOSLAM_WIDE_LOOPS
+#define SOSLAM_MULTIVERSION
 #endif
 #elif defined(__SANITIZE_THREAD__)
-#define SOSLAM_WIDE_LOOPS
+#define SOSLAM_MULTIVERSION
 #endif
-#if !defined(SOSLAM_WIDE_LOOPS) && defined(__x86_64__) && defined(__ELF__)
-#define SOSLAM_WIDE_LOOPS [[gnu::target_clones("avx2", "default")]]
-#elif !defined(SOSLAM_WIDE_LOOPS)
-#define SOSLAM_WIDE_LOOPS
+#if !defined(SOSLAM_MULTIVERSION) && defined(__x86_64__) && defined(__ELF__)
+#define SOSLAM_MULTIVERSION [[gnu::target_clones("avx2", "default")]]
+#elif !defined(SOSLAM_MULTIVERSION)
+#define SOSLAM_MULTIVERSION
 #endif
 
 // Attribute of functions called by those above: inlined, so that they are compiled for AVX2 as
 // well.
-#define SOSLAM_IN_WIDE_LOOPS [[gnu::always_inline]] inline
+#define SOSLAM_FORCE_INLINE [[gnu::always_inline]] inline
 
-// Attribute of functions for AVX2 only; to be called only where HasWideRegisters().
+// Attribute of functions for AVX2 only; to be called only where HasAvx2().
 #if defined(__x86_64__)
 #define SOSLAM_FOR_AVX2 [[gnu::target("avx2")]]
 #else
@@ -40,7 +40,7 @@
 namespace soslam {
 
 // True if this processor has AVX2.
-inline bool HasWideRegisters() {
+inline bool HasAvx2() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx2") != 0;
 #else
@@ -52,7 +52,7 @@ inline bool HasWideRegisters() {
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 using ThreeFours = std::array<Four, 3>;
 // Alignment that AVX2 loads need. Without it compilers may align a Four, and structs with such
-// members, to half of its size. Data passed to SOSLAM_WIDE_LOOPS functions is aligned to this.
+// members, to half of its size. Data passed to SOSLAM_MULTIVERSION functions is aligned to this.
 inline constexpr size_t kFourAlignment = sizeof(Four);
 // Result of a comparison of two Fours: per element all bits set, or none.
 using FourMask = decltype(Four{} < Four{});
@@ -61,30 +61,30 @@ using FourMask = decltype(Four{} < Four{});
 using FourInMemory
     [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] =
         double;
-SOSLAM_IN_WIDE_LOOPS void Load(const double* from, Four* four) {
+SOSLAM_FORCE_INLINE void Load(const double* from, Four* four) {
   *four = *reinterpret_cast<const FourInMemory*>(from);
 }
 
-SOSLAM_IN_WIDE_LOOPS void Store(const Four& four, double* to) {
+SOSLAM_FORCE_INLINE void Store(const Four& four, double* to) {
   *reinterpret_cast<FourInMemory*>(to) = four;
 }
 
 // True if the mask is set for any of the four.
-SOSLAM_IN_WIDE_LOOPS bool Any(const FourMask& mask) {
+SOSLAM_FORCE_INLINE bool Any(const FourMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Four& of, Four* root) {
+SOSLAM_FORCE_INLINE void SquareRoot(const Four& of, Four* root) {
   for (size_t k = 0; k < 4; ++k) (*root)[k] = std::sqrt(of[k]);
 }
 
 // Sum of the four elements.
-SOSLAM_IN_WIDE_LOOPS double Sum(const Four& four) {
+SOSLAM_FORCE_INLINE double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
 // Four sums at once: the i-th is that of fours[i], added in the order of Sum.
-SOSLAM_IN_WIDE_LOOPS void SumEach(const Four* fours, Four* sums) {
+SOSLAM_FORCE_INLINE void SumEach(const Four* fours, Four* sums) {
   std::array<Four, 2> pairs;
   for (size_t i = 0; i < 2; ++i) {
     const Four &a = fours[2 * i], &b = fours[2 * i + 1];
@@ -102,37 +102,37 @@ using EightIntegers [[gnu::vector_size(8 * sizeof(int))]] = int;
 
 using EightInMemory
     [[gnu::vector_size(8 * sizeof(float)), gnu::aligned(alignof(float)), gnu::may_alias]] = float;
-SOSLAM_IN_WIDE_LOOPS void Load(const float* from, Eight* eight) {
+SOSLAM_FORCE_INLINE void Load(const float* from, Eight* eight) {
   *eight = *reinterpret_cast<const EightInMemory*>(from);
 }
 
 using EightIntegersInMemory
     [[gnu::vector_size(8 * sizeof(int)), gnu::aligned(alignof(int)), gnu::may_alias]] = int;
-SOSLAM_IN_WIDE_LOOPS void Load(const int* from, EightIntegers* eight) {
+SOSLAM_FORCE_INLINE void Load(const int* from, EightIntegers* eight) {
   *eight = *reinterpret_cast<const EightIntegersInMemory*>(from);
 }
 
-SOSLAM_IN_WIDE_LOOPS void Store(const EightIntegers& eight, int* to) {
+SOSLAM_FORCE_INLINE void Store(const EightIntegers& eight, int* to) {
   *reinterpret_cast<EightIntegersInMemory*>(to) = eight;
 }
 
-SOSLAM_IN_WIDE_LOOPS void Store(const Eight& eight, float* to) {
+SOSLAM_FORCE_INLINE void Store(const Eight& eight, float* to) {
   *reinterpret_cast<EightInMemory*>(to) = eight;
 }
 
-SOSLAM_IN_WIDE_LOOPS void SquareRoot(const Eight& of, Eight* root) {
+SOSLAM_FORCE_INLINE void SquareRoot(const Eight& of, Eight* root) {
   for (size_t k = 0; k < 8; ++k) (*root)[k] = std::sqrt(of[k]);
 }
 
 // Forces later reads of `stored` to come from memory. Otherwise compilers would extract values just
 // stored from vector registers one by one, which is slower if they are used as addresses.
 template <typename T>
-SOSLAM_IN_WIDE_LOOPS void ReadFromMemory(const T& stored) {
+SOSLAM_FORCE_INLINE void ReadFromMemory(const T& stored) {
   asm volatile("" : : "r"(&stored) : "memory");
 }
 
 // Sum of the eight elements, in double precision.
-SOSLAM_IN_WIDE_LOOPS double Sum(const Eight& eight) {
+SOSLAM_FORCE_INLINE double Sum(const Eight& eight) {
   using EightDoubles [[gnu::vector_size(8 * sizeof(double))]] = double;
   const EightDoubles numbers = __builtin_convertvector(eight, EightDoubles);
   std::array<Four, 2> halves;
@@ -141,13 +141,13 @@ SOSLAM_IN_WIDE_LOOPS double Sum(const Eight& eight) {
 }
 
 // Takes the elements of `from` where the mask is set.
-SOSLAM_IN_WIDE_LOOPS void Replace(const FourMask& where, const Four& from, Four* to) {
+SOSLAM_FORCE_INLINE void Replace(const FourMask& where, const Four& from, Four* to) {
   *to = where ? from : *to;
 }
 
 template <size_t kCount>
-SOSLAM_IN_WIDE_LOOPS void Replace(const FourMask& where, const std::array<Four, kCount>& from,
-                                  std::array<Four, kCount>* to) {
+SOSLAM_FORCE_INLINE void Replace(const FourMask& where, const std::array<Four, kCount>& from,
+                                 std::array<Four, kCount>* to) {
   for (size_t i = 0; i < kCount; ++i) Replace(where, from[i], &(*to)[i]);
 }
 

@@ -19,8 +19,9 @@ struct Least {
   Batch batch = Batch::Zero();
 };
 
-SOSLAM_WIDE_LOOPS void Compare(const Eigen::Vector3d& point, const BatchOfVectors& __restrict edges,
-                               double batch, Least* __restrict least) {
+SOSLAM_MULTIVERSION void Compare(const Eigen::Vector3d& point,
+                                 const BatchOfVectors& __restrict edges, double batch,
+                                 Least* __restrict least) {
   const double x = point.x(), y = point.y(), z = point.z();
   for (int i = 0; i < kBatchSize; ++i) {
     const double dx = edges[0][i] - x, dy = edges[1][i] - y, dz = edges[2][i] - z;

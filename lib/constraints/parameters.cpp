@@ -6,14 +6,14 @@
 
 namespace soslam {
 
-PoseBlock Pack(const Rigid3d& pose) {
+PoseBlock ToParameterBlock(const Rigid3d& pose) {
   const auto& q = pose.rotation;
   const auto& t = pose.translation;
   return {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()};
 }
 
-LandmarkBlock Pack(const Landmark& landmark) {
-  const PoseBlock pose = Pack(landmark.frame_from_object);
+LandmarkBlock ToParameterBlock(const Landmark& landmark) {
+  const PoseBlock pose = ToParameterBlock(landmark.frame_from_object);
   LandmarkBlock block;
   std::copy(pose.begin(), pose.end(), block.begin());
   for (int i = 0; i < 3; ++i) block[kPoseSize + i] = std::log(landmark.half_axes(i));

@@ -22,8 +22,8 @@ inline constexpr int kOffsetSize = 1;
 using PoseBlock = std::array<double, kPoseSize>;
 using LandmarkBlock = std::array<double, kLandmarkSize>;
 
-PoseBlock Pack(const Rigid3d& pose);
-LandmarkBlock Pack(const Landmark& landmark);
+PoseBlock ToParameterBlock(const Rigid3d& pose);
+LandmarkBlock ToParameterBlock(const Landmark& landmark);
 Rigid3d UnpackPose(const double* block);
 Landmark UnpackLandmark(const double* block);
 inline Plane UnpackPlane(const double* normal, const double* offset) {

@@ -49,7 +49,7 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double 
 }
 
 double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera) {
-  return Farthest(landmark_in_camera, edge.plane).point.z();
+  return FindSupportPoint(landmark_in_camera, edge.plane).point.z();
 }
 
 // Newton's method for the outward shift of the edge at which it is tangent to the silhouette. The

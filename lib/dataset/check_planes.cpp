@@ -76,7 +76,7 @@ std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_ind
     if (object.plane_index == plane_index) on_plane.insert(object.id);
   }
   std::vector<Eigen::Vector3d> points;
-  for (const TrackedThing& thing : TrackedThings(view)) {
+  for (const TrackedObject& thing : TrackedThings(view)) {
     if (thing.object_id && !on_plane.contains(*thing.object_id)) continue;
     const auto point = NearestPointInWorld(thing.rays, pose);
     if (point) points.push_back(*point);

@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-using Things = std::vector<TrackedThing>;
+using Things = std::vector<TrackedObject>;
 
 std::optional<Rigid3d> PoseAt(const ImportView& view, size_t frame) {
   const ListedFrame& listed = view.content.frames[frame];
@@ -60,7 +60,7 @@ struct Explanation {
 };
 
 Things Mirrored(Things things) {
-  for (TrackedThing& thing : things) {
+  for (TrackedObject& thing : things) {
     for (TrackedRay& ray : thing.rays) ray.ray_in_camera.x() *= -1.0;
   }
   return things;

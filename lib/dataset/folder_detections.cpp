@@ -72,7 +72,7 @@ std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& fold
 }  // namespace
 
 FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
-                            const Camera& camera, DatasetFiles* files, RejectionCounts* mended) {
+                            const Camera& camera, DatasetFiles* files, RejectionCounts* corrected) {
   const fs::path& path = files->detections;
   switch (options.folder.detections_format) {
     case DetectionsFormat::kCsv:
@@ -89,7 +89,7 @@ FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options
     case DetectionsFormat::kYolo: {
       const YoloTexts texts = ReadYoloTexts(path);
       const auto names = YoloLabels(texts, folder, files);
-      return {ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height, mended), names};
+      return {ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height, corrected), names};
     }
     case DetectionsFormat::kYoloPixels: {
       const YoloTexts texts = ReadYoloTexts(path);

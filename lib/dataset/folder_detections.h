@@ -22,9 +22,9 @@ struct FolderBoxes {
 
 // Reads the boxes of a folder of images in any of the formats of `detections_format`. Class names
 // may be stored with YOLO's labels: `files` then gets their path, which is printed to stdout. Boxes
-// that are changed on reading are counted in `mended`. Throws InputError.
+// that are changed on reading are counted in `corrected`. Throws InputError.
 FolderBoxes ReadFolderBoxes(const std::filesystem::path& folder, const ImportOptions& options,
-                            const Camera& camera, DatasetFiles* files, RejectionCounts* mended);
+                            const Camera& camera, DatasetFiles* files, RejectionCounts* corrected);
 
 // Converts boxes to rows of these images. Each box without object id is a separate object, with ids
 // from `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and their

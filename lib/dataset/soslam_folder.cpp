@@ -93,9 +93,9 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   const ListedObjects given = files.objects ? ReadObjects(*files.objects) : ListedObjects();
   const std::vector<ListedObject>& listed = given.objects;
   DatasetContent content;
-  RejectionCounts mended;
-  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &mended);
-  ReportMended(files, mended["cut_to_image"], read.boxes.size(), kCut, &content.findings);
+  RejectionCounts corrected;
+  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &corrected);
+  ReportMended(files, corrected["cut_to_image"], read.boxes.size(), kCut, &content.findings);
   std::vector<LabelledBox> of_no_track;
   const std::vector<LabelledBox> boxes = WithoutIdsOfNoTrack(
       std::move(read.boxes), listed, files.detections, &of_no_track, &content.findings);

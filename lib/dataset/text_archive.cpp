@@ -27,7 +27,7 @@ using ArchivePointer = std::unique_ptr<archive, FreeArchive>;
 }
 
 ArchivePointer Open(const std::filesystem::path& path) {
-  NoteInput(path);
+  RecordInput(path);
   constexpr size_t kBlock = 1 << 16;  // bytes
   ArchivePointer opened(archive_read_new());
   // Not "all", because the library runs external programs for some formats.

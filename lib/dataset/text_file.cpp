@@ -41,7 +41,7 @@ void CheckEncoding(std::string_view text, const std::string& place) {
 
 std::string ReadWhole(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMaxBytes = 1 << 30;
-  NoteInput(path);
+  RecordInput(path);
   std::error_code error;
   const std::uintmax_t bytes = IsFile(path) ? std::filesystem::file_size(path, error) : 0;
   std::ifstream stream;

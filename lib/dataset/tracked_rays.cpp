@@ -40,7 +40,7 @@ std::map<std::string, bool> SingleLabels(const std::vector<DetectionRow>& rows) 
 
 }  // namespace
 
-std::vector<TrackedThing> TrackedThings(const ImportView& view) {
+std::vector<TrackedObject> TrackedThings(const ImportView& view) {
   const DatasetContent& content = view.content;
   std::map<int, size_t> frame_index;
   for (size_t i = 0; i < content.frames.size(); ++i) frame_index[content.frames[i].frame.id] = i;
@@ -49,7 +49,7 @@ std::vector<TrackedThing> TrackedThings(const ImportView& view) {
     if (!object.is_static) moving.insert(object.id);
   }
   auto is_single = SingleLabels(content.rows);
-  std::map<std::string, TrackedThing> by_name;
+  std::map<std::string, TrackedObject> by_name;
   for (const DetectionRow& row : content.rows) {
     const size_t frame = frame_index.at(row.frame_id);
     const Camera camera = content.frames[frame].frame.camera.value_or(content.camera);
@@ -57,12 +57,12 @@ std::vector<TrackedThing> TrackedThings(const ImportView& view) {
     if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
     if (!content.has_object_ids && !is_single[row.label]) continue;
     const std::string name = content.has_object_ids ? std::to_string(row.object_id) : row.label;
-    TrackedThing& thing = by_name[name];
+    TrackedObject& thing = by_name[name];
     if (content.has_object_ids) thing.object_id = row.object_id;
     thing.rays.push_back(
         {frame, camera.Ray(row.box.Centre()).normalized(), HalfDiagonalDeg(camera, row.box)});
   }
-  std::vector<TrackedThing> things;
+  std::vector<TrackedObject> things;
   for (auto& [name, thing] : by_name) {
     if (thing.rays.size() > kFewestRays) things.push_back(std::move(thing));
   }
@@ -90,11 +90,11 @@ std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>
   return sum.ldlt().solve(right);
 }
 
-std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
+std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& things,
                                        const PoseOfFrame& world_from_camera) {
   std::vector<double> errors_deg, shares;
   size_t things_met = 0;
-  for (const TrackedThing& thing : things) {
+  for (const TrackedObject& thing : things) {
     const auto point_in_world = NearestPointInWorld(thing.rays, world_from_camera);
     if (!point_in_world) continue;
     ++things_met;

@@ -18,7 +18,7 @@ struct TrackedRay {
 };
 
 // An object seen in several boxes.
-struct TrackedThing {
+struct TrackedObject {
   std::optional<int> object_id;  // none: the only object with its label
   std::vector<TrackedRay> rays;
 };
@@ -26,7 +26,7 @@ struct TrackedThing {
 // Objects that are identified by object id or, without ids, by a label that occurs at most once per
 // frame. Without boxes that the image cuts or below min_score, moving objects, and objects with
 // fewer than four boxes.
-std::vector<TrackedThing> TrackedThings(const ImportView& view);
+std::vector<TrackedObject> TrackedThings(const ImportView& view);
 
 // Pose of a frame, by index in DatasetContent::frames; none where there is none.
 using PoseOfFrame = std::function<std::optional<Rigid3d>(size_t frame)>;
@@ -44,7 +44,7 @@ struct RayError {
   size_t things = 0;
 };
 // Median error over all objects; none when no object can be triangulated.
-std::optional<RayError> MedianRayError(const std::vector<TrackedThing>& things,
+std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& things,
                                        const PoseOfFrame& world_from_camera);
 
 }  // namespace soslam

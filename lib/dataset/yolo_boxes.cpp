@@ -98,13 +98,13 @@ LabelledBox LabelledBoxOf(const YoloRow& row, const Box& box,
 std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  const std::vector<std::string>& labels,
                                                  int image_width, int image_height,
-                                                 RejectionCounts* mended) {
+                                                 RejectionCounts* corrected) {
   std::vector<LabelledBox> boxes;
   for (const YoloRow& row : ReadRows(texts, {"cx", "cy", "w", "h"})) {
     Box box = FractionsBox(row.box, row.place);
     const double beyond = Beyond(box);
     if (beyond <= kMostBeyond) box = CutToImage(box);
-    if (beyond > kRounding && beyond <= kMostBeyond) ++(*mended)["cut_to_image"];
+    if (beyond > kRounding && beyond <= kMostBeyond) ++(*corrected)["cut_to_image"];
     boxes.push_back(
         LabelledBoxOf(row,
                       FromCornerOrigin({box.x_min * image_width, box.y_min * image_height,

@@ -21,11 +21,11 @@ namespace soslam {
 // Reads lines "class cx cy w h [score] [track]": centre and size in fractions of the image's width
 // and height, the format of labels and results of YOLOv5 and its successors. Boxes that extend
 // beyond the image by less than a twentieth of it are cut to it; if by more than rounding, they are
-// counted in `mended` as cut_to_image.
+// counted in `corrected` as cut_to_image.
 std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  const std::vector<std::string>& labels,
                                                  int image_width, int image_height,
-                                                 RejectionCounts* mended);
+                                                 RejectionCounts* corrected);
 
 // Reads lines "class x y w h [score] [track]": upper left corner and size in pixels, as EAO-SLAM
 // does.

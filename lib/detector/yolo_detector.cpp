@@ -44,7 +44,7 @@ std::string ReadNetwork(const std::filesystem::path& path) {
   if (!IsFile(path) || !stream) {
     throw InputError(path.string() + ": cannot be read; expected an ONNX file");
   }
-  NoteInput(path);
+  RecordInput(path);
   std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   CheckOnnx(bytes, path.string());
   return bytes;

@@ -63,7 +63,7 @@ CameraPath PathOf(const Centres& centres) {
   const Eigen::Vector3d variances =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(truth * truth.transpose()).eigenvalues() /
       count;
-  // Of all centres, those off the line of their largest variance turn it.
+  // Only distances from the line of largest variance determine the rotation about it.
   const double off_the_line = std::sqrt(std::max(variances[0] + variances[1], 0.0));
   const double noise = std::max(residual / std::sqrt(count), kLeastNoise * spread);
   return kDegPerRad * noise > kLineDeg * off_the_line ? CameraPath::kLine : CameraPath::kGeneral;

@@ -38,7 +38,7 @@ Landmark WithSizeOf(const Landmark& truth, const Landmark& estimate) {
 Landmark WithYawOf(const Landmark& truth, const Landmark& estimate) {
   const Eigen::Vector3d front = estimate.frame_from_object.rotation.conjugate() *
                                 (truth.frame_from_object.rotation * Eigen::Vector3d::UnitX());
-  return Turned(estimate, std::atan2(front.y(), front.x()));
+  return RotatedAboutZ(estimate, std::atan2(front.y(), front.x()));
 }
 
 Landmark WithPlaceOf(const Landmark& truth, const Landmark& estimate) {
@@ -57,7 +57,7 @@ Landmark Upright(const Landmark& truth, const Landmark& estimate) {
 }
 
 Landmark StraightOntoPlane(const Landmark& truth, const Landmark& estimate) {
-  const double height = PlaneUnder(truth).SignedDistance(Foot(estimate));
+  const double height = SupportPlaneOf(truth).SignedDistance(Foot(estimate));
   return WithFootAt(Upright(truth, estimate), Foot(estimate) - height * Up(truth));
 }
 
@@ -65,7 +65,7 @@ Landmark StraightOntoPlane(const Landmark& truth, const Landmark& estimate) {
 // plane.
 std::optional<Landmark> AlongSightOntoPlane(const Landmark& truth, const Landmark& estimate,
                                             const Eigen::Vector3d& camera_centre) {
-  const Plane plane = PlaneUnder(truth);
+  const Plane plane = SupportPlaneOf(truth);
   const double camera_height = plane.SignedDistance(camera_centre);
   const double factor = camera_height / (camera_height - plane.SignedDistance(Foot(estimate)));
   if (!std::isfinite(factor) || factor <= 0.0) return std::nullopt;
@@ -117,9 +117,9 @@ bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landm
          std::abs(plane.SignedDistance(Foot(truth)));
 }
 
-std::optional<WrongPart> FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
-                                       const Landmark& truth_in_frame,
-                                       const Eigen::Vector3d& camera_centre) {
+std::optional<WrongPart> FindDominantError(const Landmark& estimate, const GroundTruth& truth,
+                                           const Landmark& truth_in_frame,
+                                           const Eigen::Vector3d& camera_centre) {
   const Landmark named = NamedLike(estimate, truth_in_frame);
   const auto iou = [&](const Landmark& corrected) {
     return CompareLandmarks(corrected, truth, truth_in_frame).iou;

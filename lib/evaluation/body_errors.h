@@ -58,8 +58,8 @@ struct WrongPart {
 // `camera_centre`: approximate viewpoint. An object whose plane is corrected moves straight onto
 // it, or along the line of sight with its size scaled, as an object would whose boxes had been
 // placed on that plane: whichever gives the higher IoU. None if no single correction helps.
-std::optional<WrongPart> FindWrongPart(const Landmark& estimate, const GroundTruth& truth,
-                                       const Landmark& truth_in_frame,
-                                       const Eigen::Vector3d& camera_centre);
+std::optional<WrongPart> FindDominantError(const Landmark& estimate, const GroundTruth& truth,
+                                           const Landmark& truth_in_frame,
+                                           const Eigen::Vector3d& camera_centre);
 
 }  // namespace soslam

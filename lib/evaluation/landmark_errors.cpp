@@ -14,7 +14,7 @@ namespace {
 Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
   const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
                                 (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());
-  return Turned(landmark, std::atan2(front.y(), front.x()));
+  return RotatedAboutZ(landmark, std::atan2(front.y(), front.x()));
 }
 
 }  // namespace

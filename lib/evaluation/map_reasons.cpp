@@ -102,7 +102,7 @@ MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<
 }
 
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
-  const auto wrong = PartToBlame(input.sequence, input.map, landmark, true_index);
+  const auto wrong = DominantError(input.sequence, input.map, landmark, true_index);
   const GroundTruth& truth = input.sequence.true_objects[static_cast<size_t>(true_index)].truth;
   const auto index = static_cast<size_t>(landmark);
   const Landmark& estimate = input.map.landmarks[index].landmark_in_world;
@@ -174,8 +174,8 @@ bool IsWrong(MapReason reason) {
   return reason >= MapReason::kWrongPlane && reason <= MapReason::kWrongInSeveral;
 }
 
-std::optional<WrongPart> PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
-                                     int true_index) {
+std::optional<WrongPart> DominantError(const Sequence& sequence, const AlignedMap& map,
+                                       int landmark, int true_index) {
   const AlignedLandmark& estimate = map.landmarks[static_cast<size_t>(landmark)];
   const TrueObject& object = sequence.true_objects[static_cast<size_t>(true_index)];
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -185,8 +185,8 @@ std::optional<WrongPart> PartToBlame(const Sequence& sequence, const AlignedMap&
     sum += map.world_from_camera[static_cast<size_t>(detection.frame_index)].translation;
     ++views;
   }
-  return FindWrongPart(estimate.landmark_in_world, object.truth, object.truth.landmark_in_world,
-                       sum / std::max(views, 1));
+  return FindDominantError(estimate.landmark_in_world, object.truth, object.truth.landmark_in_world,
+                           sum / std::max(views, 1));
 }
 
 Explanation ExplainMiss(const ReasonInput& input, int true_index) {

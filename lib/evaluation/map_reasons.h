@@ -62,8 +62,8 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index);
 // Reason for a landmark, which is not ignored, without a matching true object.
 Explanation ExplainFalse(const ReasonInput& input, int landmark);
 
-// FindWrongPart of a landmark and a true object of its segment.
-std::optional<WrongPart> PartToBlame(const Sequence& sequence, const AlignedMap& map, int landmark,
-                                     int true_index);
+// FindDominantError of a landmark and a true object of its segment.
+std::optional<WrongPart> DominantError(const Sequence& sequence, const AlignedMap& map,
+                                       int landmark, int true_index);
 
 }  // namespace soslam

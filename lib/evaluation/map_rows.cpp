@@ -65,7 +65,7 @@ LandmarkRow RowMaker::Found(size_t landmark, int true_index) const {
   row.true_index = true_index;
   CompareInWorld(landmark, &row);
   CompareInFrames(landmark, &row);
-  row.wrong = PartToBlame(sequence_, map_, static_cast<int>(landmark), true_index);
+  row.wrong = DominantError(sequence_, map_, static_cast<int>(landmark), true_index);
   row.id_agrees = MostIdsAgree(row);
   return row;
 }

@@ -11,9 +11,12 @@ namespace soslam {
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-// Angle between two directions of any length above 0, in degrees, from 0 to 180.
+// Angle between two directions of any length above 0: 0 to pi, or 0 to 180.
+inline double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  return std::atan2(one.cross(other).norm(), one.dot(other));
+}
 inline double AngleBetweenDeg(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
-  return kDegPerRad * std::atan2(one.cross(other).norm(), one.dot(other));
+  return kDegPerRad * AngleBetween(one, other);
 }
 
 }  // namespace soslam

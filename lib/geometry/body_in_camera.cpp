@@ -7,8 +7,8 @@ namespace soslam {
 namespace {
 
 // Rotates the rays (x, y, 1) into the object frame.
-SOSLAM_WIDE_LOOPS void TurnBack(const Eigen::Matrix3d& rotation, const double* x, const double* y,
-                                BatchOfVectors* rays) {
+SOSLAM_MULTIVERSION void TurnBack(const Eigen::Matrix3d& rotation, const double* x, const double* y,
+                                  BatchOfVectors* rays) {
   for (int i = 0; i < 3; ++i) {
     const double by_x = rotation(0, i), by_y = rotation(1, i), by_z = rotation(2, i);
     for (int at = 0; at < kBatchSize; at += 4) {

@@ -64,7 +64,7 @@ std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d
   return usable ? std::optional(result) : std::nullopt;
 }
 
-FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction) {
+SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& direction) {
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   const SupportValue support = SupportFunction(landmark.half_axes, landmark.shape_exponent,
                                                rotation.conjugate() * direction);
@@ -72,7 +72,7 @@ FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& directio
           direction.dot(landmark.Centre()) + support.extent};
 }
 
-Plane PlaneUnder(const Landmark& landmark) {
+Plane SupportPlaneOf(const Landmark& landmark) {
   const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
   return {up, landmark.half_axes.z() - up.dot(landmark.Centre())};
 }
@@ -84,18 +84,19 @@ bool HasExtent(const Landmark& landmark) {
 }
 
 bool IsInFront(const Landmark& landmark_in_camera) {
-  return Farthest(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
+  return FindSupportPoint(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
 }
 
-std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
-                                       const Eigen::Vector2d& direction,
-                                       const Eigen::Vector3d& start) {
+std::optional<SilhouettePoint> FindSilhouettePoint(const Camera& camera,
+                                                   const Landmark& landmark_in_camera,
+                                                   const Eigen::Vector2d& direction,
+                                                   const Eigen::Vector3d& start) {
   // All points of the body project inside its silhouette. The support point for the plane through
   // the camera centre and the image line direction . u = t projects beyond that line, until the
   // plane is tangent: Newton's method for a convex function of t.
   const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
   Eigen::Vector3d line(direction.x(), direction.y(), 0.0);
-  OutlinePoint outline{start, -std::numeric_limits<double>::infinity()};
+  SilhouettePoint outline{start, -std::numeric_limits<double>::infinity()};
   for (int i = 0; i < kMaxOutlineSteps; ++i) {
     const auto pixel = camera.Project(outline.point);
     if (!pixel) return std::nullopt;
@@ -104,7 +105,7 @@ std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& lan
     outline.end_px = end_px;
     if (settled) break;
     line.z() = -end_px;
-    outline.point = Farthest(landmark_in_camera, to_plane * line).point;
+    outline.point = FindSupportPoint(landmark_in_camera, to_plane * line).point;
   }
   return outline;
 }
@@ -116,7 +117,8 @@ std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_
     const double sign = i < 2 ? -1.0 : 1.0;
     const Eigen::Vector2d direction =
         i % 2 == 0 ? Eigen::Vector2d(sign, 0.0) : Eigen::Vector2d(0.0, sign);
-    const auto end = OutlineEnd(camera, landmark_in_camera, direction, landmark_in_camera.Centre());
+    const auto end =
+        FindSilhouettePoint(camera, landmark_in_camera, direction, landmark_in_camera.Centre());
     if (!end) return std::nullopt;
     ends[i] = sign * end->end_px;
   }
@@ -160,7 +162,7 @@ double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& fram
   return std::atan2(front.dot(support_normal.cross(reference)), front.dot(reference));
 }
 
-Landmark Turned(const Landmark& landmark, double angle) {
+Landmark RotatedAboutZ(const Landmark& landmark, double angle) {
   Landmark turned = landmark;
   turned.frame_from_object.rotation =
       (landmark.frame_from_object.rotation *

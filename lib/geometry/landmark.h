@@ -48,14 +48,14 @@ std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d
 
 // Support point of the landmark in a direction (of any length), and its support value: the largest
 // direction . x over the body. All in the landmark's frame.
-struct FarthestPoint {
+struct SupportPoint {
   Eigen::Vector3d point;
   double distance;
 };
-FarthestPoint Farthest(const Landmark& landmark, const Eigen::Vector3d& direction);
+SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& direction);
 
 // The support plane: tangent to the landmark at the end of its -z axis, with its z axis as normal.
-Plane PlaneUnder(const Landmark& landmark);
+Plane SupportPlaneOf(const Landmark& landmark);
 
 // True if all numbers are finite and the half axes positive.
 bool HasExtent(const Landmark& landmark);
@@ -67,13 +67,14 @@ bool IsInFront(const Landmark& landmark_in_camera);
 // (px; unit direction), `point` the tangent point (camera frame) that attains it. The search starts
 // at `start`, any point of the landmark; it is faster the nearer that is to the result. None when
 // an iterate is behind the camera.
-struct OutlinePoint {
+struct SilhouettePoint {
   Eigen::Vector3d point;
   double end_px;
 };
-std::optional<OutlinePoint> OutlineEnd(const Camera& camera, const Landmark& landmark_in_camera,
-                                       const Eigen::Vector2d& direction,
-                                       const Eigen::Vector3d& start);
+std::optional<SilhouettePoint> FindSilhouettePoint(const Camera& camera,
+                                                   const Landmark& landmark_in_camera,
+                                                   const Eigen::Vector2d& direction,
+                                                   const Eigen::Vector3d& start);
 
 // The tight box around the landmark's silhouette; not cut at the image border. None unless the
 // whole landmark is in front of the camera.
@@ -98,7 +99,7 @@ Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& support_normal, double
 double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& frame_from_object);
 
 // The landmark rotated about its own z axis by `angle` (rad); centre and half axes stay.
-Landmark Turned(const Landmark& landmark, double angle);
+Landmark RotatedAboutZ(const Landmark& landmark, double angle);
 
 // The difference of two yaws modulo pi, in [-pi/2, pi/2): an xz mirror plane has no front or back.
 double YawDifferenceModuloPi(double yaw, double other);

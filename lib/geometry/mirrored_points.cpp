@@ -13,38 +13,38 @@
 namespace soslam {
 namespace {
 
-SOSLAM_IN_WIDE_LOOPS void LoadVectors(const BatchOfVectors& vectors, int at, ThreeFours* four) {
+SOSLAM_FORCE_INLINE void LoadVectors(const BatchOfVectors& vectors, int at, ThreeFours* four) {
   for (size_t k = 0; k < 3; ++k) Load(vectors[k].data() + at, &(*four)[k]);
 }
 
-SOSLAM_IN_WIDE_LOOPS void Dot(const ThreeFours& a, const ThreeFours& b, Four* dot) {
+SOSLAM_FORCE_INLINE void Dot(const ThreeFours& a, const ThreeFours& b, Four* dot) {
   *dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-SOSLAM_IN_WIDE_LOOPS void StoreOnes(const FourMask& mask, int* to) {
+SOSLAM_FORCE_INLINE void StoreOnes(const FourMask& mask, int* to) {
   using FourIntegers [[gnu::vector_size(4 * sizeof(int))]] = int;
   const FourIntegers ones = __builtin_convertvector(mask & 1, FourIntegers);
   std::memcpy(to, &ones, sizeof(ones));
 }
 
-SOSLAM_IN_WIDE_LOOPS void StoreOnes(const EightMask& mask, int* to) {
+SOSLAM_FORCE_INLINE void StoreOnes(const EightMask& mask, int* to) {
   const EightMask ones = mask & 1;
   std::memcpy(to, &ones, sizeof(ones));
 }
 
 // Tests whether v, the dot product of the normal and the direction to the camera, is at least
 // cosine |normal| |direction|.
-SOSLAM_IN_WIDE_LOOPS void IsSeen(const Four& v, const Four& squared_normal,
-                                 const Four& squared_to_camera, double squared_cosine,
-                                 FourMask* is_seen) {
+SOSLAM_FORCE_INLINE void IsSeen(const Four& v, const Four& squared_normal,
+                                const Four& squared_to_camera, double squared_cosine,
+                                FourMask* is_seen) {
   *is_seen = (v >= 0.0) & (v * v >= squared_cosine * squared_normal * squared_to_camera);
 }
 
 // Mirror images of the intersections, and masks. Visible: the camera sees both the point and its
 // mirror image. `image_from_object` is the 3 x 4 projection matrix.
-SOSLAM_WIDE_LOOPS void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d& camera,
-                                     const Eigen::Matrix<double, 3, 4>& image_from_object,
-                                     double min_viewing_cosine, MirroredBatch* mirrored) {
+SOSLAM_MULTIVERSION void MirrorVisible(const RayBatch& rays, const Eigen::Vector3d& camera,
+                                       const Eigen::Matrix<double, 3, 4>& image_from_object,
+                                       double min_viewing_cosine, MirroredBatch* mirrored) {
   using FourFloats [[gnu::vector_size(4 * sizeof(float))]] = float;
   const double squared_cosine = min_viewing_cosine * min_viewing_cosine;
   for (int at = 0; at < kBatchSize; at += 4) {
@@ -113,8 +113,8 @@ struct RaysInBall {
   Eights length_in_camera;  // squared length of the direction in the camera frame
 };
 
-SOSLAM_IN_WIDE_LOOPS void TurnToBall(const UnitBall& ball, const double* rays_x,
-                                     const double* rays_y, RaysInBall* rays) {
+SOSLAM_FORCE_INLINE void TurnToBall(const UnitBall& ball, const double* rays_x,
+                                    const double* rays_y, RaysInBall* rays) {
   using EightDoubles
       [[gnu::vector_size(8 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] =
           double;
@@ -147,8 +147,8 @@ struct PointsOnBall {
 
 // Intersects the rays with the ball, starting from the point closest to the centre: from the
 // camera, rounding errors would be larger by the ratio of its distance to the body's size.
-SOSLAM_IN_WIDE_LOOPS void MeetBall(const UnitBall& ball, const RaysInBall& rays,
-                                   PointsOnBall* points) {
+SOSLAM_FORCE_INLINE void MeetBall(const UnitBall& ball, const RaysInBall& rays,
+                                  PointsOnBall* points) {
   for (size_t i = 0; i < rays.squared.size(); ++i) {
     Eight squared_half_chord = Eight{} + 1.0F;
     for (int k = 0; k < 3; ++k) {
@@ -171,9 +171,9 @@ SOSLAM_IN_WIDE_LOOPS void MeetBall(const UnitBall& ball, const RaysInBall& rays,
 
 // With p the point in the ball, the normal is p / axes, and its dot product with a direction is
 // that of p with the direction in the ball.
-SOSLAM_IN_WIDE_LOOPS void FindVisible(const UnitBall& ball, const RaysInBall& rays,
-                                      const PointsOnBall& points, float squared_cosine,
-                                      MirroredBatch* mirrored) {
+SOSLAM_FORCE_INLINE void FindVisible(const UnitBall& ball, const RaysInBall& rays,
+                                     const PointsOnBall& points, float squared_cosine,
+                                     MirroredBatch* mirrored) {
   const Eigen::Vector3f squared_inverse_axes = ball.squared_axes.cwiseInverse();
   for (size_t i = 0; i < rays.squared.size(); ++i) {
     Eight squared_normal{}, squared_to_camera{}, there = Eight{} - 1.0F;
@@ -195,8 +195,8 @@ SOSLAM_IN_WIDE_LOOPS void FindVisible(const UnitBall& ball, const RaysInBall& ra
   }
 }
 
-SOSLAM_IN_WIDE_LOOPS void Project(const Eigen::Matrix<float, 3, 4>& image_from_ball,
-                                  const ThreeEights& points, MirroredBatch* mirrored) {
+SOSLAM_FORCE_INLINE void Project(const Eigen::Matrix<float, 3, 4>& image_from_ball,
+                                 const ThreeEights& points, MirroredBatch* mirrored) {
   for (size_t i = 0; i < points[0].size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       Store(image_from_ball(k, 0) * points[0][i] + image_from_ball(k, 1) * points[1][i] +
@@ -209,9 +209,9 @@ SOSLAM_IN_WIDE_LOOPS void Project(const Eigen::Matrix<float, 3, 4>& image_from_b
 // BodySurface::Meet and MirrorVisible for ellipsoids, in single precision. Each step runs over a
 // whole batch: the roots and divisions of one ray depend on each other, those of different rays do
 // not.
-SOSLAM_WIDE_LOOPS void MirrorVisibleOnEllipsoid(const UnitBall& ball, const PixelRays& rays,
-                                                double min_viewing_cosine,
-                                                std::vector<MirroredBatch>* mirrored) {
+SOSLAM_MULTIVERSION void MirrorVisibleOnEllipsoid(const UnitBall& ball, const PixelRays& rays,
+                                                  double min_viewing_cosine,
+                                                  std::vector<MirroredBatch>* mirrored) {
   const UnitBall copy = ball;  // a local copy cannot overlap the output
   const auto squared_cosine = static_cast<float>(min_viewing_cosine * min_viewing_cosine);
   const double* x = rays.x.data();

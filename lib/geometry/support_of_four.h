@@ -10,8 +10,8 @@ namespace soslam {
 
 // h = || u ||_p and dh / d log u for four u at once; 1 <= p <= 2, u >= 0 or, for p = 2, of any
 // sign.
-SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* h,
-                                           ThreeFours* by_log_u) {
+SOSLAM_FORCE_INLINE void NormByLogarithms(double p, const ThreeFours& u, Four* h,
+                                          ThreeFours* by_log_u) {
   if (p == kCuboidExponent) {
     *h = u[0] + u[1] + u[2];
     *by_log_u = u;
@@ -35,16 +35,16 @@ SOSLAM_IN_WIDE_LOOPS void NormByLogarithms(double p, const ThreeFours& u, Four* 
 }
 
 // Squares of the rounded |m_i|: m_i^2 + e^2 |m|^2.
-SOSLAM_IN_WIDE_LOOPS void SquaresOfRounded(double shape_exponent, const ThreeFours& m,
-                                           ThreeFours* squares) {
+SOSLAM_FORCE_INLINE void SquaresOfRounded(double shape_exponent, const ThreeFours& m,
+                                          ThreeFours* squares) {
   for (size_t i = 0; i < 3; ++i) (*squares)[i] = m[i] * m[i];
   const Four rounding =
       SquaredRounding(shape_exponent) * ((*squares)[0] + (*squares)[1] + (*squares)[2]);
   for (Four& square : *squares) square += rounding;
 }
 
-SOSLAM_IN_WIDE_LOOPS void FindRounded(double shape_exponent, const ThreeFours& m,
-                                      ThreeFours* rounded) {
+SOSLAM_FORCE_INLINE void FindRounded(double shape_exponent, const ThreeFours& m,
+                                     ThreeFours* rounded) {
   ThreeFours squares;
   SquaresOfRounded(shape_exponent, m, &squares);
   for (size_t i = 0; i < 3; ++i) SquareRoot(squares[i], &(*rounded)[i]);
@@ -59,7 +59,7 @@ struct SupportOfFour {
   ThreeFours shares;  // by_log_half_axes / |m_i|^2, rounded
 
   // The support point dh / dm.
-  SOSLAM_IN_WIDE_LOOPS ThreeFours Contact(double shape_exponent, const ThreeFours& m) const {
+  SOSLAM_FORCE_INLINE ThreeFours Contact(double shape_exponent, const ThreeFours& m) const {
     const Four rounding = SquaredRounding(shape_exponent) * (shares[0] + shares[1] + shares[2]);
     ThreeFours contact;
     for (size_t i = 0; i < 3; ++i) contact[i] = (shares[i] + rounding) * m[i];
@@ -67,8 +67,8 @@ struct SupportOfFour {
   }
 };
 
-SOSLAM_IN_WIDE_LOOPS void FindSupport(const Eigen::Vector3d& half_axes, double shape_exponent,
-                                      const ThreeFours& m, SupportOfFour* support) {
+SOSLAM_FORCE_INLINE void FindSupport(const Eigen::Vector3d& half_axes, double shape_exponent,
+                                     const ThreeFours& m, SupportOfFour* support) {
   const double p = shape_exponent;
   const bool is_ellipsoid = p == kEllipsoidExponent;
   ThreeFours squares, u;

@@ -41,8 +41,8 @@ std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& o
 }
 
 // QuadricEntry and Gradient for many rays.
-SOSLAM_WIDE_LOOPS void MeetQuadric(const Eigen::Vector3d& origin,
-                                   const Eigen::Vector3d& inverse_axes, RayBatch* rays) {
+SOSLAM_MULTIVERSION void MeetQuadric(const Eigen::Vector3d& origin,
+                                     const Eigen::Vector3d& inverse_axes, RayBatch* rays) {
   // Coordinates in which all half axes are 1.
   const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes);
   const double c = o.squaredNorm() - 1.0;

@@ -26,7 +26,7 @@ cv::Rect Part(const PixelBounds& bounds, float margin, const cv::Mat& map) {
 
 }  // namespace
 
-void Neighbours::Cover(const PixelBounds& bounds) {
+void Neighbours::SelectInBounds(const PixelBounds& bounds) {
   // Margins in pixels: for rounding errors, and to cover the next lookups as well.
   constexpr float kRounding = 1.0F, kMargin = 24.0F;
   const cv::Rect needed = Part(bounds, kRounding, map_);

@@ -29,7 +29,7 @@ class Neighbours {
   }
 
   // Prepares the part of the map within the bounds; to be called before lookups there.
-  void Cover(const PixelBounds& bounds);
+  void SelectInBounds(const PixelBounds& bounds);
   // True if the bounds are inside the map, rounding errors included.
   bool AreInside(const PixelBounds& bounds) const;
 
@@ -53,8 +53,8 @@ struct CellsOfEight {
   // Locates eight pixels, the i-th eight of the batch. Pixels outside the part count as outside the
   // map; unless `may_be_outside`, the caller guarantees that there are none.
   template <bool may_be_outside>
-  SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& view, const Eight& x, const Eight& y,
-                                   size_t i) {
+  SOSLAM_FORCE_INLINE void Locate(const Neighbours::View& view, const Eight& x, const Eight& y,
+                                  size_t i) {
     Eight inside_x = x, inside_y = y;
     if constexpr (may_be_outside) {
       const Eight left = Eight{} + static_cast<float>(view.part.x);
@@ -89,8 +89,8 @@ struct CellsOfEight {
 };
 
 // Bilinear interpolation at the i-th eight pixels: NaN or infinite where the map has no value.
-SOSLAM_IN_WIDE_LOOPS void Interpolate(const Neighbours::View& view, const CellsOfEight& cells,
-                                      size_t i, Eight* value) {
+SOSLAM_FORCE_INLINE void Interpolate(const Neighbours::View& view, const CellsOfEight& cells,
+                                     size_t i, Eight* value) {
   using FourFloats [[gnu::vector_size(4 * sizeof(float))]] = float;
   // Values around the k-th and the (k + 4)-th pixel: top left, bottom left, top right, bottom
   // right.

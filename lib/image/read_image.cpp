@@ -24,7 +24,7 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
   }
-  NoteInput(path);
+  RecordInput(path);
   std::ifstream stream(
       path, std::ios::binary | std::ios::ate);  // opened at its end, which gives the size
   const std::streamoff size = std::max<std::streamoff>(0, stream.tellg());

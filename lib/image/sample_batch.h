@@ -32,7 +32,7 @@ struct MapView {
 using FourIntegers [[gnu::vector_size(4 * sizeof(int))]] = int;
 
 // Element by element: GCC 12 would convert a vector of integers in halves.
-SOSLAM_IN_WIDE_LOOPS void Convert(const FourIntegers& from, Four* to) {
+SOSLAM_FORCE_INLINE void Convert(const FourIntegers& from, Four* to) {
   *to = Four{static_cast<double>(from[0]), static_cast<double>(from[1]),
              static_cast<double>(from[2]), static_cast<double>(from[3])};
 }
@@ -42,8 +42,8 @@ SOSLAM_IN_WIDE_LOOPS void Convert(const FourIntegers& from, Four* to) {
 struct alignas(kFourAlignment) Cells {
   // Locates the pixels from number i on.
   template <typename Scalar>
-  SOSLAM_IN_WIDE_LOOPS void Locate(const MapView<Scalar>& map, const Four& x, const Four& y,
-                                   size_t i) {
+  SOSLAM_FORCE_INLINE void Locate(const MapView<Scalar>& map, const Four& x, const Four& y,
+                                  size_t i) {
     const Four last_x = Four{} + (map.columns - 1.0);
     const Four last_y = Four{} + (map.rows - 1.0);
     Four inside_x = x > 0.0 ? x : Four{};  // also for NaN
@@ -76,8 +76,8 @@ struct FourCorners {
 };
 
 // Loads horizontal neighbours in pairs and converts them in SIMD registers.
-SOSLAM_IN_WIDE_LOOPS void LoadPairs(const float* row, const FourIntegers& at, Four* left,
-                                    Four* right) {
+SOSLAM_FORCE_INLINE void LoadPairs(const float* row, const FourIntegers& at, Four* left,
+                                   Four* right) {
   using FourPairs [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;
   using EightFloats [[gnu::vector_size(8 * sizeof(float))]] = float;
   using Eight [[gnu::vector_size(8 * sizeof(double))]] = double;
@@ -96,14 +96,14 @@ SOSLAM_IN_WIDE_LOOPS void LoadPairs(const float* row, const FourIntegers& at, Fo
   *right = __builtin_shufflevector(halves[0], halves[1], 1, 5, 3, 7);
 }
 
-SOSLAM_IN_WIDE_LOOPS void LoadCorners(const MapView<float>& map, const FourIntegers& top_left,
-                                      FourCorners* corners) {
+SOSLAM_FORCE_INLINE void LoadCorners(const MapView<float>& map, const FourIntegers& top_left,
+                                     FourCorners* corners) {
   LoadPairs(map.values, top_left, &corners->top_left, &corners->top_right);
   LoadPairs(map.values + map.step, top_left, &corners->bottom_left, &corners->bottom_right);
 }
 
-SOSLAM_IN_WIDE_LOOPS void LoadCorners(const MapView<std::uint8_t>& map,
-                                      const FourIntegers& top_left, FourCorners* corners) {
+SOSLAM_FORCE_INLINE void LoadCorners(const MapView<std::uint8_t>& map, const FourIntegers& top_left,
+                                     FourCorners* corners) {
   const auto bytes = [&](size_t k) {
     const std::uint8_t* corner = map.values + top_left[k];
     std::uint16_t top = 0, bottom = 0;
@@ -122,20 +122,20 @@ SOSLAM_IN_WIDE_LOOPS void LoadCorners(const MapView<std::uint8_t>& map,
 struct SampleOfFour {
   // Takes the four pixels of a batch from number i on.
   template <typename Scalar>
-  SOSLAM_IN_WIDE_LOOPS SampleOfFour(const MapView<Scalar>& map, const Cells& cells, size_t i)
+  SOSLAM_FORCE_INLINE SampleOfFour(const MapView<Scalar>& map, const Cells& cells, size_t i)
       : dx(cells.dx[i / 4]), dy(cells.dy[i / 4]) {
     LoadCorners(map, cells.top_left[i / 4], &corners);
   }
 
   // NaN or infinite where the map has no value.
-  SOSLAM_IN_WIDE_LOOPS void Interpolate(Four* value) const {
+  SOSLAM_FORCE_INLINE void Interpolate(Four* value) const {
     const Four top = (1.0 - dx) * corners.top_left + dx * corners.top_right;
     const Four bottom = (1.0 - dx) * corners.bottom_left + dx * corners.bottom_right;
     *value = (1.0 - dy) * top + dy * bottom;
   }
 
   // Derivatives by x and y; 0 where the map has no value.
-  SOSLAM_IN_WIDE_LOOPS void Differentiate(Four* by_x, Four* by_y) const {
+  SOSLAM_FORCE_INLINE void Differentiate(Four* by_x, Four* by_y) const {
     const Four x = (1.0 - dy) * (corners.top_right - corners.top_left) +
                    dy * (corners.bottom_right - corners.bottom_left);
     const Four y = (1.0 - dx) * (corners.bottom_left - corners.top_left) +

@@ -34,8 +34,8 @@ std::optional<Sample> SampleTyped(const cv::Mat& map, const Eigen::Vector2d& pix
 }
 
 template <typename Scalar>
-SOSLAM_IN_WIDE_LOOPS void SampleBatch(const MapView<Scalar>& map, const BatchOfPixels& pixels,
-                                      Batch* values, BatchOfPixels* gradients) {
+SOSLAM_FORCE_INLINE void SampleBatch(const MapView<Scalar>& map, const BatchOfPixels& pixels,
+                                     Batch* values, BatchOfPixels* gradients) {
   Cells cells;
   for (int i = 0; i < kBatchSize; i += 4) {
     Four x, y;
@@ -56,13 +56,13 @@ SOSLAM_IN_WIDE_LOOPS void SampleBatch(const MapView<Scalar>& map, const BatchOfP
   }
 }
 
-SOSLAM_WIDE_LOOPS void SampleBytes(const MapView<std::uint8_t>& map, const BatchOfPixels& pixels,
-                                   Batch* values, BatchOfPixels* gradients) {
+SOSLAM_MULTIVERSION void SampleBytes(const MapView<std::uint8_t>& map, const BatchOfPixels& pixels,
+                                     Batch* values, BatchOfPixels* gradients) {
   SampleBatch(map, pixels, values, gradients);
 }
 
-SOSLAM_WIDE_LOOPS void SampleFloats(const MapView<float>& map, const BatchOfPixels& pixels,
-                                    Batch* values, BatchOfPixels* gradients) {
+SOSLAM_MULTIVERSION void SampleFloats(const MapView<float>& map, const BatchOfPixels& pixels,
+                                      Batch* values, BatchOfPixels* gradients) {
   SampleBatch(map, pixels, values, gradients);
 }
 

@@ -38,7 +38,7 @@ struct FourEdges {
   SupportOfFour support;
 };
 
-SOSLAM_IN_WIDE_LOOPS void FindEdges(const BoxOnGround& box, const Body& body, FourEdges* edges) {
+SOSLAM_FORCE_INLINE void FindEdges(const BoxOnGround& box, const Body& body, FourEdges* edges) {
   for (size_t i = 0; i < 3; ++i) Load(box.normals.col(i).data(), &edges->normals[i]);
   const auto& [x, y, z] = edges->normals;
   const auto [cosine, sine] = body.heading;
@@ -46,8 +46,8 @@ SOSLAM_IN_WIDE_LOOPS void FindEdges(const BoxOnGround& box, const Body& body, Fo
   FindSupport(body.half_axes, body.shape_exponent, edges->in_object, &edges->support);
 }
 
-SOSLAM_WIDE_LOOPS void FindTangentDepths(const BoxOnGround& box, const Body& body,
-                                         Eigen::Array4d* depths_m) {
+SOSLAM_MULTIVERSION void FindTangentDepths(const BoxOnGround& box, const Body& body,
+                                           Eigen::Array4d* depths_m) {
   FourEdges edges;
   FindEdges(box, body, &edges);
   const ThreeFours contact = edges.support.Contact(body.shape_exponent, edges.in_object);
@@ -63,8 +63,8 @@ struct Rows {
   Eigen::Matrix<double, 4, 6> jacobian;
 };
 
-SOSLAM_WIDE_LOOPS void FindRows(const BoxOnGround& box, const Body& body,
-                                const Eigen::Array4d& depths_m, Rows* rows) {
+SOSLAM_MULTIVERSION void FindRows(const BoxOnGround& box, const Body& body,
+                                  const Eigen::Array4d& depths_m, Rows* rows) {
   FourEdges edges;
   FindEdges(box, body, &edges);
   const SupportOfFour& support = edges.support;

@@ -54,7 +54,7 @@ struct alignas(kFourAlignment) FourHeadings {
     cosines[place] = heading.cosine;
     sines[place] = heading.sine;
   }
-  SOSLAM_IN_WIDE_LOOPS ThreeFours TurnedBack(const Eigen::Vector3d& direction) const {
+  SOSLAM_FORCE_INLINE ThreeFours TurnedBack(const Eigen::Vector3d& direction) const {
     return {cosines * direction.x() + sines * direction.y(),
             cosines * direction.y() - sines * direction.x(), Four{} + direction.z()};
   }

@@ -40,8 +40,8 @@ struct alignas(kFourAlignment) FourSolutions {
   FourEdges depths_m{};  // of the tangent points
 };
 
-SOSLAM_IN_WIDE_LOOPS void Place(const BoxEquations& equations, const FourHeadings& headings,
-                                FourBodies* bodies) {
+SOSLAM_FORCE_INLINE void Place(const BoxEquations& equations, const FourHeadings& headings,
+                               FourBodies* bodies) {
   const BoxOnGround& box = equations.box;
   const double p = equations.shape_exponent;
   const double height_of_axis = box.optical_axis.z();
@@ -60,8 +60,8 @@ SOSLAM_IN_WIDE_LOOPS void Place(const BoxEquations& equations, const FourHeading
   bodies->nearest_by_half_height = height_of_axis - support.extent;
 }
 
-SOSLAM_IN_WIDE_LOOPS void EliminateFoot(const BoxEquations& equations, const FourBodies& bodies,
-                                        FourSystems* systems) {
+SOSLAM_FORCE_INLINE void EliminateFoot(const BoxEquations& equations, const FourBodies& bodies,
+                                       FourSystems* systems) {
   Four first{}, second{};  // N^T a
   for (size_t edge = 0; edge < 4; ++edge) {
     first += equations.without_foot(edge, 0) * bodies.by_half_height[edge];
@@ -78,8 +78,8 @@ SOSLAM_IN_WIDE_LOOPS void EliminateFoot(const BoxEquations& equations, const Fou
 }
 
 // F foot + a c - b of the least squares solutions, tangent points at these depths.
-SOSLAM_IN_WIDE_LOOPS void FindResiduals(const BoxOnGround& box, const FourSystems& systems,
-                                        const FourEdges& depths_m, FourEdges* residuals) {
+SOSLAM_FORCE_INLINE void FindResiduals(const BoxOnGround& box, const FourSystems& systems,
+                                       const FourEdges& depths_m, FourEdges* residuals) {
   Four along_null{};
   for (size_t edge = 0; edge < 4; ++edge) {
     const Four sigma = depths_m[edge] * box.sigma_px[edge];
@@ -91,9 +91,9 @@ SOSLAM_IN_WIDE_LOOPS void FindResiduals(const BoxOnGround& box, const FourSystem
 }
 
 // Three equations have a solution, and the bound is met as it happens: where it is reached.
-SOSLAM_IN_WIDE_LOOPS void ReplaceWhereBoundIsReached(const Eigen::Array4d& is_bound,
-                                                     const FourSystems& systems,
-                                                     FourEdges* residuals) {
+SOSLAM_FORCE_INLINE void ReplaceWhereBoundIsReached(const Eigen::Array4d& is_bound,
+                                                    const FourSystems& systems,
+                                                    FourEdges* residuals) {
   Four null{};
   for (size_t edge = 0; edge < 4; ++edge) {
     null += is_bound[edge] * systems.null[edge];
@@ -105,9 +105,8 @@ SOSLAM_IN_WIDE_LOOPS void ReplaceWhereBoundIsReached(const Eigen::Array4d& is_bo
   }
 }
 
-SOSLAM_IN_WIDE_LOOPS FourSolutions SolveFor(const BoxEquations& equations, const FourBodies& bodies,
-                                            const FourSystems& systems,
-                                            const FourEdges& residuals) {
+SOSLAM_FORCE_INLINE FourSolutions SolveFor(const BoxEquations& equations, const FourBodies& bodies,
+                                           const FourSystems& systems, const FourEdges& residuals) {
   const BoxOnGround& box = equations.box;
   FourSolutions solutions;
   FourEdges b;
@@ -125,8 +124,8 @@ SOSLAM_IN_WIDE_LOOPS FourSolutions SolveFor(const BoxEquations& equations, const
 }
 
 // Leaves half heights at 0 where there is no body in front of the camera.
-SOSLAM_WIDE_LOOPS void Solve(const BoxEquations& equations, const FourHeadings& headings,
-                             FourSolutions* solutions) {
+SOSLAM_MULTIVERSION void Solve(const BoxEquations& equations, const FourHeadings& headings,
+                               FourSolutions* solutions) {
   const BoxOnGround& box = equations.box;
   FourBodies bodies;
   Place(equations, headings, &bodies);

@@ -50,8 +50,8 @@ struct Rows {
 };
 
 // Of bodies whose foot is the ground's origin.
-SOSLAM_IN_WIDE_LOOPS void RowsAtOrigin(const Tangencies& tangencies, const ThreeFours& half_axes,
-                                       Rows* rows) {
+SOSLAM_FORCE_INLINE void RowsAtOrigin(const Tangencies& tangencies, const ThreeFours& half_axes,
+                                      Rows* rows) {
   for (size_t edge = 0; edge < 4; ++edge) {
     const Four weight = tangencies.weight[edge];
     ThreeFours u;
@@ -67,8 +67,7 @@ SOSLAM_IN_WIDE_LOOPS void RowsAtOrigin(const Tangencies& tangencies, const Three
 }
 
 // Of bodies on their best foot: less what a foot explains of the rows.
-SOSLAM_IN_WIDE_LOOPS void AddTangencies(const Tangencies& tangencies, const Rows& rows,
-                                        Model* sum) {
+SOSLAM_FORCE_INLINE void AddTangencies(const Tangencies& tangencies, const Rows& rows, Model* sum) {
   std::array<ThreeFours, 2> foot_by_log_half_axes{};
   for (size_t edge = 0; edge < 4; ++edge) {
     for (size_t k = 0; k < 2; ++k) {
@@ -98,8 +97,8 @@ SOSLAM_IN_WIDE_LOOPS void AddTangencies(const Tangencies& tangencies, const Rows
   }
 }
 
-SOSLAM_IN_WIDE_LOOPS void AddRatio(const RatioRows& ratio, const ThreeFours& log_half_axes,
-                                   Model* sum) {
+SOSLAM_FORCE_INLINE void AddRatio(const RatioRows& ratio, const ThreeFours& log_half_axes,
+                                  Model* sum) {
   for (size_t row = 0; row < 2; ++row) {
     Four residual = Four{} - ratio.at_prior[row];
     for (size_t i = 0; i < 3; ++i) residual += ratio.by_log_half_axes(row, i) * log_half_axes[i];
@@ -111,8 +110,8 @@ SOSLAM_IN_WIDE_LOOPS void AddRatio(const RatioRows& ratio, const ThreeFours& log
   }
 }
 
-SOSLAM_IN_WIDE_LOOPS void Evaluate(const Tangencies& tangencies, const RatioRows& ratio,
-                                   const ThreeFours& log_half_axes, Model* model) {
+SOSLAM_FORCE_INLINE void Evaluate(const Tangencies& tangencies, const RatioRows& ratio,
+                                  const ThreeFours& log_half_axes, Model* model) {
   *model = Model();
   Exponential(log_half_axes, &model->half_axes);
   Rows rows;
@@ -121,7 +120,7 @@ SOSLAM_IN_WIDE_LOOPS void Evaluate(const Tangencies& tangencies, const RatioRows
   AddRatio(ratio, log_half_axes, model);
 }
 
-SOSLAM_IN_WIDE_LOOPS void ReplaceModel(const FourMask& where, const Model& from, Model* to) {
+SOSLAM_FORCE_INLINE void ReplaceModel(const FourMask& where, const Model& from, Model* to) {
   Replace(where, from.half_axes, &to->half_axes);
   Replace(where, from.cost, &to->cost);
   Replace(where, from.foot, &to->foot);
@@ -130,8 +129,8 @@ SOSLAM_IN_WIDE_LOOPS void ReplaceModel(const FourMask& where, const Model& from,
 }
 
 // The x of A x = -b, by cofactors, and where A, which is symmetric, is positive definite.
-SOSLAM_IN_WIDE_LOOPS void SolveForNegative(const std::array<ThreeFours, 3>& a, const ThreeFours& b,
-                                           ThreeFours* x, FourMask* is_definite) {
+SOSLAM_FORCE_INLINE void SolveForNegative(const std::array<ThreeFours, 3>& a, const ThreeFours& b,
+                                          ThreeFours* x, FourMask* is_definite) {
   const Four c00 = a[1][1] * a[2][2] - a[2][1] * a[2][1];
   const Four c10 = a[2][1] * a[2][0] - a[1][0] * a[2][2];
   const Four c20 = a[1][0] * a[2][1] - a[1][1] * a[2][0];
@@ -147,8 +146,8 @@ SOSLAM_IN_WIDE_LOOPS void SolveForNegative(const std::array<ThreeFours, 3>& a, c
 }
 
 // MinimiseSquares, line by line. Leaves the model at the minimum.
-SOSLAM_IN_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows& ratio,
-                                   int max_iterations, ThreeFours* log_half_axes, Model* at) {
+SOSLAM_FORCE_INLINE void Minimise(const Tangencies& tangencies, const RatioRows& ratio,
+                                  int max_iterations, ThreeFours* log_half_axes, Model* at) {
   using namespace levenberg_marquardt;
   Evaluate(tangencies, ratio, *log_half_axes, at);
   Four damping = Four{} + kFirstDamping;
@@ -189,7 +188,7 @@ SOSLAM_IN_WIDE_LOOPS void Minimise(const Tangencies& tangencies, const RatioRows
 }
 
 // Gram and Schmidt's orthonormal basis of two columns.
-SOSLAM_IN_WIDE_LOOPS void FindFootBasis(const BoxOnGround& box, Tangencies* tangencies) {
+SOSLAM_FORCE_INLINE void FindFootBasis(const BoxOnGround& box, Tangencies* tangencies) {
   Four squares{}, products{}, rest_squares{};
   for (int edge = 0; edge < 4; ++edge) {
     auto& [by_x, by_y] = tangencies->foot_basis[edge];
@@ -211,8 +210,8 @@ SOSLAM_IN_WIDE_LOOPS void FindFootBasis(const BoxOnGround& box, Tangencies* tang
   for (auto& [by_x, by_y] : tangencies->foot_basis) by_y /= tangencies->r_yy;
 }
 
-SOSLAM_IN_WIDE_LOOPS void Place(const BoxOnGround& box, double shape_exponent,
-                                const FourStarts& starts, Tangencies* tangencies) {
+SOSLAM_FORCE_INLINE void Place(const BoxOnGround& box, double shape_exponent,
+                               const FourStarts& starts, Tangencies* tangencies) {
   tangencies->shape_exponent = shape_exponent;
   tangencies->at_origin = box.at_origin;
   tangencies->by_height = box.normals.col(2);
@@ -232,9 +231,9 @@ struct alignas(kFourAlignment) FourFits {
   Four nearest_depth_m;
 };
 
-SOSLAM_IN_WIDE_LOOPS void FindNearestDepth(const BoxOnGround& box, double shape_exponent,
-                                           const FourHeadings& headings,
-                                           const ThreeFours& half_axes, FourFits* fits) {
+SOSLAM_FORCE_INLINE void FindNearestDepth(const BoxOnGround& box, double shape_exponent,
+                                          const FourHeadings& headings, const ThreeFours& half_axes,
+                                          FourFits* fits) {
   ThreeFours reach, by_logarithms;
   FindRounded(shape_exponent, headings.TurnedBack(box.optical_axis), &reach);
   for (size_t i = 0; i < 3; ++i) reach[i] *= half_axes[i];
@@ -245,8 +244,8 @@ SOSLAM_IN_WIDE_LOOPS void FindNearestDepth(const BoxOnGround& box, double shape_
                           axis[2] * half_axes[2] - extent;
 }
 
-SOSLAM_WIDE_LOOPS void Fit(const BoxOnGround& box, const RatioRows& ratio, double shape_exponent,
-                           int max_iterations, const FourStarts& starts, FourFits* fits) {
+SOSLAM_MULTIVERSION void Fit(const BoxOnGround& box, const RatioRows& ratio, double shape_exponent,
+                             int max_iterations, const FourStarts& starts, FourFits* fits) {
   Tangencies tangencies;
   Place(box, shape_exponent, starts, &tangencies);
   fits->log_half_axes = starts.log_half_axes;

@@ -13,7 +13,7 @@ using Columns = std::array<const double*, kLandmarkDof + 1>;
 
 // Sums of four, so that the order of additions is the same on any processor: compilers do not
 // change it to use wide registers.
-SOSLAM_WIDE_LOOPS void Multiply(const Columns& columns, Products* __restrict products) {
+SOSLAM_MULTIVERSION void Multiply(const Columns& columns, Products* __restrict products) {
   size_t next = 0;
   for (size_t j = 0; j < columns.size(); ++j) {
     const double* one = columns[j];

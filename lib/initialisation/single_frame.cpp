@@ -43,8 +43,8 @@ std::optional<Landmark> Start(const SingleFrameObservation& observation) {
 
 Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOptions& options,
                  const Landmark& start) {
-  LandmarkBlock landmark = Pack(start);
-  PoseBlock camera = Pack(Rigid3d());
+  LandmarkBlock landmark = ToParameterBlock(start);
+  PoseBlock camera = ToParameterBlock(Rigid3d());
   ceres::Problem problem;
   AddSingleFrameConstraints(observation, options.variances, &camera, &landmark, &problem);
 
@@ -113,8 +113,8 @@ void AddSingleFrameConstraints(const SingleFrameObservation& observation,
 
 double SingleFrameCost(const SingleFrameObservation& observation,
                        const ConstraintVariances& variances, const Landmark& landmark_in_camera) {
-  LandmarkBlock landmark = Pack(landmark_in_camera);
-  PoseBlock camera = Pack(Rigid3d());
+  LandmarkBlock landmark = ToParameterBlock(landmark_in_camera);
+  PoseBlock camera = ToParameterBlock(Rigid3d());
   ceres::Problem problem;
   AddSingleFrameConstraints(observation, variances, &camera, &landmark, &problem);
   double cost = 0.0;

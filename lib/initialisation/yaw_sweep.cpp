@@ -34,8 +34,8 @@ struct Likelihood {
   double mass = 0.0;
   double squares = 0.0;
 };
-SOSLAM_WIDE_LOOPS void AddStretch(const std::array<double, 2>& angles,
-                                  const std::array<double, 2>& heights, Likelihood* sum) {
+SOSLAM_MULTIVERSION void AddInterval(const std::array<double, 2>& angles,
+                                     const std::array<double, 2>& heights, Likelihood* sum) {
   constexpr size_t kFours = 5;
   const auto [from, to] = angles;
   const auto [from_height, to_height] = heights;
@@ -189,11 +189,11 @@ double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
     const auto& [from, from_cost] = nodes[i - 1];
     const auto& [to, to_cost] = nodes[i];
     if (to - from > kGap * step) continue;
-    AddStretch({from, to}, {height(from_cost), height(to_cost)}, &likelihood);
+    AddInterval({from, to}, {height(from_cost), height(to_cost)}, &likelihood);
   }
   if (yaws_beside <= 1) {  // alone, it stands for the step around it
     const double of_first = height(optima.front().cost);
-    AddStretch({-0.5 * step, 0.5 * step}, {of_first, of_first}, &likelihood);
+    AddInterval({-0.5 * step, 0.5 * step}, {of_first, of_first}, &likelihood);
   }
   return std::sqrt(likelihood.squares / likelihood.mass);
 }

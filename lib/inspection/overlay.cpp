@@ -138,7 +138,7 @@ std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_
     const Plane& plane = planes_in_camera.empty()
                              ? detection.plane_in_camera
                              : planes_in_camera[static_cast<size_t>(plane_index)];
-    const auto foot = FootInCamera(sequence.CameraOf(detection), detection.box, plane);
+    const auto foot = GroundContactInCamera(sequence.CameraOf(detection), detection.box, plane);
     if (!foot) continue;
     OverlayInput::Ground& ground = by_plane[plane_index];
     ground.plane_in_camera = plane;

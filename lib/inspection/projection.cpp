@@ -34,7 +34,7 @@ Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera)
     for (int i = 0; i < kOutlineDirections; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
       const auto end =
-          OutlineEnd(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)}, last);
+          FindSilhouettePoint(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)}, last);
       if (!end) continue;
       last = end->point;
       touch(last);

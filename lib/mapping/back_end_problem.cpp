@@ -7,14 +7,14 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "constraints/attitude.h"
-#include "constraints/bias.h"
+#include "constraints/box_bias.h"
 #include "constraints/detection.h"
 #include "constraints/odometry.h"
+#include "constraints/plane_normal.h"
 #include "constraints/scale_ratio.h"
-#include "constraints/standing.h"
 #include "constraints/support.h"
 #include "constraints/tangency.h"
+#include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
 #include "initialisation/view_weights.h"
 #include "mapping/axis_cost_term.h"
@@ -122,7 +122,7 @@ void BackEndProblem::AddStanding(size_t object_index) {
   const int normal = variables_.Normal(plane_index);
   const int offset = variables_.Offset(plane_index);
   // No loss: a body that floats is not an outlier, but wrong.
-  terms_.push_back(TermOf<StandingResidual, VariableKind::kLandmark, VariableKind::kNormal,
+  terms_.push_back(TermOf<UprightOnPlaneResidual, VariableKind::kLandmark, VariableKind::kNormal,
                           VariableKind::kOffset>(
       {variables_.Landmark(object_index), normal, offset}, kNoLoss,
       options_.standing_angle_sigma_deg * kRadPerDeg, options_.standing_height_sigma_m,
@@ -132,7 +132,8 @@ void BackEndProblem::AddStanding(size_t object_index) {
     variables_.Hold(normal);
     variables_.Hold(offset);
   } else if (normals_under_objects_.insert(normal).second) {
-    terms_.push_back(TermOf<AttitudeResidual, VariableKind::kNormal>({normal}, kNoLoss, *attitude));
+    terms_.push_back(
+        TermOf<PlaneNormalResidual, VariableKind::kNormal>({normal}, kNoLoss, *attitude));
   }
 }
 
@@ -247,8 +248,8 @@ void BackEndProblem::AddTangencies(size_t index, const TangentBox& box, HeldView
 
 void BackEndProblem::AddBias() {
   if (options_.detector_bias_sigma_px > 0.0) {
-    terms_.push_back(TermOf<BiasResidual, VariableKind::kBias>({variables_.Bias()}, kNoLoss,
-                                                               options_.detector_bias_sigma_px));
+    terms_.push_back(TermOf<BoxBiasResidual, VariableKind::kBias>({variables_.Bias()}, kNoLoss,
+                                                                  options_.detector_bias_sigma_px));
   } else {
     variables_.Hold(variables_.Bias());
   }

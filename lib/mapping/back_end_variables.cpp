@@ -47,10 +47,10 @@ BackEndVariables::BackEndVariables(const BackEndInput& input)
   }
   const auto values = [&](int index) { return all_[static_cast<size_t>(index)].values; };
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    std::ranges::copy(Pack(sequence.frames[i].world_from_camera), values(Pose(i)));
+    std::ranges::copy(ToParameterBlock(sequence.frames[i].world_from_camera), values(Pose(i)));
   }
   for (size_t i = 0; i < input.starts.size(); ++i) {
-    if (input.starts[i]) std::ranges::copy(Pack(*input.starts[i]), values(Landmark(i)));
+    if (input.starts[i]) std::ranges::copy(ToParameterBlock(*input.starts[i]), values(Landmark(i)));
   }
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const Plane& plane = sequence.planes[i].plane_in_world;

@@ -12,9 +12,9 @@ namespace {
 
 using FourViews = HeldViewsTerm::FourViews;
 
-SOSLAM_WIDE_LOOPS void AddUpViews(const std::vector<FourViews>& all, const BodyInWorld& body,
-                                  const HuberLoss& loss, Hessian hessian,
-                                  LandmarkSums<double>* totals) {
+SOSLAM_MULTIVERSION void AddUpViews(const std::vector<FourViews>& all, const BodyInWorld& body,
+                                    const HuberLoss& loss, Hessian hessian,
+                                    LandmarkSums<double>* totals) {
   SumsOfFour sums{};
   for (const FourViews& views : all) {
     DepthsOfFour depths;

@@ -27,7 +27,7 @@ struct HuberLoss {
   struct FourValues {
     Four cost, weight, curvature;
   };
-  SOSLAM_IN_WIDE_LOOPS FourValues operator()(const Four& length) const {
+  SOSLAM_FORCE_INLINE FourValues operator()(const Four& length) const {
     const FourMask is_beyond = length > delta;
     FourValues values;
     values.weight = is_beyond ? delta / length : Four{} + 1.0;

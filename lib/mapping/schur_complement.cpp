@@ -37,8 +37,8 @@ void Pack(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int panel_rows,
 
 // Of two panels of `depth` columns the products of all rows of one and kColumns rows of the other.
 template <typename Register>
-SOSLAM_IN_WIDE_LOOPS void Multiply(const double* rows, const double* columns, Eigen::Index depth,
-                                   double* tile) {
+SOSLAM_FORCE_INLINE void Multiply(const double* rows, const double* columns, Eigen::Index depth,
+                                  double* tile) {
   std::array<std::array<Register, 2>, kColumns> sums{};
   for (Eigen::Index k = 0; k < depth; ++k) {
     Register upper, lower;
@@ -61,8 +61,8 @@ struct Matrices {
 };
 
 template <typename Register>
-SOSLAM_IN_WIDE_LOOPS void Subtract(const double* panels, Eigen::Index depth,
-                                   const Matrices& matrices) {
+SOSLAM_FORCE_INLINE void Subtract(const double* panels, Eigen::Index depth,
+                                  const Matrices& matrices) {
   constexpr Eigen::Index kHeight = kRows<Register>;
   std::array<double, kHeight * kColumns> tile;
   for (Eigen::Index j = 0; j < matrices.size; j += kColumns) {

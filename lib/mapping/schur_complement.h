@@ -16,7 +16,6 @@ namespace soslam {
 // same to the last bit.
 void SchurComplement(const Eigen::Ref<const Eigen::MatrixXd>& corner,
                      const Eigen::Ref<const Eigen::MatrixXd>& below, std::vector<double>* panels,
-                     Eigen::Ref<Eigen::MatrixXd> complement,
-                     bool in_wide_registers = HasWideRegisters());
+                     Eigen::Ref<Eigen::MatrixXd> complement, bool in_wide_registers = HasAvx2());
 
 }  // namespace soslam

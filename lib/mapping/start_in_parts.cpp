@@ -161,13 +161,13 @@ class PartByPart {
     for (size_t i = part.begin; i < part.end; ++i) {
       const int pose = variables_.Pose(i);
       if (At(pose).is_held) continue;
-      Set(pose, Pack(carried * UnpackPose(StartOf(pose))));
+      Set(pose, ToParameterBlock(carried * UnpackPose(StartOf(pose))));
       release(pose);
     }
     for (const auto& [landmark, of_landmark] : part.landmarks) {
       terms.insert(terms.end(), of_landmark.begin(), of_landmark.end());
       if (At(landmark).is_held) continue;
-      Set(landmark, Pack(Transform(carried, UnpackLandmark(StartOf(landmark)))));
+      Set(landmark, ToParameterBlock(Transform(carried, UnpackLandmark(StartOf(landmark)))));
       release(landmark);
     }
     for (int round = 0; round < kMaxRounds; ++round) {
@@ -194,7 +194,7 @@ class PartByPart {
       some[static_cast<size_t>(landmark)].is_held = false;
       before[landmark] = {TotalCost(of_landmark), ValuesOf(landmark)};
       const Rigid3d corrected = Correction(MiddlePose(of_landmark));
-      Set(landmark, Pack(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
+      Set(landmark, ToParameterBlock(Transform(corrected, UnpackLandmark(StartOf(landmark)))));
     }
     Minimise(
         terms,

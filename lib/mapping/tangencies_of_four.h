@@ -44,9 +44,9 @@ struct LandmarkSums {
   static constexpr size_t kHessianByAxes = kHessianByCentre + 6 * 3;
   static constexpr size_t kCount = kHessianByAxes + 3 * 3;
 
-  SOSLAM_IN_WIDE_LOOPS Number* Gradient() { return &numbers[kGradient]; }
+  SOSLAM_FORCE_INLINE Number* Gradient() { return &numbers[kGradient]; }
   // i >= j.
-  SOSLAM_IN_WIDE_LOOPS Number& Hessian(size_t i, size_t j) {
+  SOSLAM_FORCE_INLINE Number& Hessian(size_t i, size_t j) {
     if (j < kByCentre) return numbers[kHessianByTurn + 9 * j + i];
     if (j < kByAxes) return numbers[kHessianByCentre + 6 * (j - kByCentre) + i - kByCentre];
     return numbers[kHessianByAxes + 3 * (j - kByAxes) + i - kByAxes];
@@ -56,7 +56,7 @@ struct LandmarkSums {
 };
 using SumsOfFour = LandmarkSums<Four>;
 
-SOSLAM_IN_WIDE_LOOPS void AddUp(const SumsOfFour& sums, LandmarkSums<double>* totals) {
+SOSLAM_FORCE_INLINE void AddUp(const SumsOfFour& sums, LandmarkSums<double>* totals) {
   static_assert(SumsOfFour::kCount % 4 == 0);
   for (size_t i = 0; i < sums.numbers.size(); i += 4) {
     Four total;
@@ -88,9 +88,9 @@ struct DepthsOfFour {
   ThreeFours by_centre;  // relative change; 0 where the depth is held
 };
 
-SOSLAM_IN_WIDE_LOOPS void FindDepths(const ThreeFours& camera, const ThreeFours& optical_axis,
-                                     const Four& least_depth_m, const BodyInWorld& body,
-                                     DepthsOfFour* depths) {
+SOSLAM_FORCE_INLINE void FindDepths(const ThreeFours& camera, const ThreeFours& optical_axis,
+                                    const Four& least_depth_m, const BodyInWorld& body,
+                                    DepthsOfFour* depths) {
   Four depth{};
   for (size_t i = 0; i < 3; ++i) {
     depths->offset[i] = body.centre[static_cast<int>(i)] - camera[i];
@@ -115,9 +115,9 @@ struct ExcessOfFour {
 using GradientOfFour = std::array<Four, kLandmarkDof>;
 
 // `plane` is in the world (TangentBox::Edge).
-SOSLAM_IN_WIDE_LOOPS void FindExcess(const ThreeFours& plane, const BodyInWorld& body,
-                                     const DepthsOfFour& depths, ExcessOfFour* excess,
-                                     GradientOfFour* gradient) {
+SOSLAM_FORCE_INLINE void FindExcess(const ThreeFours& plane, const BodyInWorld& body,
+                                    const DepthsOfFour& depths, ExcessOfFour* excess,
+                                    GradientOfFour* gradient) {
   Four outside{};
   ThreeFours m;
   for (int i = 0; i < 3; ++i) {
@@ -149,8 +149,8 @@ struct LossesOfFour {
 
 // Of a bound that is not reached, nothing. Excesses that are not finite make the cost so, even
 // those without weight: nothing that is made of them is to be added.
-SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourEdges& edges, const Four& excess,
-                                     const HuberLoss& loss, Hessian hessian, LossesOfFour* losses) {
+SOSLAM_FORCE_INLINE void FindLosses(const FourEdges& edges, const Four& excess,
+                                    const HuberLoss& loss, Hessian hessian, LossesOfFour* losses) {
   const FourMask is_idle = (edges.is_bound > 0.0) & (excess > 0.0);
   const Four weight = is_idle ? Four{} : edges.weights;
   const HuberLoss::FourValues values = loss(excess < 0.0 ? -excess : excess);
@@ -161,7 +161,7 @@ SOSLAM_IN_WIDE_LOOPS void FindLosses(const FourEdges& edges, const Four& excess,
 
 // Where the body turns past an edge or a face that should come nearer, it is held there. Not so
 // where it should go away from it.
-SOSLAM_IN_WIDE_LOOPS bool HasKinks(const BodyInWorld& body, Hessian hessian) {
+SOSLAM_FORCE_INLINE bool HasKinks(const BodyInWorld& body, Hessian hessian) {
   return hessian == Hessian::kFar && body.shape_exponent < kEllipsoidExponent;
 }
 
@@ -178,9 +178,9 @@ struct WeightsOfFour {
   Four depth;
 };
 
-SOSLAM_IN_WIDE_LOOPS void FindWeights(const BodyInWorld& body, const DepthsOfFour& depths,
-                                      const ExcessOfFour& excess, const LossesOfFour& losses,
-                                      Hessian hessian, WeightsOfFour* weights) {
+SOSLAM_FORCE_INLINE void FindWeights(const BodyInWorld& body, const DepthsOfFour& depths,
+                                     const ExcessOfFour& excess, const LossesOfFour& losses,
+                                     Hessian hessian, WeightsOfFour* weights) {
   const Four less =
       losses.slope * depths.depth_m * (body.shape_exponent - 1.0) * excess.support.inverse;
   *weights = {losses.slope, losses.curvature, losses.curvature, losses.curvature, Four{}};
@@ -196,10 +196,10 @@ SOSLAM_IN_WIDE_LOOPS void FindWeights(const BodyInWorld& body, const DepthsOfFou
 // Of the Hessian, the products of a weighted gradient's i-th component with those from begin to
 // end.
 template <size_t kSets>
-SOSLAM_IN_WIDE_LOOPS void AddProducts(size_t i, size_t begin, size_t end,
-                                      const std::array<Four, kSets>& weighted,
-                                      const std::array<GradientOfFour, kSets>& gradients,
-                                      SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddProducts(size_t i, size_t begin, size_t end,
+                                     const std::array<Four, kSets>& weighted,
+                                     const std::array<GradientOfFour, kSets>& gradients,
+                                     SumsOfFour* sums) {
   for (size_t j = begin; j < end; ++j) {
     Four& sum = sums->Hessian(i, j);
     for (size_t set = 0; set < kSets; ++set) sum += weighted[set] * gradients[set][j];
@@ -208,10 +208,10 @@ SOSLAM_IN_WIDE_LOOPS void AddProducts(size_t i, size_t begin, size_t end,
 
 // The products of which one is by the i-th component of the centre, which the depth depends on.
 template <size_t kSets>
-SOSLAM_IN_WIDE_LOOPS void AddProductsByCentre(size_t i,
-                                              const std::array<GradientOfFour, kSets>& gradients,
-                                              const std::array<WeightsOfFour, kSets>& weights,
-                                              const ThreeFours& depth_by_centre, SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddProductsByCentre(size_t i,
+                                             const std::array<GradientOfFour, kSets>& gradients,
+                                             const std::array<WeightsOfFour, kSets>& weights,
+                                             const ThreeFours& depth_by_centre, SumsOfFour* sums) {
   std::array<Four, kSets> weighted;
   Four slope{};
   for (size_t set = 0; set < kSets; ++set) {
@@ -232,9 +232,9 @@ SOSLAM_IN_WIDE_LOOPS void AddProductsByCentre(size_t i,
 
 // The sum of the gradients of `kSets` times four edges at the same depths, and their products.
 template <size_t kSets>
-SOSLAM_IN_WIDE_LOOPS void AddGradients(const std::array<GradientOfFour, kSets>& gradients,
-                                       const std::array<WeightsOfFour, kSets>& weights,
-                                       const ThreeFours& depth_by_centre, SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddGradients(const std::array<GradientOfFour, kSets>& gradients,
+                                      const std::array<WeightsOfFour, kSets>& weights,
+                                      const ThreeFours& depth_by_centre, SumsOfFour* sums) {
   for (size_t i = 0; i < kLandmarkDof; ++i) {
     Four& sum = sums->Gradient()[i];
     for (size_t set = 0; set < kSets; ++set) sum += weights[set].slope * gradients[set][i];
@@ -260,9 +260,9 @@ SOSLAM_IN_WIDE_LOOPS void AddGradients(const std::array<GradientOfFour, kSets>& 
 //   sum_i l_i / r_i^2 (e_i e_i^T + e^2 I - (2 - p) g_i g_i^T) - (p - 1) / h c c^T,
 // the last of which FindWeights has; what they have along m itself is not seen by a turn. And where
 // `contact_turns`, what it has of a contact q that stays on the body.
-SOSLAM_IN_WIDE_LOOPS void AddCurvatureByTurns(const BodyInWorld& body, const ExcessOfFour& excess,
-                                              const Four& factor, bool contact_turns,
-                                              SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddCurvatureByTurns(const BodyInWorld& body, const ExcessOfFour& excess,
+                                             const Four& factor, bool contact_turns,
+                                             SumsOfFour* sums) {
   const SupportOfFour& support = excess.support;
   const ThreeFours& shares = support.shares;
   const double p = body.shape_exponent;
@@ -284,8 +284,8 @@ SOSLAM_IN_WIDE_LOOPS void AddCurvatureByTurns(const BodyInWorld& body, const Exc
 }
 
 // By turns and half axes.
-SOSLAM_IN_WIDE_LOOPS void AddMixedCurvature(const BodyInWorld& body, const ExcessOfFour& excess,
-                                            const Four& factor, SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddMixedCurvature(const BodyInWorld& body, const ExcessOfFour& excess,
+                                           const Four& factor, SumsOfFour* sums) {
   const SupportOfFour& support = excess.support;
   const Four factor_of_axes = factor * body.shape_exponent;
   for (size_t i = 0; i < 3; ++i) {
@@ -297,9 +297,9 @@ SOSLAM_IN_WIDE_LOOPS void AddMixedCurvature(const BodyInWorld& body, const Exces
 }
 
 // Of the Hessian, what is not a product of gradients but that by the half axes.
-SOSLAM_IN_WIDE_LOOPS void AddCurvature(const BodyInWorld& body, const DepthsOfFour& depths,
-                                       const ExcessOfFour& excess, const LossesOfFour& losses,
-                                       Hessian hessian, SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddCurvature(const BodyInWorld& body, const DepthsOfFour& depths,
+                                      const ExcessOfFour& excess, const LossesOfFour& losses,
+                                      Hessian hessian, SumsOfFour* sums) {
   const Four factor = losses.slope * depths.inverse;
   if (hessian == Hessian::kNear) {
     AddCurvatureByTurns(body, excess, factor, /*contact_turns=*/true, sums);
@@ -311,8 +311,8 @@ SOSLAM_IN_WIDE_LOOPS void AddCurvature(const BodyInWorld& body, const DepthsOfFo
 }
 
 // By the half axes, h has p times its gradient on the diagonal: the sums of all, at the end.
-SOSLAM_IN_WIDE_LOOPS void AddCurvatureByAxes(const BodyInWorld& body, Hessian hessian,
-                                             SumsOfFour* sums) {
+SOSLAM_FORCE_INLINE void AddCurvatureByAxes(const BodyInWorld& body, Hessian hessian,
+                                            SumsOfFour* sums) {
   if (hessian != Hessian::kNear) return;
   for (size_t i = kByAxes; i < kLandmarkDof; ++i) {
     sums->Hessian(i, i) += body.shape_exponent * sums->Gradient()[i];

@@ -33,8 +33,8 @@ struct alignas(kFourAlignment) BiasRows {
   ByLandmark<kBiasSize> by_landmark;  // second ones; of these, turns are in the object frame
 };
 
-SOSLAM_IN_WIDE_LOOPS void FindBiasRows(const Four& per_px, const LossesOfFour& losses,
-                                       const GradientOfFour& gradient, BiasRows* rows) {
+SOSLAM_FORCE_INLINE void FindBiasRows(const Four& per_px, const LossesOfFour& losses,
+                                      const GradientOfFour& gradient, BiasRows* rows) {
   const Four by_excess = -per_px * losses.curvature;
   Store(-per_px * losses.slope, rows->gradient.data());
   Store(-per_px * by_excess, rows->curvatures.data());
@@ -43,11 +43,11 @@ SOSLAM_IN_WIDE_LOOPS void FindBiasRows(const Four& per_px, const LossesOfFour& l
   }
 }
 
-SOSLAM_WIDE_LOOPS void AddUpEdges(const FourEdges& edges, const Four& per_px,
-                                  const CameraInWorld& camera, double least_depth_m,
-                                  const double* bias_px, const BodyInWorld& body,
-                                  const HuberLoss& loss, Hessian hessian,
-                                  LandmarkSums<double>* totals, BiasRows* of_bias) {
+SOSLAM_MULTIVERSION void AddUpEdges(const FourEdges& edges, const Four& per_px,
+                                    const CameraInWorld& camera, double least_depth_m,
+                                    const double* bias_px, const BodyInWorld& body,
+                                    const HuberLoss& loss, Hessian hessian,
+                                    LandmarkSums<double>* totals, BiasRows* of_bias) {
   ThreeFours centre, optical_axis, planes;
   for (int i = 0; i < 3; ++i) {
     const auto component = static_cast<size_t>(i);

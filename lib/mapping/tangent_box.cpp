@@ -17,8 +17,8 @@ struct Body {
 };
 
 // TangentDepth of all edges, side by side.
-SOSLAM_WIDE_LOOPS void FindTangentDepths(const std::array<BoxEdge, 4>& edges, const Body& body,
-                                         std::array<double, 4>* depths_m) {
+SOSLAM_MULTIVERSION void FindTangentDepths(const std::array<BoxEdge, 4>& edges, const Body& body,
+                                           std::array<double, 4>* depths_m) {
   ThreeFours plane_in_object{};
   for (size_t i = 0; i < 3; ++i) {
     const Four component = {edges[0].plane[i], edges[1].plane[i], edges[2].plane[i],

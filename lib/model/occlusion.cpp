@@ -12,17 +12,17 @@ namespace {
 // Depth (m, along the optical axis) of a detection's ground contact point; infinite without one.
 // Without planes, a value with the same order for objects on one plane: a box that ends lower in
 // the image is nearer.
-double FootDepth(const Sequence& sequence, const Detection& detection) {
+double GroundContactDepth(const Sequence& sequence, const Detection& detection) {
   if (sequence.planes.empty()) return -detection.box.y_max;
   const auto foot =
-      FootInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
+      GroundContactInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
   return foot ? foot->z() : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> FootInCamera(const Camera& camera, const Box& box,
-                                            const Plane& plane_in_camera) {
+std::optional<Eigen::Vector3d> GroundContactInCamera(const Camera& camera, const Box& box,
+                                                     const Plane& plane_in_camera) {
   const Eigen::Vector3d ray = camera.Ray({box.Centre().x(), box.y_max});
   const double depth = -plane_in_camera.offset / plane_in_camera.normal.dot(ray);
   if (!(depth > 0.0) || !std::isfinite(depth)) return std::nullopt;
@@ -36,10 +36,11 @@ std::span<const Detection> DetectionsIn(const Sequence& sequence, int frame_inde
 }
 
 std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detection) {
-  const double own_depth = FootDepth(sequence, detection);
+  const double own_depth = GroundContactDepth(sequence, detection);
   std::vector<Box> nearer;
   for (const Detection& other : DetectionsIn(sequence, detection.frame_index)) {
-    if (other.object_index != detection.object_index && FootDepth(sequence, other) < own_depth) {
+    if (other.object_index != detection.object_index &&
+        GroundContactDepth(sequence, other) < own_depth) {
       nearer.push_back(other.box);
     }
   }
@@ -53,7 +54,7 @@ class FrameByDepth {
  public:
   FrameByDepth(const Sequence& in_view, int frame_index) {
     for (const Detection& detection : DetectionsIn(in_view, frame_index)) {
-      entries_.push_back({FootDepth(in_view, detection), &detection});
+      entries_.push_back({GroundContactDepth(in_view, detection), &detection});
     }
     std::ranges::stable_sort(entries_, {}, &Entry::depth);
     for (size_t i = 0; i < entries_.size(); ++i) {
@@ -68,7 +69,7 @@ class FrameByDepth {
   }
 
   void Decide(const Sequence& sequence, Detection* detection) const {
-    const double depth = FootDepth(sequence, *detection);
+    const double depth = GroundContactDepth(sequence, *detection);
     const auto end = std::ranges::lower_bound(entries_, depth, {}, &Entry::depth);
     detection->nearer_in_view = static_cast<int>(end - entries_.begin());
     const auto own = rank_of_object_.find(detection->object_index);

@@ -16,8 +16,8 @@ std::span<const Detection> DetectionsIn(const Sequence& sequence, int frame_inde
 // Ground contact point of the object in a box, in the camera frame: the intersection of the ray
 // through the middle of the box's lower edge with its support plane. None when it is not in front
 // of the camera, that is when the box ends at or above the plane's horizon.
-std::optional<Eigen::Vector3d> FootInCamera(const Camera& camera, const Box& box,
-                                            const Plane& plane_in_camera);
+std::optional<Eigen::Vector3d> GroundContactInCamera(const Camera& camera, const Box& box,
+                                                     const Plane& plane_in_camera);
 
 // Boxes of the frame's other objects that may occlude this detection: those whose contact point is
 // nearer to the camera.

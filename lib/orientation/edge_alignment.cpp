@@ -25,8 +25,8 @@ struct Projection {
   BatchOfPixels pixels;  // NaN behind the camera
 };
 
-SOSLAM_WIDE_LOOPS void Project(const Camera& camera, const Landmark& landmark,
-                               const BatchOfVectors& in_unit_body, Projection* projection) {
+SOSLAM_MULTIVERSION void Project(const Camera& camera, const Landmark& landmark,
+                                 const BatchOfVectors& in_unit_body, Projection* projection) {
   const Eigen::Matrix3d rotation = landmark.frame_from_object.rotation.toRotationMatrix();
   const Eigen::Vector3d centre = landmark.Centre();
   for (size_t k = 0; k < 3; ++k) {
@@ -67,9 +67,9 @@ void Truncate(const Batch& distance, const Batch& is_point, double tau, Batch* r
 }
 
 // Derivatives of the residuals by the landmark.
-SOSLAM_WIDE_LOOPS void Differentiate(const Camera& camera, const Eigen::Matrix3d& rotation,
-                                     const Projection& at, const BatchOfPixels& gradients,
-                                     const Batch& slope, ResidualBatch* batch) {
+SOSLAM_MULTIVERSION void Differentiate(const Camera& camera, const Eigen::Matrix3d& rotation,
+                                       const Projection& at, const BatchOfPixels& gradients,
+                                       const Batch& slope, ResidualBatch* batch) {
   const double fx = camera.fx, fy = camera.fy;
   auto& [w_x, w_y, w_z, c_x, c_y, c_z, log_a, log_b, log_c] = batch->by_landmark;
   for (int i = 0; i < kBatchSize; ++i) {

@@ -22,8 +22,8 @@ struct MirrorImages {
 };
 
 // `place` (m) is the offset of the mirror plane along the object's y axis.
-SOSLAM_WIDE_LOOPS void Mirror(const Camera& camera, const BodyInCamera& body,
-                              const BatchOfVectors& points, double place, MirrorImages* images) {
+SOSLAM_MULTIVERSION void Mirror(const Camera& camera, const BodyInCamera& body,
+                                const BatchOfVectors& points, double place, MirrorImages* images) {
   const Eigen::Matrix3d rotation = body.rotation;
   const Eigen::Vector3d centre = body.centre;
   for (int k = 0; k < 3; ++k) {
@@ -45,9 +45,9 @@ SOSLAM_WIDE_LOOPS void Mirror(const Camera& camera, const BodyInCamera& body,
 
 // The derivative of a map's value at the pixel of a mirror image by that image, in the object
 // frame; 0 where `scale` is 0.
-SOSLAM_WIDE_LOOPS void ByImage(const Camera& camera, const Eigen::Matrix3d& rotation,
-                               const MirrorImages& images, const BatchOfPixels& gradients,
-                               const Batch& scale, BatchOfVectors* by_image) {
+SOSLAM_MULTIVERSION void ByImage(const Camera& camera, const Eigen::Matrix3d& rotation,
+                                 const MirrorImages& images, const BatchOfPixels& gradients,
+                                 const Batch& scale, BatchOfVectors* by_image) {
   const double fx = camera.fx, fy = camera.fy;
   for (int i = 0; i < kBatchSize; ++i) {
     const double inverse_depth = scale[i] != 0.0 ? images.inverse_depth[i] : 0.0;
@@ -71,8 +71,8 @@ SOSLAM_WIDE_LOOPS void ByImage(const Camera& camera, const Eigen::Matrix3d& rota
 // ray d with the surface, n the gradient there (n . x = 1). A change of the landmark moves x by k d
 // along the ray, k (n . d) = n . dc + dw . (x x n) + sum_i x_i n_i dlog(s_i). The plane y = m
 // mirrors x, and rotates and moves with the landmark.
-SOSLAM_WIDE_LOOPS void ByBody(const RayBatch& rays, const BatchOfVectors& v, double m,
-                              ResidualBatch* rows) {
+SOSLAM_MULTIVERSION void ByBody(const RayBatch& rays, const BatchOfVectors& v, double m,
+                                ResidualBatch* rows) {
   auto& [w_x, w_y, w_z, c_x, c_y, c_z, log_a, log_b, log_c] = rows->by_landmark;
   for (int i = 0; i < kBatchSize; ++i) {
     const double v_x = v[0][i], v_y = v[1][i], v_z = v[2][i];

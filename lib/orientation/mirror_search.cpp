@@ -22,7 +22,7 @@ constexpr double kRounding = 1.0 + 1e-9;
 
 // Interleaved order. Pixels come row by row; with this stride each batch has pixels from all rows,
 // so that the first batch is already representative.
-std::vector<size_t> InTurns(size_t count) {
+std::vector<size_t> InterleavedOrder(size_t count) {
   constexpr size_t kTurns = 16;
   std::vector<size_t> order;
   for (size_t turn = 0; turn < kTurns; ++turn) {
@@ -58,9 +58,9 @@ Points PointsOf(const MirroredPoints& points, const std::vector<float>& values) 
 }
 
 // Bounds of the pixels of all points at both shifts; NaN if a point is behind the camera.
-SOSLAM_WIDE_LOOPS void FindBounds(const Points& points, size_t batches,
-                                  const std::array<Eigen::Vector3f, 2>& shifts,
-                                  PixelBounds* bounds) {
+SOSLAM_MULTIVERSION void FindBounds(const Points& points, size_t batches,
+                                    const std::array<Eigen::Vector3f, 2>& shifts,
+                                    PixelBounds* bounds) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Eight least_x = Eight{} + kInfinity, least_y = least_x, least_depth = least_x;
   Eight largest_x = Eight{} - kInfinity, largest_y = largest_x;
@@ -99,8 +99,8 @@ struct Comparison {
 
 // Position of each point of a batch in the map, when shifted.
 template <bool may_be_outside>
-SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& map, const Points& points, size_t batch,
-                                 const Eigen::Vector3f& shift, CellsOfEight* cells) {
+SOSLAM_FORCE_INLINE void Locate(const Neighbours::View& map, const Points& points, size_t batch,
+                                const Eigen::Vector3f& shift, CellsOfEight* cells) {
   for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
     const size_t at = batch * kBatchSize + 8 * i;
     Eight x, y, depth;
@@ -118,9 +118,9 @@ SOSLAM_IN_WIDE_LOOPS void Locate(const Neighbours::View& map, const Points& poin
 }
 
 // d^2 for the i-th eight points of the batch; NaN or infinite if there is no pair.
-SOSLAM_IN_WIDE_LOOPS void FindSquares(const Comparison& comparison, const Points& points,
-                                      size_t batch, const CellsOfEight& cells, size_t i,
-                                      Eight* squares) {
+SOSLAM_FORCE_INLINE void FindSquares(const Comparison& comparison, const Points& points,
+                                     size_t batch, const CellsOfEight& cells, size_t i,
+                                     Eight* squares) {
   Eight values, mirrored;
   Load(points.values + batch * kBatchSize + 8 * i, &values);
   Interpolate(comparison.map, cells, i, &mirrored);
@@ -129,16 +129,16 @@ SOSLAM_IN_WIDE_LOOPS void FindSquares(const Comparison& comparison, const Points
 }
 
 // d^2 / (d^2 + squared_scale); NaN if there is no pair.
-SOSLAM_IN_WIDE_LOOPS void ToShare(const Comparison& comparison, Eight* square) {
+SOSLAM_FORCE_INLINE void ToShare(const Comparison& comparison, Eight* square) {
   *square = *square / (*square + comparison.squared_scale);
 }
 
 // Adds batches of points to the sums of each candidate.
 template <bool may_be_outside>
-SOSLAM_IN_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points, size_t first,
-                              size_t end, std::span<MirrorSearch::Place* const> places) {
+SOSLAM_FORCE_INLINE void Add(const Comparison& comparison, const Points& points, size_t first,
+                             size_t end, std::span<MirrorSearch::Candidate* const> places) {
   const Comparison copy = comparison;  // a local copy cannot overlap the output
-  for (MirrorSearch::Place* place : places) {
+  for (MirrorSearch::Candidate* place : places) {
     const Eigen::Vector3f shift = place->shift;
     double differences = place->differences;
     EightIntegers pairs;
@@ -166,20 +166,21 @@ SOSLAM_IN_WIDE_LOOPS void Add(const Comparison& comparison, const Points& points
   }
 }
 
-SOSLAM_WIDE_LOOPS void AddInside(const Comparison& comparison, const Points& points, size_t first,
-                                 size_t end, std::span<MirrorSearch::Place* const> places) {
+SOSLAM_MULTIVERSION void AddInside(const Comparison& comparison, const Points& points, size_t first,
+                                   size_t end, std::span<MirrorSearch::Candidate* const> places) {
   Add<false>(comparison, points, first, end, places);
 }
 
-SOSLAM_WIDE_LOOPS void AddAnywhere(const Comparison& comparison, const Points& points, size_t first,
-                                   size_t end, std::span<MirrorSearch::Place* const> places) {
+SOSLAM_MULTIVERSION void AddAnywhere(const Comparison& comparison, const Points& points,
+                                     size_t first, size_t end,
+                                     std::span<MirrorSearch::Candidate* const> places) {
   Add<true>(comparison, points, first, end, places);
 }
 
 // Finds which points of a batch form pairs.
-SOSLAM_WIDE_LOOPS void FindPairs(const Comparison& comparison, const Points& points, size_t batch,
-                                 const Eigen::Vector3f& shift,
-                                 std::array<bool, kBatchSize>* is_pair) {
+SOSLAM_MULTIVERSION void FindPairs(const Comparison& comparison, const Points& points, size_t batch,
+                                   const Eigen::Vector3f& shift,
+                                   std::array<bool, kBatchSize>* is_pair) {
   CellsOfEight cells;
   Locate<true>(comparison.map, points, batch, shift, &cells);
   for (size_t i = 0; i < CellsOfEight::kCount; ++i) {
@@ -200,7 +201,7 @@ MirrorSearch::MirrorSearch(const cv::Mat& map, const Camera& camera,
                            std::vector<Eigen::Vector2d> pixels)
     : map_(map),
       pixels_(std::move(pixels)),
-      order_(InTurns(pixels_.size())),
+      order_(InterleavedOrder(pixels_.size())),
       rays_(camera, Ordered(pixels_, order_)) {
   for (const size_t i : order_) {
     const auto sample = SampleBilinear(map, pixels_[i]);
@@ -208,7 +209,7 @@ MirrorSearch::MirrorSearch(const cv::Mat& map, const Camera& camera,
   }
 }
 
-void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_cosine) {
+void MirrorSearch::SetLandmark(const Landmark& landmark_in_camera, double min_viewing_cosine) {
   points_.Find(landmark_in_camera, rays_, min_viewing_cosine);
   values_of_points_.assign(points_.in_image[0].size(), kNone);
   for (size_t i = 0; i < points_.ray.size(); ++i) values_of_points_[i] = values_[points_.ray[i]];
@@ -219,50 +220,50 @@ void MirrorSearch::See(const Landmark& landmark_in_camera, double min_viewing_co
 }
 
 // The pixel of a point moves along a line with the offset, so two ends bound all in between.
-void MirrorSearch::Cover(double least_place, double largest_place) {
+void MirrorSearch::SelectInBounds(double least_place, double largest_place) {
   PixelBounds bounds;
   FindBounds(PointsOf(points_, values_of_points_), points_.NumBatches(),
              {Shift(least_place), Shift(largest_place)}, &bounds);
-  map_.Cover(bounds);
+  map_.SelectInBounds(bounds);
   are_inside_ = map_.AreInside(bounds);
 }
 
-void MirrorSearch::Add(size_t first, size_t end, double scale, std::span<Place* const> places) {
+void MirrorSearch::Add(size_t first, size_t end, double scale, std::span<Candidate* const> places) {
   const auto add = are_inside_ ? AddInside : AddAnywhere;
   add({map_.view(), static_cast<float>(scale * scale)}, PointsOf(points_, values_of_points_), first,
       end, places);
 }
 
-std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<double>& places,
-                                                           double scale, double min_pairs) {
+std::optional<MirrorSearch::Minimum> MirrorSearch::FindMinimum(const std::vector<double>& places,
+                                                               double scale, double min_pairs) {
   const size_t batches = points_.NumBatches();
   if (batches == 0) return std::nullopt;
   const auto [least_place, largest_place] = std::ranges::minmax(places);
-  Cover(least_place, largest_place);
+  SelectInBounds(least_place, largest_place);
   places_.assign(places.size(), {});
   for (size_t i = 0; i < places.size(); ++i) places_[i].shift = Shift(places[i]);
   // The best candidate for the last landmark comes first: its mean rejects others early. Those are
   // interleaved batch by batch, so that the processor need not wait for each one's sum.
-  Place& likely = places_[last_least_ < places.size() ? last_least_ : 0];
+  Candidate& likely = places_[last_least_ < places.size() ? last_least_ : 0];
   Add(0, batches, scale, std::array{&likely});
   const double enough = likely.NumPairs() < min_pairs
                             ? std::numeric_limits<double>::infinity()
                             : likely.differences / likely.NumPairs() *
                                   static_cast<double>(points_.ray.size()) * kRounding;
   open_.clear();
-  for (Place& place : places_) {
+  for (Candidate& place : places_) {
     if (&place != &likely) open_.push_back(&place);
   }
   for (size_t batch = 0; batch < batches; ++batch) {
     Add(batch, batch + 1, scale, open_);
-    std::erase_if(open_, [&](const Place* place) { return place->differences > enough; });
+    std::erase_if(open_, [&](const Candidate* place) { return place->differences > enough; });
   }
   open_.push_back(&likely);
-  std::optional<Least> least;
-  for (const Place* place : open_) {
+  std::optional<Minimum> least;
+  for (const Candidate* place : open_) {
     if (place->NumPairs() < min_pairs) continue;
-    const Least of_place{place->differences / place->NumPairs(),
-                         static_cast<size_t>(place - places_.data())};
+    const Minimum of_place{place->differences / place->NumPairs(),
+                           static_cast<size_t>(place - places_.data())};
     if (!least || std::tie(of_place.mean, of_place.place) < std::tie(least->mean, least->place)) {
       least = of_place;
     }
@@ -273,7 +274,7 @@ std::optional<MirrorSearch::Least> MirrorSearch::FindLeast(const std::vector<dou
 
 std::vector<Eigen::Vector2d> MirrorSearch::PixelsOfPairs(double place) {
   std::vector<size_t> found;
-  Cover(place, place);
+  SelectInBounds(place, place);
   for (size_t batch = 0; batch < points_.NumBatches(); ++batch) {
     std::array<bool, kBatchSize> is_pair;
     FindPairs({map_.view(), 1.0F}, PointsOf(points_, values_of_points_), batch, Shift(place),

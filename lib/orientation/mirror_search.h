@@ -25,7 +25,7 @@ class MirrorSearch {
                std::vector<Eigen::Vector2d> pixels);
 
   // Sums for one candidate offset of the mirror plane.
-  struct Place {
+  struct Candidate {
     double NumPairs() const { return std::accumulate(pairs.begin(), pairs.end(), 0.0); }
 
     Eigen::Vector3f shift;          // added to all mirror images, in homogeneous image coordinates
@@ -34,18 +34,19 @@ class MirrorSearch {
   };
 
   // Sets the landmark for the functions below.
-  void See(const Landmark& landmark_in_camera, double min_viewing_cosine);
+  void SetLandmark(const Landmark& landmark_in_camera, double min_viewing_cosine);
   // Number of pixels whose rays meet the landmark.
   size_t NumSamples() const { return points_.on_surface; }
 
   // The candidate offset of the mirror plane (see VisibleSurface::MirrorImage) with the smallest
   // mean over the pairs of d^2 / (d^2 + scale^2), d the descriptor difference; of equal ones the
   // first. Candidates with fewer than `min_pairs` pairs are skipped; none when all are.
-  struct Least {
+  struct Minimum {
     double mean;
     size_t place;
   };
-  std::optional<Least> FindLeast(const std::vector<double>& places, double scale, double min_pairs);
+  std::optional<Minimum> FindMinimum(const std::vector<double>& places, double scale,
+                                     double min_pairs);
   // One pixel of each pair at a given offset, in the order of `pixels`.
   std::vector<Eigen::Vector2d> PixelsOfPairs(double place);
 
@@ -53,10 +54,10 @@ class MirrorSearch {
   MirrorSearch(const cv::Mat& map, const Camera& camera, std::vector<Eigen::Vector2d> pixels);
 
   // Prepares the map for lookups at these offsets and those in between.
-  void Cover(double least_place, double largest_place);
+  void SelectInBounds(double least_place, double largest_place);
   Eigen::Vector3f Shift(double place) const { return (place * shift_by_place_).cast<float>(); }
   // Adds batches of points to the sums of each candidate.
-  void Add(size_t first, size_t end, double scale, std::span<Place* const> places);
+  void Add(size_t first, size_t end, double scale, std::span<Candidate* const> places);
 
   Neighbours map_;
   std::vector<Eigen::Vector2d> pixels_;
@@ -70,9 +71,9 @@ class MirrorSearch {
   Eigen::Vector3d shift_by_place_ = Eigen::Vector3d::Zero();
   bool are_inside_ = false;  // true if the points' pixels are inside the map at all offsets
 
-  std::vector<Place> places_;
-  std::vector<Place*> open_;  // candidates that may still be the best
-  size_t last_least_ = 0;     // the best candidate for the last landmark
+  std::vector<Candidate> places_;
+  std::vector<Candidate*> open_;  // candidates that may still be the best
+  size_t last_least_ = 0;         // the best candidate for the last landmark
 };
 
 }  // namespace soslam

@@ -73,7 +73,8 @@ void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sa
   Eigen::Vector3d last = landmark.Centre();
   for (int i = 0; i < kOutlineDirections; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-    const auto end = OutlineEnd(camera, landmark, {std::cos(angle), std::sin(angle)}, last);
+    const auto end =
+        FindSilhouettePoint(camera, landmark, {std::cos(angle), std::sin(angle)}, last);
     if (!end) return;
     last = end->point;
     contacts.push_back((object_from_camera * last).cwiseQuotient(landmark.half_axes));

@@ -101,10 +101,10 @@ double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) {
 }
 
 std::optional<MirroredTexture> TextureAsymmetry::FindByMap(const Landmark& landmark_in_camera) {
-  search_->See(landmark_in_camera, symmetry_options_.min_viewing_cosine);
-  const auto least =
-      search_->FindLeast(places_, Scale(landmark_in_camera, symmetry_options_.descriptor, options_),
-                         MinPairs(search_->NumSamples(), symmetry_options_));
+  search_->SetLandmark(landmark_in_camera, symmetry_options_.min_viewing_cosine);
+  const auto least = search_->FindMinimum(
+      places_, Scale(landmark_in_camera, symmetry_options_.descriptor, options_),
+      MinPairs(search_->NumSamples(), symmetry_options_));
   if (!least) return std::nullopt;
   return MirroredTexture{least->mean, places_[least->place], {}};
 }

@@ -43,7 +43,7 @@ double Misfit(const Costs& lowest, double expected_cost) {
 double CostOf(const HoldingEvidence& evidence, const Costs& lowest, double misfit) {
   double cost = evidence.other_cost / misfit + kFromBelow * evidence.share_from_below;
   if (evidence.holding != CameraHolding::kLevel) cost += kNotLevel;
-  if (evidence.doubts_verticals) cost += kWrongVerticals;
+  if (evidence.ignores_verticals) cost += kWrongVerticals;
   for (size_t i = 0; i < lowest.size(); ++i) {
     if (!std::isfinite(lowest[i])) continue;
     const auto& own = evidence.object_costs[i];
@@ -59,10 +59,6 @@ size_t BestOf(const std::vector<HoldingEvidence>& evidence, const Costs& costs) 
     if (!evidence[best].can_be_chosen || costs[i] < costs[best]) best = i;
   }
   return best;
-}
-
-double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
-  return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace soslam {
 // Costs of one hypothesis on how the cameras are held (negative log likelihoods).
 struct HoldingEvidence {
   CameraHolding holding = CameraHolding::kLevel;
-  bool doubts_verticals = false;  // vertical edges are ignored as wrongly classified
+  bool ignores_verticals = false;  // vertical edges are ignored as wrongly classified
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
   // Per object, the cost of its boxes given the best upright body; none where there is no such
   // body.

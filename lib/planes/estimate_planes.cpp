@@ -11,8 +11,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/angles.h"
-#include "planes/levels.h"
 #include "planes/mounts.h"
+#include "planes/plane_heights.h"
 #include "planes/search_up.h"
 #include "planes/standing_bodies.h"
 
@@ -44,7 +44,7 @@ double ExpectedCost(const MultiViewObservation& observation) {
 class Estimator {
  public:
   Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-            Mount mount, const CameraAttitude& attitude, const PlanesOptions& options, int threads)
+            Mount mount, const UpPrior& attitude, const PlanesOptions& options, int threads)
       : sequence_(sequence),
         options_(options),
         threads_(threads),
@@ -134,7 +134,7 @@ class Estimator {
     ParallelFor("objects", static_cast<int>(found.size()), threads_, [&](int i) {
       const auto index = static_cast<size_t>(i);
       if (!observations_[index]) return;
-      auto body = BodyOfFreeHeight(*observations_[index], normal, kYawStep);
+      auto body = FitBodyAtFreeHeight(*observations_[index], normal, kYawStep);
       if (!body) return;
       const double information = EvidenceOf(*body, body->landmark.Centre()).information(2, 2);
       const double size = 2.0 * body->landmark.half_axes.maxCoeff();
@@ -151,17 +151,17 @@ class Estimator {
 
   // Assigns these bodies to shared planes and computes the planes.
   void Decide(Plane* reference) {
-    const Eigen::Vector3d pivot = MiddleOfFeet(own_);
+    const Eigen::Vector3d pivot = MeanBasePoint(own_);
     *reference = {reference->normal, -reference->normal.dot(pivot)};
     std::vector<PlaneEvidence> evidence;
     std::vector<double> heights;
     for (const StandingBody& body : own_) {
-      evidence.push_back(
-          Loosened(EvidenceOf(body, pivot), HeightSigma(body, options_.height_sigma_fraction)));
+      evidence.push_back(WithHeightNoise(EvidenceOf(body, pivot),
+                                         HeightSigma(body, options_.height_sigma_fraction)));
       heights.push_back(-body.observation.plane_in_world.SignedDistance(pivot));
     }
-    const Levels levels = FindLevels(evidence, heights, EvidenceOf(attitude_, *reference), kMaxTilt,
-                                     options_.new_plane_cost);
+    const PlaneHeights levels = ClusterPlaneHeights(
+        evidence, heights, EvidenceOf(attitude_, *reference), kMaxTilt, options_.new_plane_cost);
     deciding_level_ = levels.level_of;
     standing_ = {own_, levels.level_of, {}, attitude_, options_.height_sigma_fraction};
     for (const double height : levels.heights) {
@@ -237,7 +237,7 @@ class Estimator {
     for (size_t i = 0; i < standing_.bodies.size(); ++i) {
       if (standing_.plane_of[i] == static_cast<int>(index)) bodies.push_back(standing_.bodies[i]);
     }
-    const Eigen::Vector3d feet = MiddleOfFeet(bodies);
+    const Eigen::Vector3d feet = MeanBasePoint(bodies);
     const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
     const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
     // Rotations about the pivot raise the plane at the point.
@@ -289,7 +289,7 @@ class Estimator {
   }
 
   void WriteOwnHeight(size_t index, const Plane& plane, ObjectSupport* support) const {
-    const auto body = BodyOfFreeHeight(*observations_[index], plane.normal, kYawStep);
+    const auto body = FitBodyAtFreeHeight(*observations_[index], plane.normal, kYawStep);
     if (!body) return;
     const Eigen::Vector3d centre = body->landmark.Centre();
     support->height = plane.SignedDistance(centre) - body->landmark.half_axes.z();
@@ -300,7 +300,7 @@ class Estimator {
   const PlanesOptions& options_;
   int threads_;
   std::vector<std::vector<int>> detections_;
-  CameraAttitude attitude_;
+  UpPrior attitude_;
   // Per object; none for an object without detections.
   std::vector<std::optional<MultiViewObservation>> observations_;
   std::vector<std::optional<MultiViewObservation>> sparse_;
@@ -316,8 +316,7 @@ class Estimator {
 
 BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const std::vector<std::optional<ShapePrior>>& priors,
-                               const CameraAttitude& attitude, const PlanesOptions& options,
-                               int threads) {
+                               const UpPrior& attitude, const PlanesOptions& options, int threads) {
   BodyCosts costs{std::vector<std::optional<double>>(sequence.objects.size())};
   for (const Mount mount : {Mount::kStanding, Mount::kHanging}) {
     Estimator(sequence, priors, mount, attitude, options, threads).AddCostsOfUprightBodies(&costs);
@@ -327,9 +326,9 @@ BodyCosts CostsOfUprightBodies(const Sequence& sequence,
 
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
-                                         const CameraAttitude& attitude,
-                                         const PlanesOptions& options, int threads) {
-  const auto planes_of = [&](Mount mount, const CameraAttitude& up) {
+                                         const UpPrior& attitude, const PlanesOptions& options,
+                                         int threads) {
+  const auto planes_of = [&](Mount mount, const UpPrior& up) {
     return Estimator(sequence, priors, mount, up, options, threads).Estimate();
   };
   const auto floors = planes_of(Mount::kStanding, attitude);
@@ -352,8 +351,7 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
 
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
                               const std::vector<std::optional<ShapePrior>>& priors,
-                              const CameraAttitude& attitude, const PlanesOptions& options,
-                              int threads) {
+                              const UpPrior& attitude, const PlanesOptions& options, int threads) {
   auto estimate = FindPlanes(sequence, priors, attitude, options, threads);
   if (!estimate) ThrowNoPlanes(sequence);
   return std::move(*estimate);

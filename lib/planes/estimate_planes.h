@@ -6,9 +6,9 @@
 
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
-#include "planes/camera_attitude.h"
 #include "planes/options.h"
 #include "planes/planes_estimate.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -22,8 +22,7 @@ struct BodyCosts {
 // objects among those that the attitude allows.
 BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const std::vector<std::optional<ShapePrior>>& priors,
-                               const CameraAttitude& attitude, const PlanesOptions& options,
-                               int threads);
+                               const UpPrior& attitude, const PlanesOptions& options, int threads);
 
 // Throws NothingUsableError: no object's views determine the height of its base.
 [[noreturn]] void ThrowNoPlanes(const Sequence& sequence);
@@ -31,15 +30,14 @@ BodyCosts CostsOfUprightBodies(const Sequence& sequence,
 // EstimatePlanes, or none when no object's views determine the height of its base.
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
-                                         const CameraAttitude& attitude,
-                                         const PlanesOptions& options, int threads);
+                                         const UpPrior& attitude, const PlanesOptions& options,
+                                         int threads);
 
 // Estimates the planes that the sequence's upright objects stand on, from their boxes in several
 // frames, the trajectory, the objects' priors and the prior on up. Throws NothingUsableError when
 // no object's views determine the height of its base (one view, or all from the same place).
 PlanesEstimate EstimatePlanes(const Sequence& sequence,
                               const std::vector<std::optional<ShapePrior>>& priors,
-                              const CameraAttitude& attitude, const PlanesOptions& options,
-                              int threads);
+                              const UpPrior& attitude, const PlanesOptions& options, int threads);
 
 }  // namespace soslam

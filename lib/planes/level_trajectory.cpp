@@ -76,13 +76,13 @@ std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
 LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions& options) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const CameraAttitude held = AttitudeOf(poses, options.roll_sigma, options.pitch_sigma,
-                                         options.correlation_rad, options.holding);
-  const CameraAttitude mean =
+  const UpPrior held = UpPriorFromCameras(poses, options.roll_sigma, options.pitch_sigma,
+                                          options.correlation_rad, options.holding);
+  const UpPrior mean =
       WithVerticals(held, views, options.vertical_sigma, options.correlation_rad, kMaxTilt);
   if (!(options.odometry_sigma > 0.0)) return {poses, mean};
 
-  const std::vector<double> shares = ShareOfCameras(poses, options.correlation_rad);
+  const std::vector<double> shares = CameraWeights(poses, options.correlation_rad);
   const Basis level = LevelAxes(mean.up_in_world);
   const double stiffness = 1.0 / (options.odometry_sigma * options.odometry_sigma);
   std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
@@ -92,10 +92,10 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions&
     std::vector<Eigen::Vector2d> right_side;
     for (size_t i = 0; i < views.size(); ++i) {
       const Eigen::Matrix3d all =
-          shares[i] *
-          (AttitudeOf({poses[i]}, options.roll_sigma, options.pitch_sigma, 0.0, options.holding)
-               .information +
-           InformationOfVerticals(views[i], options.vertical_sigma, ups[i]));
+          shares[i] * (UpPriorFromCameras({poses[i]}, options.roll_sigma, options.pitch_sigma, 0.0,
+                                          options.holding)
+                           .information +
+                       InformationOfVerticals(views[i], options.vertical_sigma, ups[i]));
       information.push_back(level.transpose() * all * level);
       right_side.push_back(-level.transpose() * all * mean.up_in_world);
     }

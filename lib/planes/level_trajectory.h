@@ -5,7 +5,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
-#include "planes/camera_attitude.h"
+#include "planes/up_prior.h"
 #include "planes/verticals.h"
 
 namespace soslam {
@@ -13,15 +13,15 @@ namespace soslam {
 // Trajectory without drift about the horizontal axes.
 struct LevelTrajectory {
   std::vector<Rigid3d> world_from_camera;  // the first pose is unchanged
-  CameraAttitude attitude;                 // of the first camera's world
+  UpPrior attitude;                        // of the first camera's world
 };
 
 struct LevelOptions {
-  double roll_sigma = 0.0;       // see AttitudeOf (rad)
+  double roll_sigma = 0.0;       // see UpPriorFromCameras (rad)
   double pitch_sigma = 0.0;      // (rad)
   double vertical_sigma = 0.0;   // see WithVerticals (rad)
   double odometry_sigma = 0.0;   // rotation between two frames about one axis (rad); 0: exact
-  double correlation_rad = 0.0;  // see ShareOfCameras
+  double correlation_rad = 0.0;  // see CameraWeights
   CameraHolding holding = CameraHolding::kLevel;
 };
 

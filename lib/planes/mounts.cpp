@@ -20,8 +20,8 @@ EstimatedPlane Opposite(const EstimatedPlane& floor, EstimatedPlane ceiling) {
 
 Mount MountOf(const std::optional<ShapePrior>& prior) { return prior.value_or(ShapePrior()).mount; }
 
-CameraAttitude DownOf(const CameraAttitude& attitude, const std::optional<PlanesEstimate>& floors) {
-  CameraAttitude down{attitude.information, -attitude.up_in_world};
+UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& floors) {
+  UpPrior down{attitude.information, -attitude.up_in_world};
   if (!floors) return down;
   const EstimatedPlane& floor = floors->planes.front();
   down.up_in_world = -floor.plane_in_world.normal;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "initialisation/semantic_table.h"
-#include "planes/camera_attitude.h"
 #include "planes/planes_estimate.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -15,7 +15,7 @@ Mount MountOf(const std::optional<ShapePrior>& prior);
 
 // Attitude for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
 // are any.
-CameraAttitude DownOf(const CameraAttitude& attitude, const std::optional<PlanesEstimate>& floors);
+UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& floors);
 
 // Floors and ceilings in one estimate, with the objects of each on their own planes; ceilings are
 // made parallel to the floor if `parallel`.

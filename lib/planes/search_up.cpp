@@ -22,7 +22,7 @@ constexpr double kBetweenStarts = 1.6 * kTiltStep;
 constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
 
 // Directions around the cameras' up, which comes first.
-std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
+std::vector<Eigen::Vector3d> UpCandidates(const UpPrior& attitude) {
   const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
   const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
   const int steps = static_cast<int>(kMaxTiltOfCameras / kTiltStep);
@@ -39,7 +39,7 @@ std::vector<Eigen::Vector3d> UpCandidates(const CameraAttitude& attitude) {
   return candidates;
 }
 
-double CostOf(const Eigen::Vector3d& up, const CameraAttitude& attitude,
+double CostOf(const Eigen::Vector3d& up, const UpPrior& attitude,
               const std::vector<std::optional<MultiViewObservation>>& observations) {
   double cost = 0.5 * up.dot(attitude.information * up);
   for (const auto& observation : observations) {
@@ -58,8 +58,8 @@ std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
 }
 
 std::vector<Eigen::Vector3d> SearchUp(
-    const CameraAttitude& attitude,
-    const std::vector<std::optional<MultiViewObservation>>& observations, int threads) {
+    const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
+    int threads) {
   const std::vector<Eigen::Vector3d> candidates = UpCandidates(attitude);
   std::vector<double> costs(candidates.size());
   ParallelFor("directions of up", static_cast<int>(candidates.size()), threads, [&](int i) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "initialisation/multi_view.h"
-#include "planes/camera_attitude.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -22,7 +22,7 @@ std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
 // height fit the boxes best, lowest cost first. There are several minima, because bodies may stand
 // on another of their axes. `observations`: per object; none for objects that do not take part.
 std::vector<Eigen::Vector3d> SearchUp(
-    const CameraAttitude& attitude,
-    const std::vector<std::optional<MultiViewObservation>>& observations, int threads);
+    const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
+    int threads);
 
 }  // namespace soslam

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "planes/levels.h"
+#include "planes/plane_heights.h"
 
 namespace soslam {
 namespace {
@@ -42,7 +42,7 @@ Quadratic QuadraticOf(const StandingBodies& standing, const Eigen::Vector3d& piv
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
     const StandingBody& body = standing.bodies[i];
     const double sigma = HeightSigma(body, standing.height_sigma_fraction);
-    quadratic.Add(Loosened(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
+    quadratic.Add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
   }
   return quadratic;
 }
@@ -66,7 +66,7 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
     body.landmark = Moved(standing.planes[static_cast<size_t>(plane)], pivot,
                           MotionOfPlane(step, plane), body.landmark);
     body.observation.plane_in_world = stepped.planes[static_cast<size_t>(plane)];
-    const auto settled = Settled(std::move(body));
+    const auto settled = FitOnPlane(std::move(body));
     if (settled) {
       stepped.bodies[index] = *settled;
     } else {
@@ -79,7 +79,7 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
 
 }  // namespace
 
-PlaneEvidence EvidenceOf(const CameraAttitude& attitude, const Plane& plane) {
+PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane) {
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
   Eigen::Matrix<double, 3, 2> normal_by_turns;  // t x n
   normal_by_turns << -level.col(1), level.col(0);
@@ -96,7 +96,7 @@ double HeightSigma(const StandingBody& body, double height_sigma_fraction) {
   return height_sigma_fraction * 2.0 * body.landmark.half_axes.z();
 }
 
-Eigen::Vector3d MiddleOfFeet(const std::vector<StandingBody>& bodies) {
+Eigen::Vector3d MeanBasePoint(const std::vector<StandingBody>& bodies) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const StandingBody& body : bodies) {
     sum += body.landmark.Centre() -
@@ -106,7 +106,7 @@ Eigen::Vector3d MiddleOfFeet(const std::vector<StandingBody>& bodies) {
 }
 
 std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads) {
-  const Eigen::Vector3d pivot = MiddleOfFeet(standing->bodies);
+  const Eigen::Vector3d pivot = MeanBasePoint(standing->bodies);
   const Eigen::VectorXd no_step =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing->planes.size()) + 2);
   const auto start = Stepped(*standing, pivot, no_step, threads);

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "planes/camera_attitude.h"
 #include "planes/standing_body.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -15,18 +15,18 @@ struct StandingBodies {
   std::vector<StandingBody> bodies;
   std::vector<int> plane_of;  // for each body, an index into planes
   std::vector<Plane> planes;  // all with the same normal
-  CameraAttitude attitude;
+  UpPrior attitude;
   double height_sigma_fraction = 0.0;  // see PlanesOptions
 };
 
 // The attitude's cost as a function of a plane's motion.
-PlaneEvidence EvidenceOf(const CameraAttitude& attitude, const Plane& plane);
+PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane);
 
 // Standard deviation of a body's height over its plane (m).
 double HeightSigma(const StandingBody& body, double height_sigma_fraction);
 
 // Mean of the bodies' lowest points; at least one body.
-Eigen::Vector3d MiddleOfFeet(const std::vector<StandingBody>& bodies);
+Eigen::Vector3d MeanBasePoint(const std::vector<StandingBody>& bodies);
 
 // Optimises the planes' common normal, their heights and all bodies with Levenberg-Marquardt. None
 // when a body's fit on its plane fails.

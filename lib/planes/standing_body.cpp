@@ -55,7 +55,7 @@ StandingBody Raised(StandingBody body, double rise) {
 std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, double rise,
                                          double least_rise) {
   for (; std::abs(rise) >= least_rise; rise *= 0.5) {
-    auto raised = Settled(Raised(body, rise));
+    auto raised = FitOnPlane(Raised(body, rise));
     if (raised && TotalCost(OutlineTerms(raised->observation), raised->landmark) < cost) {
       return raised;
     }
@@ -64,8 +64,8 @@ std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, 
 }
 
 // The body at its optimal height near its own, all other parameters adapting.
-std::optional<StandingBody> AtBestHeight(const StandingBody& start) {
-  auto body = Settled(start);
+std::optional<StandingBody> OptimiseHeight(const StandingBody& start) {
+  auto body = FitOnPlane(start);
   for (int i = 0; body && i < kHeightSteps; ++i) {
     const PlaneEvidence evidence = EvidenceOf(*body, body->landmark.Centre());
     if (!(evidence.information(2, 2) > 0.0)) return std::nullopt;
@@ -90,7 +90,7 @@ Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMoti
   return Transform(MotionOf(plane, pivot, motion), landmark);
 }
 
-std::optional<StandingBody> Settled(StandingBody body) {
+std::optional<StandingBody> FitOnPlane(StandingBody body) {
   const auto fitted = FitUpright(body.observation.plane_in_world, body.landmark,
                                  OutlineTerms(body.observation), /*yaw_is_free=*/true);
   if (!fitted) return std::nullopt;
@@ -117,8 +117,9 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   return evidence;
 }
 
-std::optional<StandingBody> BodyOfFreeHeight(MultiViewObservation observation,
-                                             const Eigen::Vector3d& normal_in_world, double step) {
+std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation,
+                                                const Eigen::Vector3d& normal_in_world,
+                                                double step) {
   observation.plane_in_world = {normal_in_world, 0.0};
   observation.height_is_free = true;
   const auto optima = SweepViews(observation, step);
@@ -126,8 +127,8 @@ std::optional<StandingBody> BodyOfFreeHeight(MultiViewObservation observation,
   std::optional<StandingBody> best;
   double lowest = 0.0;
   for (const UprightSolution& optimum : optima) {
-    observation.plane_in_world.offset = PlaneUnder(optimum.landmark).offset;
-    const auto body = AtBestHeight({observation, optimum.landmark});
+    observation.plane_in_world.offset = SupportPlaneOf(optimum.landmark).offset;
+    const auto body = OptimiseHeight({observation, optimum.landmark});
     if (!body) continue;
     const double cost = EvidenceOf(*body, body->landmark.Centre()).cost;
     if (best && cost >= lowest) continue;

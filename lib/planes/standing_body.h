@@ -33,14 +33,15 @@ struct StandingBody {
 };
 
 // The best body on its plane near the given one. None when the fit fails.
-std::optional<StandingBody> Settled(StandingBody body);
+std::optional<StandingBody> FitOnPlane(StandingBody body);
 
-// Evidence at a body returned by Settled, with its six degrees of freedom marginalised.
+// Evidence at a body returned by FitOnPlane, with its six degrees of freedom marginalised.
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot);
 
 // The best body on a plane with this normal and free height, over all yaws in steps of `step`
 // (rad). None when the views do not determine its height.
-std::optional<StandingBody> BodyOfFreeHeight(MultiViewObservation observation,
-                                             const Eigen::Vector3d& normal_in_world, double step);
+std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation,
+                                                const Eigen::Vector3d& normal_in_world,
+                                                double step);
 
 }  // namespace soslam

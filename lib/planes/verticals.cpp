@@ -26,7 +26,7 @@ std::vector<SegmentPlane> PlanesOf(const std::vector<SegmentView>& views, double
                                    double correlation_rad) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const std::vector<double> shares = ShareOfCameras(poses, correlation_rad);
+  const std::vector<double> shares = CameraWeights(poses, correlation_rad);
   std::vector<SegmentPlane> planes;
   for (size_t i = 0; i < views.size(); ++i) {
     const Camera& camera = views[i].camera;
@@ -80,13 +80,13 @@ Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
   return Verticals(PlanesOf({view}, sigma, 0.0), sigma).Information(up_in_world);
 }
 
-CameraAttitude WithVerticals(const CameraAttitude& attitude, const std::vector<SegmentView>& views,
-                             double sigma, double correlation_rad, double max_tilt) {
+UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
+                      double correlation_rad, double max_tilt) {
   const Verticals verticals(PlanesOf(views, sigma, correlation_rad), sigma);
   const auto cost = [&](const Eigen::Vector3d& up) {
     return 0.5 * up.dot(attitude.information * up) + verticals.Cost(up);
   };
-  CameraAttitude best = attitude;
+  UpPrior best = attitude;
   double lowest = cost(attitude.up_in_world);
   const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
   for (int i = -kTiltSteps; i <= kTiltSteps; ++i) {

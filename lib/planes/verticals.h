@@ -7,7 +7,7 @@
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
 #include "image/line_segments.h"
-#include "planes/camera_attitude.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -19,7 +19,7 @@ struct SegmentView {
 };
 
 // Information on up from one camera's segments, linearised at `up_in_world`, as
-// CameraAttitude::information; see WithVerticals. The camera has weight 1.
+// UpPrior::information; see WithVerticals. The camera has weight 1.
 Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
                                        const Eigen::Vector3d& up_in_world);
 
@@ -31,7 +31,7 @@ Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
 // optical axes are closer than about `correlation_rad` see the same edges and count together as
 // one. The result is linearised at the up direction of least cost within `max_tilt` (rad) of the
 // attitude's own.
-CameraAttitude WithVerticals(const CameraAttitude& attitude, const std::vector<SegmentView>& views,
-                             double sigma, double correlation_rad, double max_tilt);
+UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
+                      double correlation_rad, double max_tilt);
 
 }  // namespace soslam

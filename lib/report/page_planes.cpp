@@ -40,8 +40,9 @@ PlaneGrids GridsOfSequence(const Sequence& sequence) {
       continue;
     }
     const Rigid3d& world_from_camera = sequence.FrameOf(detection).world_from_camera;
-    const auto foot = FootInCamera(sequence.CameraOf(detection), detection.box,
-                                   Transform(world_from_camera.Inverse(), planes[plane_index]));
+    const auto foot =
+        GroundContactInCamera(sequence.CameraOf(detection), detection.box,
+                              Transform(world_from_camera.Inverse(), planes[plane_index]));
     if (foot) points[plane_index].push_back(world_from_camera * *foot);
   }
   return GridsAround(points, planes);

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> RunsIn(const fs::path& list) {
   constexpr size_t kMaxName = 255;  // bytes; limit of names on Linux
-  NoteInput(list);
+  RecordInput(list);
   std::vector<std::string> runs;
   std::ifstream lines(list);
   for (std::string line; std::getline(lines, line);) {

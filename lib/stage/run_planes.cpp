@@ -15,7 +15,7 @@
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
 #include "planes/camera_height.h"
-#include "planes/held_planes.h"
+#include "planes/planes_and_holding.h"
 #include "stage/frame_images.h"
 #include "stage/report_findings.h"
 
@@ -134,7 +134,7 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const auto views = ViewsOfSegments(sequence, options, files, threads, &result.inputs);
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
-  HeldPlanes held = EstimateHeldPlanes(sequence, views, priors, options, threads);
+  PlanesAndHolding held = EstimatePlanesAndHolding(sequence, views, priors, options, threads);
   if (options.refine_poses) {
     RefineWithPoses(priors, options, threads, &held.estimate, &held.level);
   }

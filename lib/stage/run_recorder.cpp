@@ -71,7 +71,7 @@ RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
     if (IsFolder(path) || (output != nullptr && output->is_folder)) {
       record_.folders[argument] = path;
     } else if (output == nullptr) {
-      NoteInput(path);
+      RecordInput(path);
     }
   }
 }

@@ -35,8 +35,8 @@ double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
 std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& start) {
   const RefineOptions& options = refinement.options;
   const Camera& camera = refinement.observation.camera;
-  LandmarkBlock landmark = Pack(start);
-  PoseBlock camera_pose = Pack(Rigid3d());
+  LandmarkBlock landmark = ToParameterBlock(start);
+  PoseBlock camera_pose = ToParameterBlock(Rigid3d());
   ceres::Problem problem;
   AddSingleFrameConstraints(refinement.observation, options.variances, &camera_pose, &landmark,
                             &problem);
@@ -127,7 +127,7 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
 std::string Refine(const Refinement& refinement, Landmark* refined) {
   if (refinement.image->edge_pixels.empty()) return "no_edges";
   if (!refinement.best_turn) return "too_few_visible_pairs";
-  *refined = Turned(refinement.start, refinement.best_turn->turn);
+  *refined = RotatedAboutZ(refinement.start, refinement.best_turn->turn);
   if (refinement.options.parameters == RefinementParameters::kYaw) return "";
   const auto solved = SolveAll(refinement, *refined);
   if (!solved) return "solver_failed";

@@ -53,8 +53,8 @@ YawProfile ComputeYawProfile(const SymmetryImage& image, const Camera& camera,
   const int count = std::max(1, static_cast<int>(std::round(std::numbers::pi / step)));
   for (int i = 0; i < count; ++i) {
     const double turn = std::numbers::pi * (static_cast<double>(i) / count - 0.5);
-    const auto costs = SymmetryCosts(image, camera, Turned(landmark_in_camera, turn), samples,
-                                     descriptors, options);
+    const auto costs = SymmetryCosts(image, camera, RotatedAboutZ(landmark_in_camera, turn),
+                                     samples, descriptors, options);
     profile.turns.push_back(turn);
     for (size_t k = 0; k < costs.size(); ++k) {
       profile.costs[k].push_back(costs[k].value_or(std::numeric_limits<double>::quiet_NaN()));
@@ -73,8 +73,8 @@ std::optional<BestTurn> FindBestTurn(const SymmetryImage& image, const Camera& c
     const int count = static_cast<int>(std::ceil(half_width / spacing));
     for (int i = -count; i <= count; ++i) {
       const double turn = std::clamp(centre + half_width * i / std::max(1, count), -range, range);
-      const auto cost = SymmetryCosts(image, camera, Turned(landmark_in_camera, turn), samples,
-                                      {options.descriptor}, options)
+      const auto cost = SymmetryCosts(image, camera, RotatedAboutZ(landmark_in_camera, turn),
+                                      samples, {options.descriptor}, options)
                             .front();
       if (cost && (!best || *cost < best->cost)) best = BestTurn{turn, *cost};
     }

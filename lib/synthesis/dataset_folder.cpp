@@ -84,7 +84,7 @@ void DatasetFolder::Commit() {
   }
   if (!Exists(folder_) || !Exchange(temporary_, folder_)) Replace();
   for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-    if (entry.is_regular_file()) NoteOutput(entry.path());
+    if (entry.is_regular_file()) RecordOutput(entry.path());
   }
 }
 

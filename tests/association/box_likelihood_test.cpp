@@ -26,10 +26,10 @@ class BoxLikelihoodTest : public testing::Test {
     const BoxLikelihood likelihood(sequence_, options_);
     return *likelihood.Predict(object_, expected_.frame_index - frames_ago, expected_.frame_index);
   }
-  std::optional<Explanation> Explain(const Box& box, int frames_ago = 0) const {
+  std::optional<BoxMatch> Match(const Box& box, int frames_ago = 0) const {
     Detection detection = expected_;
     detection.box = box;
-    return BoxLikelihood(sequence_, options_).Explain(Predicted(frames_ago), detection);
+    return BoxLikelihood(sequence_, options_).Match(Predicted(frames_ago), detection);
   }
   // The expected box, moved to the right by a share of its width.
   Box Shifted(double share) const {
@@ -47,13 +47,13 @@ class BoxLikelihoodTest : public testing::Test {
 };
 
 TEST_F(BoxLikelihoodTest, TheExpectedBoxIsExplainedBest) {
-  const auto best = Explain(expected_.box);
+  const auto best = Match(expected_.box);
   ASSERT_TRUE(best);
   EXPECT_NEAR(best->distance, 0.0, 1e-4);  // outlines are exact to a fraction of a pixel
   EXPECT_EQ(best->overlap, 1.0);
   double before = best->cost;
   for (const double share : {0.05, 0.1, 0.2}) {
-    const auto shifted = Explain(Shifted(share));
+    const auto shifted = Match(Shifted(share));
     ASSERT_TRUE(shifted) << share;
     EXPECT_GT(shifted->cost, before) << share;
     before = shifted->cost;
@@ -63,12 +63,12 @@ TEST_F(BoxLikelihoodTest, TheExpectedBoxIsExplainedBest) {
 
 // Near ones are compared, and found less likely.
 TEST_F(BoxLikelihoodTest, ABoxFarOffIsNotExplainedAtAll) {
-  EXPECT_TRUE(Explain(Shifted(0.5)));
-  EXPECT_FALSE(Explain(Shifted(20.0)));
+  EXPECT_TRUE(Match(Shifted(0.5)));
+  EXPECT_FALSE(Match(Shifted(20.0)));
 }
 
 TEST_F(BoxLikelihoodTest, ABoxBesideIsMoreLikelyOfAnyObject) {
-  const auto beside = Explain(Shifted(1.0));
+  const auto beside = Match(Shifted(1.0));
   EXPECT_FALSE(beside && beside->cost < BoxLikelihood(sequence_, options_).CostOfAnyBox(expected_));
 }
 
@@ -76,37 +76,37 @@ TEST_F(BoxLikelihoodTest, ABoxBesideIsMoreLikelyOfAnyObject) {
 TEST_F(BoxLikelihoodTest, TheLongerUnseenTheWider) {
   const Box far = Shifted(0.4);
   ASSERT_GE(expected_.frame_index, 3);
-  const auto now = Explain(far, 0);
-  const auto later = Explain(far, 3);
+  const auto now = Match(far, 0);
+  const auto later = Match(far, 3);
   options_.odometry_translation_sigma_m = 0.1;
-  const auto drifted = Explain(far, 3);
+  const auto drifted = Match(far, 3);
   ASSERT_TRUE(now && later && drifted);
   EXPECT_LT(later->distance, now->distance);
   EXPECT_LT(drifted->distance, 0.7 * later->distance);
-  EXPECT_GT(Explain(expected_.box, 3)->cost, Explain(expected_.box, 0)->cost);
+  EXPECT_GT(Match(expected_.box, 3)->cost, Match(expected_.box, 0)->cost);
 }
 
 TEST_F(BoxLikelihoodTest, OneEdgeMayBeCutOff) {
   Box cut = expected_.box;
   cut.x_max -= 0.5 * cut.Width();
-  const auto as_it_is = Explain(cut);
+  const auto as_it_is = Match(cut);
   options_.cut_edge_probability = 0.05;
-  const auto as_cut = Explain(cut);
+  const auto as_cut = Match(cut);
   ASSERT_TRUE(as_it_is && as_cut);
   EXPECT_EQ(as_cut->cut_edge, 2);
   EXPECT_LT(as_cut->cost, as_it_is->cost);
   EXPECT_LT(as_cut->distance, 0.5);
-  EXPECT_FALSE(Explain(expected_.box)->cut_edge);
+  EXPECT_FALSE(Match(expected_.box)->cut_edge);
 }
 
 TEST_F(BoxLikelihoodTest, ABoundNeedsOnlyBeReached) {
   expected_.is_bound = {false, false, true, false};
   Box cut = expected_.box;
   cut.x_max -= 0.5 * cut.Width();
-  EXPECT_NEAR(Explain(cut)->distance, 0.0, 0.1);
+  EXPECT_NEAR(Match(cut)->distance, 0.0, 0.1);
   Box beyond = expected_.box;
   beyond.x_max += 0.5 * beyond.Width();
-  EXPECT_GT(Explain(beyond)->distance, 1.0);
+  EXPECT_GT(Match(beyond)->distance, 1.0);
 }
 
 TEST_F(BoxLikelihoodTest, NothingIsExpectedBehindTheCamera) {
@@ -164,9 +164,9 @@ TEST(BoxLikelihoodCalibrationTest, DistancesAreInStandardDeviations) {
       const Detection& next = sequence.detections[static_cast<size_t>(of_object[3])];
       const auto prediction = likelihood.Predict(*object, next.frame_index, next.frame_index);
       if (!prediction) continue;
-      const auto explanation = likelihood.Explain(*prediction, next);
-      ASSERT_TRUE(explanation) << seed;
-      sum += explanation->distance * explanation->distance;
+      const auto match = likelihood.Match(*prediction, next);
+      ASSERT_TRUE(match) << seed;
+      sum += match->distance * match->distance;
       ++count;
     }
   }

@@ -13,7 +13,7 @@ struct alignas(kFourAlignment) Exponentials {
   std::array<Four, 1> x, found;
 };
 
-SOSLAM_WIDE_LOOPS void Find(Exponentials* exponentials) {
+SOSLAM_MULTIVERSION void Find(Exponentials* exponentials) {
   Exponential(exponentials->x, &exponentials->found);
 }
 

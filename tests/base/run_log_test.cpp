@@ -30,7 +30,7 @@ class RunLogTest : public testing::Test {
 };
 
 TEST_F(RunLogTest, NothingIsNotedWithoutALog) {
-  NoteInput(input_);
+  RecordInput(input_);
   NoteSeed(3);
   EXPECT_EQ(DigestOfInput(input_), Sha256OfText("before"));
   Replace("after");
@@ -44,9 +44,9 @@ TEST_F(RunLogTest, NothingIsNotedWithoutALog) {
 TEST_F(RunLogTest, NotesWhatFilesHeld) {
   WriteBytes(folder_ / "output.txt", "made");
   const RunLog log;
-  NoteInput(input_);
-  NoteInput(folder_.path() / "." / "input.txt");
-  NoteOutput(folder_ / "output.txt");
+  RecordInput(input_);
+  RecordInput(folder_.path() / "." / "input.txt");
+  RecordOutput(folder_ / "output.txt");
   NoteSeed(3);
   ASSERT_EQ(log.Inputs().size(), 1u);
   EXPECT_EQ(log.Inputs()[0].path, input_);
@@ -58,22 +58,22 @@ TEST_F(RunLogTest, NotesWhatFilesHeld) {
 
 TEST_F(RunLogTest, TheDigestOfAnInputIsThatOfWhenItWasRead) {
   const RunLog log;
-  NoteInput(input_);
+  RecordInput(input_);
   Replace("after");
   EXPECT_EQ(DigestOfInput(input_), Sha256OfText("before"));
 }
 
 TEST_F(RunLogTest, WhatCannotBeReadIsNotNoted) {
   const RunLog log;
-  NoteInput(folder_ / "missing.txt");
-  NoteInput(folder_.path());
+  RecordInput(folder_ / "missing.txt");
+  RecordInput(folder_.path());
   EXPECT_TRUE(log.Inputs().empty());
   ExpectError<InputError>([&] { DigestOfInput(folder_ / "missing.txt"); }, {"missing.txt"});
 }
 
 TEST_F(RunLogTest, RefusesInputsThatChanged) {
   const RunLog log;
-  NoteInput(input_);
+  RecordInput(input_);
   EXPECT_NO_THROW(CheckInputsUnchanged());
   Replace("AFTERW");  // of the same size
   ExpectError<InputError>([] { CheckInputsUnchanged(); }, {"input.txt", "was changed"});
@@ -85,9 +85,9 @@ TEST_F(RunLogTest, RefusesInputsThatChanged) {
 
 TEST_F(RunLogTest, AnInputThatTheRunReplacesItselfMayChange) {
   const RunLog log;
-  NoteInput(input_);
+  RecordInput(input_);
   Replace("after");
-  NoteOutput(input_);
+  RecordOutput(input_);
   EXPECT_NO_THROW(CheckInputsUnchanged());
 }
 

@@ -22,7 +22,7 @@ SOSLAM_FOR_AVX2 void SumInWideRegisters(Fours* fours) {
 class SumEachTest : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
-    if (GetParam() && !HasWideRegisters()) GTEST_SKIP() << "this processor has no AVX2";
+    if (GetParam() && !HasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
   }
   static void Sum(Fours* fours) { (GetParam() ? SumInWideRegisters : SumInAnyRegisters)(fours); }
 };

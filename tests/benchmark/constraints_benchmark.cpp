@@ -10,11 +10,11 @@
 #include "constraints/detection.h"
 #include "constraints/odometry.h"
 #include "constraints/scale_ratio.h"
-#include "constraints/standing.h"
 #include "constraints/support.h"
 #include "constraints/symmetry.h"
 #include "constraints/tangency.h"
 #include "constraints/tangent_space.h"
+#include "constraints/upright_on_plane.h"
 #include "mapping/tangency_term.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/texture_asymmetry.h"
@@ -29,11 +29,11 @@ struct View {
   const Detection& detection = sequence.detections.front();
   Rigid3d world_from_camera = sequence.frames.front().world_from_camera;
   Landmark landmark_in_world =
-      Turned(sequence.objects.front().ground_truth->landmark_in_world, 0.05);
+      RotatedAboutZ(sequence.objects.front().ground_truth->landmark_in_world, 0.05);
   Landmark landmark_in_camera = Transform(world_from_camera.Inverse(), landmark_in_world);
-  PoseBlock pose = Pack(world_from_camera);
-  PoseBlock next_pose = Pack(sequence.frames[1].world_from_camera);
-  LandmarkBlock landmark = Pack(landmark_in_world);
+  PoseBlock pose = ToParameterBlock(world_from_camera);
+  PoseBlock next_pose = ToParameterBlock(sequence.frames[1].world_from_camera);
+  LandmarkBlock landmark = ToParameterBlock(landmark_in_world);
   std::array<double, kNormalSize> normal = {0.0, 0.0, 1.0};
   double offset = 0.0;
 };
@@ -139,7 +139,7 @@ BENCHMARK(Support)->Name("residual/support_quadric");
 
 void Standing(benchmark::State& state) {
   const View view;
-  Evaluate(state, StandingResidual(0.002, 0.002),
+  Evaluate(state, UprightOnPlaneResidual(0.002, 0.002),
            {view.landmark.data(), view.normal.data(), &view.offset});
 }
 BENCHMARK(Standing)->Name("residual/standing");

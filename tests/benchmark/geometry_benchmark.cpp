@@ -57,7 +57,7 @@ BENCHMARK(MirrorPixel)->Name("geometry/mirror_pixel")->Apply(Shapes);
 // IoU of two boxes that are rotated against each other.
 void Iou(benchmark::State& state) {
   Landmark one = AheadOfCamera(kEllipsoidExponent);
-  const Landmark other = Turned(one, 0.4);
+  const Landmark other = RotatedAboutZ(one, 0.4);
   one.frame_from_object.translation.x() += 0.1;
   for (auto _ : state) {
     benchmark::DoNotOptimize(one);

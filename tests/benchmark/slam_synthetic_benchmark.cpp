@@ -40,7 +40,7 @@ BackEndInput InputOf(const Sequence& sequence) {
   BackEndInput input{sequence, {}, {}, {}, {}};
   input.priors.resize(sequence.objects.size());
   for (const Object& object : sequence.objects) {
-    Landmark start = Turned(object.ground_truth->landmark_in_world, error(0.2));
+    Landmark start = RotatedAboutZ(object.ground_truth->landmark_in_world, error(0.2));
     for (double& coordinate : start.frame_from_object.translation) coordinate += error(0.05);
     for (double& half_axis : start.half_axes) half_axis *= std::exp(error(0.2));
     input.starts.push_back(start);

@@ -12,8 +12,8 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 Vector6d Residuals(const OdometryResidual& residual, const Rigid3d& first, const Rigid3d& second) {
-  const PoseBlock first_block = Pack(first);
-  const PoseBlock second_block = Pack(second);
+  const PoseBlock first_block = ToParameterBlock(first);
+  const PoseBlock second_block = ToParameterBlock(second);
   const double* blocks[] = {first_block.data(), second_block.data()};
   Vector6d values = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
@@ -46,8 +46,8 @@ TEST(OdometryResidual, JacobiansAgreeWithNumbers) {
     const Rigid3d error{
         ExpRotation(RandomVector(-1, 1).normalized() * RandomUniform(0.0, i < 10 ? 1e-6 : 2.8)),
         RandomVector(-0.5, 0.5)};
-    const PoseBlock first_block = Pack(first);
-    const PoseBlock second_block = Pack(first * first_from_second * error);
+    const PoseBlock first_block = ToParameterBlock(first);
+    const PoseBlock second_block = ToParameterBlock(first * first_from_second * error);
     ExpectCorrectJacobians(OdometryResidual(first_from_second, 0.5, 0.3),
                            {first_block.data(), second_block.data()});
   }

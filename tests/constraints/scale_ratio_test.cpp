@@ -10,7 +10,7 @@ namespace soslam {
 namespace {
 
 Eigen::Vector2d Residuals(const Eigen::Vector2d& ratio, const Eigen::Vector3d& half_axes) {
-  const LandmarkBlock block = Pack(Landmark{RandomRigid(), half_axes});
+  const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), half_axes});
   const double* blocks[] = {block.data()};
   Eigen::Vector2d values = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(ScaleRatioResidual(ratio, 4.0).Evaluate(blocks, values.data(), nullptr));
@@ -30,7 +30,7 @@ TEST(ScaleRatioResidual, DoesNotChangeWithSize) {
 
 TEST(ScaleRatioResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 50; ++i) {
-    const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+    const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
     ExpectCorrectJacobians(ScaleRatioResidual({1.4, 0.8}, 0.3), {block.data()});
   }
 }

@@ -33,7 +33,7 @@ TEST(SupportResidual, TangencyEqualsTheDualQuadricForm) {
 
 TEST(SupportResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 50; ++i) {
-    const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+    const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
     ExpectCorrectJacobians(SupportResidual(RandomPlane(), 0.2, 0.5), {block.data()});
   }
 }

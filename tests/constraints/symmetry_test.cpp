@@ -78,7 +78,7 @@ TEST(SymmetryDescriptor, HasNoPairWhereTheRayMissesOrTheMirrorPointIsHidden) {
   EXPECT_TRUE(evaluate({318, 242}, 0.2));
   EXPECT_FALSE(evaluate({5, 5}, 0.2));
   // Seen from its left side, every mirror point is on the far side.
-  landmark = Turned(landmark, std::numbers::pi / 2);
+  landmark = RotatedAboutZ(landmark, std::numbers::pi / 2);
   EXPECT_FALSE(evaluate({318, 242}, 0.2));
 }
 

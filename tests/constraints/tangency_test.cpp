@@ -119,7 +119,7 @@ TEST(Tangency, OfAnEllipsoidIsTheDualQuadricForm) {
     const Eigen::Vector4d pi(edge.plane.x(), edge.plane.y(), edge.plane.z(), 0.0);
     const double form = pi.dot(DualQuadric(landmark) * pi);
     const double at_centre = edge.plane.dot(landmark.Centre());
-    const double extent = Farthest(landmark, edge.plane).distance - at_centre;
+    const double extent = FindSupportPoint(landmark, edge.plane).distance - at_centre;
     EXPECT_NEAR(form, extent * extent - at_centre * at_centre, 1e-7 * extent * extent);
     // The plane moved along its normal until it touches.
     const double depth = TangentDepth(edge, landmark);

@@ -16,7 +16,7 @@ std::vector<double> RandomValues(VariableKind kind) {
     const Eigen::Vector3d normal = RandomPlane().normal;
     return {normal.begin(), normal.end()};
   }
-  const LandmarkBlock values = Pack(RandomLandmarkInCamera());  // a pose first
+  const LandmarkBlock values = ToParameterBlock(RandomLandmarkInCamera());  // a pose first
   return {values.begin(), values.begin() + NumValues(kind)};
 }
 
@@ -58,7 +58,7 @@ TEST(TangentSpace, ChainsJacobiansToSteps) {
 
 TEST(TangentSpace, RotationsTurnFromTheLeftAndStayUnit) {
   const Rigid3d pose = RandomRigid();
-  PoseBlock values = Pack(pose);
+  PoseBlock values = ToParameterBlock(pose);
   const Eigen::Matrix<double, kPoseDof, 1> step{0.3, -0.2, 0.5, 1.0, 2.0, 3.0};
   Move(VariableKind::kPose, step.data(), values.data());
   const Rigid3d moved = UnpackPose(values.data());

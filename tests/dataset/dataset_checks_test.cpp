@@ -382,7 +382,7 @@ Eigen::Quaterniond WithScalarFirst(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(/*w=*/q.z(), /*x=*/q.w(), /*y=*/q.x(), /*z=*/q.y());
 }
 
-Rigid3d Turned(const Rigid3d& pose, const Eigen::Vector3d& axis, double degrees) {
+Rigid3d RotatedAboutZ(const Rigid3d& pose, const Eigen::Vector3d& axis, double degrees) {
   return {pose.rotation * Eigen::AngleAxisd(degrees * kRadPerDeg, axis), pose.translation};
 }
 
@@ -451,12 +451,14 @@ INSTANTIATE_TEST_SUITE_P(
                       return Rigid3d{pose.rotation, -(pose.rotation * pose.translation)};
                     },
                     "taken for the translation of camera_from_world"},
-        WrittenPose{"QuarterTurn",
-                    [](const Rigid3d& pose) { return Turned(pose, Eigen::Vector3d::UnitZ(), -90); },
-                    "turn the cameras by 90 degrees"},
-        WrittenPose{"QuarterTurnBack",
-                    [](const Rigid3d& pose) { return Turned(pose, Eigen::Vector3d::UnitZ(), 90); },
-                    "turn the cameras by -90 degrees"},
+        WrittenPose{
+            "QuarterTurn",
+            [](const Rigid3d& pose) { return RotatedAboutZ(pose, Eigen::Vector3d::UnitZ(), -90); },
+            "turn the cameras by 90 degrees"},
+        WrittenPose{
+            "QuarterTurnBack",
+            [](const Rigid3d& pose) { return RotatedAboutZ(pose, Eigen::Vector3d::UnitZ(), 90); },
+            "turn the cameras by -90 degrees"},
         WrittenPose{"RosBody",
                     [](const Rigid3d& pose) {
                       Eigen::Matrix3d camera_from_body;
@@ -492,7 +494,7 @@ TEST_F(DatasetChecksTest, CamerasTurnedByHalfATurn) {
   dataset.sway = 0.3;
   EXPECT_THAT(Warnings(), IsEmpty());
   dataset.odometry = [](const Rigid3d& pose) {
-    return Turned(pose, Eigen::Vector3d::UnitZ(), 180.0);
+    return RotatedAboutZ(pose, Eigen::Vector3d::UnitZ(), 180.0);
   };
   EXPECT_THAT(Refusal(), HasSubstr("by half a turn about the camera's z axis"));
 }

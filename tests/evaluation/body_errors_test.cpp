@@ -30,7 +30,7 @@ class BodyErrorsTest : public testing::Test {
     return CompareBodies(estimate, truth_, truth_.landmark_in_world);
   }
   std::optional<WrongPart> Wrong(const Landmark& estimate) const {
-    return FindWrongPart(estimate, truth_, truth_.landmark_in_world, kCamera);
+    return FindDominantError(estimate, truth_, truth_.landmark_in_world, kCamera);
   }
   GroundTruth truth_{Standing(1.0, 2.0, 20.0, {0.4, 0.2, 0.3})};
 };

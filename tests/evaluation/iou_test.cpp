@@ -35,7 +35,7 @@ TEST(BoxIou, OfShiftedCubesIsTheOverlapOfTheirIntervals) {
 // A square turned by 45 degrees in the same square overlaps in a regular octagon: 8 (sqrt(2) - 1).
 TEST(BoxIou, OfACubeTurnedByAnEighthIsAnOctagonalPrism) {
   const Landmark cube{Rigid3d(), {1, 1, 1}};
-  const Landmark turned = Turned(cube, std::numbers::pi / 4);
+  const Landmark turned = RotatedAboutZ(cube, std::numbers::pi / 4);
   EXPECT_NEAR(IntersectionVolume(cube, turned), 2.0 * 8.0 * (std::sqrt(2.0) - 1.0), 1e-12);
 }
 

@@ -170,7 +170,7 @@ void MapQualityTest::MakeAWallOfMistakes() {
   estimates_[static_cast<size_t>(not_estimated)].failure = "too_few_views";
   Detect(AddTruth(), not_estimated);
   const int turned = AddTruth({0.3, 0.06, 0.2});
-  Detect(turned, AddLandmark(Turned(Truth(turned), 44.0 * kRadPerDeg)));
+  Detect(turned, AddLandmark(RotatedAboutZ(Truth(turned), 44.0 * kRadPerDeg)));
   const int twice_found = AddFound();
   DetectNothing(AddLandmark(Shifted(twice_found, {0.1, 0, 0})));  // duplicate
   const int high = AddTruth();
@@ -514,7 +514,7 @@ TEST_F(MapQualityTest, WhatIsDetectableDoesNotDependOnTheMap) {
 // Twice as large, and turned, and elsewhere: none of these alone makes it right.
 TEST_F(MapQualityTest, SeveralPartsCanBeWrong) {
   const int truth = AddTruth({0.3, 0.1, 0.2});
-  Landmark landmark = Turned(Shifted(truth, {0.3, 0.2, 0.3}), 1.0);
+  Landmark landmark = RotatedAboutZ(Shifted(truth, {0.3, 0.2, 0.3}), 1.0);
   landmark.half_axes *= 2.0;
   Detect(truth, AddLandmark(landmark));
   EXPECT_EQ(RowOf(Evaluate(), truth).miss->reason, MapReason::kWrongInSeveral);

@@ -62,7 +62,7 @@ TEST(Metrics, ARoundObjectTakesTheEstimatesYawAndHasNoRotation) {
   GroundTruth truth;
   truth.landmark_in_world = {Rigid3d(), {0.5, 0.5, 1.0}};
   truth.rotationally_symmetric = true;
-  const Landmark estimate = Turned(truth.landmark_in_world, 0.7);
+  const Landmark estimate = RotatedAboutZ(truth.landmark_in_world, 0.7);
   const LandmarkErrors errors = CompareLandmarks(estimate, truth, truth.landmark_in_world);
   EXPECT_NEAR(errors.iou, 1.0, 1e-9);
   EXPECT_FALSE(errors.rotation_deg);

@@ -58,16 +58,16 @@ TEST(Landmark, AHyperboloidIsNotProper) {
       LandmarkFromDualQuadric(Eigen::Matrix4d::Constant(std::numeric_limits<double>::quiet_NaN())));
 }
 
-TEST(Farthest, MovesWithTheLandmark) {
+TEST(FindSupportPoint, MovesWithTheLandmark) {
   for (const double p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const Landmark landmark = WithShape({RandomRigid(), RandomVector(0.1, 2.0)}, p);
       const Eigen::Vector3d direction = RandomVector(-2, 2);
-      const FarthestPoint farthest = Farthest(landmark, direction);
+      const SupportPoint farthest = FindSupportPoint(landmark, direction);
       EXPECT_NEAR(direction.dot(farthest.point), farthest.distance, 1e-9);
       const Rigid3d motion = RandomRigid();
-      const FarthestPoint moved =
-          Farthest(Transform(motion, landmark), motion.rotation * direction);
+      const SupportPoint moved =
+          FindSupportPoint(Transform(motion, landmark), motion.rotation * direction);
       EXPECT_LT((moved.point - motion * farthest.point).norm(), 1e-9);
       EXPECT_NEAR(moved.distance,
                   farthest.distance + (motion.rotation * direction).dot(motion.translation), 1e-9);
@@ -134,15 +134,16 @@ TEST(OutlineBox, OfTheEllipsoidIsThatOfTheDualConic) {
   }
 }
 
-TEST(OutlineEnd, ReachesFarthestInItsDirection) {
+TEST(FindSilhouettePoint, ReachesFarthestInItsDirection) {
   const Camera camera = TestCamera();
   for (const double p : kShapeExponents) {
     const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
     for (int i = 0; i < 20; ++i) {
       const double angle = RandomUniform(-3, 3);
       const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-      const auto end = OutlineEnd(camera, landmark, direction, landmark.Centre());
-      const auto same = OutlineEnd(camera, landmark, direction, RandomSurfacePoint(landmark));
+      const auto end = FindSilhouettePoint(camera, landmark, direction, landmark.Centre());
+      const auto same =
+          FindSilhouettePoint(camera, landmark, direction, RandomSurfacePoint(landmark));
       ASSERT_TRUE(end && same);
       EXPECT_NEAR(same->end_px, end->end_px, 1e-8);
       EXPECT_NEAR(direction.dot(*camera.Project(end->point)), end->end_px, 1e-6);
@@ -152,7 +153,7 @@ TEST(OutlineEnd, ReachesFarthestInItsDirection) {
     }
   }
   const Landmark behind{{Eigen::Quaterniond::Identity(), {0, 0, -3}}, {1, 1, 1}};
-  EXPECT_FALSE(OutlineEnd(camera, behind, {1, 0}, behind.Centre()));
+  EXPECT_FALSE(FindSilhouettePoint(camera, behind, {1, 0}, behind.Centre()));
 }
 
 TEST(OutlineBox, NeedsTheWholeLandmarkInFront) {
@@ -218,7 +219,7 @@ TEST(Yaw, IsTheInverseOfUprightRotationAndTurned) {
     EXPECT_NEAR(Yaw(normal, rotation), yaw, 1e-9);
     EXPECT_LT((rotation * Eigen::Vector3d::UnitZ() - normal).norm(), 1e-12);
     const double turn = RandomUniform(-1.5, 1.5);
-    const Landmark turned = Turned({{rotation, {}}, {1, 2, 3}}, turn);
+    const Landmark turned = RotatedAboutZ({{rotation, {}}, {1, 2, 3}}, turn);
     EXPECT_NEAR(YawDifferenceModuloPi(Yaw(normal, turned.frame_from_object.rotation), yaw), turn,
                 1e-9);
   }
@@ -233,11 +234,11 @@ TEST(YawDifferenceModuloPi, WrapsAtQuarterTurns) {
 }
 
 // Its lowest point is on the plane, and the rest of it above.
-TEST(PlaneUnder, TouchesTheLowestPoint) {
+TEST(SupportPlaneOf, TouchesTheLowestPoint) {
   for (int i = 0; i < 20; ++i) {
     const Landmark landmark = Transform(RandomRigid(), RandomLandmarkInCamera());
-    const Plane under = PlaneUnder(landmark);
-    EXPECT_NEAR(under.SignedDistance(Farthest(landmark, -under.normal).point), 0.0, 1e-12);
+    const Plane under = SupportPlaneOf(landmark);
+    EXPECT_NEAR(under.SignedDistance(FindSupportPoint(landmark, -under.normal).point), 0.0, 1e-12);
     EXPECT_GT(under.SignedDistance(landmark.Centre()), 0.0);
   }
 }

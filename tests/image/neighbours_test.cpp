@@ -44,7 +44,7 @@ void ExpectAsInDoublePrecision(const cv::Mat& map) {
     const auto x = static_cast<float>(RandomUniform(-0.1, 1.1) * (map.cols - 1));
     const auto y = static_cast<float>(RandomUniform(-0.1, 1.1) * (map.rows - 1));
     const PixelBounds bounds{x, y, x, y};
-    neighbours.Cover(bounds);
+    neighbours.SelectInBounds(bounds);
     const auto expected = SampleBilinear(map, {x, y});
     const float value = Value<true>(neighbours, x, y);
     ASSERT_EQ(std::isfinite(value), expected.has_value());
@@ -79,11 +79,11 @@ TEST(Neighbours, AreThoseOfAPartOfAMap) {
 TEST(Neighbours, CoverWhatIsAskedForAndWhatWasBefore) {
   const cv::Mat map = RandomMap(300, 400);
   Neighbours neighbours(map);
-  neighbours.Cover({110.5F, 80.5F, 120.5F, 90.5F});
+  neighbours.SelectInBounds({110.5F, 80.5F, 120.5F, 90.5F});
   const cv::Rect first = neighbours.view().part;
   EXPECT_EQ(first & cv::Rect(110, 80, 12, 12), cv::Rect(110, 80, 12, 12));
   EXPECT_LT(first.area(), 100 * 100);
-  neighbours.Cover({210.5F, 180.5F, 220.5F, 190.5F});
+  neighbours.SelectInBounds({210.5F, 180.5F, 220.5F, 190.5F});
   const cv::Rect both = neighbours.view().part;
   EXPECT_EQ(both & first, first);
   EXPECT_LT(both.area(), 200 * 200);
@@ -96,7 +96,7 @@ TEST(Neighbours, CoverWhatIsAskedForAndWhatWasBefore) {
 TEST(Neighbours, ReachTheMapsBorderAndNoFurther) {
   const cv::Mat map = RandomMap();
   Neighbours neighbours(map);
-  neighbours.Cover({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
+  neighbours.SelectInBounds({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
   EXPECT_NEAR(Value<true>(neighbours, 0.0F, 0.0F), map.at<float>(0, 0), kTolerance);
   EXPECT_NEAR(Value<true>(neighbours, kColumns - 1.0F, kRows - 1.0F),
               map.at<float>(kRows - 1, kColumns - 1), kTolerance);
@@ -115,7 +115,7 @@ TEST(Neighbours, OfTheLastColumnAreNotThoseOfTheFirst) {
   cv::Mat map = RandomMap();
   map.col(0) = std::numeric_limits<float>::infinity();
   Neighbours neighbours(map);
-  neighbours.Cover({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
+  neighbours.SelectInBounds({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
   EXPECT_NEAR(Value<true>(neighbours, kColumns - 1.0F, 3.0F), map.at<float>(3, kColumns - 1),
               kTolerance);
 }
@@ -123,14 +123,14 @@ TEST(Neighbours, OfTheLastColumnAreNotThoseOfTheFirst) {
 TEST(Neighbours, OfNoKnownBoundsAreTheWholeMap) {
   Neighbours neighbours(RandomMap());
   const float nan = std::nanf("");
-  neighbours.Cover({nan, nan, nan, nan});
+  neighbours.SelectInBounds({nan, nan, nan, nan});
   EXPECT_EQ(neighbours.view().part, cv::Rect(0, 0, kColumns, kRows));
   EXPECT_FALSE(neighbours.AreInside({nan, nan, nan, nan}));
 }
 
 TEST(Neighbours, CoverTwoPixelsAtLeast) {
   Neighbours neighbours(RandomMap());
-  neighbours.Cover({1e9F, -1e9F, 1e9F, -1e9F});
+  neighbours.SelectInBounds({1e9F, -1e9F, 1e9F, -1e9F});
   EXPECT_GE(neighbours.view().part.width, 2);
   EXPECT_GE(neighbours.view().part.height, 2);
   EXPECT_TRUE(std::isnan(Value<true>(neighbours, 1e9F, -1e9F)));

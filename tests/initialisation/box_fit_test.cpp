@@ -139,7 +139,8 @@ TEST(BoxFit, NearestDepthIsThatOfTheBodysNearestPoint) {
     for (int i = 0; i < 20; ++i) {
       const UprightVector at = RandomUprightParameters();
       const Landmark landmark = fit.ground().LandmarkAt(at, p);
-      EXPECT_NEAR(fit.NearestDepth(at), Farthest(landmark, -Eigen::Vector3d::UnitZ()).point.z(),
+      EXPECT_NEAR(fit.NearestDepth(at),
+                  FindSupportPoint(landmark, -Eigen::Vector3d::UnitZ()).point.z(),
                   1e-9 * (1.0 + landmark.half_axes.maxCoeff()));
     }
   }

@@ -54,7 +54,7 @@ TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
     const StandingBody body(RandomUniform(1, 2));
     const auto edges = body.Observe(Disturbed(body.box, 0.05)).edges;
     const Landmark start =
-        Turned(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.5, 0.5));
+        RotatedAboutZ(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.5, 0.5));
     const auto terms = BoxAndRatio(edges, body.observation.prior, start);
     for (const bool yaw_is_free : {false, true}) {
       const auto solution = FitUpright(body.plane, start, terms, yaw_is_free);
@@ -139,7 +139,7 @@ TEST(FitUpright, FindsTheBodyThatSeveralViewsSee) {
     for (int i = 0; i < 5; ++i) {
       const StandingBody body(p);
       const Landmark start =
-          Turned(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.1, 0.1));
+          RotatedAboutZ(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.1, 0.1));
       LandmarkCosts terms;
       for (const double turn : {0.0, 0.6, 1.3, 2.2}) {
         // The camera goes round the body.

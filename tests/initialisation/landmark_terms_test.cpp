@@ -48,7 +48,7 @@ class TermResidual final : public ceres::CostFunction {
 };
 
 void ExpectCorrectTermJacobian(const LandmarkTerm& term, const Landmark& landmark) {
-  const LandmarkBlock block = Pack(landmark);
+  const LandmarkBlock block = ToParameterBlock(landmark);
   ExpectCorrectJacobians(TermResidual(term, landmark.shape_exponent), {block.data()});
 
   Eigen::VectorXd residuals(term.NumResiduals());

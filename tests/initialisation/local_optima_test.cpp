@@ -128,9 +128,10 @@ TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
     for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
       const auto terms = BoxTerms(observation, optimum.landmark);
       for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
-        const auto nearby = FitUpright(observation.plane_in_camera,
-                                       Turned(optimum.landmark, offset_deg * kRadPerDeg), terms,
-                                       /*yaw_is_free=*/false);
+        const auto nearby =
+            FitUpright(observation.plane_in_camera,
+                       RotatedAboutZ(optimum.landmark, offset_deg * kRadPerDeg), terms,
+                       /*yaw_is_free=*/false);
         ASSERT_TRUE(nearby);
         EXPECT_GT(nearby->cost, 0.99 * optimum.cost - 1e-2)
             << "body " << i << ", turned by " << offset_deg << " degrees";

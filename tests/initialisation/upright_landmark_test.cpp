@@ -17,7 +17,7 @@ TEST(UprightLandmark, StandsUprightOnItsPlane) {
           (landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(),
           1e-12);
       EXPECT_EQ(landmark.shape_exponent, p);
-      const FarthestPoint lowest = Farthest(landmark, -plane.normal);
+      const SupportPoint lowest = FindSupportPoint(landmark, -plane.normal);
       // Rounded edges reach beyond the body itself by a thousandth of its size.
       const double rounding = kEdgeRounding * (2.0 - p) * landmark.half_axes.sum();
       EXPECT_NEAR(-lowest.distance + plane.offset, 0.0, 1e-12 + rounding) << p;

@@ -140,8 +140,8 @@ TEST(YawTerm, HasItsDerivative) {
     Eigen::VectorXd plus(1), minus(1), at(1);
     LandmarkTerm::Jacobian jacobian(1, kLandmarkDof);
     term.Evaluate(body.truth, at, &jacobian);
-    term.Evaluate(Turned(body.truth, kStep), plus, nullptr);
-    term.Evaluate(Turned(body.truth, -kStep), minus, nullptr);
+    term.Evaluate(RotatedAboutZ(body.truth, kStep), plus, nullptr);
+    term.Evaluate(RotatedAboutZ(body.truth, -kStep), minus, nullptr);
     const double by_turn = jacobian.row(0).head<3>().dot(body.plane.normal);
     EXPECT_NEAR(by_turn, (plus[0] - minus[0]) / (2.0 * kStep), 1e-6);
     EXPECT_EQ(jacobian.row(0).tail<6>().norm(), 0.0);

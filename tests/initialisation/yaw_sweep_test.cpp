@@ -27,7 +27,7 @@ TEST(BoxTerms, AddsThePreferenceForTheWorldsAxes) {
   for (int i = 0; i < 50; ++i) {
     const StandingBody body(RandomUniform(1, 2));
     UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
-    const Landmark landmark = Turned(body.truth, RandomYaw());
+    const Landmark landmark = RotatedAboutZ(body.truth, RandomYaw());
     const double without = CostAtOwnDepths(observation, landmark);
     observation.axes_weight = RandomUniform(0.5, 3.0);
     const Eigen::Vector3d front = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitX();

@@ -40,7 +40,7 @@ class AxisCostTermTest : public testing::TestWithParam<NormalAndYaw> {
     landmark.half_axes = {0.2, 0.3, 0.4};
     landmark.frame_from_object = {UprightRotation(plane_.normal, std::get<1>(GetParam())),
                                   {1.0, 2.0, 0.4}};
-    values_ = Pack(landmark);
+    values_ = ToParameterBlock(landmark);
     term_.emplace(0, values_.data(), plane_, kWeight);
   }
 
@@ -55,7 +55,7 @@ class AxisCostTermTest : public testing::TestWithParam<NormalAndYaw> {
   }
 
   Plane plane_;
-  decltype(Pack(Landmark())) values_;
+  decltype(ToParameterBlock(Landmark())) values_;
   std::optional<AxisCostTerm> term_;
 };
 

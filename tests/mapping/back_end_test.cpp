@@ -51,7 +51,7 @@ TEST(BackEnd, ComesBackFromADisturbedStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   BackEndInput input = TruthInput(sequence);
   for (auto& start : input.starts) {
-    *start = Turned(*start, RandomUniform(-0.1, 0.1));
+    *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
     start->frame_from_object.translation += RandomVector(-0.05, 0.05);
     start->half_axes *= RandomUniform(0.9, 1.1);
   }

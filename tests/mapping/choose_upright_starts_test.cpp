@@ -21,7 +21,7 @@ class UprightStarts : public testing::Test {
       const Landmark truth = *TrueLandmarkInCamera(sequence_, detection);
       const double turn = RandomUniform(0.5, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
       estimates_.observations.push_back(
-          {static_cast<int>(i), {{Turned(truth, turn), 0.0}, {truth, 1.0}}, ""});
+          {static_cast<int>(i), {{RotatedAboutZ(truth, turn), 0.0}, {truth, 1.0}}, ""});
     }
   }
   std::vector<std::optional<Landmark>> Choose(int threads = 1) const {
@@ -111,7 +111,7 @@ TEST_F(UprightStarts, AreNotBehindTheCamerasThatSeeTheObject) {
   const Eigen::Vector3d backwards = world_from_camera.rotation * Eigen::Vector3d(0.0, 0.0, -1.0);
   behind.frame_from_object.translation += 30.0 * Eigen::Vector3d(backwards.x(), backwards.y(), 0.0);
   estimates_.observations.front().hypotheses.front().landmark_in_camera =
-      Transform(world_from_camera.Inverse(), Turned(behind, 0.3));
+      Transform(world_from_camera.Inverse(), RotatedAboutZ(behind, 0.3));
   const auto starts = Choose();
   const auto object_index = static_cast<size_t>(detection.object_index);
   ASSERT_TRUE(starts[object_index]);

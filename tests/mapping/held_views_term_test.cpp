@@ -41,7 +41,7 @@ struct Derivatives {
 struct Views {
   Views(double shape_exponent, size_t count) {
     landmark = WithShape(RandomView().landmark_in_world, shape_exponent);
-    block = Pack(landmark);
+    block = ToParameterBlock(landmark);
     while (views.size() < count) AddView();
   }
 
@@ -87,7 +87,7 @@ struct Views {
     const std::array<double, kBiasSize> no_bias{};
     Derivatives sum;
     for (const HeldView& view : views) {
-      const PoseBlock pose = Pack(view.world_from_camera);
+      const PoseBlock pose = ToParameterBlock(view.world_from_camera);
       const TangencyTerm term({0, 1, 2}, {pose.data(), block.data(), no_bias.data()}, view.box,
                               kHuberDelta, view.weight);
       sum.Add(term, 1, kind);

@@ -16,7 +16,7 @@ namespace {
 class LandmarksTest : public testing::Test {
  protected:
   void Add(double x) {
-    values_.push_back(Pack(Landmark{}));
+    values_.push_back(ToParameterBlock(Landmark{}));
     values_.back()[4] = x;
   }
   Minimisation MinimiseEach(const CurveOf& curve) {

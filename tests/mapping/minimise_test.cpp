@@ -15,7 +15,7 @@
 #include "base/error.h"
 #include "constraints/manifolds.h"
 #include "constraints/odometry.h"
-#include "constraints/standing.h"
+#include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
 #include "mapping/back_end_problem.h"
 #include "mapping/landmark_fit.h"
@@ -83,9 +83,10 @@ double CostByCeres(const BackEndInput& input, const OptimiseOptions& options) {
     const auto plane = static_cast<size_t>(sequence.objects[i].plane_index);
     double* normal = values(variables.Normal(plane));
     double* offset = values(variables.Offset(plane));
-    problem.AddResidualBlock(new StandingResidual(options.standing_angle_sigma_deg * kRadPerDeg,
-                                                  options.standing_height_sigma_m),
-                             nullptr, landmark, normal, offset);
+    problem.AddResidualBlock(
+        new UprightOnPlaneResidual(options.standing_angle_sigma_deg * kRadPerDeg,
+                                   options.standing_height_sigma_m),
+        nullptr, landmark, normal, offset);
     problem.SetParameterBlockConstant(normal);
     problem.SetParameterBlockConstant(offset);
     problem.AddResidualBlock(
@@ -118,7 +119,7 @@ TEST(Minimise, FindsTheMinimumThatCeresFinds) {
     const Sequence sequence = SyntheticSequence(RandomScene(3, 3, 8, {Shape::kBox}), true);
     BackEndInput input = TruthInput(sequence);
     for (auto& start : input.starts) {
-      *start = Turned(*start, 0.05);
+      *start = RotatedAboutZ(*start, 0.05);
       start->shape_exponent = p;
     }
     for (auto& prior : input.priors) prior->log_sigma = {0.1, 0.1};

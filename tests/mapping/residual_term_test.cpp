@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "constraints/odometry.h"
-#include "constraints/standing.h"
+#include "constraints/upright_on_plane.h"
 #include "mapping/ratio_cost_term.h"
 #include "support/cost_function_term.h"
 #include "support/landmark_term_residual.h"
@@ -79,14 +79,14 @@ void ExpectSame(const Term& term, const Term& reference, const std::vector<int>&
 
 // A landmark and its support plane, three blocks.
 struct Standing {
-  using ByTerm = ResidualTerm<StandingResidual, VariableKind::kLandmark, VariableKind::kNormal,
-                              VariableKind::kOffset>;
+  using ByTerm = ResidualTerm<UprightOnPlaneResidual, VariableKind::kLandmark,
+                              VariableKind::kNormal, VariableKind::kOffset>;
   static constexpr std::array kKinds = {VariableKind::kLandmark, VariableKind::kNormal,
                                         VariableKind::kOffset};
   static constexpr double kAngleSigma = 0.2, kHeightSigma = 0.5;
 
   Standing(const Landmark& landmark_in_world, const Plane& plane_in_world, double huber_delta)
-      : landmark(Pack(landmark_in_world)),
+      : landmark(ToParameterBlock(landmark_in_world)),
         plane(plane_in_world),
         term({{{0, landmark.data()}, {1, plane.normal.data()}, {2, &plane.offset}}}, huber_delta,
              kAngleSigma, kHeightSigma) {}
@@ -128,7 +128,8 @@ Landmark AnyLandmark() { return {RandomRigid(), RandomVector(0.1, 1.0)}; }
 // Within the loss's width and beyond.
 TEST(ResidualTerm, SaysWhatItsResidualsSay) {
   for (const double huber_delta : {0.1, 1e9, kInfinity}) {
-    const PoseBlock first = Pack(RandomRigid()), second = Pack(RandomRigid());
+    const PoseBlock first = ToParameterBlock(RandomRigid()),
+                    second = ToParameterBlock(RandomRigid());
     const Rigid3d step = RandomRigid();
     const CostFunctionTerm reference(
         std::make_unique<OdometryResidual>(step, 0.3, 0.2),
@@ -148,8 +149,8 @@ TEST(ResidualTerm, SaysWhatResidualsOfThreeBlocksSay) {
       blocks.push_back({static_cast<int>(i), Standing::kKinds[i], standing.Values()[i]});
     }
     const CostFunctionTerm reference(
-        std::make_unique<StandingResidual>(Standing::kAngleSigma, Standing::kHeightSigma), blocks,
-        huber_delta);
+        std::make_unique<UprightOnPlaneResidual>(Standing::kAngleSigma, Standing::kHeightSigma),
+        blocks, huber_delta);
     EXPECT_EQ(standing.term.variables(), reference.variables());
     ExpectSame(standing.term, reference, kSizesOfStanding);
   }
@@ -268,7 +269,7 @@ ShapePrior AnyPrior() {
 }
 
 TEST(RatioCostTerm, SaysWhatItsResidualsSay) {
-  const LandmarkBlock landmark = Pack(RandomLandmarkInCamera());
+  const LandmarkBlock landmark = ToParameterBlock(RandomLandmarkInCamera());
   const CostFunctionTerm reference(
       std::make_unique<LandmarkTermResidual>(std::make_unique<RatioTerm>(AnyPrior())),
       {{0, VariableKind::kLandmark, landmark.data()}});
@@ -279,7 +280,7 @@ TEST(RatioCostTerm, SaysWhatItsResidualsSay) {
 TEST(RatioCostTerm, IsInfiniteAndAddsNothingWhereItIsNotDefined) {
   for (const double log_half_axis : {kInfinity, -kInfinity, 1e200, std::nan("")}) {
     for (const size_t axis : {7, 8, 9}) {
-      LandmarkBlock landmark = Pack(RandomLandmarkInCamera());
+      LandmarkBlock landmark = ToParameterBlock(RandomLandmarkInCamera());
       landmark[axis] = log_half_axis;
       const RatioCostTerm term(0, landmark.data(), AnyPrior());
       EXPECT_EQ(term.Cost(), kInfinity);

@@ -57,7 +57,7 @@ TEST(SchurComplement, MayTakeThePlaceOfTheCorner) {
 }
 
 TEST(SchurComplement, IsTheSameToTheLastBitInRegistersOfAnyWidth) {
-  if (!HasWideRegisters()) GTEST_SKIP() << "this processor has no AVX2";
+  if (!HasAvx2()) GTEST_SKIP() << "this processor has no AVX2";
   std::vector<double> panels;
   for (const Eigen::Index size : {1, 7, 8, 9, 31, 64, 101}) {
     const Eigen::MatrixXd corner = RandomMatrix(size, size), below = RandomMatrix(size, 37);

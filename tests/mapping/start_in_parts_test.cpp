@@ -49,11 +49,11 @@ class StartInPartsTest : public testing::Test {
       std::ranges::copy(values, Variables().all()[static_cast<size_t>(index)].values);
     };
     for (size_t i = 0; i < drive_.sequence.frames.size(); ++i) {
-      set(Variables().Pose(i), Pack(*drive_.sequence.frames[i].true_world_from_camera));
+      set(Variables().Pose(i), ToParameterBlock(*drive_.sequence.frames[i].true_world_from_camera));
     }
     for (size_t i = 0; i < drive_.sequence.objects.size(); ++i) {
       set(Variables().Landmark(i),
-          Pack(drive_.sequence.objects[i].ground_truth->landmark_in_world));
+          ToParameterBlock(drive_.sequence.objects[i].ground_truth->landmark_in_world));
     }
   }
 

@@ -72,9 +72,9 @@ TEST(MirrorSearch, FindsWhatAllPairsSay) {
         for (const double min_pairs : {8.0, 400.0, 1e6}) {
           const Expected expected = ByPairs(image, landmark, descriptor, image.edge_pixels, 0.2,
                                             places, scale, min_pairs);
-          search.See(landmark, 0.2);
+          search.SetLandmark(landmark, 0.2);
           EXPECT_EQ(search.NumSamples(), expected.samples);
-          const auto least = search.FindLeast(places, scale, min_pairs);
+          const auto least = search.FindMinimum(places, scale, min_pairs);
           ASSERT_EQ(least.has_value(), expected.mean.has_value());
           if (!least) continue;
           // Single precision is off by 1e-4 px, which a share of 0.2 per px at most averages out.
@@ -93,8 +93,8 @@ TEST(MirrorSearch, OfEqualPlacesTheFirstIsFound) {
   SymmetryImage image = BlottedImage();
   image.maps.grey = cv::Scalar(50);
   MirrorSearch search(image, TestCamera(), Descriptor::kGrey, image.edge_pixels);
-  search.See(FacingView().LandmarkInCamera(), 0.2);
-  const auto least = search.FindLeast({0.1, 0.0, -0.1}, 1.0, 8.0);
+  search.SetLandmark(FacingView().LandmarkInCamera(), 0.2);
+  const auto least = search.FindMinimum({0.1, 0.0, -0.1}, 1.0, 8.0);
   ASSERT_TRUE(least);
   EXPECT_EQ(least->mean, 0.0);
   EXPECT_EQ(least->place, 0u);

@@ -39,7 +39,7 @@ TEST(TextureAsymmetry, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   };
   EXPECT_NEAR(cost(landmark), 0.0, 1e-12);
   // Seen from its side, every mirror point is hidden.
-  EXPECT_EQ(cost(Turned(landmark, std::numbers::pi / 2)), 4.0);
+  EXPECT_EQ(cost(RotatedAboutZ(landmark, std::numbers::pi / 2)), 4.0);
 }
 
 // The body's front face towards the camera, 2.5 m away.

@@ -32,10 +32,10 @@ Scene CuboidScene(int seed, int objects) {
   return RandomScene(seed, objects, kFrames, {Shape::kBox});
 }
 
-CameraAttitude Attitude(const Sequence& sequence) {
+UpPrior Attitude(const Sequence& sequence) {
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return AttitudeOf(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
+  return UpPriorFromCameras(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {

@@ -24,10 +24,6 @@ LevelOptions RoomOptions() {
   return options;
 }
 
-double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
-  return std::atan2(one.cross(other).norm(), one.dot(other));
-}
-
 // A walk once around, cameras looking outwards and a little down.
 std::vector<Rigid3d> TrueTrajectory() {
   std::vector<Rigid3d> poses;

@@ -66,7 +66,7 @@ TEST(EvidenceOf, IsHowTheBestCostChanges) {
     const auto at = [&](const PlaneMotion& motion) {
       StandingBody body{observation, Moved(Plane(), pivot, motion, start->landmark)};
       body.observation.plane_in_world = Moved(Plane(), pivot, motion);
-      return EvidenceOf(*Settled(body), pivot);
+      return EvidenceOf(*FitOnPlane(body), pivot);
     };
     const PlaneEvidence here = at(PlaneMotion::Zero());
     for (int i = 0; i < 3; ++i) {
@@ -82,21 +82,21 @@ TEST(EvidenceOf, IsHowTheBestCostChanges) {
   }
 }
 
-TEST(BodyOfFreeHeight, FindsHeightAndBodyFromExactBoxes) {
+TEST(FitBodyAtFreeHeight, FindsHeightAndBodyFromExactBoxes) {
   for (int seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE(seed);
     const auto body =
-        BodyOfFreeHeight(RandomObservation(seed, false), Eigen::Vector3d::UnitZ(), kStep);
+        FitBodyAtFreeHeight(RandomObservation(seed, false), Eigen::Vector3d::UnitZ(), kStep);
     ASSERT_TRUE(body);
     EXPECT_NEAR(body->observation.plane_in_world.offset, 0.0, 0.005);
     EXPECT_LT(EvidenceOf(*body, body->landmark.Centre()).cost, 0.01);
   }
 }
 
-TEST(BodyOfFreeHeight, IsNoneForOneView) {
+TEST(FitBodyAtFreeHeight, IsNoneForOneView) {
   MultiViewObservation observation = RandomObservation(1);
   observation.views.resize(1);
-  EXPECT_FALSE(BodyOfFreeHeight(observation, Eigen::Vector3d::UnitZ(), kStep));
+  EXPECT_FALSE(FitBodyAtFreeHeight(observation, Eigen::Vector3d::UnitZ(), kStep));
 }
 
 }  // namespace

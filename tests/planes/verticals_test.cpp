@@ -55,14 +55,10 @@ std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc
   return views;
 }
 
-CameraAttitude HeldAttitude(const std::vector<SegmentView>& views) {
+UpPrior HeldAttitude(const std::vector<SegmentView>& views) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  return AttitudeOf(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, kCorrelation);
-}
-
-double AngleBetween(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
-  return std::atan2(one.cross(other).norm(), one.dot(other));
+  return UpPriorFromCameras(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, kCorrelation);
 }
 
 // Edges are exact, so only those of other directions and the cameras' attitude disturb: far less
@@ -71,7 +67,7 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
   double before = 0.0;
   for (int i = 0; i < 10; ++i) {
     const auto views = Room(Eigen::Vector3d::UnitZ(), 12, 6.0);
-    const CameraAttitude held = HeldAttitude(views);
+    const UpPrior held = HeldAttitude(views);
     const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
     EXPECT_LT(AngleBetween(found.up_in_world, Eigen::Vector3d::UnitZ()), 0.3 * kRadPerDeg);
     before += AngleBetween(held.up_in_world, Eigen::Vector3d::UnitZ()) / 10;
@@ -82,7 +78,7 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
 TEST(WithVerticals, LeavesTheAttitudeWhereThereIsNoEdge) {
   auto views = Room(Eigen::Vector3d::UnitZ(), 6, 3.0);
   for (SegmentView& view : views) view.segments.clear();
-  const CameraAttitude held = HeldAttitude(views);
+  const UpPrior held = HeldAttitude(views);
   const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
   EXPECT_LT((found.up_in_world - held.up_in_world).norm(), 1e-9);
   EXPECT_EQ(found.information, held.information);
@@ -92,7 +88,7 @@ TEST(WithVerticals, LeavesTheAttitudeWhereThereIsNoEdge) {
 TEST(WithVerticals, StaysNearTheAttitude) {
   const Eigen::Vector3d slanted(std::sin(0.7), 0.0, std::cos(0.7));
   const auto views = Room(slanted, 12, 6.0);
-  const CameraAttitude held = HeldAttitude(views);
+  const UpPrior held = HeldAttitude(views);
   const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
   EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxTilt);
 }

@@ -8,8 +8,8 @@
 #include "initialisation/initialise.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
-#include "planes/camera_attitude.h"
 #include "planes/estimate_planes.h"
+#include "planes/up_prior.h"
 #include "support/association_scenes.h"
 #include "support/standing_scene.h"
 
@@ -148,8 +148,9 @@ TEST_P(DegenerateTest, SupportPlanes) {
       [](const Sequence& sequence, const Priors& priors) {
         std::vector<Rigid3d> poses;
         for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-        const PlanesEstimate estimate = EstimatePlanes(
-            sequence, priors, AttitudeOf(poses, 0.1, 0.5, 0.3), PlanesOptions(), /*threads=*/1);
+        const PlanesEstimate estimate =
+            EstimatePlanes(sequence, priors, UpPriorFromCameras(poses, 0.1, 0.5, 0.3),
+                           PlanesOptions(), /*threads=*/1);
         for (const EstimatedPlane& plane : estimate.planes) {
           EXPECT_TRUE(plane.plane_in_world.normal.allFinite());
           EXPECT_TRUE(std::isfinite(plane.plane_in_world.offset));

@@ -200,7 +200,7 @@ TEST_F(RunRecorderTest, AnInputThatIsReplacedMeanwhileFailsTheRun) {
 TEST_F(RunRecorderTest, WhereNoRecordCanBeWrittenTheErrorIsThatOfTheRun) {
   fs::remove_all(folder_ / "results/two");
   EXPECT_EQ(Run(), 2);
-  EXPECT_THAT(errors_, HasSubstr("settings.json: cannot be read"));
+  EXPECT_THAT(errors_, HasSubstr("settings.json: no such file"));
 }
 
 TEST_F(RunRecorderTest, ARecordThatCannotBeWrittenFailsTheRun) {

@@ -79,9 +79,9 @@ void AddFrames(int frames, double turn_sigma_rad, Noise* noise, Sequence* sequen
 
 // A tenth too large or small, a few degrees turned, where the odometry sees it from a frame.
 Landmark Disturbed(const Landmark& truth, const Frame& frame, Noise* noise) {
-  Landmark start =
-      Turned(Transform(frame.world_from_camera * frame.true_world_from_camera->Inverse(), truth),
-             noise->Normal(0.05));
+  Landmark start = RotatedAboutZ(
+      Transform(frame.world_from_camera * frame.true_world_from_camera->Inverse(), truth),
+      noise->Normal(0.05));
   start.half_axes.array() *= noise->NormalVector(0.1).array().exp();
   start.frame_from_object.translation += noise->NormalVector(0.05);
   return start;

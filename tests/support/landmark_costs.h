@@ -12,7 +12,7 @@ namespace soslam {
 // Where a step of its nine parameters leads.
 inline Landmark Moved(const Landmark& landmark,
                       const Eigen::Matrix<double, kLandmarkDof, 1>& step) {
-  LandmarkBlock block = Pack(landmark);
+  LandmarkBlock block = ToParameterBlock(landmark);
   Move(VariableKind::kLandmark, step.data(), block.data());
   return WithShape(UnpackLandmark(block.data()), landmark.shape_exponent);
 }

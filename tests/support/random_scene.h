@@ -11,8 +11,8 @@ struct RandomView {
   Rigid3d world_from_camera = RandomRigid();
   Landmark landmark_in_world = Transform(world_from_camera, RandomLandmarkInCamera());
 
-  PoseBlock camera_block = Pack(world_from_camera);
-  LandmarkBlock landmark_block = Pack(landmark_in_world);
+  PoseBlock camera_block = ToParameterBlock(world_from_camera);
+  LandmarkBlock landmark_block = ToParameterBlock(landmark_in_world);
 
   Landmark LandmarkInCamera() const {
     return Transform(world_from_camera.Inverse(), landmark_in_world);
@@ -20,8 +20,8 @@ struct RandomView {
   void Move(const Rigid3d& motion) {
     world_from_camera = motion * world_from_camera;
     landmark_in_world = Transform(motion, landmark_in_world);
-    camera_block = Pack(world_from_camera);
-    landmark_block = Pack(landmark_in_world);
+    camera_block = ToParameterBlock(world_from_camera);
+    landmark_block = ToParameterBlock(landmark_in_world);
   }
 };
 

@@ -33,7 +33,7 @@ inline Landmark LyingLandmark() {
 
 // The three residuals of a landmark in the world.
 inline Eigen::Vector3d ResidualsOf(const ceres::CostFunction& residual, const Landmark& landmark) {
-  const LandmarkBlock block = Pack(landmark);
+  const LandmarkBlock block = ToParameterBlock(landmark);
   const double* blocks[] = {block.data()};
   Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));

@@ -100,7 +100,7 @@ inline Box Disturbed(const Box& box, double fraction) {
 
 // The same body, called by its other horizontal axis.
 inline Landmark WithAxesExchanged(const Landmark& landmark) {
-  Landmark exchanged = Turned(landmark, 0.5 * std::numbers::pi);
+  Landmark exchanged = RotatedAboutZ(landmark, 0.5 * std::numbers::pi);
   std::swap(exchanged.half_axes.x(), exchanged.half_axes.y());
   return exchanged;
 }

@@ -81,7 +81,7 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
 TEST_F(SyntheticTexture, DescriptorsTogetherCostWhatEachCostsAlone) {
   const Detection& detection = sequence_->detections.front();
   const SymmetryImage image(maps_->at(0), detection.box);
-  const Landmark landmark = Turned(TrueLandmark(detection), 4.0 * kRadPerDeg);
+  const Landmark landmark = RotatedAboutZ(TrueLandmark(detection), 4.0 * kRadPerDeg);
   const SymmetryOptions options;
   const auto samples = SamplePixels(image, sequence_->camera, landmark, options);
   std::vector<Descriptor> all;
@@ -133,7 +133,7 @@ TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurve
     const auto maps = maps_->find(detection.frame_index);
     if (maps == maps_->end() || detection.frame_index % 2 == 1) continue;
     const Landmark truth = TrueLandmark(detection);
-    const Landmark disturbed = Turned(truth, 6.0 * kRadPerDeg);
+    const Landmark disturbed = RotatedAboutZ(truth, 6.0 * kRadPerDeg);
     const Eigen::Vector2d ratio = truth.half_axes.head<2>() / truth.half_axes.z();
     const RefinedObservation refined =
         RefineObservation(*sequence_, {static_cast<int>(i), {{disturbed, 0.0}}, ""}, maps->second,
@@ -160,9 +160,9 @@ TEST_F(SyntheticTexture, AllParametersCanBeRefinedTogether) {
   const Landmark truth = TrueLandmark(detection);
   RefineOptions options;
   options.parameters = RefinementParameters::kAll;
-  const RefinedObservation refined =
-      RefineObservation(*sequence_, {0, {{Turned(truth, 4.0 * kRadPerDeg), 0.0}}, ""}, maps_->at(0),
-                        Eigen::Vector2d(truth.half_axes.head<2>() / truth.half_axes.z()), options);
+  const RefinedObservation refined = RefineObservation(
+      *sequence_, {0, {{RotatedAboutZ(truth, 4.0 * kRadPerDeg), 0.0}}, ""}, maps_->at(0),
+      Eigen::Vector2d(truth.half_axes.head<2>() / truth.half_axes.z()), options);
   ASSERT_EQ(refined.estimate.failure, "");
   const Landmark& landmark = refined.estimate.hypotheses.front().landmark_in_camera;
   EXPECT_LT((landmark.Centre() - truth.Centre()).norm(), 0.02);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/levels.h"
+#include "planes/plane_heights.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,12 +26,12 @@ PlaneEvidence FootAt(double x, double y, double sigma) {
   return evidence;
 }
 
-TEST(FindLevels, GroupsHeightsByTheirUncertainty) {
+TEST(ClusterPlaneHeights, GroupsHeightsByTheirUncertainty) {
   const auto levels_of = [](double sigma) {
     const std::vector<PlaneEvidence> evidence(4, FootAt(0, 0, sigma));
-    return FindLevels(evidence, {0.51, 0.0, 0.50, 0.01}, {}, kMaxTilt, kNewLevel);
+    return ClusterPlaneHeights(evidence, {0.51, 0.0, 0.50, 0.01}, {}, kMaxTilt, kNewLevel);
   };
-  const Levels sure = levels_of(0.02);
+  const PlaneHeights sure = levels_of(0.02);
   EXPECT_THAT(sure.level_of, ElementsAre(1, 0, 1, 0));
   ASSERT_EQ(sure.heights.size(), 2u);
   EXPECT_NEAR(sure.heights[0], 0.005, 1e-9);
@@ -41,11 +41,11 @@ TEST(FindLevels, GroupsHeightsByTheirUncertainty) {
 }
 
 // One level for two objects costs 0.5 * (0.2 / (sqrt(2) sigma))^2 more than two levels.
-TEST(FindLevels, OpensALevelWhereItIsWorthItsCost) {
+TEST(ClusterPlaneHeights, OpensALevelWhereItIsWorthItsCost) {
   const double sigma = 0.2 / (std::sqrt(2.0) * std::sqrt(2.0 * kNewLevel));
   const auto count = [&](double factor) {
     const std::vector<PlaneEvidence> evidence(2, FootAt(0, 0, factor * sigma));
-    return FindLevels(evidence, {0.0, 0.2}, {}, kMaxTilt, kNewLevel).heights.size();
+    return ClusterPlaneHeights(evidence, {0.0, 0.2}, {}, kMaxTilt, kNewLevel).heights.size();
   };
   EXPECT_EQ(count(1.01), 1u);
   EXPECT_EQ(count(0.99), 2u);
@@ -53,7 +53,7 @@ TEST(FindLevels, OpensALevelWhereItIsWorthItsCost) {
 
 // Heights at the pivot of objects far apart differ as the tilt is wrong: with the right one they
 // agree. Steps of the grid are max_tilt / 32.
-TEST(FindLevels, FindsTheTiltInWhichFewLevelsDo) {
+TEST(ClusterPlaneHeights, FindsTheTiltInWhichFewLevelsDo) {
   const Eigen::Vector2d tilt(0.05, -0.025);
   const std::vector<Eigen::Vector2d> feet = {{2, 0}, {-2, 1}, {0, 3}, {1, -2}, {-1, -1}};
   std::vector<PlaneEvidence> evidence;
@@ -63,23 +63,24 @@ TEST(FindLevels, FindsTheTiltInWhichFewLevelsDo) {
     heights.push_back(tilt.x() * foot.y() - tilt.y() * foot.x());
   }
   heights[4] += 0.4;
-  const Levels levels = FindLevels(evidence, heights, {}, kMaxTilt, kNewLevel);
+  const PlaneHeights levels = ClusterPlaneHeights(evidence, heights, {}, kMaxTilt, kNewLevel);
   EXPECT_LT((levels.tilt - tilt).norm(), kMaxTilt / 32);
   EXPECT_THAT(levels.level_of, ElementsAre(0, 0, 0, 0, 1));
   EXPECT_NEAR(levels.heights[1] - levels.heights[0], 0.4, 0.02);
 }
 
-TEST(FindLevels, HoldsTheTiltToItsPrior) {
+TEST(ClusterPlaneHeights, HoldsTheTiltToItsPrior) {
   PlaneEvidence prior;
   prior.information.diagonal() << 1e6, 1e6, 0.0;
   const Eigen::Vector2d expected(0.05, 0.0);
   prior.gradient.head<2>() = -1e6 * expected;
-  const Levels levels = FindLevels({FootAt(1, 2, 0.01)}, {0.3}, prior, kMaxTilt, kNewLevel);
+  const PlaneHeights levels =
+      ClusterPlaneHeights({FootAt(1, 2, 0.01)}, {0.3}, prior, kMaxTilt, kNewLevel);
   EXPECT_LT((levels.tilt - expected).norm(), kMaxTilt / 32);
 }
 
 // The partition against all others: numbers of levels are few enough to try.
-TEST(FindLevels, NoOtherGroupingCostsLess) {
+TEST(ClusterPlaneHeights, NoOtherGroupingCostsLess) {
   for (int trial = 0; trial < 20; ++trial) {
     constexpr size_t kObjects = 5;
     std::vector<PlaneEvidence> evidence;
@@ -107,22 +108,22 @@ TEST(FindLevels, NoOtherGroupingCostsLess) {
       }
       lowest = std::min(lowest, cost);
     }
-    EXPECT_NEAR(FindLevels(evidence, heights, {}, kMaxTilt, kNewLevel).cost, lowest, 1e-6);
+    EXPECT_NEAR(ClusterPlaneHeights(evidence, heights, {}, kMaxTilt, kNewLevel).cost, lowest, 1e-6);
   }
 }
 
 // A body that may float by sigma says as much about the plane's height as the variances together.
-TEST(Loosened, AddsTheVariances) {
+TEST(WithHeightNoise, AddsTheVariances) {
   PlaneEvidence evidence = FootAt(1.0, 2.0, 0.03);
   evidence.cost = 7.0;
   evidence.gradient = evidence.information.col(2) * 0.01;
-  const PlaneEvidence loose = Loosened(evidence, 0.04);
+  const PlaneEvidence loose = WithHeightNoise(evidence, 0.04);
   EXPECT_LT((loose.information - FootAt(1.0, 2.0, 0.05).information).norm(), 1e-9);
   // The plane is 0.01 m from where the body would have it, at either looseness.
   EXPECT_LT((loose.gradient - loose.information.col(2) * 0.01).norm(), 1e-9);
   EXPECT_NEAR(evidence.cost - loose.cost,
               0.5 * 0.01 * 0.01 * (1.0 / (0.03 * 0.03) - 1.0 / (0.05 * 0.05)), 1e-9);
-  EXPECT_EQ(Loosened(evidence, 0.0).information, evidence.information);
+  EXPECT_EQ(WithHeightNoise(evidence, 0.0).information, evidence.information);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace soslam {
 
-struct HeldPlanes {
+struct PlanesAndHolding {
   PlanesEstimate estimate;
   Sequence level;  // the sequence with poses that have the same up everywhere
 };
@@ -20,8 +20,9 @@ struct HeldPlanes {
 // EstimatePlanes for each camera holding in kCameraHoldings; returns the most probable result.
 // `views`: per frame, with the segments among which vertical edges are searched; empty to not use
 // vertical edges.
-HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<SegmentView>& views,
-                              const std::vector<std::optional<ShapePrior>>& priors,
-                              const PlanesOptions& options, int threads);
+PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
+                                          const std::vector<SegmentView>& views,
+                                          const std::vector<std::optional<ShapePrior>>& priors,
+                                          const PlanesOptions& options, int threads);
 
 }  // namespace soslam

@@ -9,9 +9,9 @@ namespace soslam {
 
 // Keeps a detector's bias near zero. Residuals: 4 (left, top, right and bottom edges), each divided
 // by sigma. Block: the bias (px).
-class BiasResidual final : public ceres::SizedCostFunction<kBiasSize, kBiasSize> {
+class BoxBiasResidual final : public ceres::SizedCostFunction<kBiasSize, kBiasSize> {
  public:
-  explicit BiasResidual(double sigma_px) : weight_(1.0 / sigma_px) {}
+  explicit BoxBiasResidual(double sigma_px) : weight_(1.0 / sigma_px) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     Eigen::Map<Eigen::Vector4d> values(residuals);

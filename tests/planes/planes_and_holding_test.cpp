@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/held_planes.h"
+#include "planes/planes_and_holding.h"
 
 #include <gtest/gtest.h>
 
@@ -30,16 +30,17 @@ Sequence NoisySequence(int seed, int objects) {
   return SyntheticSequence(scene, true);
 }
 
-HeldPlanes Estimate(const Sequence& sequence) {
-  return EstimateHeldPlanes(sequence, {}, TrueCuboidPriors(sequence, kLogSigma), ModelOptions(), 2);
+PlanesAndHolding Estimate(const Sequence& sequence) {
+  return EstimatePlanesAndHolding(sequence, {}, TrueCuboidPriors(sequence, kLogSigma),
+                                  ModelOptions(), 2);
 }
 
-const TriedHolding* Tried(const HeldPlanes& held, CameraHolding holding) {
+const TriedHolding* Tried(const PlanesAndHolding& held, CameraHolding holding) {
   const auto at = std::ranges::find(held.estimate.holdings, holding, &TriedHolding::holding);
   return at == held.estimate.holdings.end() ? nullptr : &*at;
 }
 
-TEST(EstimateHeldPlanes, FindsUpForEachRoll) {
+TEST(EstimatePlanesAndHolding, FindsUpForEachRoll) {
   constexpr std::array kRolls = {CameraHolding::kLevel, CameraHolding::kRolled90,
                                  CameraHolding::kRolled180, CameraHolding::kRolled270};
   for (int seed = 0; seed < 3; ++seed) {
@@ -47,7 +48,7 @@ TEST(EstimateHeldPlanes, FindsUpForEachRoll) {
     for (int quarters = 0; quarters < 4; ++quarters) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << quarters << " quarters");
       const Sequence sequence = Rolled(level, quarters);
-      const HeldPlanes held = Estimate(sequence);
+      const PlanesAndHolding held = Estimate(sequence);
       EXPECT_EQ(held.estimate.holding, kRolls.at(static_cast<size_t>(quarters)));
       EXPECT_EQ(held.estimate.holding_tilt_variance, 0.0);
       ASSERT_EQ(held.estimate.planes.size(), 1u);
@@ -60,14 +61,14 @@ TEST(EstimateHeldPlanes, FindsUpForEachRoll) {
 }
 
 // To the last digit.
-TEST(EstimateHeldPlanes, LevelCamerasHaveThePlanesOfTheirAttitude) {
+TEST(EstimatePlanesAndHolding, LevelCamerasHaveThePlanesOfTheirAttitude) {
   const Sequence sequence = NoisySequence(4, 4);
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
   const PlanesOptions options = ModelOptions();
-  const CameraAttitude attitude = AttitudeOf(poses, options.camera_roll_sigma_deg * kRadPerDeg,
-                                             options.camera_pitch_sigma_deg * kRadPerDeg,
-                                             options.view_correlation_deg * kRadPerDeg);
+  const UpPrior attitude = UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
+                                              options.camera_pitch_sigma_deg * kRadPerDeg,
+                                              options.view_correlation_deg * kRadPerDeg);
   const PlanesEstimate expected =
       EstimatePlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), attitude, options, 2);
   const PlanesEstimate found = Estimate(sequence).estimate;
@@ -80,8 +81,8 @@ TEST(EstimateHeldPlanes, LevelCamerasHaveThePlanesOfTheirAttitude) {
 }
 
 // What lies on its side costs too much for planes to be looked for.
-TEST(EstimateHeldPlanes, SaysWhatWasTried) {
-  const HeldPlanes held = Estimate(Rolled(NoisySequence(1, 6), 1));
+TEST(EstimatePlanesAndHolding, SaysWhatWasTried) {
+  const PlanesAndHolding held = Estimate(Rolled(NoisySequence(1, 6), 1));
   const TriedHolding* best = Tried(held, CameraHolding::kRolled90);
   ASSERT_TRUE(best);
   EXPECT_EQ(best->cost, 0.0);
@@ -109,15 +110,15 @@ std::vector<SegmentView> ViewsWithVerticals(const Sequence& sequence, const Eige
   return views;
 }
 
-HeldPlanes EstimateWithVerticals(const Sequence& sequence, const Eigen::Vector3d& up) {
-  return EstimateHeldPlanes(sequence, ViewsWithVerticals(sequence, up),
-                            TrueCuboidPriors(sequence, kLogSigma), ModelOptions(), 2);
+PlanesAndHolding EstimateWithVerticals(const Sequence& sequence, const Eigen::Vector3d& up) {
+  return EstimatePlanesAndHolding(sequence, ViewsWithVerticals(sequence, up),
+                                  TrueCuboidPriors(sequence, kLogSigma), ModelOptions(), 2);
 }
 
 // Planes are looked for without them only where bodies are explained better so.
-TEST(EstimateHeldPlanes, VerticalsAreNotDoubtedInVain) {
+TEST(EstimatePlanesAndHolding, VerticalsAreNotDoubtedInVain) {
   const Sequence sequence = NoisySequence(2, 5);
-  const HeldPlanes held = EstimateWithVerticals(sequence, Eigen::Vector3d::UnitZ());
+  const PlanesAndHolding held = EstimateWithVerticals(sequence, Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(held.estimate.verticals);
   for (const TriedHolding& tried : held.estimate.holdings) {
     if (tried.holding != CameraHolding::kLevel) continue;
@@ -125,10 +126,10 @@ TEST(EstimateHeldPlanes, VerticalsAreNotDoubtedInVain) {
   }
 }
 
-TEST(EstimateHeldPlanes, VerticalsThatBodiesContradictAreDoubted) {
+TEST(EstimatePlanesAndHolding, VerticalsThatBodiesContradictAreDoubted) {
   const Sequence sequence = NoisySequence(2, 5);
   const Eigen::Vector3d tilted(std::sin(10.0 * kRadPerDeg), 0.0, std::cos(10.0 * kRadPerDeg));
-  const HeldPlanes held = EstimateWithVerticals(sequence, tilted);
+  const PlanesAndHolding held = EstimateWithVerticals(sequence, tilted);
   EXPECT_FALSE(held.estimate.verticals);
   const auto error = CompareWithGiven(sequence, held.estimate, 0);
   ASSERT_TRUE(error);
@@ -136,18 +137,18 @@ TEST(EstimateHeldPlanes, VerticalsThatBodiesContradictAreDoubted) {
 }
 
 // A cube may lie on any side, but its camera is not below its support plane.
-TEST(EstimateHeldPlanes, ACubeLeavesItOpen) {
+TEST(EstimatePlanesAndHolding, ACubeLeavesItOpen) {
   Scene scene = RandomScene(3, 1, 20, {Shape::kBox});
   scene.objects[0].half_axes.setConstant(0.3);
   const Sequence cube = SyntheticSequence(scene, false);
-  const HeldPlanes level = Estimate(cube);
+  const PlanesAndHolding level = Estimate(cube);
   EXPECT_EQ(level.estimate.holding, CameraHolding::kLevel);
-  const HeldPlanes rolled = Estimate(Rolled(cube, 1));
+  const PlanesAndHolding rolled = Estimate(Rolled(cube, 1));
   const bool is_found = rolled.estimate.holding == CameraHolding::kRolled90;
   EXPECT_TRUE(is_found || rolled.estimate.holding_tilt_variance > 0.0);
 }
 
-TEST(EstimateHeldPlanes, RefusesWhatOneViewCannotTell) {
+TEST(EstimatePlanesAndHolding, RefusesWhatOneViewCannotTell) {
   Sequence sequence = NoisySequence(1, 3);
   std::erase_if(sequence.detections, [&](const Detection& detection) {
     return detection.frame_index != sequence.detections.front().frame_index;

@@ -15,10 +15,10 @@ namespace soslam {
 // standard deviation. Blocks: landmark in the world; unit normal and offset of the plane in the
 // world. `side` is 1, or -1 if the plane's normal is opposite to the block's, as for a ceiling that
 // shares the floor's normal.
-class StandingResidual final
+class UprightOnPlaneResidual final
     : public ceres::SizedCostFunction<3, kLandmarkSize, kNormalSize, kOffsetSize> {
  public:
-  StandingResidual(double angle_sigma_rad, double height_sigma_m, double side = 1.0)
+  UprightOnPlaneResidual(double angle_sigma_rad, double height_sigma_m, double side = 1.0)
       : angle_weight_(1.0 / angle_sigma_rad), height_weight_(1.0 / height_sigma_m), side_(side) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/levels.h"
+#include "planes/plane_heights.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,8 +17,8 @@ struct Height {
   double information;
 };
 
-// Partition of heights into levels of least cost. Levels are contiguous in the sorted heights, so
-// dynamic programming over the first n heights finds the optimum.
+// Partition of heights into levels of least cost. PlaneHeights are contiguous in the sorted
+// heights, so dynamic programming over the first n heights finds the optimum.
 class Partition {
  public:
   Partition(const std::vector<Height>& heights, double new_level_cost)
@@ -43,7 +43,7 @@ class Partition {
 
   double Cost() const { return cost_.back(); }
 
-  void Write(Levels* levels) const {
+  void Write(PlaneHeights* levels) const {
     std::vector<size_t> ends;
     for (size_t end = order_.size(); end > 0; end = begin_[end]) ends.push_back(end);
     std::reverse(ends.begin(), ends.end());
@@ -98,7 +98,7 @@ double CostAt(const PlaneEvidence& evidence, const Eigen::Vector2d& tilt) {
 
 }  // namespace
 
-PlaneEvidence Loosened(const PlaneEvidence& evidence, double height_sigma) {
+PlaneEvidence WithHeightNoise(const PlaneEvidence& evidence, double height_sigma) {
   const Eigen::Vector3d by_height = evidence.information.col(2);
   const double variance = height_sigma * height_sigma;
   const double share = variance / (1.0 + variance * by_height.z());
@@ -108,9 +108,10 @@ PlaneEvidence Loosened(const PlaneEvidence& evidence, double height_sigma) {
           evidence.information - share * by_height * by_height.transpose()};
 }
 
-Levels FindLevels(const std::vector<PlaneEvidence>& evidence, const std::vector<double>& heights,
-                  const PlaneEvidence& prior, double max_tilt, double new_level_cost) {
-  Levels best;
+PlaneHeights ClusterPlaneHeights(const std::vector<PlaneEvidence>& evidence,
+                                 const std::vector<double>& heights, const PlaneEvidence& prior,
+                                 double max_tilt, double new_level_cost) {
+  PlaneHeights best;
   best.cost = std::numeric_limits<double>::infinity();
   std::vector<Height> at_tilt(evidence.size());
   const double step = max_tilt / kTiltSteps;

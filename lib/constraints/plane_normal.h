@@ -10,10 +10,10 @@ namespace soslam {
 // Prior on a plane's unit normal n, known before boxes are used: its cost is n^T information n / 2
 // (information in 1 / rad^2). Residuals: 3, the information's square root times n. Block: the
 // normal.
-class AttitudeResidual final : public ceres::SizedCostFunction<3, kNormalSize> {
+class PlaneNormalResidual final : public ceres::SizedCostFunction<3, kNormalSize> {
  public:
   // `information` is positive semidefinite.
-  explicit AttitudeResidual(const Eigen::Matrix3d& information);
+  explicit PlaneNormalResidual(const Eigen::Matrix3d& information);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/camera_attitude.h"
+#include "planes/up_prior.h"
 
 #include <gtest/gtest.h>
 
@@ -27,19 +27,20 @@ Rigid3d LevelCamera(double heading, double downwards) {
 }
 
 double AngleToUp(const std::vector<Rigid3d>& poses) {
-  const Eigen::Vector3d up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation).up_in_world;
+  const Eigen::Vector3d up =
+      UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation).up_in_world;
   EXPECT_NEAR(up.norm(), 1.0, 1e-12);
   return std::atan2(up.head<2>().norm(), up.z());
 }
 
-TEST(AttitudeOf, OneCameraHasUpAboveIt) {
+TEST(UpPriorFromCameras, OneCameraHasUpAboveIt) {
   EXPECT_NEAR(AngleToUp({LevelCamera(0.3, 0.0)}), 0.0, 1e-9);
   EXPECT_NEAR(AngleToUp({LevelCamera(0.3, 40.0 * kRadPerDeg)}), 40.0 * kRadPerDeg, 1e-9);
 }
 
 // Seen from two sides, the level x axes say what looking down hides: 40 degrees off in one heading
 // only, the axes of the other heading hold up 36 times as firmly.
-TEST(AttitudeOf, HeadingsApartFindUpWhereverTheyLookDown) {
+TEST(UpPriorFromCameras, HeadingsApartFindUpWhereverTheyLookDown) {
   std::vector<Rigid3d> poses;
   for (int i = 0; i < 8; ++i)
     poses.push_back(LevelCamera(i * 45.0 * kRadPerDeg, 40.0 * kRadPerDeg));
@@ -48,18 +49,19 @@ TEST(AttitudeOf, HeadingsApartFindUpWhereverTheyLookDown) {
   EXPECT_LT(AngleToUp(poses), 3.0 * kRadPerDeg);
 }
 
-TEST(AttitudeOf, ManyCamerasInOneDirectionCountAsOne) {
+TEST(UpPriorFromCameras, ManyCamerasInOneDirectionCountAsOne) {
   const auto information = [](size_t count, double correlation) {
-    return AttitudeOf(std::vector<Rigid3d>(count, LevelCamera(1.0, 0.2)), kRollSigma, kPitchSigma,
-                      correlation)
+    return UpPriorFromCameras(std::vector<Rigid3d>(count, LevelCamera(1.0, 0.2)), kRollSigma,
+                              kPitchSigma, correlation)
         .information;
   };
   EXPECT_LT((information(7, kCorrelation) - information(1, kCorrelation)).norm(), 1e-9);
   EXPECT_LT((information(7, 0.0) - 7.0 * information(1, 0.0)).norm(), 1e-9);
 }
 
-// Turned about their optical axes, cameras that are held so have the up that they had before.
-TEST(AttitudeOf, RolledCamerasHaveTheUpOfLevelOnes) {
+// RotatedAboutZ about their optical axes, cameras that are held so have the up that they had
+// before.
+TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
   constexpr std::array kRolls = {CameraHolding::kLevel, CameraHolding::kRolled90,
                                  CameraHolding::kRolled180, CameraHolding::kRolled270};
   for (int quarters = 0; quarters < 4; ++quarters) {
@@ -70,30 +72,31 @@ TEST(AttitudeOf, RolledCamerasHaveTheUpOfLevelOnes) {
       const Rigid3d level = LevelCamera(i * 30.0 * kRadPerDeg, 20.0 * kRadPerDeg);
       poses.push_back({level.rotation * roll, level.translation});
     }
-    const auto up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation,
-                               kRolls.at(static_cast<size_t>(quarters)))
+    const auto up = UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation,
+                                       kRolls.at(static_cast<size_t>(quarters)))
                         .up_in_world;
     EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kRadPerDeg) << quarters;
   }
 }
 
-TEST(AttitudeOf, CamerasThatLookDownHaveUpBehindThem) {
+TEST(UpPriorFromCameras, CamerasThatLookDownHaveUpBehindThem) {
   const std::vector<Rigid3d> poses = {LevelCamera(0.3, 80.0 * kRadPerDeg)};
   for (const auto holding : {CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90}) {
-    const auto up = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation, holding).up_in_world;
+    const auto up =
+        UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation, holding).up_in_world;
     EXPECT_NEAR(std::acos(up.z()), 10.0 * kRadPerDeg, 1e-9);
   }
 }
 
-TEST(AttitudeOf, TurnsWithTheWorld) {
+TEST(UpPriorFromCameras, TurnsWithTheWorld) {
   std::vector<Rigid3d> poses, turned;
   const Rigid3d motion = RandomRigid();
   for (int i = 0; i < 5; ++i) {
     poses.push_back(LevelCamera(RandomUniform(-1, 1), RandomUniform(-0.2, 0.6)));
     turned.push_back(motion * poses.back());
   }
-  const auto here = AttitudeOf(poses, kRollSigma, kPitchSigma, kCorrelation);
-  const auto there = AttitudeOf(turned, kRollSigma, kPitchSigma, kCorrelation);
+  const auto here = UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation);
+  const auto there = UpPriorFromCameras(turned, kRollSigma, kPitchSigma, kCorrelation);
   EXPECT_LT((there.up_in_world - motion.rotation * here.up_in_world).norm(), 1e-9);
 }
 

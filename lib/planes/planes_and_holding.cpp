@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/held_planes.h"
+#include "planes/planes_and_holding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +17,13 @@ namespace {
 constexpr double kSameAxis = 1e-9;  // one minus a cosine
 // Hypotheses whose cost after the fit of bodies is higher than this are dropped before planes are
 // estimated.
-const double kHopeless = std::log(1e4);
+const double kMaxHypothesisCost = std::log(1e4);
 
 struct Hypothesis {
   HoldingEvidence evidence;
   double expected_cost = 0.0;
   LevelTrajectory trajectory;
-  std::optional<HeldPlanes> planes;
+  std::optional<PlanesAndHolding> planes;
 };
 
 LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
@@ -38,8 +38,8 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentV
   if (!views.empty()) return Level(views, level);
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return {poses,
-          AttitudeOf(poses, level.roll_sigma, level.pitch_sigma, level.correlation_rad, holding)};
+  return {poses, UpPriorFromCameras(poses, level.roll_sigma, level.pitch_sigma,
+                                    level.correlation_rad, holding)};
 }
 
 Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {
@@ -49,7 +49,7 @@ Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_cam
   return sequence;
 }
 
-double ShareFromBelow(const HeldPlanes& held) {
+double ShareFromBelow(const PlanesAndHolding& held) {
   int below = 0, seen = 0;
   for (const Detection& detection : held.level.detections) {
     const ObjectSupport& support =
@@ -66,7 +66,7 @@ double ShareFromBelow(const HeldPlanes& held) {
 
 // `of_bodies`: evidence from bodies of free height. A body of an object may not be found again when
 // it must stand on its plane.
-HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const HeldPlanes& held,
+HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const PlanesAndHolding& held,
                            const PlanesOptions& options) {
   HoldingEvidence evidence = of_bodies;
   evidence.up_in_world = held.estimate.planes.front().plane_in_world.normal;
@@ -129,7 +129,7 @@ std::vector<Hypothesis> Hypotheses(const Sequence& sequence, const std::vector<S
     AddHypothesis(sequence, LevelFrames(sequence, views, options, holding), evidence, priors,
                   options, threads, &hypotheses);
     if (views.empty()) continue;
-    evidence.doubts_verticals = true;
+    evidence.ignores_verticals = true;
     AddHypothesis(sequence, LevelFrames(sequence, {}, options, holding), evidence, priors, options,
                   threads, &hypotheses);
   }
@@ -148,9 +148,10 @@ HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
 
 // Estimates the planes of a hypothesis. If no object's views determine the height of its base, the
 // hypothesis counts as having one plane and cannot be chosen.
-void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-                    const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
-  HeldPlanes held;
+void EstimatePlanesOf(const Sequence& sequence,
+                      const std::vector<std::optional<ShapePrior>>& priors,
+                      const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
+  PlanesAndHolding held;
   held.level = WithPoses(sequence, hypothesis->trajectory.world_from_camera);
   auto estimate = FindPlanes(held.level, priors, hypothesis->trajectory.attitude, options, threads);
   if (!estimate) {
@@ -166,13 +167,13 @@ void FollowToPlanes(const Sequence& sequence, const std::vector<std::optional<Sh
 
 // True if the same holding with its vertical edges leads to planes and fits bodies at no higher
 // cost.
-bool IsDoubtedInVain(const std::vector<Hypothesis>& hypotheses, size_t doubting,
-                     const std::vector<double>& costs_of_bodies) {
+bool IsIgnoringVerticalsUseless(const std::vector<Hypothesis>& hypotheses, size_t doubting,
+                                const std::vector<double>& costs_of_bodies) {
   const HoldingEvidence& evidence = hypotheses[doubting].evidence;
-  if (!evidence.doubts_verticals) return false;
+  if (!evidence.ignores_verticals) return false;
   for (size_t i = 0; i < doubting; ++i) {
     const HoldingEvidence& other = hypotheses[i].evidence;
-    if (other.holding != evidence.holding || other.doubts_verticals) continue;
+    if (other.holding != evidence.holding || other.ignores_verticals) continue;
     return hypotheses[i].planes && costs_of_bodies[i] <= costs_of_bodies[doubting];
   }
   return false;
@@ -188,18 +189,18 @@ bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& h
 
 // `tried`: all hypotheses, including those dropped for the cost of their bodies, which are not in
 // `followed`.
-HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, bool has_views,
-                        const std::vector<Hypothesis>& followed) {
+PlanesAndHolding MostProbable(const std::vector<TriedHolding>& tried, bool has_views,
+                              const std::vector<Hypothesis>& followed) {
   const HoldingChoice choice = Choose(followed);
-  HeldPlanes best = *followed[choice.best].planes;
+  PlanesAndHolding best = *followed[choice.best].planes;
   best.estimate.holdings = tried;
   best.estimate.holding = followed[choice.best].evidence.holding;
-  best.estimate.verticals = has_views && !followed[choice.best].evidence.doubts_verticals;
+  best.estimate.verticals = has_views && !followed[choice.best].evidence.ignores_verticals;
   best.estimate.holding_tilt_variance = choice.tilt_variance;
   for (TriedHolding& one : best.estimate.holdings) {
     for (size_t i = 0; i < followed.size(); ++i) {
       const HoldingEvidence& evidence = followed[i].evidence;
-      const bool verticals = has_views && !evidence.doubts_verticals;
+      const bool verticals = has_views && !evidence.ignores_verticals;
       if (evidence.holding != one.holding || verticals != one.verticals) continue;
       one.cost = choice.costs[i];
       one.probability = choice.probabilities[i];
@@ -213,20 +214,21 @@ HeldPlanes MostProbable(const std::vector<TriedHolding>& tried, bool has_views,
 
 }  // namespace
 
-HeldPlanes EstimateHeldPlanes(const Sequence& sequence, const std::vector<SegmentView>& views,
-                              const std::vector<std::optional<ShapePrior>>& priors,
-                              const PlanesOptions& options, int threads) {
+PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
+                                          const std::vector<SegmentView>& views,
+                                          const std::vector<std::optional<ShapePrior>>& priors,
+                                          const PlanesOptions& options, int threads) {
   std::vector<Hypothesis> hypotheses = Hypotheses(sequence, views, priors, options, threads);
   const HoldingChoice by_bodies = Choose(hypotheses);
   std::vector<TriedHolding> tried;
   std::vector<Hypothesis> followed;
   for (size_t i = 0; i < hypotheses.size(); ++i) {
     const HoldingEvidence& evidence = hypotheses[i].evidence;
-    tried.push_back({evidence.holding, !views.empty() && !evidence.doubts_verticals,
+    tried.push_back({evidence.holding, !views.empty() && !evidence.ignores_verticals,
                      by_bodies.costs[i], 0.0, std::nullopt});
-    if (by_bodies.costs[i] > kHopeless) continue;
-    if (IsDoubtedInVain(hypotheses, i, by_bodies.costs)) continue;
-    FollowToPlanes(sequence, priors, options, threads, &hypotheses[i]);
+    if (by_bodies.costs[i] > kMaxHypothesisCost) continue;
+    if (IsIgnoringVerticalsUseless(hypotheses, i, by_bodies.costs)) continue;
+    EstimatePlanesOf(sequence, priors, options, threads, &hypotheses[i]);
     if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(hypotheses[i]);
   }
   const bool has_planes = std::ranges::any_of(

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/standing.h"
+#include "constraints/upright_on_plane.h"
 
 namespace soslam {
 
-bool StandingResidual::Evaluate(double const* const* blocks, double* residuals,
-                                double** jacobians) const {
+bool UprightOnPlaneResidual::Evaluate(double const* const* blocks, double* residuals,
+                                      double** jacobians) const {
   const Landmark landmark = UnpackLandmark(blocks[0]);
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it

@@ -10,10 +10,10 @@ namespace soslam {
 
 // Evidence after marginalising a height offset of the body from the plane with this standard
 // deviation (m).
-PlaneEvidence Loosened(const PlaneEvidence& evidence, double height_sigma);
+PlaneEvidence WithHeightNoise(const PlaneEvidence& evidence, double height_sigma);
 
 // Assignment of objects to parallel planes ("levels").
-struct Levels {
+struct PlaneHeights {
   Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  // as in PlaneMotion
   std::vector<double> heights;  // heights of the planes along the tilted normal (m), ascending
   std::vector<int> level_of;    // index in `heights`, for each object
@@ -26,7 +26,8 @@ struct Levels {
 // grid up to max_tilt (rad) in either direction; `prior` is a prior on the tilt (its translation is
 // not used). Every level costs `new_level_cost`. At least one object; each one's information about
 // its own height is positive.
-Levels FindLevels(const std::vector<PlaneEvidence>& evidence, const std::vector<double>& heights,
-                  const PlaneEvidence& prior, double max_tilt, double new_level_cost);
+PlaneHeights ClusterPlaneHeights(const std::vector<PlaneEvidence>& evidence,
+                                 const std::vector<double>& heights, const PlaneEvidence& prior,
+                                 double max_tilt, double new_level_cost);
 
 }  // namespace soslam

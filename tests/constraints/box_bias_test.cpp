@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/bias.h"
+#include "constraints/box_bias.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace soslam {
 namespace {
 
-TEST(BiasResidual, IsTheBiasInStandardDeviations) {
-  const BiasResidual residual(0.25);
+TEST(BoxBiasResidual, IsTheBiasInStandardDeviations) {
+  const BoxBiasResidual residual(0.25);
   const double bias[] = {-1.5, 0.0, 2.0, 0.5};
   const double* blocks[] = {bias};
   Eigen::Vector4d values;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/attitude.h"
+#include "constraints/plane_normal.h"
 
 #include <Eigen/Eigenvalues>
 
 namespace soslam {
 
-AttitudeResidual::AttitudeResidual(const Eigen::Matrix3d& information) {
+PlaneNormalResidual::PlaneNormalResidual(const Eigen::Matrix3d& information) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
   root_ =
       eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-bool AttitudeResidual::Evaluate(double const* const* blocks, double* residuals,
-                                double** jacobians) const {
+bool PlaneNormalResidual::Evaluate(double const* const* blocks, double* residuals,
+                                   double** jacobians) const {
   Eigen::Map<Eigen::Vector3d> values(residuals);
   values = root_ * Eigen::Map<const Eigen::Vector3d>(blocks[0]);
   if (jacobians != nullptr && jacobians[0] != nullptr) {

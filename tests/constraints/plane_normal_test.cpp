@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/attitude.h"
+#include "constraints/plane_normal.h"
 
 #include <gtest/gtest.h>
 
@@ -16,21 +16,21 @@ Eigen::Matrix3d RandomInformation() {
   return one * one.transpose() + other * other.transpose();
 }
 
-TEST(AttitudeResidual, CostIsTheQuadraticForm) {
+TEST(PlaneNormalResidual, CostIsTheQuadraticForm) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Matrix3d information = RandomInformation();
     const Eigen::Vector3d normal = RandomPlane().normal;
     const double* blocks[] = {normal.data()};
     Eigen::Vector3d residuals;
-    ASSERT_TRUE(AttitudeResidual(information).Evaluate(blocks, residuals.data(), nullptr));
+    ASSERT_TRUE(PlaneNormalResidual(information).Evaluate(blocks, residuals.data(), nullptr));
     EXPECT_NEAR(residuals.squaredNorm(), normal.dot(information * normal), 1e-10);
   }
 }
 
-TEST(AttitudeResidual, JacobianAgreesWithNumbers) {
+TEST(PlaneNormalResidual, JacobianAgreesWithNumbers) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = RandomPlane().normal;
-    ExpectCorrectJacobians(AttitudeResidual(RandomInformation()), {normal.data()});
+    ExpectCorrectJacobians(PlaneNormalResidual(RandomInformation()), {normal.data()});
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/standing.h"
+#include "constraints/upright_on_plane.h"
 
 #include <gtest/gtest.h>
 
@@ -11,19 +11,19 @@ namespace {
 
 // Sigmas of half a radian and a centimetre.
 Eigen::Vector3d Residuals(const Plane& plane, const Landmark& landmark) {
-  const LandmarkBlock block = Pack(landmark);
+  const LandmarkBlock block = ToParameterBlock(landmark);
   const double* blocks[] = {block.data(), plane.normal.data(), &plane.offset};
   Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(StandingResidual(0.5, 0.01).Evaluate(blocks, values.data(), nullptr));
+  EXPECT_TRUE(UprightOnPlaneResidual(0.5, 0.01).Evaluate(blocks, values.data(), nullptr));
   return values;
 }
 
-TEST(StandingResidual, IsZeroForAnUprightLandmarkOnThePlane) {
+TEST(UprightOnPlaneResidual, IsZeroForAnUprightLandmarkOnThePlane) {
   ExpectZeroForStandingLandmarks(Residuals);
 }
 
 // Unlike pi^T Q* pi, it also tells above the plane from below, and counts metres for any size.
-TEST(StandingResidual, CountsTheHeightOverThePlane) {
+TEST(UprightOnPlaneResidual, CountsTheHeightOverThePlane) {
   for (int i = 0; i < 100; ++i) {
     const Plane plane = RandomPlane();
     Landmark landmark = RandomStanding(plane);
@@ -33,33 +33,33 @@ TEST(StandingResidual, CountsTheHeightOverThePlane) {
   }
 }
 
-TEST(StandingResidual, WorkedByHand) {
+TEST(UprightOnPlaneResidual, WorkedByHand) {
   // x is along the normal: cosine 1 over half a radian. The foot is 5 - 3 = 2 m over the floor.
   EXPECT_LT((Residuals(Plane(), LyingLandmark()) - Eigen::Vector3d(2.0, 0.0, 200.0)).norm(), 1e-9);
 }
 
-TEST(StandingResidual, JacobiansAgreeWithNumbers) {
+TEST(UprightOnPlaneResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 50; ++i) {
-    const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+    const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
     const Plane plane = RandomPlane();
     for (const double side : {1.0, -1.0}) {
-      ExpectCorrectJacobians(StandingResidual(0.2, 0.5, side),
+      ExpectCorrectJacobians(UprightOnPlaneResidual(0.2, 0.5, side),
                              {block.data(), plane.normal.data(), &plane.offset});
     }
   }
 }
 
-TEST(StandingResidual, OtherSideIsTheOppositeNormal) {
+TEST(UprightOnPlaneResidual, OtherSideIsTheOppositeNormal) {
   const Plane plane = RandomPlane();
   const Eigen::Vector3d opposite = -plane.normal;
-  const LandmarkBlock block = Pack(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+  const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
   const double* blocks[] = {block.data(), opposite.data(), &plane.offset};
   Eigen::Vector3d values;
-  ASSERT_TRUE(StandingResidual(0.5, 0.01, -1.0).Evaluate(blocks, values.data(), nullptr));
+  ASSERT_TRUE(UprightOnPlaneResidual(0.5, 0.01, -1.0).Evaluate(blocks, values.data(), nullptr));
   EXPECT_EQ(values, Residuals(plane, UnpackLandmark(block.data())));
 }
 
-TEST(StandingResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(Residuals); }
+TEST(UprightOnPlaneResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(Residuals); }
 
 }  // namespace
 }  // namespace soslam
