@@ -17,7 +17,7 @@ namespace {
 constexpr int kMaxIterations = 50;
 enum { kYaw, kFootX, kFootY, kLogA, kLogB, kLogC };
 
-// A body on the ground.
+// An upright object in the ground frame.
 struct Body {
   Body(double p, const UprightVector& at)
       : shape_exponent(p),
@@ -31,10 +31,11 @@ struct Body {
   Eigen::Vector3d centre;
 };
 
-// The edges of a box side by side: the planes behind them, and how the body supports them.
+// The four edges of a box, one per SIMD lane: normals of the planes behind them and the object's
+// support function in these directions.
 struct FourEdges {
-  ThreeFours normals;    // in the frame of the ground
-  ThreeFours in_object;  // those as the body sees them
+  ThreeFours normals;    // in the ground frame
+  ThreeFours in_object;  // in the object frame
   SupportOfFour support;
 };
 
@@ -57,7 +58,7 @@ SOSLAM_MULTIVERSION void FindTangentDepths(const BoxOnGround& box, const Body& b
   Store(depths, depths_m->data());
 }
 
-// Residuals (px / sigma) of the edges, and their derivatives by the parameters.
+// Residuals (px / sigma) of the four edges and their Jacobian by UprightVector.
 struct Rows {
   Eigen::Vector4d residuals;
   Eigen::Matrix<double, 4, 6> jacobian;
@@ -191,7 +192,8 @@ std::vector<FitAtYaw> BoxFit::MinimiseAtYaws(std::span<const StartAtYaw> starts)
       }
     }
   }
-  // Whether edges that are bounds count depends on the foot; and others may not tell it.
+  // Bound edges contribute or not depending on the foot, and other edges may not determine it: in
+  // these cases FitFourYaws has no result.
   for (size_t i = 0; i < starts.size(); ++i) {
     FitAtYaw& fit = fits[i];
     if (!std::isnan(fit.cost)) continue;

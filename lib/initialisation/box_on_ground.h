@@ -11,32 +11,34 @@
 
 namespace soslam {
 
-// A box in the frame of the ground that its object stands on, where a yaw turns about z.
+// The box of a detection in the ground frame of its object's support plane, where a yaw is a
+// rotation about z.
 struct BoxOnGround {
-  // `ground` lives in the reference frame.
+  // `edges` in the camera frame, `ground` in the reference frame.
   BoxOnGround(const std::array<BoxEdge, 4>& edges, const Rigid3d& camera_from_reference,
               const UprightGround& ground);
 
-  // In the camera, m.
+  // Depth (m) in the camera of a point in the ground frame.
   double DepthOf(const Eigen::Vector3d& point) const {
     return origin_depth + optical_axis.dot(point);
   }
 
-  // The planes behind the edges: normals by row, and their values at the ground's origin.
+  // The planes behind the edges (BoxEdge::plane) in the ground frame: normals as rows, and values
+  // at the ground's origin (px m).
   Eigen::Matrix<double, 4, 3> normals;
   Eigen::Array4d at_origin;
   Eigen::Array4d sigma_px;
   Eigen::Array4d is_bound;       // 1 or 0
-  Eigen::Vector3d optical_axis;  // of the camera
-  double origin_depth;           // of the ground's origin, m
+  Eigen::Vector3d optical_axis;  // of the camera, in the ground frame
+  double origin_depth;           // depth of the ground's origin, m
 };
 
-// Where a body at a yaw faces.
+// Cosine and sine of an object's yaw.
 struct Heading {
   Heading() = default;
   explicit Heading(double yaw) : cosine(std::cos(yaw)), sine(std::sin(yaw)) {}
 
-  // A direction of the ground's frame as seen from the body.
+  // Rotates a direction from the ground frame into the object frame.
   Eigen::Vector3d TurnedBack(const Eigen::Vector3d& direction) const {
     return {cosine * direction.x() + sine * direction.y(),
             cosine * direction.y() - sine * direction.x(), direction.z()};
@@ -46,7 +48,7 @@ struct Heading {
   double sine = 0.0;
 };
 
-// The same for four bodies.
+// Headings of four objects, one per SIMD lane.
 struct alignas(kFourAlignment) FourHeadings {
   Four cosines{}, sines{};
 
@@ -60,7 +62,8 @@ struct alignas(kFourAlignment) FourHeadings {
   }
 };
 
-// A body, and how deep the points are where it touches the planes: where fits to a box start.
+// Initial guess of a fit to a box: an object and the depths of its tangent points at the four
+// edges.
 struct StartAtYaw {
   UprightVector parameters;
   Heading heading;  // of its yaw

@@ -14,24 +14,24 @@
 namespace soslam {
 namespace {
 
-// Each round takes the error of the tangent depths to a hundredth, or less.
+// Each round reduces the error of the tangent depths by a factor of 100 or more.
 constexpr int kMaxDepthRounds = 20;
 constexpr double kDepthTolerance = 1e-10;
 
 using FourEdges = std::array<Four, 4>;
 
-// At four yaws.
+// Coefficients of the equations at four yaws, one per SIMD lane.
 struct FourBodies {
   FourEdges by_half_height{};        // a
-  FourEdges depth_by_half_height{};  // of the tangent points, from that of the foot
-  Four nearest_by_half_height{};     // of the body's point nearest to the camera's plane
+  FourEdges depth_by_half_height{};  // tangent points, relative to the foot
+  Four nearest_by_half_height{};     // the object's nearest point, likewise
 };
 
-// What is left of their equations without the foot.
+// The equations after elimination of the foot.
 struct FourSystems {
   FourEdges half_height_by_b;
   FourEdges null;  // n
-  Four missing;    // n^T r of residuals r with which there is a solution
+  Four missing;    // n^T r, the same for the residuals r of all objects
 };
 
 struct alignas(kFourAlignment) FourSolutions {
@@ -132,7 +132,7 @@ SOSLAM_MULTIVERSION void Solve(const BoxEquations& equations, const FourHeadings
   FourSystems systems;
   EliminateFoot(equations, bodies, &systems);
   const bool has_bound = (box.is_bound != 0.0).any();
-  solutions->depths_m.fill(Four{} + 1.0);  // while they are equal, of any size
+  solutions->depths_m.fill(Four{} + 1.0);  // any value, as long as they are equal
   FourMask is_under_way = ~FourMask{};
   for (int round = 0; round < kMaxDepthRounds; ++round) {
     FourEdges residuals;

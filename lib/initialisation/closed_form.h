@@ -12,8 +12,8 @@
 
 namespace soslam {
 
-// The tangencies of a body of known proportions to a box's edges: linear in foot and half height c
-// at a given yaw, F foot + a c = b. Only a depends on the yaw.
+// Tangency equations of an object of known proportions and the edges of a box. At a given yaw they
+// are linear in its foot and half height c: F foot + a c = b. Only a depends on the yaw.
 struct BoxEquations {
   explicit BoxEquations(const UprightObservation& observation);
 
@@ -25,33 +25,34 @@ struct BoxEquations {
   Eigen::Matrix<double, 2, 4> foot_by_b;     // pseudo-inverse of F
 };
 
-// Bodies with the prior's ratio at given yaws: the least squares solution over the measured edges,
-// and over a bound that it would not reach. Tangent points are at their depths on the solution
-// itself, found by repetition. Four yaws are solved side by side, in wide registers.
+// Closed-form solution at given yaws for an object with the prior's ratio: least squares over the
+// measured edges, and over a bound edge that the object would not reach otherwise. The depths of
+// the tangent points are those on the solution itself, found by fixed-point iteration. Four yaws
+// are solved at once (SIMD).
 //
-// N^T a c = N^T b is what the equations say of c. In n = N t, t orthogonal to N^T a, no body
-// changes the residuals. Whatever their weights W = diag(1 / (depth sigma_px)), those of the least
-// squares solution are the multiple of W^-2 n by which b has to change for there to be a solution.
-// Repetition changes weights only.
+// Without the foot, N^T a c = N^T b remains for c. The vector n = N t, with t orthogonal to N^T a,
+// spans the left null space of (F, a): n^T r is the same for the residuals r of all objects. With
+// weights W = diag(1 / (depth sigma_px)), the residuals of the least squares solution are the
+// multiple of W^-2 n with this n^T r. The iteration changes only W.
 class ClosedForm {
  public:
   explicit ClosedForm(const UprightObservation& observation) : equations_(observation) {}
 
-  // The body at each of these yaws (rad) on the ground of the observation's plane, and its tangent
-  // depths. None when fewer than three edges are measured, which leaves the size open, or when the
-  // body would not be in front of the camera, in any repetition. Other yaws do not change a body by
-  // a bit.
+  // The object at each of these yaws (rad) on the ground of the observation's plane, and its
+  // tangent depths. None if fewer than three edges are measured, which leaves the size
+  // undetermined, or if the object of any iteration is not wholly in front of the camera. A
+  // solution does not depend on the other yaws, to the last bit.
   std::vector<std::optional<StartAtYaw>> At(const std::vector<double>& yaws) const;
   std::optional<StartAtYaw> At(double yaw) const { return At(std::vector{yaw}).front(); }
 
-  // Whether at least three edges are measured.
+  // True if at least three edges are measured.
   bool HasEnoughEdges() const { return (equations_.box.is_bound == 0.0).count() >= 3; }
 
  private:
   BoxEquations equations_;
 };
 
-// The same for one yaw only, as a landmark in the camera frame.
+// ClosedForm::At for a single yaw, as a landmark in the camera frame.
 std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw);
 
 }  // namespace soslam

@@ -13,37 +13,38 @@
 namespace soslam {
 namespace {
 
-// Where fits start.
+// Initial guesses of the four fits, one per SIMD lane.
 struct alignas(kFourAlignment) FourStarts {
   FourHeadings headings;
-  std::array<Four, 4> depths_m{};  // by edge
+  std::array<Four, 4> depths_m{};  // one entry per edge
   ThreeFours log_half_axes{};
 };
 
-// The edges of the box as the four bodies see them.
+// Tangency equations of the box edges for the four objects.
 struct Tangencies {
   double shape_exponent;
-  // By edge. Of a residual at the ground's origin, over the weight: its value and its derivative by
-  // the body's height.
+  // Unweighted residuals with the foot at the ground's origin, one entry per edge: constant term,
+  // and coefficient of the half height.
   Eigen::Array4d at_origin;
   Eigen::Array4d by_height;
   std::array<Four, 4> weight;         // 1 / (m px)
-  std::array<ThreeFours, 4> rounded;  // the normal in the object frame, see support_function.h
-  // Derivatives by the foot: orthonormal columns Q of Q R.
+  std::array<ThreeFours, 4> rounded;  // |m_i| of normals m in the object frame, SquaredRounding
+  // QR decomposition of the Jacobian by the foot: orthonormal columns Q, and R.
   std::array<std::array<Four, 2>, 4> foot_basis;
   Four r_xx, r_xy, r_yy;
 };
 
-// The fits to second order, as QuadraticModel has it; of the information, the lower triangle.
+// Second-order models of the four fits, as QuadraticModel; only the lower triangle of the
+// information.
 struct Model {
   ThreeFours half_axes{};
   Four cost{};
-  std::array<Four, 2> foot{};  // the best one's negative, in its basis
+  std::array<Four, 2> foot{};  // Q^T r = -R (optimal foot)
   ThreeFours gradient{};
   std::array<ThreeFours, 3> information{};
 };
 
-// By edge.
+// Residuals of the four box edges and their derivatives, one entry per edge.
 struct Rows {
   std::array<Four, 4> residuals;
   std::array<ThreeFours, 4> by_log_half_axes;
@@ -223,7 +224,8 @@ SOSLAM_FORCE_INLINE void Place(const BoxOnGround& box, double shape_exponent,
   FindFootBasis(box, tangencies);
 }
 
-// Of one body each: NaN where the edges do not tell the foot, or the start has no cost.
+// Results of the four fits. The cost is NaN if the edges do not determine the foot, or not finite
+// at the start.
 struct alignas(kFourAlignment) FourFits {
   Four cost;
   std::array<Four, 2> foot;

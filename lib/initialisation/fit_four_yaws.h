@@ -11,18 +11,18 @@
 namespace soslam {
 
 struct FitAtYaw {
-  double cost;               // NaN where the edges do not tell the foot, or the start has no cost
-  UprightVector parameters;  // those of the start then
-  double nearest_depth_m;    // of the body's points; where there is a cost
+  double cost;               // NaN if the foot is undetermined, or the cost not finite at the start
+  UprightVector parameters;  // those of the start if the cost is NaN
+  double nearest_depth_m;    // smallest of any point of the object; set unless the cost is NaN
 };
 
-// MinimiseSquares of what a box, none of whose edges is a bound, and its prior's ratios say, with
-// the yaws of the starts and their tangent depths held. The four are fitted side by side, in wide
-// registers; neither place nor neighbours change a fit by a bit.
+// MinimiseSquares over the tangencies of a box without bound edges and its prior's ratios, with the
+// yaws and tangent depths of the starts fixed. The four fits run at once (SIMD); a result does not
+// depend on its lane or on the other fits, to the last bit.
 //
-// The tangencies of a box's edges are linear in the body's foot, which is eliminated (variable
-// projection; Golub and Pereyra, 1973): of the four residuals only that part counts which no foot
-// explains, and the unknowns are the logarithms of the half axes.
+// The tangencies of a box's edges are linear in the object's foot, which is eliminated (variable
+// projection; Golub and Pereyra, 1973): only the component of the four residuals that no foot can
+// fit contributes to the cost, and the unknowns are the logarithms of the half axes.
 std::array<FitAtYaw, 4> FitFourYaws(const BoxOnGround& box, const RatioRows& ratio,
                                     double shape_exponent, int max_iterations,
                                     const std::array<StartAtYaw, 4>& starts);

@@ -11,28 +11,28 @@
 
 namespace soslam {
 
-// Single-frame landmarks of all detections (one ObservationEstimate each). An observation of an
-// object without ratio fails with no_ratio_for_label.
+// Single-frame landmarks of all detections (one ObservationEstimate each). Detections of objects
+// without a ratio fail with no_ratio_for_label.
 LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const std::vector<std::optional<Eigen::Vector2d>>& ratios,
                                         const InitialiseOptions& options, int threads);
 
-// The same for bodies of any shape that stand upright: all local optima of the sweep over yaw,
-// lowest cost first. `yaw_priors`: one per detection, or empty. Failures: no_ratio_for_label,
+// Upright landmarks of any shape exponent for all detections: all local optima of the sweep over
+// yaw, lowest cost first. `yaw_priors`: one per detection, or empty. Failures: no_ratio_for_label,
 // fewer_than_three_measured_edges, no_solution.
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const std::vector<std::optional<ShapePrior>>& priors,
                                     const UprightOptions& options, int threads,
                                     const std::vector<std::optional<YawPrior>>& yaw_priors = {});
 
-// One upright body per object from all of its boxes, seen from the frames' estimated poses; without
-// a prior, a cuboid of any ratio. Failures: moving, not_determined_by_its_views.
+// One upright landmark per object from all of its boxes, with the frames' estimated poses; without
+// a prior, a cuboid of free ratio. Failures: moving, not_determined_by_its_views.
 LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
                                       const std::vector<std::optional<ShapePrior>>& priors,
                                       const InitialiseOptions& options, int threads);
 
-// One landmark per object by SVD over all of its boxes, seen from the frames' estimated poses.
-// Failures: moving, fewer_than_three_views, no_finite_quadric.
+// One landmark per object by SVD over all of its boxes, with the frames' estimated poses. Failures:
+// moving, fewer_than_three_views, no_finite_quadric.
 LandmarkEstimates InitialiseSvd(const Sequence& sequence);
 
 }  // namespace soslam

@@ -11,33 +11,33 @@
 
 namespace soslam {
 
-// A cost of a landmark by its nine parameters, in the order of kLandmarkDof.
+// Cost of a landmark to second order in its nine parameters, in the order of kLandmarkDof.
 using LandmarkModel = QuadraticModel<kLandmarkDof>;
 
-// Something that a landmark in a frame is fitted to: half a sum of squares with unit variance.
+// Cost of a landmark in some frame: half a sum of squared residuals of unit variance.
 class LandmarkCost {
  public:
   virtual ~LandmarkCost() = default;
-  // Without the constant cost; not finite where it is undefined.
+  // Cost without its constant part; not finite where it is undefined.
   virtual double Value(const Landmark& landmark) const = 0;
-  // Adds the same to second order. Where the cost is not finite, what it adds to the derivatives is
-  // not specified.
+  // Adds the same to second order. If the cost is not finite, the derivatives added are
+  // unspecified.
   virtual void AddTo(const Landmark& landmark, LandmarkModel* sum) const = 0;
-  // What does not change with the landmark, but may with what the cost was made for.
+  // Part of the cost that does not depend on the landmark, but may depend on what the cost was
+  // constructed from.
   virtual double ConstantCost() const { return 0.0; }
-  // Whether its derivatives jump from pixel to pixel of an image.
+  // True if the derivatives jump from pixel to pixel of an image.
   virtual bool HasKinks() const { return false; }
 };
 
 using LandmarkCosts = std::vector<std::unique_ptr<const LandmarkCost>>;
 double ConstantCost(const LandmarkCosts& costs);
-// Of all values, and the constant costs.
+// Sum of all values and constant costs.
 double TotalCost(const LandmarkCosts& costs, const Landmark& landmark);
-// Where fits to them end: the least decrease of the cost, as a share of 1 + cost, that is worth a
-// step of MinimiseSquares.
+// Convergence tolerance of MinimiseSquares for these costs, relative to 1 + cost.
 double NegligibleDecrease(const LandmarkCosts& costs);
 
-// What one camera says, for a landmark in another frame, multiplied by a weight.
+// Cost in one camera, multiplied by a weight, for a landmark in another frame.
 class ViewCost final : public LandmarkCost {
  public:
   ViewCost(std::unique_ptr<const LandmarkCost> in_camera, const Rigid3d& camera_from_reference,
@@ -53,7 +53,7 @@ class ViewCost final : public LandmarkCost {
   double weight_;
 };
 
-// d landmark in a camera / d landmark in another frame, by the parameters of both.
+// d landmark in a camera / d landmark in another frame (9 x 9, parameters as kLandmarkDof).
 Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> LandmarkInCameraBy(
     const Eigen::Matrix3d& rotation_camera_from_reference);
 

@@ -8,16 +8,18 @@
 
 namespace soslam {
 
-// Of 1 + cost: steps that lower it by less are not worth taking.
+// Convergence tolerance, relative to 1 + cost: steps that lower the cost by less are not worth
+// taking.
 inline constexpr double kNegligibleDecrease = 1e-11;
-// Where derivatives jump, as those of an image do from pixel to pixel, steps go to and fro at the
-// end, each shorter than the one before, and take most of the time.
+// The same where derivatives jump, as those of an image do from pixel to pixel: near the minimum
+// the steps oscillate with decreasing length, and would take most of the time.
 inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
 
 namespace levenberg_marquardt {
 
-// Damping is a share of the information's diagonal, or of kMinDiagonal, for what hardly anything
-// depends on. It grows, each time more, with steps that are in vain, and falls with the others.
+// The damping multiplies the diagonal of the information, or kMinDiagonal for parameters with
+// almost no influence. It grows by a factor that doubles with each failed step, and falls with
+// successful steps.
 inline constexpr double kFirstDamping = 1e-4;
 inline constexpr double kMaxDamping = 1e16;
 inline constexpr double kMinDiagonal = 1e-6;
@@ -26,9 +28,8 @@ inline constexpr double kLeastFall = 1.0 / 3.0;
 
 }  // namespace levenberg_marquardt
 
-// The x of A x = -b, by A = L D L^T: its divisions do not wait for roots, and take half the time of
-// Eigen::LLT at size 6. False where A, of which the lower triangle is read, is not positive
-// definite.
+// Solves A x = -b by A = L D L^T, which needs no square roots and takes half the time of Eigen::LLT
+// at size 6. Reads the lower triangle of A. Returns false if A is not positive definite.
 template <int kSize>
 bool SolveForNegative(Eigen::Matrix<double, kSize, kSize> a,
                       const Eigen::Matrix<double, kSize, 1>& b,
@@ -39,7 +40,7 @@ bool SolveForNegative(Eigen::Matrix<double, kSize, kSize> a,
   for (int j = 0; j < kSize; ++j) {
     if (!(a(j, j) > 0.0)) return false;
     inverse_d[j] = 1.0 / a(j, j);
-    // Whole columns take no longer than what is below the diagonal.
+    // Updating whole columns takes no longer than updating the part below the diagonal.
     for (int k = j + 1; k < kSize; ++k) a.col(k) -= a(k, j) * inverse_d[j] * a.col(j);
     const double share = solution[j] * inverse_d[j];
     for (int i = j + 1; i < kSize; ++i) solution[i] -= share * a(i, j);
@@ -52,10 +53,10 @@ bool SolveForNegative(Eigen::Matrix<double, kSize, kSize> a,
 }
 
 // Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
-// least squares problems, 2004, section 3.2). `evaluate` makes the model at parameters.
-// Ends where the next step is expected to lower the cost by a negligible share of it, after
-// `max_iterations`, or where no step lowers it. Parameters that nothing depends on stay as they
-// are. Returns the cost at the parameters that it leaves: not finite when it was not at the start.
+// least squares problems, 2004, section 3.2). `evaluate` returns the QuadraticModel at given
+// parameters. Ends if the predicted decrease, relative to 1 + cost, is negligible, after
+// `max_iterations`, or if no step lowers the cost. Parameters without influence are not changed.
+// Returns the cost at the final parameters: not finite if it is not finite at the start.
 template <int kSize, typename Evaluate>
 double MinimiseSquares(Evaluate evaluate, int max_iterations,
                        Eigen::Matrix<double, kSize, 1>* parameters,
@@ -75,7 +76,7 @@ double MinimiseSquares(Evaluate evaluate, int max_iterations,
       growth *= 2.0;
       continue;
     }
-    // Of the undamped cost to second order.
+    // Predicted decrease of the undamped quadratic model.
     const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
     if (!(decrease > negligible_decrease * (1.0 + at.cost))) break;
     const Eigen::Matrix<double, kSize, 1> moved = *parameters + step;

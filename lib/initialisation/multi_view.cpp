@@ -17,17 +17,19 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 constexpr double kSettled = 1e-6;  // relative change of the half axes
-// A direction that is known so much less than the best known one is not known at all.
+// Smallest eigenvalue of the normal matrix, relative to the largest, of a determined direction.
 constexpr double kMinInformationShare = 1e-9;
-// Below this, rounding decides what solves a system.
+// Smallest reciprocal condition number of systems that are solved. Below it, rounding errors
+// dominate the solution.
 constexpr double kMinConditionReciprocal = 1e-13;
 
-// Foot x, foot y, a, b, c and, where it is free, the foot's height over the plane.
+// Normal equations in foot x, foot y, a, b, c and, if it is free, the foot's height above the
+// plane.
 template <int kUnknowns>
 struct LinearSystem {
   using Row = Eigen::Matrix<double, kUnknowns, 1>;
 
-  // weight (row . unknowns + constant)^2
+  // Adds the cost weight (row . unknowns + constant)^2.
   void Add(const Row& row, double constant, double weight) {
     const Row weighted = weight * row;
     normal_matrix += weighted * row.transpose();
@@ -68,10 +70,11 @@ double HeightAtUnitDepth(const BoxView& view) {
   return std::abs(height.z() / view.edges[3].plane.y());
 }
 
-// Where rays hardly cross, a body of the prior's height is as high in the image as the boxes are.
+// Adds a weak equation of each view's depth, for rays that are almost parallel: at this depth an
+// object of the prior's height is as high in the image as the box.
 void AddDepthsOfSize(const MultiViewObservation& observation, Eigen::Matrix3d* normal_matrix,
                      Eigen::Vector3d* right_side) {
-  constexpr double kWeight = 1e-4;  // of a ray
+  constexpr double kWeight = 1e-4;  // relative to a ray
   for (const BoxView& view : observation.views) {
     const Eigen::Vector3d axis =
         view.camera_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
@@ -81,12 +84,13 @@ void AddDepthsOfSize(const MultiViewObservation& observation, Eigen::Matrix3d* n
   }
 }
 
-// The point nearest to the rays through the middles of all boxes.
+// Least squares point (world frame) of the rays through the centres of all boxes and, as far as
+// they are known, of the support plane and the depths from the size.
 Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   for (const BoxView& view : observation.views) {
-    // The middle lies on the planes half-way between opposite edges.
+    // The ray through the centre lies in the planes half-way between opposite edges.
     for (const size_t i : {0, 1}) {
       const Eigen::Vector3d middle = view.edges[i].plane - view.edges[i + 2].plane;
       const Eigen::Vector3d normal =
@@ -105,7 +109,8 @@ Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
   return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
 }
 
-// The views of an observation in the frame of its ground, where a yaw turns about z.
+// Least squares solver over the views of an observation in the ground frame, where a yaw is a
+// rotation about z.
 class LinearViews {
  public:
   explicit LinearViews(const MultiViewObservation& observation)
@@ -145,7 +150,7 @@ class LinearViews {
     Heading heading;
   };
 
-  // As large as the boxes are high, where their rays meet.
+  // Initial guess at the point nearest to all rays, as high as the boxes.
   void Start() {
     const Eigen::Vector3d point = NearestToAllRays(observation_);
     const Eigen::Vector3d from_origin = point - ground_.origin;
@@ -170,7 +175,7 @@ class LinearViews {
     return landmark;
   }
 
-  // `direction` in the ground's frame.
+  // Support function of the object; `direction` in the ground frame.
   SupportValue SupportOf(const Body& body, const Eigen::Vector3d& direction) const {
     return SupportFunction(body.half_axes, observation_.ShapeExponent(),
                            body.heading.TurnedBack(direction));
@@ -187,7 +192,7 @@ class LinearViews {
     }
     if (ratio_) AddRatio(*body, &system);
     if (HasSize(observation_)) AddSize(*body, &system);
-    // Later rounds weigh edges anew, drop and add some: Solve refuses what has become singular.
+    // Later rounds reweight, drop and add edges; Solve rejects systems that become singular.
     if (is_first && !system.KnowsAllDirections()) return false;
     const auto unknowns = system.Solve();
     if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;
@@ -197,8 +202,8 @@ class LinearViews {
     return true;
   }
 
-  // How far the body reaches outside an edge, as Tangency; the tangent point at its own depth, at
-  // first at that of the centre.
+  // Signed distance by which the object reaches outside an edge, as Tangency, with the tangent
+  // point at its own depth, in the first round at that of the centre.
   struct Contact {
     SupportValue support;
     double depth_m;
@@ -220,7 +225,8 @@ class LinearViews {
                LinearSystem<kUnknowns>* system) const {
     const Contact contact = Touch(box, edge, body, is_first);
     if (!(contact.depth_m > 0.0)) return;
-    // Where the body is at first says nothing about what a bound allows, and who is an outlier.
+    // The initial guess is too rough to decide which bounds are active and which edges are
+    // outliers.
     if (box.is_bound[edge] != 0.0 && (is_first || contact.excess >= 0.0)) return;
     const double size = std::abs(contact.excess);
     const double robust =
@@ -235,8 +241,9 @@ class LinearViews {
     system->Add(scale * row, scale * box.at_origin[edge], weight * robust);
   }
 
-  // As RatioTerm, to first order about the body of this height that has the prior's ratios: there
-  // both residuals are zero, and what they say of logarithms goes by the half axes themselves.
+  // RatioTerm to first order about the object of this height with the prior's ratios. There both
+  // residuals are zero, and a derivative by a half axis is that by its logarithm divided by the
+  // half axis.
   template <int kUnknowns>
   void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
     const Eigen::Vector3d of_prior = body.half_axes.z() * observation_.prior->ratio.homogeneous();
@@ -248,7 +255,7 @@ class LinearViews {
     }
   }
 
-  // As HeightTerm: to first order about the height before.
+  // HeightTerm to first order about the previous height.
   template <int kUnknowns>
   void AddSize(const Body& body, LinearSystem<kUnknowns>* system) const {
     const LogNormal& height_m = *observation_.prior->height_m;
@@ -279,12 +286,12 @@ class LinearViews {
 
   const MultiViewObservation& observation_;
   UprightGround ground_;
-  std::vector<BoxOnGround> boxes_;  // of each view
+  std::vector<BoxOnGround> boxes_;  // one per view
   std::optional<RatioRows> ratio_;
   Body start_;
 };
 
-// What is known of the body without its boxes.
+// Costs that do not depend on the boxes.
 LandmarkCosts PriorTerms(const MultiViewObservation& observation) {
   LandmarkCosts terms;
   const Plane& plane = observation.plane_in_world;

@@ -12,7 +12,7 @@
 namespace soslam {
 
 enum class InitialisationMethod {
-  kSingleFrame,  // section IV: one landmark per observation
+  kSingleFrame,  // one landmark per observation, as in section IV of the paper
   kYawSweep,     // one landmark per observation, of any shape, closed form at each yaw
   kMultiView,    // one landmark per object from all of its observations, of any shape
   kSvd,          // QuadricSLAM: one landmark per object from all of its observations
@@ -20,7 +20,7 @@ enum class InitialisationMethod {
 inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_sweep", "multi_view",
                                                           "svd"};
 
-// Which of several yaws that explain a box equally well is the estimate. A box cannot tell; these
+// Choice among several yaws that fit a box equally well. The box does not determine it; the choices
 // are assumptions about how objects stand.
 enum class TieBreak {
   kWorldAxes,  // along the world's horizontal axes: furniture stands along walls, and maps mostly
@@ -64,7 +64,7 @@ struct InitialiseOptions {
                  "which yaw is chosen where several explain the box: nearest to the world's axes "
                  "(modulo quarter turns), or with the front facing the camera most");
     variances.Describe(visit);
-    upright.Describe(visit);  // the next two come under its heading
+    upright.Describe(visit);  // the next two options belong to its group
     visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
     visit.Real(
         "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},

@@ -5,8 +5,8 @@
 
 namespace soslam {
 
-// A least squares problem of few parameters to second order about a point: what its residuals r and
-// their Jacobian J leave of it.
+// Least squares problem of few parameters to second order (Gauss-Newton) about a point, from its
+// residuals r and their Jacobian J.
 template <int kSize>
 struct QuadraticModel {
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -26,13 +26,14 @@ struct QuadraticModel {
     gradient += other.gradient;
     information += other.information;
   }
-  // As if nothing depended on a parameter.
+  // Fixes a parameter: sets all derivatives by it to zero.
   void Hold(int parameter) {
     gradient[parameter] = 0.0;
     information.row(parameter).setZero();
     information.col(parameter).setZero();
   }
-  // The same problem by others that the parameters depend on, `by_others` their derivatives.
+  // The same problem in other variables that the parameters depend on; `by_others` is the Jacobian
+  // of the parameters by them.
   template <int kOthers>
   QuadraticModel<kOthers> Chained(const Eigen::Matrix<double, kSize, kOthers>& by_others) const {
     const Eigen::Matrix<double, kSize, kOthers> mixed = information.lazyProduct(by_others);

@@ -7,9 +7,9 @@
 
 namespace soslam {
 
-// What a prior says of the ratios a / c and b / c, as two residuals with unit variance that are
-// linear in the logarithms of the half axes: that of the first ratio, and what is left of the
-// second once the first is known (the inverse Cholesky factor of their covariance).
+// Prior of the ratios a / c and b / c as two residuals of unit variance that are linear in the
+// logarithms of the half axes: that of the first ratio, and that of the second given the first
+// (whitened by the inverse Cholesky factor of their covariance).
 struct RatioRows {
   explicit RatioRows(const ShapePrior& prior);
 
@@ -19,7 +19,7 @@ struct RatioRows {
 
   Eigen::Matrix<double, 2, 3> by_log_half_axes;
   Eigen::Vector2d at_prior;
-  Eigen::Matrix3d information;  // J^T J of them
+  Eigen::Matrix3d information;  // J^T J, J = by_log_half_axes
 };
 
 }  // namespace soslam

@@ -6,7 +6,7 @@
 namespace soslam {
 namespace {
 
-// Of every two columns, the lower triangle row by row.
+// Products of every two columns (Jacobian, then residual): the lower triangle row by row.
 constexpr size_t kNumProducts = (kLandmarkDof + 1) * (kLandmarkDof + 2) / 2;
 using Products = std::array<double, kNumProducts>;
 using Columns = std::array<const double*, kLandmarkDof + 1>;

@@ -8,13 +8,13 @@
 
 namespace soslam {
 
-// Residuals and their derivatives by the nine parameters of a landmark.
+// Batch of residuals and their derivatives by the nine parameters of a landmark.
 struct ResidualBatch {
   Batch residual;
   std::array<Batch, kLandmarkDof> by_landmark;
 
   static ResidualBatch Zero();
-  // Half the sum of their squares, multiplied by a weight.
+  // Adds half the sum of the squared residuals, multiplied by a weight.
   void AddTo(double weight, LandmarkModel* sum) const;
 };
 

@@ -35,7 +35,7 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
 
 ShapePrior TurnedToSupport(const ShapePrior& prior) {
   if (prior.mount != Mount::kOnWall) return prior;
-  // log(c / a) and log(b / a) of log(a / c) and log(b / c).
+  // Maps (log(a / c), log(b / c)) to (log(c / a), log(b / a)).
   const Eigen::Matrix2d turn{{-1.0, 0.0}, {-1.0, 1.0}};
   const double across = prior.log_correlation * prior.log_sigma.prod();
   const Eigen::Vector2d variances = prior.log_sigma.cwiseAbs2();

@@ -19,28 +19,29 @@ struct LogNormal {
   double log_sigma;  // standard deviation of the logarithm
 };
 
-// Which side of an upright thing its support plane is at: an object's frame has z away from there.
+// Side of an upright object where its support plane is. The object frame has z pointing away from
+// the plane.
 enum class Mount {
-  kStanding,  // below it
-  kHanging,   // above it, as a lamp's
-  kOnWall,    // behind it, as a picture's
+  kStanding,  // below the object
+  kHanging,   // above it, as for a lamp
+  kOnWall,    // behind it, as for a picture
 };
 inline constexpr std::array kMountNames = {"standing", "hanging", "on_wall"};
 
-// What is known of an object's size and shape before it is seen. Ratios are log-normal.
+// Prior of an object's size and shape. Ratios are log-normal.
 struct ShapePrior {
   Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
   Eigen::Vector2d log_sigma = Eigen::Vector2d::Ones();  // standard deviations of their logarithms
   double shape_exponent = kEllipsoidExponent;
   double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
-  std::optional<LogNormal> height_m = {};  // 2 c; none where the size is anybody's guess
+  std::optional<LogNormal> height_m = {};  // 2 c; none if the size is unknown
   Mount mount = Mount::kStanding;
 };
 
-// The prior of the object's frame, whose z points away from its support, from one of things as they
-// are upright (a is their depth, b their width, c their height), as tables have it: that of what is
-// on a wall has its height along x and its depth along z. Ratios are taken to tell nothing of
-// heights, so the spread of a depth is that of height and ratio together.
+// The prior in the object frame, whose z points away from the support plane, from a prior of
+// upright objects as tables have it (a is the depth, b the width, c the height): an object on a
+// wall has its height along x and its depth along z. Ratios are assumed to be independent of
+// heights, so the variance of the logarithm of a depth is the sum of those of height and ratio.
 ShapePrior TurnedToSupport(const ShapePrior& prior);
 
 // Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the
@@ -48,38 +49,37 @@ ShapePrior TurnedToSupport(const ShapePrior& prior);
 std::string NormalisedLabel(const std::string& label);
 bool AreSameLabel(const std::string& one, const std::string& other);
 
-// SemTable of eq. (11), and how far it is to be trusted: what is known of an object by its label,
-// as it is upright.
+// SemTable of eq. (11) with uncertainties: priors by label, of upright objects.
 struct SemanticTable {
   std::map<std::string, ShapePrior> priors;  // by NormalisedLabel of labels and their aliases
   std::optional<ShapePrior> default_prior;   // for labels that are not in the table
 
   bool Contains(const std::string& label) const;
-  // None when neither the label nor a default is there.
+  // None if the table has neither the label nor a default.
   std::optional<ShapePrior> Find(const std::string& label) const;
 };
 
-// A row of a semantic table as people write it.
+// Row of a semantic table as written in a file.
 struct SemanticRow {
   std::string label;
   std::vector<std::string> aliases;  // other names of the same things
   ShapePrior prior;
-  int samples = 0;  // objects that the ratios were learned from; 0: general knowledge
+  int samples = 0;  // number of objects that the ratios were learned from; 0: general knowledge
   std::string source;
 };
 
-// A semantic table with where it comes from.
+// Rows of a semantic table and their description.
 struct SemanticRows {
   std::string description;
   std::optional<SemanticRow> default_row;  // its label is "default"
   std::vector<SemanticRow> rows;           // sorted by label
 };
 
-// The table of all labels and aliases. Throws InputError when two of them are the same after
+// Table by normalised labels and aliases. Throws InputError if two of them are the same after
 // NormalisedLabel.
 SemanticTable LookUpTable(const SemanticRows& rows);
 
-// Where an object's ratio comes from.
+// Source of an object's ratio.
 enum class RatioPrior {
   kTable,        // its label's entry in the semantic table
   kUnit,         // 1:1:1
@@ -87,20 +87,20 @@ enum class RatioPrior {
 };
 inline constexpr std::array kRatioPriorNames = {"table", "unit", "groundtruth"};
 
-// Where an object's shape exponent comes from.
+// Source of an object's shape exponent.
 enum class ShapeSource {
   kTable,      // its label's entry in the semantic table
-  kCuboid,     // cuboids all
-  kEllipsoid,  // ellipsoids all, as in the paper
+  kCuboid,     // always a cuboid
+  kEllipsoid,  // always an ellipsoid, as in the paper
 };
 inline constexpr std::array kShapeSourceNames = {"table", "cuboid", "ellipsoid"};
 
-// log_sigma of a true ratio: exact up to the annotation, which is taken to be good to 2 %.
+// log_sigma of a true ratio: the error of the annotation, assumed to be 2 %.
 inline constexpr double kTrueRatioLogSigma = 0.02;
 
-// The prior of each object of the sequence, in its frame; none where there is no ratio. kUnit keeps
-// all but the ratio of the table's prior, kGroundTruth the shape exponent only; of a default
-// ShapePrior where the table has none.
+// Prior of each object of the sequence, in the object frame; none if there is no ratio. kUnit
+// replaces the ratio of the table's prior, kGroundTruth also its log_sigma and log_correlation; if
+// the table has no prior, those of a default ShapePrior.
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
                                                     const SemanticTable& table, RatioPrior prior,
                                                     ShapeSource shape = ShapeSource::kTable);

@@ -18,12 +18,12 @@
 namespace soslam {
 namespace {
 
-// Two solutions closer than this are one, found twice.
+// Solutions closer than this are the same.
 constexpr double kSameYaw = 0.5 * kRadPerDeg;
 constexpr double kSameRelativeSize = 1e-2;
 
-// A landmark of the prior's shape where the box's lower edge meets the plane, as large as the box
-// is wide there. Its yaw is left to the caller.
+// Initial guess of the prior's ratio where the box's lower edge meets the plane, as large as the
+// box is wide there. The caller sets its yaw.
 std::optional<Landmark> Start(const SingleFrameObservation& observation) {
   const Plane& plane = observation.plane_in_camera;
   const Box& box = observation.box;
@@ -51,7 +51,8 @@ Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOpti
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.max_iterations;
-  // A pixel is a residual of 1e-3 or less: the default tolerances would stop far from the optimum.
+  // An error of one pixel is a residual of 1e-3 or less: the default tolerances would stop far from
+  // the optimum.
   solver.function_tolerance = 1e-12;
   solver.gradient_tolerance = 1e-16;
   solver.parameter_tolerance = 1e-10;
@@ -81,8 +82,8 @@ bool IsSame(const Plane& plane, const Landmark& one, const Landmark& other) {
              kSameRelativeSize;
 }
 
-// How far a solution is from what the tie break wants: 0 with the x axis along the preferred
-// direction and, for the world's axes, at right angles to it.
+// Tie-break score of a solution: 0 if the x axis is along the preferred direction or, for the
+// world's axes, at right angles to it.
 double Oddity(const SingleFrameObservation& observation, const Landmark& landmark,
               TieBreak tie_break) {
   const bool world_axes = tie_break == TieBreak::kWorldAxes;

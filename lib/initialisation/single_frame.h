@@ -16,7 +16,7 @@
 
 namespace soslam {
 
-// What one frame knows of an object: nine equations for nine unknowns.
+// Measurements of an object in one frame: nine equations for nine unknowns.
 struct SingleFrameObservation {
   Camera camera;
   Box box;
@@ -28,21 +28,21 @@ struct SingleFrameObservation {
 
 struct SingleFrameSolution {
   std::vector<Hypothesis> hypotheses;  // best first
-  std::string failure;                 // why there is none
+  std::string failure;                 // reason if there are no hypotheses
 };
 
 // Single-frame initialisation, eq. (12): Levenberg-Marquardt over detection, support and ratio
-// constraints from starting yaws all around. One box can be explained exactly by several yaws,
-// typically two, mirrored in the line of sight: all distinct solutions are returned. Those that fit
-// the box to options.tie_edge_px come first, in the order of options.tie_break; the rest follow by
-// cost.
+// constraints from starting yaws over half a turn. Several yaws can fit one box exactly, typically
+// two, mirrored in the line of sight: all distinct solutions are returned. Solutions that fit the
+// box as well as the best one, to options.tie_edge_px, come first, in the order of
+// options.tie_break; the others follow by cost.
 // Solutions that are not upright above the plane and in front of the camera are dropped. Failures:
 // support_plane_not_in_view, no_solution.
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options);
 
-// The constraints of eq. (12) on a landmark in the camera frame. The blocks stay the caller's; the
-// camera block is the identity and held constant.
+// Adds the constraints of eq. (12) on a landmark in the camera frame. The caller owns the blocks;
+// the camera block must be the identity, and is set constant.
 void AddSingleFrameConstraints(const SingleFrameObservation& observation,
                                const ConstraintVariances& variances, PoseBlock* camera,
                                LandmarkBlock* landmark, ceres::Problem* problem);

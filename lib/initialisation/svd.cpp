@@ -10,7 +10,7 @@ namespace {
 constexpr int kCoefficients = 10;  // of a symmetric 4 x 4 matrix
 constexpr int kMinPlanes = kCoefficients - 1;
 
-// pi^T Q* pi as a row times the upper triangle of Q*.
+// Row whose product with the upper triangle of Q* is pi^T Q* pi.
 Eigen::Matrix<double, 1, kCoefficients> TangencyRow(const Eigen::Vector4d& plane) {
   Eigen::Matrix<double, 1, kCoefficients> row;
   int k = 0;
@@ -29,7 +29,7 @@ Eigen::Matrix4d SymmetricMatrix(const Eigen::Matrix<double, kCoefficients, 1>& u
   return matrix;
 }
 
-// The point nearest to all planes: where the object roughly is.
+// Least squares point of all planes, roughly the centre of the object.
 Eigen::Vector3d Centre(const std::vector<Plane>& planes) {
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
@@ -46,7 +46,8 @@ std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
     const std::vector<Plane>& planes_in_world) {
   if (planes_in_world.size() < kMinPlanes) return std::nullopt;
 
-  // Coordinates around the object and of its size, so that all coefficients are of one magnitude.
+  // Coordinates centred on the object and scaled by its size, so that all coefficients have the
+  // same magnitude.
   const Eigen::Vector3d centre = Centre(planes_in_world);
   double squares = 0.0;
   for (const Plane& plane : planes_in_world) {

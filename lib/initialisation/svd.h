@@ -9,10 +9,10 @@
 
 namespace soslam {
 
-// The dual quadric tangent to the given planes in the least-squares sense (Nicholson et al. 2019,
-// the paper's baseline SVD): the ten coefficients of Q* solve one homogeneous linear equation per
-// plane. Needs boxes from three views with parallax: none for fewer than 9 planes or a solution
-// that is not finite; without parallax what comes back means nothing.
+// Dual quadric tangent to the given planes in the least squares sense (Nicholson et al. 2019, the
+// paper's baseline SVD): the ten coefficients of Q* solve one homogeneous linear equation per
+// plane. Needs boxes from three views with parallax; without parallax the result is meaningless.
+// None for fewer than 9 planes or if the solution is not finite.
 std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
     const std::vector<Plane>& planes_in_world);
 

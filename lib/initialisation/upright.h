@@ -16,18 +16,20 @@
 
 namespace soslam {
 
-// A body that stands upright on its support plane has six degrees of freedom: yaw (rad, see
-// UprightRotation), the foot of its centre on the plane along x and y (m), and the logarithms of
+// Parameters of an object that stands upright on its support plane: yaw (rad, see UprightRotation),
+// foot (projection of its centre onto the plane, along the ground's x and y, m), and logarithms of
 // its half axes.
 using UprightVector = Eigen::Matrix<double, 6, 1>;
-using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;  // of kLandmarkDof's parameters
+using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;  // d landmark / d UprightVector
 
-// The support plane as the frame of upright bodies: frame_from_ground of the plane's frame.
+// Ground frame of the upright objects on a support plane: frame_from_ground, with the frame of the
+// plane.
 struct UprightGround {
   explicit UprightGround(const Plane& plane);
 
   Landmark LandmarkAt(const UprightVector& parameters, double shape_exponent) const;
-  // Of a landmark that is upright on the plane (of any: its nearest upright one's).
+  // Parameters of a landmark that is upright on the plane; for any other, those of the nearest
+  // upright landmark.
   UprightVector ParametersOf(const Landmark& landmark) const;
   UprightJacobian ByParameters(const Landmark& landmark) const;
 
@@ -51,7 +53,8 @@ class LandmarkTerm : public LandmarkCost {
   void AddTo(const Landmark& landmark, LandmarkModel* sum) const final;
 };
 
-// The tangencies of one detection's four edges, tangent points at the depths of `start_in_camera`.
+// Tangencies of the four edges of one detection, with the tangent points at the depths that they
+// have on `start_in_camera`.
 class BoxTerm final : public LandmarkTerm {
  public:
   BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera);
@@ -64,8 +67,8 @@ class BoxTerm final : public LandmarkTerm {
   std::array<double, 4> depths_m_;
 };
 
-// How far the body's outline reaches outside one detection's four edges. Not finite for a body that
-// is not wholly in front of the camera.
+// Signed distances (OutlineExcess) by which the silhouette reaches outside the four edges of one
+// detection. Not finite if the object is not wholly in front of the camera.
 class OutlineTerm final : public LandmarkTerm {
  public:
   explicit OutlineTerm(const std::array<BoxEdge, 4>& edges) : edges_(edges) {}
@@ -77,7 +80,7 @@ class OutlineTerm final : public LandmarkTerm {
   std::array<BoxEdge, 4> edges_;
 };
 
-// The prior's RatioRows.
+// The two residuals of RatioRows.
 class RatioTerm final : public LandmarkTerm {
  public:
   explicit RatioTerm(const ShapePrior& prior) : rows_(prior) {}
@@ -89,7 +92,7 @@ class RatioTerm final : public LandmarkTerm {
   RatioRows rows_;
 };
 
-// The logarithm of the height, 2 c, against the prior's.
+// Residual of the logarithm of the height, 2 c, under the prior's height_m.
 class HeightTerm final : public LandmarkTerm {
  public:
   explicit HeightTerm(const LogNormal& height_m) : height_m_(height_m) {}
@@ -101,8 +104,8 @@ class HeightTerm final : public LandmarkTerm {
   LogNormal height_m_;
 };
 
-// A term of one camera, for a landmark in another frame; each residual under a Huber loss (none
-// with an infinite delta), and the cost multiplied by a weight.
+// Term in one camera for a landmark in another frame; each residual has a Huber loss (none if delta
+// is infinite), and the cost is multiplied by a weight.
 class RobustViewTerm final : public LandmarkTerm {
  public:
   RobustViewTerm(std::unique_ptr<const LandmarkTerm> term, const Rigid3d& camera_from_reference,
@@ -125,8 +128,8 @@ class RobustViewTerm final : public LandmarkTerm {
 // A horizontal axis of the world on a plane: x, or y where x is vertical.
 Eigen::Vector3d WorldAxis(const Plane& plane_in_world);
 
-// A weak preference for a yaw along or across a horizontal axis of the world, as furniture stands:
-// costs `weight` sin^2(2 d), d the angle between them, so at most `weight`.
+// Weak prior of yaws along or across a horizontal axis of the world, as for furniture: cost
+// `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`.
 class AxisTerm final : public LandmarkTerm {
  public:
   AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera, double weight);
@@ -140,12 +143,12 @@ class AxisTerm final : public LandmarkTerm {
   double amplitude_;
 };
 
-// The sum of costs by upright parameters.
+// Sum of the costs as a function of the upright parameters.
 QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& ground,
                                const Landmark& landmark);
 
 // Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
-// landmark and its total cost; none when that is not finite at the start.
+// landmark and its total cost; none if the cost is not finite at the start.
 struct UprightSolution {
   Landmark landmark;
   double cost;

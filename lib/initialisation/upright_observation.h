@@ -14,19 +14,19 @@
 
 namespace soslam {
 
-// What is known of an object's yaw (rad, see Yaw) before its box is looked at; modulo half a turn.
+// Prior of an object's yaw (rad, see Yaw), modulo half a turn.
 struct YawPrior {
   double yaw = 0.0;
   double sigma = 1.0;  // standard deviation, rad
 };
 
-// One box of an object, and what is known beforehand.
+// One box of an object and its priors.
 struct UprightObservation {
   Camera camera;
   std::array<BoxEdge, 4> edges;
   Plane plane_in_camera;
   ShapePrior prior;
-  Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();  // horizontal
+  Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();  // horizontal axis of the world
   double axes_weight = 0.0;
   std::optional<YawPrior> yaw_prior = std::nullopt;
 };

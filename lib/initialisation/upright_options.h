@@ -5,7 +5,7 @@
 
 namespace soslam {
 
-// How an upright landmark is weighed against the box of one detection.
+// Options of the fit of an upright landmark to the box of one detection.
 struct UprightOptions {
   double detection_sigma_fraction = 0.02;
   double axes_weight = 1.0;

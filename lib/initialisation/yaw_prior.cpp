@@ -11,11 +11,13 @@
 namespace soslam {
 namespace {
 
-// Of a yaw that is exact, but for the labels' own error.
+// Standard deviation (rad) of a true yaw: the error of its annotation.
 constexpr double kTrueYawSigma = 0.1 * kRadPerDeg;
 constexpr size_t kMinViews = 2;
 
-// In the world. None when the lower edge is not the object's own, or ends above the horizon.
+// Foot of an object in the world: where the ray through the centre of its box's lower edge meets
+// the support plane. None if the lower edge is a bound, or if its ray does not meet the plane in
+// front of the camera.
 std::optional<Eigen::Vector3d> Foot(const Sequence& sequence, const Detection& detection) {
   if (detection.is_bound[3]) return std::nullopt;
   const Box& box = detection.box;
@@ -26,7 +28,8 @@ std::optional<Eigen::Vector3d> Foot(const Sequence& sequence, const Detection& d
   return sequence.FrameOf(detection).world_from_camera * Eigen::Vector3d(depth * ray);
 }
 
-// The way from the first to the last of some detections' feet, along the straight line through all.
+// Motion (m, world frame) between the first and the last of the detections' feet, from the linear
+// regression of all feet over time.
 std::optional<Eigen::Vector3d> Motion(const Sequence& sequence,
                                       const std::vector<int>& detections) {
   std::vector<double> times;
@@ -67,7 +70,7 @@ class MotionPriors {
                const YawPriorOptions& options, const StandingOptions& standing)
       : sequence_(sequence), shapes_(shapes), options_(options), standing_(standing) {}
 
-  // `around`: a detection and those of the same object in the frames before and after.
+  // `around`: a detection and those of the same object in neighbouring frames.
   std::optional<YawPrior> Find(int index, const std::vector<int>& around) const {
     const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
     const auto motion = Motion(sequence_, around);
@@ -100,7 +103,8 @@ std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& det
                   kTrueYawSigma};
 }
 
-// For each detection, itself and those of its object at most `frames` before or after.
+// For each detection, the detections of its object, itself included, at most `frames` before or
+// after.
 std::vector<std::vector<int>> Neighbours(const Sequence& sequence, int frames) {
   std::vector<std::vector<int>> neighbours(sequence.detections.size());
   const auto frame_of = [&](int index) {

@@ -44,17 +44,17 @@ struct YawPriorOptions {
   }
 };
 
-// How the boxes of a standing object are weighed; as for multi-view landmarks.
+// Options of the multi-view fit of a standing object.
 struct StandingOptions {
   double detection_sigma_fraction = 0.02;
   double view_correlation_rad = 0.0;
   double yaw_step_rad = 0.05;
 };
 
-// The prior of each detection, from the frames' estimated poses; none where the source has nothing
-// to say. kMotion: the straight line through the feet of the object's boxes, where the rays through
-// the middles of their lower edges meet their support planes; when it is shorter than motion_min_m,
-// the best yaw of SweepViews.
+// Prior of each detection, with the frames' estimated poses; none if the source has no information.
+// kMotion: the direction of the straight line through the feet of the object, where the rays
+// through the centres of its boxes' lower edges meet their support planes; if the motion is shorter
+// than motion_min_m, the best yaw of SweepViews.
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
                                                const YawPriorOptions& options,

@@ -17,19 +17,20 @@
 namespace soslam {
 namespace {
 
-// Two optima closer than this are one.
+// Optima closer than this are the same.
 constexpr double kSameYaw = 0.5 * kRadPerDeg;
-// Of a sweep's minima, those that may be the best ones when refined.
+// At least so many of the lowest minima of a sweep are refined: any of them may become the best
+// one.
 constexpr size_t kRefinedMinima = 6;
-// Of the finer grid around a grid point, either way.
+// Number of steps of the finer grid on each side of a grid point.
 constexpr int kRefinementSteps = 10;
-// Between yaws farther apart than so many steps of the grid there is one without a landmark.
+// Yaws farther apart than this many steps of the grid have a yaw without a landmark between them.
 constexpr double kGap = 1.5;
-// Of the likelihood between two yaws of the grid.
+// Number of integration steps of the likelihood between two yaws of the grid.
 constexpr size_t kLikelihoodSteps = 100;
 
-// Of exp(-height^2), between two angles from -pi/2 to pi, where the height is linear in the angle:
-// its mass, and its second moment about 0 modulo pi.
+// Integrals of exp(-height^2) between two angles from -pi/2 to pi, with the height linear in the
+// angle: mass, and second moment about 0 modulo pi.
 struct Likelihood {
   double mass = 0.0;
   double squares = 0.0;
@@ -69,8 +70,8 @@ class Fitter {
         box_fit_(observation),
         shape_exponent_(observation.prior.shape_exponent) {}
 
-  // Of costs that depend on their start, again to those of the result; the cost is then that of the
-  // result's own.
+  // Repeats the fit with further costs that depend on their initial guess, each time made for the
+  // last result; the cost returned is that of the result with the costs made for it.
   std::optional<UprightFit> Fit(UprightVector parameters, bool yaw_is_free) const {
     double cost = 0.0;
     for (int round = 0; round < objective_.rounds; ++round) {
@@ -84,7 +85,7 @@ class Fitter {
   }
 
   using Starts = std::vector<std::optional<StartAtYaw>>;
-  // At the yaws of all starts; none where there is no start, or no landmark.
+  // Fits at the yaws of all starts; none where there is no start or no landmark.
   std::vector<std::optional<UprightFit>> FitAtYaws(const Starts& starts) const {
     std::vector<std::optional<UprightFit>> fits(starts.size());
     if (objective_.further_costs || objective_.rounds > 1) {
@@ -109,8 +110,8 @@ class Fitter {
     return fits;
   }
 
-  // The best landmark near a grid point. Without an extra cost the fit finds the yaw; with one a
-  // finer grid does.
+  // The best landmark near a grid point. Without an extra cost the fit optimises the yaw; with one,
+  // a finer grid does.
   std::optional<UprightFit> RefineYaw(const UprightVector& start, double step) const {
     if (!objective_.extra_cost) return Fit(start, /*yaw_is_free=*/true);
     Starts turned;
@@ -131,7 +132,7 @@ class Fitter {
   }
 
  private:
-  // Of landmarks in front of the camera.
+  // True for a finite cost and an object wholly in front of the camera.
   static bool IsPossible(double cost, double nearest_depth_m) {
     return std::isfinite(cost) && nearest_depth_m > 0.0;
   }
@@ -164,15 +165,16 @@ std::vector<double> YawSweep::Costs() const {
 }
 
 double YawSweep::StandardDeviation(const std::vector<Optimum>& optima) const {
-  // Nodes by their distance from the first optimum, once around. Between them the square root of
-  // the cost above the lowest is linear, which holds for a Gaussian of any width.
+  // Nodes sorted by their signed distance from the first optimum, over half a turn. Between them
+  // the square root of the cost above the lowest is taken as linear, which is exact for a Gaussian
+  // of any width.
   const double centre = optima.front().yaw;
   std::vector<std::pair<double, double>> nodes;
   for (const Optimum& optimum : optima) {
     nodes.emplace_back(YawDifferenceModuloPi(optimum.yaw, centre), optimum.cost);
   }
   const double step = std::numbers::pi / static_cast<double>(yaw.size());
-  int yaws_beside = 0;  // of the grid, with the one that the first optimum was refined from
+  int yaws_beside = 0;  // of the grid, including the one that was refined
   for (size_t i = 0; i < yaw.size(); ++i) {
     if (!fits[i]) continue;
     nodes.emplace_back(YawDifferenceModuloPi(yaw[i], centre), fits[i]->cost);
@@ -215,7 +217,7 @@ std::vector<size_t> CircularMinima(const std::vector<double>& values) {
   };
   std::vector<size_t> minima;
   for (size_t i = 0; i < n; ++i) {
-    // Of a plateau, its first index; of a constant curve, index 0.
+    // A plateau counts by its first index, a constant curve by index 0.
     if (!std::isfinite(height(i)) || (i > 0 && height(i) == height(i - 1))) continue;
     size_t end = i + 1;
     while (end < i + n && height(end) == height(i)) ++end;
@@ -248,8 +250,8 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
     });
     if (!known) optima.push_back(*fit);
   }
-  // Of a body as deep as wide, two yaws cost the same: they are in order of the yaw, not of what
-  // rounding leaves of the costs.
+  // An object with a = b has two yaws of the same cost: they are sorted by yaw, not by rounding
+  // errors of the costs.
   const auto rank = [&](const UprightFit& fit) {
     return std::pair(static_cast<float>(1.0 + fit.cost), yaw_of(fit));
   };

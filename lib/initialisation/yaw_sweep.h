@@ -11,36 +11,36 @@
 
 namespace soslam {
 
-// The failure of an observation for which ClosedForm finds nothing at any yaw.
+// Failure of an observation for which ClosedForm has no solution at any yaw.
 std::string WhyNoSolution(const UprightObservation& observation);
 
-// What makes one yaw better than another, besides the observation's own terms.
+// Costs by which yaws are compared, besides the observation's own terms.
 struct YawObjective {
-  // What the landmark at each yaw is fitted to as well, starting from the given one; may be empty.
+  // Further costs of the fit at each yaw, made for the given initial guess; may be empty.
   std::function<LandmarkCosts(const Landmark& start_in_camera)> further_costs;
-  // Costs are made anew of the result and fitted again, so many times in all, where they depend on
-  // their start.
+  // Number of fits, each with costs made for the result of the previous one. More than one if they
+  // depend on their initial guess.
   int rounds = 1;
-  // What counts on top for the yaw, but not for the fit; may be empty.
+  // Cost that is added for the comparison of yaws, but not fitted; may be empty.
   std::function<double(const Landmark& landmark_in_camera)> extra_cost;
 };
 
-// A landmark on the ground of its observation's plane, see UprightGround.
+// A landmark on the ground of its observation's plane (see UprightGround), and its cost.
 struct UprightFit {
   UprightVector parameters;
   double cost;
-  // Part of it: what the further costs of a YawObjective of several rounds say.
+  // Part of `cost` from the further costs; 0 unless the YawObjective has several rounds.
   double further_cost = 0.0;
 };
 
-// The landmark that is best at each yaw of a grid over half a turn. Entries without one are empty.
+// The best landmark at each yaw of a grid over half a turn; none where there is no solution.
 struct YawSweep {
   std::vector<double> yaw;  // rad, see Yaw
   std::vector<std::optional<UprightFit>> fits;
 
   std::vector<double> Costs() const;  // NaN where there is no landmark
-  // The spread of the yaw (rad) about the first of its optima (yaw and cost; between those of the
-  // grid), when exp(-cost) is its likelihood.
+  // Standard deviation of the yaw (rad) about the first of the optima, with exp(-cost) as its
+  // likelihood. Optima are refined: their yaws lie between those of the grid.
   struct Optimum {
     double yaw;
     double cost;
@@ -50,13 +50,13 @@ struct YawSweep {
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
                   double step);
 
-// The indices of a circular curve's local minima, lowest first, of flat ones their first; NaN
-// counts as high.
+// Indices of the local minima of a circular curve, lowest first; for a flat minimum its first
+// index. NaN counts as infinite.
 std::vector<size_t> CircularMinima(const std::vector<double>& values);
 
-// The best local optima of the sweep, yaw refined, lowest cost first (where 1 + cost is equal
-// in single precision, the lower yaw), at most `max_count`: of so many minima of the grid, and at
-// least of six, the lowest ones are refined. Two of them may be one then.
+// The best local optima of the sweep, with refined yaw, lowest cost first (if 1 + cost is equal in
+// single precision, the lower yaw first), at most `max_count`. The max(max_count, 6) lowest minima
+// of the grid are refined; optima that coincide are returned once.
 std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
                                          const YawObjective& objective, const YawSweep& sweep,
                                          size_t max_count);

@@ -24,9 +24,10 @@ struct BackEndInput {
   std::vector<std::optional<Landmark>> starts;
   // What is known of each object's ratio; none leaves out its ratio constraint.
   std::vector<std::optional<ShapePrior>> priors;
-  // By index into Sequence::detections: the observations whose texture symmetry counts.
+  // Images of the observations whose texture symmetry has a cost, by index into
+  // Sequence::detections.
   std::map<int, std::shared_ptr<const SymmetryImage>> symmetry_images;
-  // By index into Sequence::detections: the observations whose edges are aligned.
+  // Images of the observations whose edges are aligned, by index into Sequence::detections.
   std::map<int, std::shared_ptr<const EdgeImage>> edge_images;
 };
 

@@ -49,7 +49,7 @@ class BackEndProblem {
   void AddStanding(size_t object_index);
   void AddRatio(size_t object_index);
   void AddDetections();
-  // Of held poses, without a bias: by the landmark's variable.
+  // Views with fixed poses and without a bias, by the landmark's variable.
   using HeldViews = std::map<int, std::vector<HeldView>>;
   void AddDetection(size_t index, const Landmark& start_in_camera, HeldViews* held_views);
   void AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views);

@@ -18,13 +18,12 @@ class BlockCholesky {
  public:
   explicit BlockCholesky(const SymmetricBlocks& pattern);
 
-  // Of the matrix, which has the pattern, plus a diagonal. False when that is not positive
-  // definite.
+  // Factors the matrix, which has the pattern, plus a diagonal. Returns false if the sum is not
+  // positive definite.
   bool Factor(const SymmetricBlocks& matrix, const Eigen::VectorXd& diagonal);
 
-  // Of the matrix that was factored, with a diagonal of zero: what is left of the least determined
-  // row's diagonal element when all that are eliminated before it are unknown, as a share of it. 1
-  // for a diagonal matrix, 0 for a singular one.
+  // Smallest ratio of a pivot to its diagonal element of the matrix: 1 for a diagonal matrix, 0 for
+  // a singular one. The matrix must be the one that was factored, with a diagonal of zero.
   double LeastIndependentShare(const SymmetricBlocks& matrix) const;
 
   // x of (matrix) x = right_side.

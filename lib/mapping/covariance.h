@@ -20,8 +20,8 @@ class MarginalCovariances {
   // Whether the terms determine all variables. If not, there are no covariances.
   bool AreDetermined() const { return inverse_.has_value(); }
 
-  // Of an object's landmark, over (rotation vector in the world frame, rad; centre, m; log half
-  // axes).
+  // Covariance of an object's landmark over (rotation vector in the world frame, rad; centre, m;
+  // log half axes).
   Covariance9 OfLandmark(size_t object_index) const;
   // Whether there is one: something has to depend on the landmark.
   bool HasLandmark(size_t object_index) const {
@@ -29,8 +29,8 @@ class MarginalCovariances {
            block_of_[static_cast<size_t>(variables_.Landmark(object_index))] >= 0;
   }
 
-  // Of a plane's variables, over (normal, offset): of rank 3, as the normal has unit length; zero
-  // for what is held.
+  // Covariance of a plane's variables over (normal, offset): its rank is 3, as the normal has unit
+  // length; zero for fixed variables.
   Eigen::Matrix4d OfPlane(size_t plane_index) const;
 
  private:

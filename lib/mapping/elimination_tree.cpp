@@ -19,7 +19,7 @@ struct Node {
   double neighbour_rows = 0.0;
 };
 
-// By position, the variable.
+// Minimum degree order: the variable at each position.
 std::vector<int> MinimumDegreeOrder(const SymmetricBlocks& pattern) {
   std::vector<Eigen::Triplet<double>> couplings;
   for (const auto& block : pattern.blocks()) couplings.emplace_back(block.row, block.column, 1.0);
@@ -69,7 +69,8 @@ std::vector<Node> Nodes(const SymmetricBlocks& pattern, const std::vector<int>& 
   return nodes;
 }
 
-// Of a front in multiplications: its elimination, and what assembling it and handing it on takes.
+// Estimated multiplications for a front: its elimination, its assembly and the update of its
+// parent.
 double Work(double pivots, double neighbours) {
   constexpr double kPivotsThatAssemblyIsWorth = 8.0;
   constexpr double kWorkOfAnyFront = 2000.0;

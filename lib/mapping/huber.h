@@ -23,7 +23,7 @@ struct HuberLoss {
     return {delta * (length - 0.5 * delta), weight, kLeastCurvature * weight};
   }
 
-  // Of four residuals.
+  // Values for four residuals (SIMD).
   struct FourValues {
     Four cost, weight, curvature;
   };

@@ -17,13 +17,13 @@
 namespace soslam {
 namespace {
 
-// Of the least gain: steps that are expected to bring less are not tried.
+// Fraction of the least gain: steps with a smaller predicted decrease are not tried.
 constexpr double kHopeless = 1e-2;
 // Costs of residuals that are all but zero.
 constexpr double kNoCost = 1e-18;
-// Of each landmark for itself, after a step of all variables. Of a landmark's mean cost, steps that
-// bring `kLandmarkGain` are always taken, those that bring less than `kLeastLandmarkGain` never; in
-// between see StepsOfLandmarks.
+// Inner iterations: steps of each landmark alone, after a step of all variables. Steps that lower
+// the cost by `kLandmarkGain`, relative to the mean cost per landmark, are always taken, those
+// below `kLeastLandmarkGain` never; in between see StepsOfLandmarks.
 constexpr int kLandmarkSteps = 20;
 constexpr double kLandmarkGain = 3e-4;
 constexpr double kLeastLandmarkGain = 1e-8;
@@ -33,13 +33,14 @@ constexpr double kNear = 1e-2;
 // back to kFar by itself where kNear leads nowhere, and is spared the steps that halve what is
 // left.
 constexpr double kNearForLandmarks = 0.3;
-// Of steps of all variables. As landmarks look after themselves, what is left to damp is the bend
-// of the drive, which takes many steps to come to rest when damping falls slowly.
+// Damping of steps of all variables. The inner iterations settle the landmarks; what remains is the
+// low-frequency drift of the trajectory, which needs many steps to converge if the damping falls
+// slowly.
 constexpr double kFirstDamping = 1e-4;
 constexpr double kDampingFall = 1e-2;
 constexpr double kLeastDamping = 1e-12;
-// Of steps that are hardly damped, at last hardly more than rounding: 1e-12 still holds back the
-// bend of 32000 frames.
+// Damping of steps near the minimum (MinimiseOptions::hardly_damped_near), in the end close to
+// rounding errors: 1e-12 still slows down the low-frequency drift of 32000 frames.
 constexpr double kHardlyDamped = 1e-12;
 constexpr double kLeastHardlyDamped = 1e-15;
 
@@ -110,7 +111,7 @@ class Minimiser {
   void LineariseFits() {
     ForEachFit([&](LandmarkFit& fit, auto*) { fit.Linearise(hessian_); });
   }
-  // Of all terms; where the fits were linearised.
+  // Cost of all terms; of those of landmarks, at the last linearisation of the fits.
   double Cost() const { return CostOfFits() + CostOfOthers(); }
   double CostOfFits() const {
     double cost = 0.0;
@@ -196,9 +197,10 @@ class Minimiser {
     return RefuseStep();
   }
 
-  // Of many landmarks, a few creep along a flat valley, and would ask for a step of all variables
-  // for each of their own. So they go on alone for as little as one landmark's share of what that
-  // step brings to a landmark in the mean.
+  // A few of many landmarks move slowly along a flat valley, and would require a step of all
+  // variables for each of their own steps. So each landmark continues alone as long as its steps
+  // are predicted to bring 1 / (number of landmarks) of the mean decrease per landmark predicted
+  // for the step of all variables.
   void StepsOfLandmarks(double cost_before, double predicted) {
     const double mean_cost = cost_before / NumLandmarks();
     const double mean_share = predicted / NumLandmarks() / NumLandmarks();

@@ -28,7 +28,7 @@ class NormalEquations {
   const SymmetricBlocks& hessian() const { return hessian_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
 
-  // Of a variable; -1 if it is held or no term depends on it.
+  // Block index of a variable; -1 if it is fixed or no term depends on it.
   int BlockOf(int variable) const { return block_of_[static_cast<size_t>(variable)]; }
 
  private:

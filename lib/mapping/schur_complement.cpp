@@ -35,7 +35,7 @@ void Pack(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int panel_rows,
   }
 }
 
-// Of two panels of `depth` columns the products of all rows of one and kColumns rows of the other.
+// Products of two panels of `depth` columns: all rows of one with kColumns rows of the other.
 template <typename Register>
 SOSLAM_FORCE_INLINE void Multiply(const double* rows, const double* columns, Eigen::Index depth,
                                   double* tile) {

@@ -138,11 +138,12 @@ class PartByPart {
     for (Variable& variable : all) variable.is_held = true;
     return all;
   }
-  // Of a pose, since its start.
+  // Change of a pose since its start (rigid motion in the world frame).
   Rigid3d Correction(int pose) {
     return UnpackPose(At(pose).values) * UnpackPose(StartOf(pose)).Inverse();
   }
-  // Of those that see a landmark, in the order of their terms, which is that of frames.
+  // The middle one of the poses that see a landmark, in the order of its terms, which is that of
+  // frames.
   int MiddlePose(const Terms& of_landmark) {
     std::vector<int> poses;
     for (const Term* term : of_landmark) {

@@ -10,7 +10,7 @@
 namespace soslam {
 namespace {
 
-// By its lower triangle.
+// Symmetric matrix from its lower triangle.
 template <typename Block>
 Eigen::Matrix3d Symmetric(const Block& block) {
   return block.template selfadjointView<Eigen::Lower>();

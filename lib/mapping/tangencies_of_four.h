@@ -106,12 +106,13 @@ SOSLAM_FORCE_INLINE void FindDepths(const ThreeFours& camera, const ThreeFours& 
 
 // What lies outside the planes behind edges, over the centre's depth.
 struct ExcessOfFour {
-  // Of the plane's normal m in the object frame: m_i^2, and m_j m_k of the two others.
+  // Products of components of the plane's normal m in the object frame: m_i^2, and m_j m_k of the
+  // two others.
   ThreeFours squares, products;
   SupportOfFour support;
   Four value;  // in standard deviations of the edge, before a bias of the detector
 };
-// Of an excess, in the order of kByTurn, kByCentre and kByAxes.
+// Gradient of an excess, in the order of kByTurn, kByCentre and kByAxes.
 using GradientOfFour = std::array<Four, kLandmarkDof>;
 
 // `plane` is in the world (TangentBox::Edge).
@@ -173,8 +174,8 @@ struct WeightsOfFour {
   Four turn_turn;
   Four centre;  // by all
   Four axes;    // by turns and axes
-  // By the centre and all, of the gradient times the relative change of the depth, which divides
-  // all.
+  // Weight of the products, by the centre and all, of the gradient with the relative change of the
+  // depth, which divides all excesses.
   Four depth;
 };
 
@@ -193,8 +194,8 @@ SOSLAM_FORCE_INLINE void FindWeights(const BodyInWorld& body, const DepthsOfFour
   }
 }
 
-// Of the Hessian, the products of a weighted gradient's i-th component with those from begin to
-// end.
+// Adds the products of the i-th component of a weighted gradient with the components from begin to
+// end to the Hessian.
 template <size_t kSets>
 SOSLAM_FORCE_INLINE void AddProducts(size_t i, size_t begin, size_t end,
                                      const std::array<Four, kSets>& weighted,
@@ -254,9 +255,9 @@ SOSLAM_FORCE_INLINE void AddGradients(const std::array<GradientOfFour, kSets>& g
   }
 }
 
-// By turns: what h grows by as the contact moves along the body, its second derivatives by m. With
+// Adds second derivatives of h by rotations of the object, as the contact moves along it. With
 // r_i^2 = m_i^2 + e^2 |m|^2, shares l_i / r_i^2 of l_i = dh / ds_i, g_i = (m_i e_i + e^2 m) / r_i
-// and the contact c = dh / dm they are
+// and the contact c = dh / dm, the second derivatives of h by m are
 //   sum_i l_i / r_i^2 (e_i e_i^T + e^2 I - (2 - p) g_i g_i^T) - (p - 1) / h c c^T,
 // the last of which FindWeights has; what they have along m itself is not seen by a turn. And where
 // `contact_turns`, what it has of a contact q that stays on the body.

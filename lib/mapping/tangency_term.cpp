@@ -77,8 +77,8 @@ SOSLAM_MULTIVERSION void AddUpEdges(const FourEdges& edges, const Four& per_px,
   if (of_bias != nullptr) FindBiasRows(per_px, losses, gradient[0], of_bias);
 }
 
-// Of derivatives by a landmark, in rows, those by turns v of the camera that sees it: the landmark
-// turns by -v, and around the camera.
+// Derivatives (rows) by a rotation v of the camera that sees a landmark, from those by the
+// landmark: the landmark rotates by -v about the centre of the camera.
 template <int kRows>
 Eigen::Matrix<double, kRows, 3> ByCameraTurn(const ByLandmark<kRows>& by_landmark,
                                              const Eigen::Vector3d& offset) {

@@ -102,7 +102,8 @@ TEST(InitialiseUpright, HasTheTrueBodyAmongItsHypotheses) {
                  ? 1
                  : 0;
   }
-  // Of yaws that are almost equally good and next to each other, one stands for both.
+  // Neighbouring yaws that are almost equally good share one hypothesis, which may not be the true
+  // one.
   EXPECT_GE(found, estimates.observations.size() * 9 / 10);
 }
 

@@ -213,7 +213,7 @@ struct ReferenceView {
   RobustViewTerm term{std::make_unique<BoxTerm>(edges, in_camera), camera_from_reference, delta,
                       weight};
 
-  // Of the box in its own camera's frame, neither robust nor weighted.
+  // Residuals of the box in its own camera frame, without loss and weight.
   Eigen::VectorXd PlainResiduals() const { return Residuals(BoxTerm(edges, in_camera), in_camera); }
 };
 

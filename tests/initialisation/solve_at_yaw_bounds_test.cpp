@@ -31,7 +31,7 @@ TEST(SolveAtYaw, RecoversABodyThatABoundCutsFromTheOtherThreeEdges) {
         const auto landmark = SolveAtYaw(body.Observe(cut, is_bound), body.Yaw());
         ASSERT_TRUE(landmark) << "edge " << edge;
         EXPECT_TRUE(IsSameBody(*landmark, body.truth, 1e-6)) << "edge " << edge;
-        // As a measurement the same edge changes the body.
+        // Used as a measurement, the same edge changes the object.
         const auto measured = SolveAtYaw(body.Observe(cut), body.Yaw());
         EXPECT_FALSE(measured && IsSameBody(*measured, body.truth, 1e-3)) << "edge " << edge;
       }

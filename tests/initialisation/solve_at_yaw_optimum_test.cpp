@@ -50,8 +50,8 @@ class TangencyCost final : public ceres::SizedCostFunction<4, 3> {
   BoxTerm term_;
 };
 
-// By Levenberg-Marquardt, which stops where the cost is flat within its precision: as near to the
-// optimum as the square root of the precision.
+// Minimises by Levenberg-Marquardt, which stops where the cost is flat within its precision: the
+// distance to the optimum is about the square root of the precision.
 void Minimise(const TangencyCost& cost, Eigen::Vector3d* foot_and_c) {
   ceres::Problem::Options borrow;
   borrow.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -55,7 +55,8 @@ TEST(ViewWeights, TwoViewsAtTheCorrelationAngle) {
   }
 }
 
-// As the header defines them. Not a multiple of four views, two of them opposite to each other.
+// Weights as defined in the header. The number of views is not a multiple of four; two of them are
+// opposite to each other.
 TEST(ViewWeights, OfAllAnglesAreThoseOfTheDefinition) {
   std::vector<double> angles = {0.4, 0.4 + std::numbers::pi};
   for (int i = 0; i < 9; ++i) angles.push_back(RandomUniform(0.0, 2.0 * std::numbers::pi));

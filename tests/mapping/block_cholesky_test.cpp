@@ -12,7 +12,7 @@ namespace {
 
 using Couplings = std::vector<std::array<int, 2>>;
 
-// As J^T J of one residual per coupling and one per variable.
+// Random matrix J^T J with one residual block per coupling and one per variable.
 SymmetricBlocks RandomMatrix(const std::vector<int>& sizes, const Couplings& couplings) {
   SymmetricBlocks matrix(sizes, couplings);
   const auto random = [](int rows, int columns) {
@@ -105,7 +105,7 @@ TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) {
   EXPECT_TRUE(cholesky.Factor(matrix, Eigen::Vector2d::Constant(2.0)));
 }
 
-// Of [[1, c], [c, 1]] the second one has 1 - c^2 left, whatever their units.
+// The second pivot of [[1, c], [c, 1]] is 1 - c^2 of its diagonal element, in any units.
 TEST(BlockCholesky, TellsHowIndependentVariablesAre) {
   for (const double unit : {1.0, 1e-6}) {
     SymmetricBlocks matrix({1, 1}, {{1, 0}});

@@ -14,8 +14,8 @@ namespace {
 class UprightStarts : public testing::Test {
  protected:
   UprightStarts() {
-    // Of each observation the truth, and before it a landmark of another yaw, which differs from
-    // observation to observation.
+    // Hypotheses of each observation: first a landmark of another yaw, which differs from
+    // observation to observation, then the truth.
     for (size_t i = 0; i < sequence_.detections.size(); ++i) {
       const Detection& detection = sequence_.detections[i];
       const Landmark truth = *TrueLandmarkInCamera(sequence_, detection);

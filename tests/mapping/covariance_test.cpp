@@ -16,7 +16,7 @@
 namespace soslam {
 namespace {
 
-// Of two floors that share a normal and six bodies on them, with poses and biases to estimate.
+// Two floors that share a normal and six objects on them, with poses and biases to estimate.
 class MarginalCovariancesTest : public testing::Test {
  protected:
   static Sequence Estimated() {
@@ -107,7 +107,7 @@ class TwoNumbers final : public ceres::SizedCostFunction<2, 1, 1> {
   double weight_;
 };
 
-// Of the offsets of two planes.
+// True if a term of this weight determines the offsets of two planes.
 bool AreDetermined(double weight) {
   Sequence sequence;
   sequence.planes = {{0, Plane{}}, {1, Plane{}}};

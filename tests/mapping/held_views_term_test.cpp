@@ -190,7 +190,8 @@ TEST(HeldViewsTerm, IsInfiniteWhereItIsNotDefined) {
   for (const double p : kShapeExponents) {
     Views views(p, 3);
     views.block.back() = 1e3;  // of a half axis beyond numbers
-    // Of bounds, too: else derivatives that are no numbers would come with a cost that is one.
+    // Bound edges, too, must make the cost infinite: otherwise derivatives that are NaN would come
+    // with a finite cost.
     for (HeldView& view : views.views) {
       for (TangentBox::Edge& edge : view.box.edges) edge.is_bound = RandomUniform(0, 1) < 0.5;
     }

@@ -25,7 +25,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kHessians = {Hessian::kInformation, Hessian::kFar, Hessian::kNear};
 constexpr size_t kNone = TermPlaces::kMaxVariables;
 
-// By the variables of a term, of these sizes; `held` is one of them, or none.
+// Derivatives by the variables of a term, of these sizes; `held` is the fixed one of them, or none.
 struct Derivatives {
   double cost;
   std::array<Eigen::VectorXd, TermPlaces::kMaxVariables> gradient;
@@ -92,7 +92,7 @@ struct Standing {
              kAngleSigma, kHeightSigma) {}
 
   std::vector<double*> Values() { return {landmark.data(), plane.normal.data(), &plane.offset}; }
-  // Of all blocks side by side.
+  // Cost after a step of all blocks; `step` is the concatenation of their steps.
   double CostAfter(const Eigen::VectorXd& step) {
     const LandmarkBlock landmark_before = landmark;
     const Plane plane_before = plane;
@@ -276,7 +276,7 @@ TEST(RatioCostTerm, SaysWhatItsResidualsSay) {
   ExpectSame(RatioCostTerm(0, landmark.data(), AnyPrior()), reference, {kLandmarkDof});
 }
 
-// Of logarithms that are no numbers, and of ratios beyond numbers.
+// Half axes whose logarithms are not finite, or whose ratios overflow.
 TEST(RatioCostTerm, IsInfiniteAndAddsNothingWhereItIsNotDefined) {
   for (const double log_half_axis : {kInfinity, -kInfinity, 1e200, std::nan("")}) {
     for (const size_t axis : {7, 8, 9}) {

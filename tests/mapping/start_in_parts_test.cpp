@@ -133,8 +133,8 @@ TEST(StartInPartsOfALongDrive, IsWhereTheBackEndStarts) {
   EXPECT_LT(map.solver.final_cost, map.solver.initial_cost);
 }
 
-// Of a table that all frames see, each part makes a map of its own; together they cost more than
-// the truth with a little drift.
+// Each part makes its own map of a table that all frames see; together they cost more than the
+// truth with a little drift.
 TEST(StartInPartsOfARoom, MovesNothingWhereThatCostsMore) {
   Sequence sequence = SyntheticSequence(RandomScene(3, 5, 60), true);
   for (Detection& detection : sequence.detections) {
@@ -213,11 +213,11 @@ class PartsOfALine : public testing::Test {
     sequence_.objects.emplace_back();
     variables_.emplace(input_);
   }
-  // Of a pose.
+  // Adds a cost of a pose.
   const CurveTerm& Add(size_t frame, const CurveOf& curve) {
     return AddTerm({variables_->Pose(frame)}, curve);
   }
-  // Of the landmark, which that frame sees.
+  // Adds a cost of the landmark, which that frame sees.
   void AddView(size_t frame, const CurveOf& curve) {
     AddTerm({variables_->Pose(frame), variables_->Landmark(0)}, curve);
   }

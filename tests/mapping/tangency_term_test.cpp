@@ -48,7 +48,7 @@ struct ViewOfBox {
     std::tie(view.camera_block, view.landmark_block, bias) = before;
     return cost;
   }
-  // Of an edge, in standard deviations of it.
+  // Excess of an edge, in its standard deviations.
   double Excess(size_t edge) const {
     const std::array<const double*, 2> blocks = {view.camera_block.data(),
                                                  view.landmark_block.data()};
@@ -125,7 +125,7 @@ struct Derivatives {
   Eigen::Matrix<double, kDof, kDof> hessian;
 };
 
-// By all variables but those that are held.
+// Derivatives by all variables except the fixed ones.
 Derivatives Linearised(const TangencyTerm& term, Hessian kind,
                        const std::array<bool, 3>& is_held = {}) {
   constexpr std::array kSizes = {kPoseDof, kLandmarkDof, kBiasSize};
@@ -208,9 +208,9 @@ TEST(TangencyTerm, DerivativesAgreeWithNumbers) {
   EXPECT_GT(checked, 5);
 }
 
-// By the landmark, within the Huber loss's delta and beyond it. With J the gradients of excesses:
-// J^T W J; where a minimum is far, also what holds the body where its contact moves along it; near
-// it, all there is.
+// Hessians by the landmark, within the Huber loss's delta and beyond it. With J the gradients of
+// excesses: J^T W J; far from a minimum (kFar), also the positive curvature from the contact that
+// moves along the object; near it (kNear), the whole Hessian.
 TEST(TangencyTerm, HessiansAreWhatTheirKindsSay) {
   constexpr double kDelta = 1.0;
   using Square = Eigen::Matrix<double, kLandmarkDof, kLandmarkDof>;
