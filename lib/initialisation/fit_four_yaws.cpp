@@ -50,7 +50,7 @@ struct Rows {
   std::array<ThreeFours, 4> by_log_half_axes;
 };
 
-// Of bodies whose foot is the ground's origin.
+// Residuals and derivatives with the foot at the ground's origin.
 SOSLAM_FORCE_INLINE void RowsAtOrigin(const Tangencies& tangencies, const ThreeFours& half_axes,
                                       Rows* rows) {
   for (size_t edge = 0; edge < 4; ++edge) {
@@ -67,7 +67,8 @@ SOSLAM_FORCE_INLINE void RowsAtOrigin(const Tangencies& tangencies, const ThreeF
   }
 }
 
-// Of bodies on their best foot: less what a foot explains of the rows.
+// Adds the costs at the optimal foot: projects the residuals and their Jacobian onto the complement
+// of the Jacobian by the foot (variable projection).
 SOSLAM_FORCE_INLINE void AddTangencies(const Tangencies& tangencies, const Rows& rows, Model* sum) {
   std::array<ThreeFours, 2> foot_by_log_half_axes{};
   for (size_t edge = 0; edge < 4; ++edge) {
@@ -129,7 +130,7 @@ SOSLAM_FORCE_INLINE void ReplaceModel(const FourMask& where, const Model& from, 
   for (size_t i = 0; i < 3; ++i) Replace(where, from.information[i], &to->information[i]);
 }
 
-// The x of A x = -b, by cofactors, and where A, which is symmetric, is positive definite.
+// Solves A x = -b for symmetric A by cofactors; `is_definite` is set where A is positive definite.
 SOSLAM_FORCE_INLINE void SolveForNegative(const std::array<ThreeFours, 3>& a, const ThreeFours& b,
                                           ThreeFours* x, FourMask* is_definite) {
   const Four c00 = a[1][1] * a[2][2] - a[2][1] * a[2][1];
@@ -146,7 +147,7 @@ SOSLAM_FORCE_INLINE void SolveForNegative(const std::array<ThreeFours, 3>& a, co
   (*x)[2] = scale * (c20 * b[0] + c21 * b[1] + c22 * b[2]);
 }
 
-// MinimiseSquares, line by line. Leaves the model at the minimum.
+// MinimiseSquares, line by line, for four fits. `at` becomes the model at the minimum.
 SOSLAM_FORCE_INLINE void Minimise(const Tangencies& tangencies, const RatioRows& ratio,
                                   int max_iterations, ThreeFours* log_half_axes, Model* at) {
   using namespace levenberg_marquardt;
@@ -188,7 +189,7 @@ SOSLAM_FORCE_INLINE void Minimise(const Tangencies& tangencies, const RatioRows&
   }
 }
 
-// Gram and Schmidt's orthonormal basis of two columns.
+// Gram-Schmidt QR decomposition of the weighted Jacobian (4 x 2) by the foot.
 SOSLAM_FORCE_INLINE void FindFootBasis(const BoxOnGround& box, Tangencies* tangencies) {
   Four squares{}, products{}, rest_squares{};
   for (int edge = 0; edge < 4; ++edge) {

@@ -148,8 +148,9 @@ struct LossesOfFour {
   Four curvature;
 };
 
-// Of a bound that is not reached, nothing. Excesses that are not finite make the cost so, even
-// those without weight: nothing that is made of them is to be added.
+// Losses of four excesses; zero for a bound edge with a positive excess. An excess that is not
+// finite makes the cost not finite, even if its weight is zero: no other result computed from it
+// may be added.
 SOSLAM_FORCE_INLINE void FindLosses(const FourEdges& edges, const Four& excess,
                                     const HuberLoss& loss, Hessian hessian, LossesOfFour* losses) {
   const FourMask is_idle = (edges.is_bound > 0.0) & (excess > 0.0);
@@ -259,8 +260,8 @@ SOSLAM_FORCE_INLINE void AddGradients(const std::array<GradientOfFour, kSets>& g
 // r_i^2 = m_i^2 + e^2 |m|^2, shares l_i / r_i^2 of l_i = dh / ds_i, g_i = (m_i e_i + e^2 m) / r_i
 // and the contact c = dh / dm, the second derivatives of h by m are
 //   sum_i l_i / r_i^2 (e_i e_i^T + e^2 I - (2 - p) g_i g_i^T) - (p - 1) / h c c^T,
-// the last of which FindWeights has; what they have along m itself is not seen by a turn. And where
-// `contact_turns`, what it has of a contact q that stays on the body.
+// the last term of which is in FindWeights; their part along m itself has no effect on rotations.
+// With `contact_turns`, also adds those of a contact q that is fixed to the object.
 SOSLAM_FORCE_INLINE void AddCurvatureByTurns(const BodyInWorld& body, const ExcessOfFour& excess,
                                              const Four& factor, bool contact_turns,
                                              SumsOfFour* sums) {
@@ -284,7 +285,7 @@ SOSLAM_FORCE_INLINE void AddCurvatureByTurns(const BodyInWorld& body, const Exce
   }
 }
 
-// By turns and half axes.
+// Adds the mixed second derivatives of h by rotations and half axes.
 SOSLAM_FORCE_INLINE void AddMixedCurvature(const BodyInWorld& body, const ExcessOfFour& excess,
                                            const Four& factor, SumsOfFour* sums) {
   const SupportOfFour& support = excess.support;
@@ -297,7 +298,8 @@ SOSLAM_FORCE_INLINE void AddMixedCurvature(const BodyInWorld& body, const Excess
   }
 }
 
-// Of the Hessian, what is not a product of gradients but that by the half axes.
+// Adds the part of the Hessian that is not a product of gradients, except that by the half axes
+// alone.
 SOSLAM_FORCE_INLINE void AddCurvature(const BodyInWorld& body, const DepthsOfFour& depths,
                                       const ExcessOfFour& excess, const LossesOfFour& losses,
                                       Hessian hessian, SumsOfFour* sums) {
@@ -311,7 +313,8 @@ SOSLAM_FORCE_INLINE void AddCurvature(const BodyInWorld& body, const DepthsOfFou
   }
 }
 
-// By the half axes, h has p times its gradient on the diagonal: the sums of all, at the end.
+// Adds the part of the Hessian by the half axes alone that is not a product of gradients: h has p
+// times its gradient on the diagonal. Called once at the end, for the sums of all edges.
 SOSLAM_FORCE_INLINE void AddCurvatureByAxes(const BodyInWorld& body, Hessian hessian,
                                             SumsOfFour* sums) {
   if (hessian != Hessian::kNear) return;
