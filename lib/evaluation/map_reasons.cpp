@@ -156,8 +156,7 @@ Explanation ExplainLeftOut(const Fates& fates) {
   for (const auto& [reason, count] : fates.by_reason) {
     words.push_back(fmt::format("{} {}", reason, count));
   }
-  const bool by_association =
-      static_cast<int>(fates.frames_before_association.size()) >= kFewestViews;
+  const bool by_association = fates.frames_before_association.size() > fates.frames_in_use.size();
   return {by_association ? MapReason::kLostInAssociation : MapReason::kGated,
           fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
                       fmt::join(words, ", "))};

@@ -17,8 +17,8 @@ namespace soslam {
 // Reasons for a true object without landmark, or a landmark without true object.
 enum class MapReason {
   kNotDetected,        // boxes overlap it in fewer than kFewestViews frames
-  kGated,              // so many boxes, but most were left out before association
-  kLostInAssociation,  // most were left out by association
+  kGated,              // so many boxes, but in use in fewer, and none left out by association
+  kLostInAssociation,  // the same, and association left boxes out in other frames
   kSplit,              // boxes are spread over several objects, or another landmark has it already
   kJoined,             // boxes are, or are taken for, those of several true objects
   kNoLandmark,         // the object has boxes enough, and no estimate
