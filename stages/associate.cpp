@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/command_line.h"
+#include "cli/command_line.h"
 #include "stage/run_associate.h"
 
 int main(int argc, char** argv) {

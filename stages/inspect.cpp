@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "cli/command_line.h"
 #include "inspection/difference.h"
-#include "stage/command_line.h"
 #include "stage/run_inspect.h"
 
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constraints/huber.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
@@ -127,7 +128,7 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
     const double size = std::abs(residuals[i]);
     if (!(size > huber_delta_)) continue;
-    const double root = std::sqrt(huber_delta_ * (2.0 * size - huber_delta_));
+    const double root = std::sqrt(2.0 * HuberLoss{huber_delta_}(size).cost);
     const double slope = huber_delta_ / root;
     residuals[i] = std::copysign(root, residuals[i]);
     if (jacobian != nullptr) jacobian->row(i) *= slope;

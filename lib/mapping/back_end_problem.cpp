@@ -23,8 +23,8 @@
 #include "mapping/residual_term.h"
 #include "mapping/tangency_term.h"
 #include "mapping/view_term.h"
+#include "orientation/symmetry_samples.h"
 #include "orientation/texture_asymmetry.h"
-#include "symmetry/sampling.h"
 
 namespace soslam {
 namespace {

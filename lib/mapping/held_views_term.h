@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/wide_loops.h"
+#include "constraints/huber.h"
 #include "geometry/rigid3.h"
-#include "mapping/huber.h"
 #include "mapping/tangent_box.h"
 #include "mapping/term.h"
 

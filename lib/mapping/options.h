@@ -7,7 +7,7 @@
 #include "constraints/variances.h"
 #include "initialisation/semantic_table.h"
 #include "orientation/options.h"
-#include "symmetry/options.h"
+#include "orientation/symmetry_options.h"
 
 namespace soslam {
 

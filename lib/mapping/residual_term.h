@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "constraints/huber.h"
 #include "constraints/tangent_space.h"
-#include "mapping/huber.h"
 #include "mapping/term.h"
 
 namespace soslam {

@@ -7,9 +7,9 @@
 #include <cstddef>
 
 #include "base/wide_loops.h"
+#include "constraints/huber.h"
 #include "geometry/mirror_mapping.h"
 #include "geometry/support_of_four.h"
-#include "mapping/huber.h"
 #include "mapping/tangent_box.h"
 #include "mapping/term.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/wide_loops.h"
-#include "mapping/huber.h"
+#include "constraints/huber.h"
 #include "mapping/tangent_box.h"
 #include "mapping/term.h"
 

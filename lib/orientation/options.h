@@ -6,7 +6,7 @@
 #include "base/options.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_options.h"
-#include "symmetry/options.h"
+#include "orientation/symmetry_options.h"
 
 namespace soslam {
 

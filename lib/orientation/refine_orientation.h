@@ -7,7 +7,7 @@
 #include "model/sequence.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/options.h"
-#include "symmetry/refine.h"
+#include "orientation/refine_symmetry.h"
 
 namespace soslam {
 

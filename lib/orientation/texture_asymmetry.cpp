@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "image/brief.h"
 #include "initialisation/residual_batch.h"
-#include "symmetry/sampling.h"
+#include "orientation/symmetry_samples.h"
 
 namespace soslam {
 namespace {

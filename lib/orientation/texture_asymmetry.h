@@ -12,7 +12,7 @@
 #include "orientation/mirror_residuals.h"
 #include "orientation/mirror_search.h"
 #include "orientation/options.h"
-#include "symmetry/options.h"
+#include "orientation/symmetry_options.h"
 
 namespace soslam {
 

@@ -6,19 +6,15 @@
 #include <iterator>
 #include <limits>
 
+#include "constraints/huber.h"
 #include "constraints/tangency.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kHuberDelta = 1.0;      // of residuals in standard deviations
+constexpr HuberLoss kLoss{1.0};          // of residuals in standard deviations
 constexpr double kStep = 0.01;           // finer than boxes can resolve
 constexpr double kSigmaFraction = 0.02;  // of an edge, as a fraction of the side of its box
-
-double HuberLoss(double residual) {
-  const double size = std::abs(residual);
-  return size <= kHuberDelta ? 0.5 * size * size : kHuberDelta * (size - 0.5 * kHuberDelta);
-}
 
 double Loss(const Sequence& sequence, const Detection& detection, double shape_exponent) {
   Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
@@ -26,7 +22,8 @@ double Loss(const Sequence& sequence, const Detection& detection, double shape_e
   double loss = 0.0;
   for (const BoxEdge& edge :
        BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_bound, kSigmaFraction)) {
-    loss += HuberLoss(Tangency(edge, in_camera, TangentDepth(edge, in_camera), 0.0, nullptr));
+    const double residual = Tangency(edge, in_camera, TangentDepth(edge, in_camera), 0.0, nullptr);
+    loss += kLoss(std::abs(residual)).cost;
   }
   return loss;
 }

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "cli/stage_files.h"
 #include "image/image_undistorter.h"
 #include "model/sequence.h"
-#include "stage/stage_files.h"
 
 namespace soslam {
 

@@ -11,8 +11,8 @@
 #include "association/agreement.h"
 #include "association/association.h"
 #include "base/error.h"
+#include "cli/report_findings.h"
 #include "evaluation/result_checks.h"
-#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {

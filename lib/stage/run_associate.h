@@ -2,7 +2,7 @@
 #pragma once
 
 #include "association/options.h"
-#include "stage/stage_files.h"
+#include "cli/stage_files.h"
 
 namespace soslam {
 

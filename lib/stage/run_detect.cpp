@@ -18,8 +18,8 @@
 #include "dataset/image_path.h"
 #include "dataset/label_file.h"
 #include "dataset/tum_list.h"
-#include "detector/yolo_detector.h"
 #include "image/read_image.h"
+#include "image/yolo_detector.h"
 
 namespace soslam {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "detector/options.h"
-#include "stage/stage_files.h"
+#include "cli/stage_files.h"
+#include "image/detector_options.h"
 
 namespace soslam {
 

@@ -13,10 +13,10 @@
 #include "artefact/run_file.h"
 #include "base/file_kind.h"
 #include "base/one_line.h"
-#include "stage/command_line.h"
-#include "stage/plan.h"
-#include "stage/plan_makefile.h"
+#include "cli/command_line.h"
 #include "stage/run_plan.h"
+#include "workflow/plan.h"
+#include "workflow/plan_makefile.h"
 
 namespace soslam {
 namespace {

@@ -8,8 +8,8 @@
 #include "artefact/map_file.h"
 #include "artefact/metrics_file.h"
 #include "artefact/sequence_file.h"
+#include "cli/report_findings.h"
 #include "evaluation/metrics.h"
-#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {

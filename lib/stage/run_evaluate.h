@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/stage_files.h"
 #include "evaluation/options.h"
-#include "stage/stage_files.h"
 
 namespace soslam {
 

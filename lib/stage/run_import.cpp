@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "artefact/sequence_file.h"
+#include "cli/report_findings.h"
 #include "dataset/gate.h"
 #include "dataset/import.h"
-#include "stage/report_findings.h"
 
 namespace soslam {
 

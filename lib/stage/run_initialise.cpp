@@ -12,10 +12,10 @@
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "cli/report_findings.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
 #include "initialisation/initialise.h"
-#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {

@@ -16,12 +16,12 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "cli/report_findings.h"
 #include "evaluation/result_checks.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
 #include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
-#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {

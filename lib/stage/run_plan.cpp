@@ -13,10 +13,10 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "stage/pipeline_settings.h"
-#include "stage/plan.h"
-#include "stage/plan_makefile.h"
-#include "stage/work_units.h"
+#include "workflow/pipeline_settings.h"
+#include "workflow/plan.h"
+#include "workflow/plan_makefile.h"
+#include "workflow/work_units.h"
 
 namespace soslam {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/options.h"
-#include "stage/stage_files.h"
+#include "cli/stage_files.h"
 
 namespace soslam {
 

@@ -10,6 +10,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "cli/report_findings.h"
 #include "evaluation/result_checks.h"
 #include "image/line_segments.h"
 #include "mapping/back_end.h"
@@ -17,7 +18,6 @@
 #include "planes/camera_height.h"
 #include "planes/planes_and_holding.h"
 #include "stage/frame_images.h"
-#include "stage/report_findings.h"
 
 namespace soslam {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "base/error.h"
 #include "base/table.h"
-#include "provenance/reproduce.h"
-#include "stage/command_line.h"
-#include "stage/plan.h"
+#include "cli/command_line.h"
 #include "stage/run_verify.h"
+#include "workflow/plan.h"
+#include "workflow/reproduce.h"
 
 namespace soslam {
 namespace {

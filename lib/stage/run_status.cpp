@@ -11,9 +11,9 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "stage/pipeline_settings.h"
-#include "stage/plan_state.h"
 #include "stage/run_plan.h"
+#include "workflow/pipeline_settings.h"
+#include "workflow/plan_state.h"
 
 namespace soslam {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/options.h"
-#include "stage/stage_files.h"
+#include "cli/stage_files.h"
 
 namespace soslam {
 

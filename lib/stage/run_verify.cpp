@@ -7,8 +7,8 @@
 #include <set>
 
 #include "base/table.h"
-#include "provenance/verify.h"
-#include "stage/command_line.h"
+#include "cli/command_line.h"
+#include "workflow/verify.h"
 
 namespace soslam {
 namespace {

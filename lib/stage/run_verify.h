@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/options.h"
-#include "provenance/recorded_runs.h"
-#include "stage/stage_files.h"
+#include "cli/stage_files.h"
+#include "workflow/recorded_runs.h"
 
 namespace soslam {
 

@@ -7,10 +7,10 @@
 #include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "orientation/refine_orientation.h"
+#include "orientation/refine_symmetry.h"
+#include "orientation/symmetry_samples.h"
 #include "orientation/texture_asymmetry.h"
-#include "symmetry/refine.h"
-#include "symmetry/sampling.h"
-#include "symmetry/yaw_profile.h"
+#include "orientation/yaw_profile.h"
 
 namespace soslam {
 namespace {

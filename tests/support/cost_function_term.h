@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "constraints/tangent_space.h"
-#include "mapping/huber.h"
+#include "constraints/huber.h"
 #include "mapping/term.h"
 
 namespace soslam {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "detector/onnx_check.h"
 #include "fuzz/fuzz_target.h"
+#include "image/onnx_check.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/fuzz_target.h"
-#include "stage/pipeline_settings.h"
+#include "workflow/pipeline_settings.h"
 
 namespace soslam {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/run_file.h"
 #include "fuzz/fuzz_target.h"
-#include "provenance/verify.h"
+#include "workflow/verify.h"
 
 namespace soslam {
 namespace {

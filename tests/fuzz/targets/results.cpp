@@ -6,7 +6,7 @@
 #include "report/published.h"
 #include "report/results_tree.h"
 #include "report/timing_table.h"
-#include "stage/plan_makefile.h"
+#include "workflow/plan_makefile.h"
 
 namespace soslam {
 namespace {

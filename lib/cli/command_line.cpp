@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command_line.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <opencv2/core/utility.hpp>
+#include <optional>
+#include <thread>
+
+#include "base/one_line.h"
+#include "base/progress.h"
+#include "cli/help.h"
+#include "cli/run_recorder.h"
+#include "cli/settings_file.h"
+#include "dataset/image_path.h"
+
+namespace soslam::internal {
+
+namespace {
+
+constexpr const char* kFailureRecord = "--failure_record";
+
+// Storage for CLI11 while it parses.
+struct ParsedArguments {
+  StageFiles files;
+  std::string settings_file;
+  int threads = 0;
+  bool quiet = false;
+  std::map<std::string, std::string> option_texts;  // keyed by option name
+};
+
+void AddFiles(const std::vector<FileArgument>& files, const std::string& group, CLI::App* app,
+              ParsedArguments* parsed) {
+  for (const FileArgument& file : files) {
+    const std::string paths = file.repeatable ? "PATH ..." : "PATH";
+    CLI::Option* option = app->add_option_function<std::vector<std::string>>(
+        "--" + file.name,
+        [parsed, name = file.name](const std::vector<std::string>& paths) {
+          for (size_t i = 0; i < paths.size(); ++i) {
+            if (paths[i].empty()) throw CLI::ValidationError("--" + name, "is ''; expected a path");
+            parsed->files[RepeatedName(name, i)] = paths[i];
+          }
+        },
+        file.doc);
+    option->group(group)
+        ->required(file.required)
+        ->option_text(file.required ? paths + " (required)" : paths);
+    if (!file.repeatable) option->expected(1);
+  }
+}
+
+void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
+  for (const OptionRow& row : options) {
+    CLI::Option* option = app->add_option_function<std::string>(
+        "--" + row.name,
+        [parsed, name = row.name](const std::string& text) { parsed->option_texts[name] = text; },
+        OptionHelp(row));
+    option->group(row.group.empty() ? "Options" : row.group)->option_text(row.type);
+    if (row.type == "boolean") option->expected(0, 1);
+  }
+}
+
+void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
+  app->add_option("--settings", parsed->settings_file,
+                  "JSON object of options; those on the command line win")
+      ->group("Common")
+      ->option_text("PATH");
+  app->add_option("--threads", parsed->threads,
+                  "threads; 0 = all cores. Results do not depend on it\n[default 0]")
+      ->check(CLI::Range(0, 1024))
+      ->group("Common")
+      ->option_text("integer");
+  app->add_option(kFailureRecord, "file to write when the stage fails: exit code and error")
+      ->group("Common")
+      ->option_text("PATH");
+  app->add_flag("--quiet", parsed->quiet, "show no progress on stderr")->group("Common");
+  AddOutsidePaths(app);
+  app->add_flag_callback(
+         "--settings_schema",
+         [&options, app] {
+           std::cout << SettingsSchema(options, "Settings of " + app->get_name()).dump(2) << "\n";
+           throw CLI::Success();
+         },
+         "print the JSON schema of the settings and exit")
+      ->group("Common");
+  AddHelpAndVersion(app);
+}
+
+// Value of an option's text. A text that does not match the type stays a string, which
+// OptionsFromJson then refuses with the option's name.
+nlohmann::json ValueFromText(const std::string& text, const std::string& type) {
+  const char* const end = text.data() + text.size();
+  if (type == "integer") {
+    int64_t value = 0;
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end) return value;
+  }
+  if (type == "number") {
+    double value = 0.0;
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end && std::isfinite(value)) return value;
+  }
+  if (type == "boolean") {
+    if (text.empty() || text == "true") return true;
+    if (text == "false") return false;
+  }
+  return text;
+}
+
+int ThreadsOf(const ParsedArguments& parsed) {
+  if (parsed.threads > 0) return parsed.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::vector<SettingsLayer> LayersOf(const ParsedArguments& parsed,
+                                    const std::vector<OptionRow>& options) {
+  std::vector<SettingsLayer> layers;
+  if (!parsed.settings_file.empty()) {
+    layers.push_back(
+        {parsed.settings_file, "settings file", ReadSettingsFile(parsed.settings_file)});
+  }
+  nlohmann::json values = nlohmann::json::object();
+  for (const OptionRow& row : options) {
+    const auto text = parsed.option_texts.find(row.name);
+    if (text != parsed.option_texts.end()) values[row.name] = ValueFromText(text->second, row.type);
+  }
+  layers.push_back({"command line", "command line", values});
+  return layers;
+}
+
+struct Failure {
+  int exit_code;
+  std::string message;  // one line
+};
+
+// Exit code and message of the current exception.
+Failure CurrentFailure() {
+  const auto failure = [](ExitCode exit_code, const std::string& message) {
+    return Failure{static_cast<int>(exit_code), OneLine(message)};
+  };
+  try {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    return failure(ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
+  } catch (const Error& error) {
+    return failure(error.exit_code(), error.what());
+  } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
+    return failure(ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
+  } catch (...) {
+    return failure(ExitCode::kInternal, "internal error: unknown exception");
+  }
+}
+
+int Fail(const CLI::App& app, const Failure& failure) {
+  std::cerr << app.get_name() << ": error: " << failure.message << std::endl;
+  const CLI::Option* record = app.get_option_no_throw(kFailureRecord);
+  if (record != nullptr && record->count() > 0) {
+    // If the record cannot be written, stderr must suffice.
+    std::ofstream(record->as<std::string>())
+        << fmt::format("exit code {}: {}\n", failure.exit_code, failure.message);
+  }
+  return failure.exit_code;
+}
+
+int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
+                const std::vector<OptionRow>& options, const StageBody& body) {
+  const int threads = ThreadsOf(parsed);
+  RunRecorder recorder(info, parsed.files, parsed.settings_file, threads);
+  try {
+    const std::vector<SettingsLayer> layers = LayersOf(parsed, options);
+    recorder.SetSettings(body.resolve(layers), layers);
+    const int exit_code = body.run(parsed.files, threads);
+    recorder.RecordSuccess();
+    return exit_code;
+  } catch (...) {
+    const Failure failure = CurrentFailure();
+    recorder.RecordFailure(failure.exit_code, failure.message);
+    throw;
+  }
+}
+
+int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::App* app,
+                const std::vector<OptionRow>& options, const StageBody& body) {
+  ParsedArguments parsed;
+  app->formatter(std::make_shared<HelpFormatter>());
+  app->footer(
+      fmt::format("Example:\n  {}\n\n{}", ExampleHelp(info.example), ExitCodesHelp(info.findings)));
+  AddFiles(info.inputs, "Inputs", app, &parsed);
+  AddFiles(info.outputs, "Outputs", app, &parsed);
+  AddOptions(options, app, &parsed);
+  AddCommon(options, app, &parsed);
+  app->parse(argc, argv);
+  std::optional<ProgressOnStderr> progress;
+  if (!parsed.quiet) progress.emplace(info.name);
+  return RunRecorded(parsed, info, options, body);
+}
+
+}  // namespace
+
+std::string ExitCodesHelp(const std::string& findings) {
+  const std::string codes =
+      "Exit codes: 0 done; 2 wrong usage or setting; 3 input missing or not valid; 4 nothing "
+      "usable\ncame out; 5 numerical failure; 70 a bug in this program";
+  return findings.empty() ? codes : fmt::format("{};\n{} {}", codes, kFindings, findings);
+}
+
+void AddHelpAndVersion(CLI::App* app) {
+  app->set_help_flag("--help", "print this and exit")->group("Common");
+  app->set_version_flag("--version", app->get_name() + " " + SOSLAM_VERSION,
+                        "print the version and exit")
+      ->group("Common");
+}
+
+void AddOutsidePaths(CLI::App* app) {
+  app->add_flag_callback(
+         "--allow_outside_paths", [] { AllowOutsidePaths(true); },
+         "read images of a dataset also where its lists or symbolic links\nlead out of its folder")
+      ->group("Common");
+}
+
+int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
+  try {
+    return run();
+  } catch (const CLI::Success& answered) {  // --help and its like
+    return app->exit(answered);
+  } catch (...) {
+    return Fail(*app, CurrentFailure());
+  }
+}
+
+int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
+                 const std::vector<OptionRow>& options, const StageBody& body) {
+  // Silences Ceres' warnings through glog, which repeat its results; stages report these in their
+  // own words.
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  cv::setNumThreads(1);  // stages have threads of their own, on top of which OpenCV's would come
+  CLI::App app(info.purpose, info.name);
+  return ExitCodeOf(&app, [&] { return ParseAndRun(argc, argv, info, &app, options, body); });
+}
+
+}  // namespace soslam::internal

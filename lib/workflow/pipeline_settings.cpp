@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "workflow/pipeline_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "association/options.h"
+#include "base/error.h"
+#include "base/file_kind.h"
+#include "base/options.h"
+#include "cli/settings_file.h"
+#include "dataset/import_options.h"
+#include "evaluation/options.h"
+#include "image/edge_maps.h"
+#include "initialisation/options.h"
+#include "mapping/options.h"
+#include "orientation/options.h"
+#include "planes/options.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// Defaults of an options struct overwritten by `values`.
+template <typename Options>
+json Resolve(const json& values, const std::string& where) {
+  Options options;
+  OptionsFromJson(values, where, &options);
+  return OptionsToJson(options);
+}
+
+struct PipelineStage {
+  const char* name;
+  json (*resolve)(const json& values, const std::string& where);
+  std::vector<std::string> needs;  // stages whose artefacts it reads
+  // True if its (resolved) settings ask for it; null for a stage that 'stages' lists.
+  bool (*is_asked_for)(const json& settings) = nullptr;
+};
+
+bool AsksForPlanes(const json& settings) {
+  return settings.at("planes") != kPlaneSourceNames[static_cast<size_t>(PlaneSource::kGiven)];
+}
+
+bool AsksForAssociation(const json& settings) {
+  return settings.at("association") !=
+         kAssociationSourceNames[static_cast<size_t>(AssociationSource::kGiven)];
+}
+
+const std::array<PipelineStage, 8>& Stages() {
+  static const std::array<PipelineStage, 8> stages = {{
+      {"import", &Resolve<ImportOptions>, {}},
+      {"associate", &Resolve<AssociateOptions>, {"import"}, &AsksForAssociation},
+      {"planes", &Resolve<PlanesOptions>, {"import"}, &AsksForPlanes},
+      {"edges", &Resolve<EdgesOptions>, {"import"}},
+      {"initialise", &Resolve<InitialiseOptions>, {"import"}},
+      {"refine", &Resolve<OrientationOptions>, {"import", "initialise", "edges"}},
+      {"optimise", &Resolve<OptimiseOptions>, {"import", "initialise"}},
+      {"evaluate", &Resolve<EvaluateOptions>, {"import", "initialise"}},
+  }};
+  return stages;
+}
+
+const PipelineStage* FindStage(const std::string& name) {
+  const auto found = std::find_if(Stages().begin(), Stages().end(),
+                                  [&](const PipelineStage& stage) { return stage.name == name; });
+  return found == Stages().end() ? nullptr : &*found;
+}
+
+// Stages that 'stages' may list.
+std::vector<std::string> ListedStages() {
+  std::vector<std::string> names;
+  for (const PipelineStage& stage : Stages()) {
+    if (stage.is_asked_for == nullptr) names.emplace_back(stage.name);
+  }
+  return names;
+}
+
+void CheckStageList(const json& stages, const std::string& file) {
+  std::set<std::string> seen;
+  if (!stages.is_array() || stages.empty()) {
+    throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
+  }
+  const std::vector<std::string> listed = ListedStages();
+  for (const json& stage : stages) {
+    if (!stage.is_string() || std::ranges::find(listed, stage.get<std::string>()) == listed.end()) {
+      throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
+                                      fmt::join(listed, ", ")));
+    }
+    if (!seen.insert(stage).second) {
+      throw SettingsError(fmt::format("{}: 'stages' has {} twice", file, stage.dump()));
+    }
+  }
+}
+
+// Checks one file separately, so that a message can name it.
+void CheckLayer(const json& layer, const std::string& file) {
+  for (const auto& [key, value] : layer.items()) {
+    if (value.is_null()) continue;  // null in a merge patch removes the value of a lower layer
+    if (const PipelineStage* stage = FindStage(key)) {
+      json without_nulls = json::object();
+      if (value.is_object()) without_nulls.merge_patch(value);
+      stage->resolve(value.is_object() ? without_nulls : value, file + ": " + key);
+    } else if (key == "stages") {
+      CheckStageList(value, file);
+    } else if (key == "description" || key == "semantic_table" || key == "extends") {
+      if (!value.is_string()) {
+        throw SettingsError(
+            fmt::format("{}: '{}' is {}; expected a string", file, key, value.dump()));
+      }
+    } else {
+      throw SettingsError(fmt::format(
+          "{}: unknown key '{}'; known are description, extends, stages, semantic_table and the "
+          "stages {}",
+          file, key, fmt::join(PipelineStages(), ", ")));
+    }
+  }
+}
+
+json ReadLayer(const fs::path& file) {
+  json layer = ReadSettingsFile(file);
+  CheckLayer(layer, file.string());
+  return layer;
+}
+
+// Reads a layer shared by all variants.
+json ReadBaseLayer(const fs::path& file) {
+  json layer = ReadLayer(file);
+  if (layer.contains("extends")) {
+    throw SettingsError(file.string() + ": 'extends' is for variants only");
+  }
+  return layer;
+}
+
+// Layers of the variant in `file`, preceded by those that it extends.
+std::vector<json> ReadVariantLayers(fs::path file) {
+  std::vector<json> layers;
+  std::set<fs::path> seen;
+  for (;;) {
+    if (!seen.insert(file).second) {
+      throw SettingsError(file.string() + ": 'extends' leads back to this file");
+    }
+    layers.push_back(ReadLayer(file));
+    const json extends = layers.back().value("extends", json());
+    if (extends.is_null()) break;
+    const std::string name = extends.get<std::string>() + ".json";
+    file = (file.parent_path() / name).lexically_normal();
+  }
+  std::reverse(layers.begin(), layers.end());
+  return layers;
+}
+
+void CheckNeeds(const VariantSettings& settings, const std::string& file) {
+  for (const std::string& name : settings.stages) {
+    for (const std::string& needed : FindStage(name)->needs) {
+      if (settings.stages.count(needed) == 0) {
+        throw SettingsError(
+            fmt::format("{}: stage '{}' needs stage '{}' in 'stages'", file, name, needed));
+      }
+    }
+  }
+  const auto optimise = settings.options.find("optimise");
+  if (optimise != settings.options.end() && UsesImages(optimise->second) &&
+      settings.stages.count("edges") == 0) {
+    throw SettingsError(file +
+                        ": settings 'symmetry' and 'edge_alignment' of optimise need stage 'edges' "
+                        "in 'stages'");
+  }
+}
+
+}  // namespace
+
+bool UsesImages(const json& optimise_settings) {
+  return optimise_settings.at("symmetry") == true || optimise_settings.at("edge_alignment") == true;
+}
+
+std::vector<std::string> PipelineStages() {
+  std::vector<std::string> names;
+  for (const PipelineStage& stage : Stages()) names.emplace_back(stage.name);
+  return names;
+}
+
+std::vector<std::string> VariantNames(const fs::path& pipelines) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(pipelines / "variants", error)) {
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  }
+  if (names.empty()) {
+    throw SettingsError((pipelines / "variants").string() + ": no variants; expected <name>.json");
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+VariantSettings ReadVariant(const fs::path& pipelines, const std::string& dataset,
+                            const std::string& variant) {
+  const fs::path variant_file = pipelines / "variants" / (variant + ".json");
+  if (!Exists(variant_file)) {
+    throw SettingsError(fmt::format("{}: no such variant; known are {}", variant_file.string(),
+                                    fmt::join(VariantNames(pipelines), ", ")));
+  }
+  json merged = ReadBaseLayer(pipelines / "base.json");
+  const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
+  if (Exists(dataset_file)) merged.merge_patch(ReadBaseLayer(dataset_file));
+  for (const json& layer : ReadVariantLayers(variant_file)) merged.merge_patch(layer);
+
+  const std::string file = variant_file.string();
+  VariantSettings settings;
+  CheckStageList(merged.value("stages", json()), file);
+  settings.stages = merged.at("stages").get<std::set<std::string>>();
+  settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
+  for (const PipelineStage& stage : Stages()) {
+    const bool is_listed = settings.stages.count(stage.name) > 0;
+    if (!is_listed && stage.is_asked_for == nullptr) continue;
+    const json resolved = stage.resolve(merged.value(stage.name, json::object()),
+                                        fmt::format("{}: {}", file, stage.name));
+    if (!is_listed && !stage.is_asked_for(resolved)) continue;
+    settings.stages.insert(stage.name);
+    settings.options[stage.name] = resolved;
+  }
+  CheckNeeds(settings, file);
+  return settings;
+}
+
+}  // namespace soslam

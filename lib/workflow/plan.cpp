@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "workflow/plan.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "base/hash.h"
+#include "workflow/pipeline_settings.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+// Digits of a key: enough to avoid collisions within a dataset, few enough to read.
+constexpr size_t kKeyDigits = 10;
+
+// Builds the chain of one variant, stage by stage.
+class ChainBuilder {
+ public:
+  explicit ChainBuilder(const VariantSettings& settings) : settings_(settings) {}
+
+  // The instances of all stages that the variant runs, in order.
+  std::vector<StageInstance> Build() {
+    for (const std::string& stage : PipelineStages()) {
+      if (settings_.stages.count(stage) > 0) Append(stage);
+    }
+    return std::move(chain_);
+  }
+
+ private:
+  void Append(const std::string& stage) {
+    StageInstance instance;
+    instance.stage = stage;
+    instance.settings = settings_.options.at(stage);
+    instance.inputs = Inputs(stage);
+    static const std::set<std::string> kReadTable = {"associate", "planes", "initialise", "refine",
+                                                     "optimise"};
+    if (kReadTable.contains(stage)) {
+      instance.semantic_table = settings_.semantic_table;
+    }
+    instance.key = Key(instance);
+    ids_[stage] = instance.Id();
+    chain_.push_back(std::move(instance));
+  }
+
+  std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
+    if (stage == "import") return {};
+    // Edge maps and associations depend on the imported sequence only.
+    if (stage == "edges" || stage == "associate") return {{"sequence", Output("import")}};
+    std::map<std::string, ArtefactSource> inputs = {
+        {"sequence", stage == "planes" ? Latest({"associate", "import"})
+                                       : Latest({"planes", "associate", "import"})}};
+    if (stage == "refine") {
+      inputs["initial"] = Output("initialise");
+      inputs["edges"] = Output("edges");
+    }
+    if (stage == "optimise") {
+      inputs["landmarks"] = Latest({"refine", "initialise"});
+      if (UsesImages(settings_.options.at(stage))) inputs["edges"] = Output("edges");
+    }
+    if (stage == "evaluate") inputs["landmarks"] = Latest({"optimise", "refine", "initialise"});
+    return inputs;
+  }
+
+  ArtefactSource Output(const std::string& stage) const {
+    return {ids_.at(stage), OutputsOfStage(stage).front().file};
+  }
+
+  // The output of the first of these stages that is in the variant.
+  ArtefactSource Latest(const std::vector<std::string>& stages) const {
+    const auto found = std::find_if(stages.begin(), stages.end(), [&](const std::string& stage) {
+      return ids_.count(stage) > 0;
+    });
+    if (found == stages.end()) throw std::logic_error("no stage that gives this input");
+    return Output(*found);
+  }
+
+  static std::string Key(const StageInstance& instance) {
+    json inputs = json::object();
+    for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
+    if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
+    const json identity = {
+        {"stage", instance.stage}, {"settings", instance.settings}, {"inputs", inputs}};
+    return Sha256OfText(identity.dump()).substr(0, kKeyDigits);
+  }
+
+  const VariantSettings& settings_;
+  std::map<std::string, std::string> ids_;  // keyed by stage
+  std::vector<StageInstance> chain_;
+};
+
+}  // namespace
+
+const StageInstance& Plan::Instance(const std::string& id) const {
+  const auto found =
+      std::find_if(instances.begin(), instances.end(),
+                   [&](const StageInstance& instance) { return instance.Id() == id; });
+  if (found == instances.end()) throw std::out_of_range("no instance " + id);
+  return *found;
+}
+
+const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
+  static const std::map<std::string, std::vector<StageOutput>> outputs = {
+      {"import", {{"output", "sequence.json"}}},
+      {"associate", {{"output", "sequence.json"}, {"associations", "associations.json"}}},
+      {"planes", {{"output", "sequence.json"}, {"report", "planes.json"}}},
+      {"edges", {{"output", "edges.h5"}}},
+      {"initialise", {{"output", "initial.json"}}},
+      {"refine", {{"output", "refined.json"}, {"curves", "symmetry.h5"}}},
+      {"optimise", {{"output", "map.json"}}},
+      {"evaluate", {{"output", "metrics.json"}}}};
+  static const std::vector<StageOutput> none;
+  const auto found = outputs.find(stage);
+  return found == outputs.end() ? none : found->second;
+}
+
+std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
+  using Folder = Prerequisite::Folder;
+  std::vector<Prerequisite> files = {
+      {Folder::kExecutables, "soslam-" + instance.stage},
+      {Folder::kResults, InstancePath(instance.Id(), "settings.json")}};
+  for (const auto& [argument, source] : instance.inputs) {
+    files.push_back({Folder::kResults, InstancePath(source.instance, source.file)});
+  }
+  if (instance.stage == "import") files.push_back({Folder::kResults, kDatasetListing});
+  if (instance.stage == "edges" || instance.stage == "planes") {
+    files.push_back({Folder::kResults, kImagesListing});
+  }
+  if (!instance.semantic_table.empty()) {
+    files.push_back({Folder::kPipelines, instance.semantic_table});
+  }
+  return files;
+}
+
+std::string InstancePath(const std::string& instance, const std::string& file) {
+  return "shared/" + instance + "/" + file;
+}
+
+Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
+              const std::vector<std::string>& variants) {
+  Plan plan;
+  for (const std::string& variant : variants) {
+    const VariantSettings settings = ReadVariant(pipelines, dataset, variant);
+    VariantChain chain{variant, {}};
+    for (StageInstance& instance : ChainBuilder(settings).Build()) {
+      const std::string id = instance.Id();
+      chain.instances.push_back(id);
+      auto known = std::find_if(plan.instances.begin(), plan.instances.end(),
+                                [&](const StageInstance& other) { return other.Id() == id; });
+      if (known == plan.instances.end()) {
+        known = plan.instances.insert(known, std::move(instance));
+      }
+      known->variants.push_back(variant);
+    }
+    plan.variants.push_back(std::move(chain));
+  }
+  return plan;
+}
+
+}  // namespace soslam

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "workflow/plan_makefile.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "workflow/work_units.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Make compares modification times, and unchanged artefacts keep theirs. Therefore a stage writes a
+// stamp, `done`, with the time at which it began; artefacts depend on it with an empty recipe,
+// after which make reads their times again (also in a dry run, because of its "+"). Stages that
+// read them depend on both: when only stamps are newer there is nothing to do. A dry run cannot
+// know which artefacts will change and lists every stage that may have to run.
+constexpr const char* kPreamble =
+    R"make(# Written by soslam-plan; changes here are lost.
+results := {results}
+dataset := {dataset_folder}
+pipelines := {pipelines}
+BIN ?= build/bin
+THREADS ?= 0
+QUIET ?=
+OUTSIDE_PATHS ?=
+LAUNCH ?=
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.PHONY: all imports {variants} FORCE
+all: {variants}
+imports: {imports}
+FORCE:
+
+dry_run := $(findstring n,$(firstword -$(MAKEFLAGS)))$(findstring q,$(firstword -$(MAKEFLAGS)))
+
+# $(call missing,FILES): forces a rule when one of the files it made is gone.
+missing = $(if $(filter-out $(wildcard $(1)),$(1)),FORCE)
+
+# $(call stage,TITLE,COMMAND): runs a stage, through LAUNCH, unless nothing but stamps is newer than
+# its own. When it fails, `failed` beside the stamp says how; a stage that crashes, or that LAUNCH
+# did not start, cannot write that itself.
+define run-stage
+@echo '[{dataset}] $(1)'
+@rm -f $(@D)/failed
+@touch $@.begun
+@$(LAUNCH) $(BIN)/$(2) --settings $(@D)/settings.json --threads $(THREADS) $(QUIET) $(OUTSIDE_PATHS) \
+  --failure_record $(@D)/failed || {{ code=$$?; test -s $(@D)/failed || \
+  echo "exit code $$code$(if $(LAUNCH), of LAUNCH or of a stage that was killed)" > $(@D)/failed; \
+  exit $$code; }}
+@mv $@.begun $@
+endef
+stage = $(if $(dry_run)$(filter-out %/done,$?),$(run-stage),@touch $@)
+)make";
+
+class Writer {
+ public:
+  Writer(const Plan& plan, const std::string& dataset, const PlanFolders& folders)
+      : plan_(plan), dataset_(dataset), folders_(folders) {}
+
+  std::string Write() const {
+    std::vector<std::string> names;
+    for (const VariantChain& variant : plan_.variants) names.push_back(variant.name);
+    std::string text =
+        fmt::format(kPreamble, fmt::arg("pipelines", folders_.pipelines.string()),
+                    fmt::arg("variants", fmt::join(names, " ")), fmt::arg("dataset", dataset_),
+                    fmt::arg("imports", fmt::join(ImportStamps(), " ")),
+                    fmt::arg("results", folders_.results.string()),
+                    fmt::arg("dataset_folder", folders_.dataset.string()));
+    for (const VariantChain& variant : plan_.variants) text += VariantRules(variant);
+    for (const StageInstance& instance : plan_.instances) text += InstanceRules(instance);
+    return text + UnitRules();
+  }
+
+ private:
+  static std::string Shared(const std::string& id, const std::string& file) {
+    return "$(results)/" + InstancePath(id, file);
+  }
+
+  static std::vector<std::string> OutputPaths(const StageInstance& instance) {
+    std::vector<std::string> paths;
+    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+      paths.push_back(Shared(instance.Id(), output.file));
+    }
+    return paths;
+  }
+
+  // Rules of a variant's folder, which contains links that are replaced together once its last
+  // stage is done; .linked is the stages.txt that they belong to.
+  std::string VariantRules(const VariantChain& variant) const {
+    const std::string folder = "$(results)/" + variant.name;
+    std::vector<std::string> links, targets;
+    // Maker of the version that later stages read, keyed by file name.
+    std::map<std::string, std::string> last_maker;
+    for (const std::string& id : variant.instances) {
+      for (const StageOutput& output : OutputsOfStage(plan_.Instance(id).stage)) {
+        last_maker[output.file] = id;
+      }
+    }
+    for (const auto& [file, id] : last_maker) {
+      links.push_back(folder + "/" + file);
+      targets.push_back("../shared/" + id + "/" + file);
+    }
+    return fmt::format(
+        "\n{variant}: {folder}/.linked\n"
+        "{folder}/.linked: {folder}/stages.txt {stamps} $(call missing,{links})\n"
+        "\t@find {folder} -maxdepth 1 -type l -delete\n"
+        "\t@ln -s {targets} {folder}/\n"
+        "\t@cp $< $@\n",
+        fmt::arg("variant", variant.name), fmt::arg("folder", folder),
+        fmt::arg("stamps", fmt::join(Stamps(variant.instances), " ")),
+        fmt::arg("links", fmt::join(links, " ")), fmt::arg("targets", fmt::join(targets, " ")));
+  }
+
+  static std::string InstanceRules(const StageInstance& instance) {
+    const std::string outputs = fmt::format("{}", fmt::join(OutputPaths(instance), " "));
+    const std::string done = Shared(instance.Id(), "done");
+    return fmt::format(
+        "\n{done}: {prerequisites} $(call missing,{outputs})\n"
+        "\t$(call stage,{id} ({variants}),{command})\n"
+        "{outputs}: {done} ; +\n",
+        fmt::arg("done", done), fmt::arg("outputs", outputs), fmt::arg("id", instance.Id()),
+        fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
+        fmt::arg("variants", fmt::join(instance.variants, " ")),
+        fmt::arg("command", Command(instance)));
+  }
+
+  std::vector<std::string> ImportStamps() const {
+    std::vector<std::string> stamps;
+    for (const StageInstance& instance : plan_.instances) {
+      if (instance.stage == "import") stamps.push_back(Shared(instance.Id(), "done"));
+    }
+    return stamps;
+  }
+
+  // Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their
+  // instances.
+  std::string UnitRules() const {
+    const std::vector<WorkUnit> units = WorkUnitsOf(plan_);
+    std::vector<std::string> names;
+    for (const WorkUnit& unit : units) names.push_back(unit.name);
+    std::string text =
+        fmt::format("\nunits := {}\n.PHONY: $(units) $(units:%=before-%)\n", fmt::join(names, " "));
+    for (const WorkUnit& unit : units) {
+      text += fmt::format(
+          "\nunit-{name} := {instances}\n"
+          "{name}: {stamps} {variants}\n"
+          "before-{name}: {needs}\n",
+          fmt::arg("name", unit.name), fmt::arg("instances", fmt::join(unit.instances, " ")),
+          fmt::arg("stamps", fmt::join(Stamps(unit.instances), " ")),
+          fmt::arg("variants", fmt::join(unit.variants, " ")),
+          fmt::arg("needs", fmt::join(Stamps(unit.needs), " ")));
+    }
+    return text;
+  }
+
+  static std::vector<std::string> Stamps(const std::vector<std::string>& ids) {
+    std::vector<std::string> stamps;
+    for (const std::string& id : ids) stamps.push_back(Shared(id, "done"));
+    return stamps;
+  }
+
+  static std::vector<std::string> Prerequisites(const StageInstance& instance) {
+    static const std::map<Prerequisite::Folder, std::string> kFolders = {
+        {Prerequisite::Folder::kExecutables, "$(BIN)/"},
+        {Prerequisite::Folder::kPipelines, "$(pipelines)/"},
+        {Prerequisite::Folder::kResults, "$(results)/"}};
+    std::vector<std::string> files;
+    for (const Prerequisite& file : PrerequisitesOf(instance)) {
+      files.push_back(kFolders.at(file.folder) + file.path);
+    }
+    std::set<std::string> stamps;
+    for (const auto& [argument, source] : instance.inputs) {
+      stamps.insert(Shared(source.instance, "done"));
+    }
+    files.insert(files.end(), stamps.begin(), stamps.end());
+    return files;
+  }
+
+  static std::string Command(const StageInstance& instance) {
+    std::string command = "soslam-" + instance.stage;
+    if (instance.stage == "import" || instance.stage == "planes" || instance.stage == "edges") {
+      command += " --dataset $(dataset)";
+    }
+    for (const auto& [argument, source] : instance.inputs) {
+      command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
+    }
+    if (!instance.semantic_table.empty()) {
+      command += " --table $(pipelines)/" + instance.semantic_table;
+    }
+    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+      command += fmt::format(" --{} {}", output.argument, Shared(instance.Id(), output.file));
+    }
+    return command;
+  }
+
+  const Plan& plan_;
+  const std::string& dataset_;
+  const PlanFolders& folders_;
+};
+
+}  // namespace
+
+std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders) {
+  return Writer(plan, dataset, folders).Write();
+}
+
+PlanFolders ReadPlanFolders(const fs::path& makefile) {
+  std::ifstream stream(makefile);
+  if (!stream) throw InputError(makefile.string() + ": cannot be read; nothing was planned yet");
+  std::map<std::string, fs::path> values;
+  for (std::string line; std::getline(stream, line);) {
+    const size_t assigns = line.find(" := ");
+    if (assigns != std::string::npos) values[line.substr(0, assigns)] = line.substr(assigns + 4);
+  }
+  return {values["dataset"], values["pipelines"], values["results"]};
+}
+
+}  // namespace soslam

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "workflow/plan_state.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "base/file_kind.h"
+#include "report/run_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::optional<fs::file_time_type> TimeOf(const fs::path& file) {
+  std::error_code error;
+  const auto time = fs::last_write_time(file, error);
+  return error ? std::nullopt : std::optional(time);
+}
+
+std::vector<std::string> LinesOf(const fs::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+class StateFinder {
+ public:
+  StateFinder(const Plan& plan, const PlanFolders& folders, const fs::path& executables,
+              const StagesUnderWay& under_way)
+      : plan_(plan), folders_(folders), executables_(executables), under_way_(under_way) {}
+
+  std::map<std::string, InstanceState> Find() {
+    for (const StageInstance& instance : plan_.instances) states_[instance.Id()] = Find(instance);
+    return std::move(states_);
+  }
+
+ private:
+  fs::path Result(const StageInstance& instance, const std::string& file) const {
+    return folders_.results / InstancePath(instance.Id(), file);
+  }
+  fs::path PathOf(const Prerequisite& file) const {
+    switch (file.folder) {
+      case Prerequisite::Folder::kExecutables:
+        return executables_ / file.path;
+      case Prerequisite::Folder::kPipelines:
+        return folders_.pipelines / file.path;
+      case Prerequisite::Folder::kResults:
+        break;
+    }
+    return folders_.results / file.path;
+  }
+
+  InstanceState Find(const StageInstance& instance) const {
+    const auto done = TimeOf(Result(instance, "done"));
+    const std::string failure = FailureIn(Result(instance, ""));
+    InstanceState found;
+    if (!failure.empty()) {
+      found.state = StageState::kFailed;
+      found.reasons.push_back("its last run failed: " + failure);
+    } else if (!done) {
+      found.state = StageState::kMissing;
+      found.reasons.emplace_back("it has not run with these settings and inputs");
+    }
+    if (done) Append(MissingOutputs(instance), &found.reasons);
+    if (done) Append(NewerFiles(instance, *done), &found.reasons);
+    Append(InputsToCome(instance), &found.reasons);
+    if (found.state == StageState::kDone && !found.reasons.empty()) {
+      found.state = StageState::kStale;
+    }
+    const auto job = under_way_.find(instance.Id());
+    if (found.state != StageState::kDone && job != under_way_.end()) found.state = job->second;
+    return found;
+  }
+
+  static void Append(const std::vector<std::string>& more, std::vector<std::string>* lines) {
+    lines->insert(lines->end(), more.begin(), more.end());
+  }
+
+  std::vector<std::string> MissingOutputs(const StageInstance& instance) const {
+    std::vector<std::string> reasons;
+    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+      if (!Exists(Result(instance, output.file))) {
+        reasons.push_back(output.file + ", which it writes, is gone");
+      }
+    }
+    return reasons;
+  }
+
+  std::vector<std::string> NewerFiles(const StageInstance& instance,
+                                      fs::file_time_type done) const {
+    std::vector<std::string> reasons;
+    for (const Prerequisite& file : PrerequisitesOf(instance)) {
+      const fs::path path = PathOf(file);
+      const auto time = TimeOf(path);
+      if (!time) reasons.push_back(path.string() + " does not exist");
+      if (!time || *time <= done) continue;
+      const bool is_listing = file.path == kDatasetListing || file.path == kImagesListing;
+      reasons.push_back(is_listing ? NewerFilesListedIn(path, done)
+                                   : path.string() + " has changed since");
+    }
+    return reasons;
+  }
+
+  // Files of a listing newer than `done`. A listing has the dataset's folder in its first line,
+  // then lines "<name> <size> <time>" of the files whose content is read, and names of files whose
+  // existence alone matters.
+  std::string NewerFilesListedIn(const fs::path& listing, fs::file_time_type done) const {
+    std::vector<std::string> newer;
+    for (const std::string& line : LinesOf(listing)) {
+      const size_t end = line.rfind(' ', line.rfind(' ') - 1);
+      if (end == std::string::npos) continue;
+      const std::string name = line.substr(0, end);
+      const auto time = TimeOf(folders_.dataset / name);
+      if (time && *time > done) newer.push_back(name);
+    }
+    constexpr size_t kMaxNamed = 5;
+    const size_t named = std::min(newer.size(), kMaxNamed);
+    if (newer.empty()) return "files of the dataset came, went or were replaced since";
+    return fmt::format(
+        "files of the dataset have changed since: {}{}",
+        fmt::join(newer.begin(), newer.begin() + static_cast<ptrdiff_t>(named), ", "),
+        newer.size() > named ? fmt::format(" and {} more", newer.size() - named) : "");
+  }
+
+  std::vector<std::string> InputsToCome(const StageInstance& instance) const {
+    std::vector<std::string> reasons;
+    for (const auto& [argument, source] : instance.inputs) {
+      const StageState state = states_.at(source.instance).state;
+      if (state != StageState::kDone) {
+        reasons.push_back(fmt::format("{} comes from {}, which is {}", source.file, source.instance,
+                                      NameOf(state)));
+      }
+    }
+    return reasons;
+  }
+
+  const Plan& plan_;
+  const PlanFolders& folders_;
+  const fs::path& executables_;
+  const StagesUnderWay& under_way_;
+  std::map<std::string, InstanceState> states_;
+};
+
+// Differences between two sets of settings.
+std::vector<std::string> SettingChanges(const json& before, const json& now) {
+  const auto text = [](const json& settings, const std::string& name) {
+    return settings.contains(name) ? settings.at(name).dump() : std::string("absent");
+  };
+  json names = before;
+  names.update(now);
+  std::vector<std::string> changes;
+  for (const auto& [name, value] : names.items()) {
+    const std::string old_text = text(before, name);
+    const std::string new_text = text(now, name);
+    if (old_text != new_text)
+      changes.push_back(fmt::format("{}: {} -> {}", name, old_text, new_text));
+  }
+  return changes;
+}
+
+}  // namespace
+
+const char* NameOf(StageState state) {
+  switch (state) {
+    case StageState::kDone:
+      return "done";
+    case StageState::kStale:
+      return "stale";
+    case StageState::kFailed:
+      return "failed";
+    case StageState::kQueued:
+      return "queued";
+    case StageState::kRunning:
+      return "running";
+    case StageState::kMissing:
+      break;
+  }
+  return "missing";
+}
+
+std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
+  std::map<std::string, StagesUnderWay> under_way;
+  for (const std::string& line : LinesOf(file)) {
+    std::istringstream words(line);
+    std::string dataset, id, state, more;
+    words >> dataset >> id >> state;
+    const bool is_running = state == NameOf(StageState::kRunning);
+    if ((!is_running && state != NameOf(StageState::kQueued)) || words >> more) {
+      throw InputError(
+          fmt::format("{}: a line is '{}'; expected '<dataset> <stage run> queued' or "
+                      "'... running'",
+                      file.string(), line));
+    }
+    const auto known = under_way[dataset].try_emplace(id, StageState::kQueued).first;
+    if (is_running) known->second = StageState::kRunning;
+  }
+  return under_way;
+}
+
+std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
+                                              const fs::path& executables,
+                                              const StagesUnderWay& under_way) {
+  return StateFinder(plan, folders, executables, under_way).Find();
+}
+
+std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChain& variant,
+                                             const StageInstance& instance,
+                                             const PlanFolders& folders) {
+  std::map<std::string, std::string> last;  // stage -> id
+  for (const std::string& id : LinesOf(folders.results / variant.name / ".linked")) {
+    last[StageOf(id)] = id;
+  }
+  const auto before = last.find(instance.stage);
+  if (before == last.end() || before->second == instance.Id()) return {};
+  const fs::path settings = folders.results / InstancePath(before->second, "settings.json");
+  std::vector<std::string> changes;
+  if (Exists(settings)) changes = SettingChanges(ParseJsonFile(settings), instance.settings);
+  for (const auto& [argument, source] : instance.inputs) {
+    const std::string stage = plan.Instance(source.instance).stage;
+    const auto earlier = last.find(stage);
+    const std::string old_id = earlier == last.end() ? "none" : earlier->second;
+    if (old_id != source.instance) {
+      changes.push_back(fmt::format("{}: {} -> {}", source.file, old_id, source.instance));
+    }
+  }
+  if (changes.empty()) changes.emplace_back("it reads another semantic table, or of other stages");
+  return changes;
+}
+
+}  // namespace soslam

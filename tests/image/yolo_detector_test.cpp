@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/yolo_detector.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/onnx_network.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kClasses = 2;
+
+class YoloDetectorTest : public testing::Test {
+ protected:
+  YoloDetectorTest() { options_.input_width = options_.input_height = 64; }
+
+  std::vector<YoloDetection> Detect(const MeanNetwork& network, const cv::Mat& image) {
+    WriteBytes(folder_ / "net.onnx", network.Onnx());
+    return YoloDetector(folder_ / "net.onnx", kClasses, options_).Detect(image);
+  }
+
+  TemporaryFolder folder_;
+  DetectorOptions options_;
+  // Fills 64 x 48 of the input, from row 8 on: a pixel of the input is two of the image.
+  const cv::Mat image_ = cv::Mat(96, 128, CV_8UC3, cv::Scalar(0, 0, 0));
+};
+
+// Two boxes of one class on top of each other, one of the other class, one below the threshold.
+const std::vector<float> kCandidates = {20, 30, 10, 12, 0.9F, 0.9F, 0.0F,  //
+                                        21, 30, 10, 12, 0.9F, 0.8F, 0.0F,  //
+                                        40, 20, 8,  8,  0.5F, 0.2F, 0.6F,  //
+                                        50, 50, 8,  8,  0.1F, 0.9F, 0.9F};
+
+void ExpectTheTwoBoxes(const std::vector<YoloDetection>& boxes, double score_0, double score_1) {
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes[0].class_index, 0);
+  EXPECT_NEAR(boxes[0].score, score_0, 1e-6);
+  ExpectBox(boxes[0].box, {29.5, 31.5, 49.5, 55.5});  // (15, 24) to (25, 36) of the input
+  EXPECT_EQ(boxes[1].class_index, 1);
+  EXPECT_NEAR(boxes[1].score, score_1, 1e-6);
+  ExpectBox(boxes[1].box, {71.5, 15.5, 87.5, 31.5});  // (36, 16) to (44, 24)
+}
+
+TEST_F(YoloDetectorTest, V5) {
+  ExpectTheTwoBoxes(Detect({{1, 4, 7}, kCandidates, {}}, image_), 0.81, 0.3);
+}
+
+TEST_F(YoloDetectorTest, V8) {
+  options_.output_layout = YoloLayout::kV8;
+  const MeanNetwork network = {{1, 6, 4},
+                               {20,    21,    40,   50,     // cx
+                                30,    30,    20,   50,     // cy
+                                10,    10,    8,    8,      // w
+                                12,    12,    8,    8,      // h
+                                0.81F, 0.72F, 0.1F, 0.09F,  // class 0
+                                0.0F,  0.0F,  0.3F, 0.0F},  // class 1
+                               {}};
+  ExpectTheTwoBoxes(Detect(network, image_), 0.81, 0.3);
+}
+
+// The score is the mean of one channel of the input, of which 48 of 64 rows are the image and the
+// others grey, 114.
+TEST_F(YoloDetectorTest, PixelValues) {
+  const cv::Mat image(96, 128, CV_8UC3, cv::Scalar(40, 90, 210));  // blue, green, red
+  const auto score_of_channel = [&](size_t channel) {
+    MeanNetwork network = {{1, 1, 7}, {20, 30, 10, 12, 1, 0, 0}, {}};
+    network.weights.resize(7, {0.0F, 0.0F, 0.0F});
+    network.weights[5][channel] = 1.0F;
+    return Detect(network, image).at(0).score;
+  };
+  const auto mean = [](double value) { return (48 * value + 16 * 114) / 64; };
+  // The network adds up 4096 numbers in single precision: at most 4096 * 6e-8 of the sum is lost.
+  options_.min_score = 0.01;
+  EXPECT_NEAR(score_of_channel(0), mean(210) / 255, 3e-4);
+  EXPECT_NEAR(score_of_channel(1), mean(90) / 255, 3e-4);
+  EXPECT_NEAR(score_of_channel(2), mean(40) / 255, 3e-4);
+  options_.pixel_values = PixelValues::kBgrByte;
+  EXPECT_NEAR(score_of_channel(0), mean(40), 0.06);
+  EXPECT_NEAR(score_of_channel(2), mean(210), 0.06);
+}
+
+// (-8, 4) to (4, 20) of the input is 24 x 24 px of the image, of which 8 x 24 are inside; the other
+// box is in the grey part below.
+TEST_F(YoloDetectorTest, OnlyWhatIsInTheImageIsFound) {
+  const auto boxes =
+      Detect({{1, 2, 7}, {-2, 12, 12, 16, 1, 1, 0, 30, 60, 8, 6, 1, 1, 0}, {}}, image_);
+  ASSERT_EQ(boxes.size(), 1u);
+  ExpectBox(boxes[0].box, {-0.5, -0.5, 7.5, 23.5});
+}
+
+TEST_F(YoloDetectorTest, WrongLayoutIsRefused) {
+  ExpectError<InputError>(
+      [&] {
+        Detect({{1, 3, 6}, std::vector<float>(18), {}}, image_);
+      },
+      {"net.onnx", "[1, 3, 6]", "[1, N, 7] of layout v5"});
+  options_.output_layout = YoloLayout::kV8;
+  ExpectError<InputError>(
+      [&] {
+        Detect({{1, 4, 7}, kCandidates, {}}, image_);
+      },
+      {"net.onnx", "[1, 4, 7]", "[1, 6, N] of layout v8"});
+}
+
+TEST_F(YoloDetectorTest, BadFilesAreNamed) {
+  const auto load = [&](const std::string& bytes) {
+    WriteBytes(folder_ / "bad.onnx", bytes);
+    YoloDetector(folder_ / "bad.onnx", kClasses, options_);
+  };
+  const std::string whole = MeanNetwork{{1, 4, 7}, kCandidates, {}}.Onnx();
+  ExpectError<InputError>([&] { load(""); }, {"bad.onnx"});
+  ExpectError<InputError>([&] { load("no network"); }, {"bad.onnx", "ONNX"});
+  ExpectError<InputError>([&] { load(whole.substr(0, whole.size() / 2)); }, {"bad.onnx", "ONNX"});
+  // A network that cannot run: seven numbers do not make eight.
+  ExpectError<InputError>(
+      [&] {
+        Detect({{1, 1, 8}, std::vector<float>(7), {}}, image_);
+      },
+      {"net.onnx"});
+  ExpectError<InputError>([&] { YoloDetector(folder_ / "none.onnx", kClasses, options_); },
+                          {"none.onnx", "cannot be read"});
+  ExpectError<InputError>([&] { YoloDetector(folder_.path(), kClasses, options_); },
+                          {folder_.path().string(), "cannot be read"});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/yolo_output.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+
+namespace soslam {
+namespace {
+
+cv::Mat Output(const std::vector<int>& shape, const std::vector<float>& values) {
+  return cv::Mat(shape, CV_32FC1, const_cast<float*>(values.data())).clone();
+}
+
+std::vector<YoloDetection> Read(const cv::Mat& output, YoloLayout layout, double min_score = 0.25) {
+  return ReadYoloOutput(output, layout, {64, 32}, 2, min_score, "net.onnx");
+}
+
+void ExpectScored(const YoloDetection& box, int class_index, double score, const Box& expected) {
+  EXPECT_EQ(box.class_index, class_index);
+  EXPECT_NEAR(box.score, score, 1e-6);
+  ExpectBox(box.box, expected);
+}
+
+TEST(YoloOutputTest, V5HasARowPerCandidateWithObjectness) {
+  const cv::Mat output = Output({1, 3, 7}, {100, 50, 20, 10, 0.8F, 0.1F, 0.5F,  //
+                                            30,  40, 10, 20, 0.5F, 0.4F, 0.3F,  // 0.2: too low
+                                            10,  10, 4,  6,  1.0F, 1.0F, 0.0F});
+  const auto boxes = Read(output, YoloLayout::kV5);
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectScored(boxes[0], 1, 0.4, {90, 45, 110, 55});
+  ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
+}
+
+TEST(YoloOutputTest, V8HasAColumnPerCandidate) {
+  const cv::Mat output = Output({1, 6, 3}, {100, 30, 10,         // cx
+                                            50, 40, 10,          // cy
+                                            20, 10, 4,           // w
+                                            10, 20, 6,           // h
+                                            0.1F, 0.2F, 1.0F,    // class 0
+                                            0.5F, 0.1F, 0.0F});  // class 1
+  const auto boxes = Read(output, YoloLayout::kV8);
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectScored(boxes[0], 1, 0.5, {90, 45, 110, 55});
+  ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
+}
+
+// An input of 64 x 32 has grids of 8 x 4, 4 x 2 and 2 x 1 cells.
+TEST(YoloOutputTest, YoloxHasBoxesInCellsOfItsGrids) {
+  std::vector<float> values(42 * 7, 0.0F);
+  const auto set = [&](size_t candidate, const std::vector<float>& row) {
+    std::copy(row.begin(), row.end(), values.begin() + static_cast<long>(7 * candidate));
+  };
+  set(8 + 3, {0.5F, 0.25F, 0, 0.5F, 0.8F, 0.1F, 0.5F});  // column 3, row 1 of the first grid
+  set(32 + 6, {0, 0.5F, 0, 0, 1, 1, 0});                 // column 2, row 1 of the second
+  set(40 + 1, {-0.5F, 0.5F, 0, -0.5F, 1, 0.5F, 0});      // column 1 of the third
+  const auto boxes = Read(Output({1, 42, 7}, values), YoloLayout::kYolox);
+  ASSERT_EQ(boxes.size(), 3u);
+  const double half = 4 * std::exp(0.5F), wide = 16 * std::exp(-0.5F);
+  ExpectScored(boxes[0], 1, 0.4, {24, 10 - half, 32, 10 + half});
+  ExpectScored(boxes[1], 0, 1.0, {24, 16, 40, 32});
+  ExpectScored(boxes[2], 0, 0.5, {0, 16 - wide, 32, 16 + wide});
+}
+
+TEST(YoloOutputTest, YoloxOfAnotherInputIsRefused) {
+  for (const int candidates : {41, 43}) {
+    const std::vector<float> zeros(static_cast<size_t>(candidates) * 7, 0.0F);
+    ExpectError<InputError>(
+        [&] {
+          Read(Output({1, candidates, 7}, zeros), YoloLayout::kYolox);
+        },
+        {"net.onnx", fmt::format("{} candidates; expected 42", candidates), "64 x 32"});
+  }
+}
+
+TEST(YoloOutputTest, BoxesInCellsAreNotTakenForPixels) {
+  std::vector<float> values(42 * 7, 1.0F);
+  values[3] = 7.5F;
+  ExpectError<InputError>(
+      [&] {
+        Read(Output({1, 42, 7}, values), YoloLayout::kV5);
+      },
+      {"net.onnx", "7.50; expected pixels", "output_layout = yolox"});
+  values[3] = 8.0F;
+  EXPECT_EQ(Read(Output({1, 42, 7}, values), YoloLayout::kV5).size(), 42u);
+}
+
+TEST(YoloOutputTest, BoxesInPixelsAreNotTakenForCells) {
+  std::vector<float> values(42 * 7, 0.5F);
+  values[2] = 30.0F;
+  ExpectError<InputError>(
+      [&] {
+        Read(Output({1, 42, 7}, values), YoloLayout::kYolox);
+      },
+      {"net.onnx", "30.00; expected logarithms", "output_layout = v5"});
+}
+
+TEST(YoloOutputTest, ScoreAtTheThresholdIsKept) {
+  const cv::Mat output = Output({1, 1, 7}, {5, 5, 2, 2, 0.5F, 0.5F, 0.0F});
+  EXPECT_EQ(Read(output, YoloLayout::kV5, 0.25).size(), 1u);
+  EXPECT_EQ(Read(output, YoloLayout::kV5, 0.2501).size(), 0u);
+}
+
+TEST(YoloOutputTest, OtherShapesAreRefused) {
+  const std::vector<float> zeros(600, 0.0F);
+  const std::vector<std::vector<int>> wrong_for_v5 = {{1, 6, 30}, {1, 30, 6}, {1, 30, 8},
+                                                      {2, 30, 7}, {30, 7},    {1, 1, 30, 7}};
+  for (const auto& shape : wrong_for_v5) {
+    ExpectError<InputError>([&] { Read(Output(shape, zeros), YoloLayout::kV5); },
+                            {"net.onnx", fmt::format("[{}]", fmt::join(shape, ", ")),
+                             "[1, N, 7] of layout v5 with 2 classes"});
+  }
+  ExpectError<InputError>(
+      [&] {
+        Read(Output({1, 30, 7}, zeros), YoloLayout::kV8);
+      },
+      {"[1, 30, 7]", "[1, 6, N] of layout v8"});
+}
+
+TEST(YoloOutputTest, NumbersThatAreNotFiniteAreRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ExpectError<NumericalError>(
+      [&] {
+        Read(Output({1, 1, 7}, {5, nan, 2, 2, 1, 1, 0}), YoloLayout::kV5);
+      },
+      {"net.onnx", "candidate 0"});
+  ExpectError<NumericalError>(
+      [&] {
+        Read(Output({1, 1, 7}, {5, 5, 2, 2, nan, 1, 0}), YoloLayout::kV5);
+      },
+      {"net.onnx", "candidate 0"});
+}
+
+// Boxes of 10 x 10: shifted by 2 the IoU is 80 / 120, by 5 it is 50 / 150.
+TEST(WithoutOverlapsTest, HighestScoreOfAClassWins) {
+  const auto box = [](int class_index, double score, double x) {
+    return YoloDetection{class_index, score, {x, 0, x + 10, 10}};
+  };
+  const auto kept =
+      WithoutOverlaps({box(0, 0.5, 0), box(0, 0.9, 2), box(1, 0.6, 0), box(0, 0.7, 7)}, 2, 0.45);
+  ASSERT_EQ(kept.size(), 3u);
+  ExpectScored(kept[0], 0, 0.9, {2, 0, 12, 10});
+  ExpectScored(kept[1], 0, 0.7, {7, 0, 17, 10});
+  ExpectScored(kept[2], 1, 0.6, {0, 0, 10, 10});
+  EXPECT_EQ(WithoutOverlaps({box(0, 0.5, 0), box(0, 0.9, 2)}, 2, 0.7).size(), 2u);
+  EXPECT_TRUE(WithoutOverlaps({}, 2, 0.45).empty());
+}
+
+}  // namespace
+}  // namespace soslam
