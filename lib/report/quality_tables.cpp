@@ -72,11 +72,12 @@ std::vector<Cell> QualityRow(const std::string& name, const json& quality) {
   const json& first = quality.at("scores").front();
   const auto count = [&](const char* key) { return first.at(key).get<int>(); };
   std::vector<Cell> row = {name, fmt::format("{} ({})", count("true_objects"), count("detectable")),
-                           fmt::format("{} ({})", count("landmarks"), count("ignored"))};
+                           fmt::format("{} ({})", count("landmarks"), count("ignored")),
+                           Number(first.at("recall_of_detectable"), 2)};
   for (const json& score : quality.at("scores")) {
     row.emplace_back(std::to_string(score.at("found").get<int>()));
-    for (const char* share : {"precision", "recall", "recall_of_detectable", "f1"}) {
-      row.emplace_back(Number(score.at(share), 3));
+    for (const char* share : {"precision", "recall", "f1"}) {
+      row.emplace_back(Number(score.at(share), 2));
     }
     row.emplace_back(Number(score.at("of_found").at("iou_mean"), 3));
   }
@@ -151,9 +152,9 @@ std::vector<Table> QualityTables(const std::string& dataset,
   Table quality;
   quality.name = "map_quality_" + dataset;
   quality.title = dataset + ": maps against all that is true, " + AlignmentInWords(maps);
-  quality.header = {"variant", "true (detectable)", "landmarks (ignored)"};
+  quality.header = {"variant", "true (det.)", "landmarks (ign.)", "R det."};
   for (const double min_iou : kMapIous) {
-    for (const char* column : {"right", "P", "R", "R det.", "F1", "IoU"}) {
+    for (const char* column : {"right", "P", "R", "F1", "IoU"}) {
       quality.header.push_back(fmt::format("{} {}", column, min_iou));
     }
   }
@@ -170,9 +171,10 @@ std::vector<Table> QualityTables(const std::string& dataset,
     errors.rows.push_back(ErrorsRow(name, map.second["map_quality"]));
   }
   quality.notes = {
-      "Landmarks that match a true object with this IoU or more: how many, precision, recall, "
-      "recall "
-      "of the detectable, F1, mean IoU. " +
+      "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "
+      "0.25. "
+      "Landmarks that match a true object with an IoU of so much or more: how many are right, "
+      "precision, recall, F1, mean IoU. " +
       OdometryNote(maps)};
   errors.notes = {
       "Means of absolute values; logarithms are of estimate over truth. Labels and ids: how many "

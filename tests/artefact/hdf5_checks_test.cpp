@@ -150,7 +150,8 @@ TEST_F(Hdf5ChecksTest, AnyPackingOfTheLibraryIsRead) {
 // The bytes that the library stores for so many numbers.
 std::string Packed(hsize_t count) {
   const TemporaryFolder folder;
-  const hid_t file = H5Fcreate((folder / "packed.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t file =
+      H5Fcreate((folder / "packed.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const Hdf5Handle space{H5Screate_simple(1, &count, nullptr), &H5Sclose};
   const Hdf5Handle creation = Hdf5DataSetCreation({count});
   const Hdf5Handle data_set{H5Dcreate2(file, "values", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT,

@@ -63,8 +63,7 @@ TEST(QualityTables, HaveARowForEachMap) {
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "map_quality_room");
   EXPECT_THAT(CellTexts(tables[0]),
-              ElementsAre("OursS 4 (3) 5 (1) 3 0.875 0.625 0.750 0.750 0.500 2 0.875 0.625 0.750 "
-                          "0.500 0.500"));
+              ElementsAre("OursS 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.500 2 0.88 0.62 0.50 0.500"));
   EXPECT_THAT(tables[0].notes, ElementsAre(testing::EndsWith("Odometry: ORB-SLAM2.")));
   EXPECT_EQ(tables[1].name, "map_errors_room");
   EXPECT_THAT(CellTexts(tables[1]),

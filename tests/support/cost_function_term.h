@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "constraints/tangent_space.h"
 #include "constraints/huber.h"
+#include "constraints/tangent_space.h"
 #include "mapping/term.h"
 
 namespace soslam {
