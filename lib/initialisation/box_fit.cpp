@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/box_fit.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
-#include "base/wide_loops.h"
 #include "geometry/support_function.h"
-#include "geometry/support_of_four.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
@@ -31,66 +27,29 @@ struct Body {
   Eigen::Vector3d centre;
 };
 
-// The four edges of a box, one per SIMD lane: normals of the planes behind them and the object's
-// support function in these directions.
-struct FourEdges {
-  ThreeFours normals;    // in the ground frame
-  ThreeFours in_object;  // in the object frame
-  SupportOfFour support;
-};
-
-SOSLAM_FORCE_INLINE void FindEdges(const BoxOnGround& box, const Body& body, FourEdges* edges) {
-  for (size_t i = 0; i < 3; ++i) Load(box.normals.col(i).data(), &edges->normals[i]);
-  const auto& [x, y, z] = edges->normals;
-  const auto [cosine, sine] = body.heading;
-  edges->in_object = {cosine * x + sine * y, cosine * y - sine * x, z};
-  FindSupport(body.half_axes, body.shape_exponent, edges->in_object, &edges->support);
-}
-
-SOSLAM_MULTIVERSION void FindTangentDepths(const BoxOnGround& box, const Body& body,
-                                           Eigen::Array4d* depths_m) {
-  FourEdges edges;
-  FindEdges(box, body, &edges);
-  const ThreeFours contact = edges.support.Contact(body.shape_exponent, edges.in_object);
-  const Eigen::Vector3d axis_in_object = body.heading.TurnedBack(box.optical_axis);
-  Four depths = Four{} + box.DepthOf(body.centre);
-  for (size_t i = 0; i < 3; ++i) depths += axis_in_object[i] * contact[i];
-  Store(depths, depths_m->data());
-}
-
 // Residuals (px / sigma) of the four edges and their Jacobian by UprightVector.
 struct Rows {
   Eigen::Vector4d residuals;
   Eigen::Matrix<double, 4, 6> jacobian;
 };
 
-SOSLAM_MULTIVERSION void FindRows(const BoxOnGround& box, const Body& body,
-                                  const Eigen::Array4d& depths_m, Rows* rows) {
-  FourEdges edges;
-  FindEdges(box, body, &edges);
-  const SupportOfFour& support = edges.support;
-  Four outside, depths, sigmas, is_bound;
-  Load(box.at_origin.data(), &outside);
-  Load(depths_m.data(), &depths);
-  Load(box.sigma_px.data(), &sigmas);
-  Load(box.is_bound.data(), &is_bound);
-  for (size_t i = 0; i < 3; ++i) outside += edges.normals[i] * body.centre[i];
-  outside += support.extent;
-  Four weight = 1.0 / (depths * sigmas);
-  const FourMask is_idle = (is_bound != 0.0) & (weight * outside > 0.0);
-  Replace(is_idle, Four{}, &weight);
-  Store(weight * outside, rows->residuals.data());
-
-  const auto& [x, y, z] = edges.in_object;
-  const std::array<Four, 6> by_parameters = {
-      x * y * (support.shares[0] - support.shares[1]),
-      edges.normals[0],
-      edges.normals[1],
-      support.by_log_half_axes[0],
-      support.by_log_half_axes[1],
-      support.by_log_half_axes[2] + z * body.half_axes.z(),
-  };
-  for (int i = 0; i < 6; ++i) Store(weight * by_parameters[i], rows->jacobian.col(i).data());
+Rows FindRows(const BoxOnGround& box, const Body& body, const Eigen::Array4d& depths_m) {
+  Rows rows;
+  for (int edge = 0; edge < 4; ++edge) {
+    const Eigen::Vector3d normal = box.normals.row(edge);
+    const Eigen::Vector3d in_object = body.heading.TurnedBack(normal);
+    const SupportValue support = SupportFunction(body.half_axes, body.shape_exponent, in_object);
+    const double outside = box.at_origin[edge] + normal.dot(body.centre) + support.extent;
+    double weight = 1.0 / (depths_m[edge] * box.sigma_px[edge]);
+    if (box.is_bound[edge] != 0.0 && weight * outside > 0.0) weight = 0.0;
+    rows.residuals[edge] = weight * outside;
+    const Eigen::Vector3d& contact = support.contact;
+    rows.jacobian.row(edge) << contact.x() * in_object.y() - contact.y() * in_object.x(),
+        normal.x(), normal.y(), support.by_log_half_axes.transpose();
+    rows.jacobian(edge, kLogC) += normal.z() * body.half_axes.z();
+    rows.jacobian.row(edge) *= weight;
+  }
+  return rows;
 }
 
 }  // namespace
@@ -104,8 +63,14 @@ BoxFit::BoxFit(const UprightObservation& observation)
                                        observation.world_axis_in_camera.dot(ground_.x))) {}
 
 Eigen::Array4d BoxFit::TangentDepths(const UprightVector& start) const {
+  const Body body(observation_.prior.shape_exponent, start);
+  const Eigen::Vector3d axis_in_object = body.heading.TurnedBack(box_.optical_axis);
   Eigen::Array4d depths_m;
-  FindTangentDepths(box_, Body(observation_.prior.shape_exponent, start), &depths_m);
+  for (int edge = 0; edge < 4; ++edge) {
+    const Eigen::Vector3d in_object = body.heading.TurnedBack(box_.normals.row(edge));
+    const SupportValue support = SupportFunction(body.half_axes, body.shape_exponent, in_object);
+    depths_m[edge] = box_.DepthOf(body.centre) + axis_in_object.dot(support.contact);
+  }
   return depths_m;
 }
 
@@ -134,22 +99,13 @@ std::array<BoxFit::YawRow, 2> BoxFit::YawRows(double yaw, const Heading& heading
   return {of_axes, {YawDifferenceModuloPi(yaw, prior.yaw) / prior.sigma, 1.0 / prior.sigma}};
 }
 
-double BoxFit::YawCost(const StartAtYaw& start) const {
-  double cost = 0.0;
-  for (const YawRow& row : YawRows(start.parameters[kYaw], start.heading)) {
-    cost += 0.5 * row.residual * row.residual;
-  }
-  return cost;
-}
-
 QuadraticModel<6> BoxFit::Evaluate(const Eigen::Array4d& depths_m, const UprightVector& at) const {
   QuadraticModel<6> sum;
   const Body body(observation_.prior.shape_exponent, at);
-  Rows rows;
-  FindRows(box_, body, depths_m, &rows);
+  const Rows rows = FindRows(box_, body, depths_m);
   sum.cost = 0.5 * rows.residuals.squaredNorm();
-  sum.gradient = rows.jacobian.transpose().lazyProduct(rows.residuals);
-  sum.information = rows.jacobian.transpose().lazyProduct(rows.jacobian);
+  sum.gradient = rows.jacobian.transpose() * rows.residuals;
+  sum.information = rows.jacobian.transpose() * rows.jacobian;
   AddRatio(at.tail<3>(), &sum);
   for (const YawRow& row : YawRows(at[kYaw], body.heading)) {
     sum.cost += 0.5 * row.residual * row.residual;
@@ -173,35 +129,6 @@ double BoxFit::Minimise(const LandmarkCosts& further, bool yaw_is_free,
   };
   return MinimiseSquares<6>(evaluate, kMaxIterations, start, NegligibleDecrease(further)) +
          ConstantCost(further);
-}
-
-std::vector<FitAtYaw> BoxFit::MinimiseAtYaws(std::span<const StartAtYaw> starts) const {
-  std::vector<FitAtYaw> fits(
-      starts.size(), {std::numeric_limits<double>::quiet_NaN(), UprightVector::Zero(), 0.0});
-  if (!(box_.is_bound != 0.0).any()) {
-    for (size_t first = 0; first < starts.size(); first += 4) {
-      std::array<StartAtYaw, 4> four;
-      for (size_t k = 0; k < four.size(); ++k) {
-        four[k] = starts[std::min(first + k, starts.size() - 1)];
-      }
-      const auto found =
-          FitFourYaws(box_, ratio_, observation_.prior.shape_exponent, kMaxIterations, four);
-      for (size_t k = 0; k < four.size() && first + k < starts.size(); ++k) {
-        fits[first + k] = found[k];
-        fits[first + k].cost += YawCost(four[k]);
-      }
-    }
-  }
-  // Bound edges contribute or not depending on the foot, and other edges may not determine it: in
-  // these cases FitFourYaws has no result.
-  for (size_t i = 0; i < starts.size(); ++i) {
-    FitAtYaw& fit = fits[i];
-    if (!std::isnan(fit.cost)) continue;
-    fit.parameters = starts[i].parameters;
-    fit.cost = Minimise({}, /*yaw_is_free=*/false, &fit.parameters);
-    fit.nearest_depth_m = NearestDepth(fit.parameters);
-  }
-  return fits;
 }
 
 }  // namespace soslam

@@ -3,11 +3,8 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <span>
-#include <vector>
 
 #include "initialisation/box_on_ground.h"
-#include "initialisation/fit_four_yaws.h"
 #include "initialisation/quadratic_model.h"
 #include "initialisation/ratio_rows.h"
 #include "initialisation/upright_observation.h"
@@ -15,8 +12,7 @@
 namespace soslam {
 
 // The sum of the BoxTerm, RatioTerm, AxisTerm and yaw prior costs of an upright object, as a
-// function of its UprightVector on the observation's support plane. A sweep over yaw spends most of
-// its time here: a fit allocates nothing, and rotates only by the sine and cosine of the yaw.
+// function of its UprightVector on the observation's support plane.
 class BoxFit {
  public:
   // Keeps a reference to the observation.
@@ -31,12 +27,6 @@ class BoxFit {
   // those of `start`; yaw fixed or free. Returns the total cost, which is not finite if it is not
   // finite at the start.
   double Minimise(const LandmarkCosts& further, bool yaw_is_free, UprightVector* start) const;
-
-  StartAtYaw StartAt(const UprightVector& parameters) const {
-    return {parameters, Heading(parameters[0]), TangentDepths(parameters)};
-  }
-  // The same for many starts, without further costs and with the yaws fixed; four at once (SIMD).
-  std::vector<FitAtYaw> MinimiseAtYaws(std::span<const StartAtYaw> starts) const;
 
   // Smallest depth (m) of any point of the object.
   double NearestDepth(const UprightVector& at) const;
@@ -53,7 +43,6 @@ class BoxFit {
     double by_yaw = 0.0;
   };
   std::array<YawRow, 2> YawRows(double yaw, const Heading& heading_of_yaw) const;
-  double YawCost(const StartAtYaw& start) const;
 
   const UprightObservation& observation_;
   UprightGround ground_;

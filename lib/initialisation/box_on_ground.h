@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/wide_loops.h"
 #include "constraints/tangency.h"
 #include "initialisation/upright.h"
 
@@ -46,28 +45,6 @@ struct Heading {
 
   double cosine = 1.0;
   double sine = 0.0;
-};
-
-// Headings of four objects, one per SIMD lane.
-struct alignas(kFourAlignment) FourHeadings {
-  Four cosines{}, sines{};
-
-  void Set(size_t place, const Heading& heading) {
-    cosines[place] = heading.cosine;
-    sines[place] = heading.sine;
-  }
-  SOSLAM_FORCE_INLINE ThreeFours TurnedBack(const Eigen::Vector3d& direction) const {
-    return {cosines * direction.x() + sines * direction.y(),
-            cosines * direction.y() - sines * direction.x(), Four{} + direction.z()};
-  }
-};
-
-// Initial guess of a fit to a box: an object and the depths of its tangent points at the four
-// edges.
-struct StartAtYaw {
-  UprightVector parameters;
-  Heading heading;  // of its yaw
-  Eigen::Array4d depths_m;
 };
 
 }  // namespace soslam

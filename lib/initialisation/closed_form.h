@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <vector>
 
 #include "geometry/landmark.h"
 #include "initialisation/box_on_ground.h"
@@ -12,44 +11,48 @@
 
 namespace soslam {
 
-// Tangency equations of an object of known proportions and the edges of a box. At a given yaw they
-// are linear in its foot and half height c: F foot + a c = b. Only a depends on the yaw.
-struct BoxEquations {
-  explicit BoxEquations(const UprightObservation& observation);
-
-  BoxOnGround box;
-  Eigen::Vector3d proportions;  // (a, b, c) / c
-  Eigen::Vector3d log_proportions;
-  double shape_exponent;
-  Eigen::Matrix<double, 4, 2> without_foot;  // N with N^T F = 0, orthonormal
-  Eigen::Matrix<double, 2, 4> foot_by_b;     // pseudo-inverse of F
+// An upright object and the depths (m) of its tangent points at the four edges.
+struct ClosedFormSolution {
+  UprightVector parameters;
+  Eigen::Array4d depths_m;
 };
 
-// Closed-form solution at given yaws for an object with the prior's ratio: least squares over the
+// Closed-form solution at a given yaw for an object with the prior's ratio: least squares over the
 // measured edges, and over a bound edge that the object would not reach otherwise. The depths of
-// the tangent points are those on the solution itself, found by fixed-point iteration. Four yaws
-// are solved at once (SIMD).
+// the tangent points are those on the solution itself, found by fixed-point iteration.
 //
-// Without the foot, N^T a c = N^T b remains for c. The vector n = N t, with t orthogonal to N^T a,
-// spans the left null space of (F, a): n^T r is the same for the residuals r of all objects. With
-// weights W = diag(1 / (depth sigma_px)), the residuals of the least squares solution are the
-// multiple of W^-2 n with this n^T r. The iteration changes only W.
+// The tangency equations of the four edges are linear in the foot and the half height c:
+// F foot + a c = b, and only a depends on the yaw. With N^T F = 0, N^T a c = N^T b remains for c.
+// The vector n = N t, with t orthogonal to N^T a, spans the left null space of (F, a): n^T r is the
+// same for the residuals r of all objects. With weights W = diag(1 / (depth sigma_px)), the
+// residuals of the least squares solution are the multiple of W^-2 n with this n^T r. The iteration
+// changes only W.
 class ClosedForm {
  public:
-  explicit ClosedForm(const UprightObservation& observation) : equations_(observation) {}
+  explicit ClosedForm(const UprightObservation& observation);
 
-  // The object at each of these yaws (rad) on the ground of the observation's plane, and its
-  // tangent depths. None if fewer than three edges are measured, which leaves the size
-  // undetermined, or if the object of any iteration is not wholly in front of the camera. A
-  // solution does not depend on the other yaws, to the last bit.
-  std::vector<std::optional<StartAtYaw>> At(const std::vector<double>& yaws) const;
-  std::optional<StartAtYaw> At(double yaw) const { return At(std::vector{yaw}).front(); }
+  // The object at this yaw (rad) on the ground of the observation's plane. None if fewer than three
+  // edges are measured, which leaves the size undetermined, or if the object of any iteration is
+  // not wholly in front of the camera.
+  std::optional<ClosedFormSolution> At(double yaw) const;
 
   // True if at least three edges are measured.
-  bool HasEnoughEdges() const { return (equations_.box.is_bound == 0.0).count() >= 3; }
+  bool HasEnoughEdges() const { return (box_.is_bound == 0.0).count() >= 3; }
 
  private:
-  BoxEquations equations_;
+  // Coefficients of the half height at a heading.
+  struct HalfHeightCoefficients {
+    Eigen::Array4d residuals;       // a
+    Eigen::Array4d tangent_depths;  // of the tangent points, relative to the foot
+    double nearest_depth;           // of the object's nearest point, likewise
+  };
+  HalfHeightCoefficients CoefficientsAt(const Heading& heading) const;
+
+  BoxOnGround box_;
+  Eigen::Vector3d proportions_;  // (a, b, c) / c
+  double shape_exponent_;
+  Eigen::Matrix<double, 4, 2> without_foot_;  // N, orthonormal
+  Eigen::Matrix<double, 2, 4> foot_by_b_;     // pseudo-inverse of F
 };
 
 // ClosedForm::At for a single yaw, as a landmark in the camera frame.

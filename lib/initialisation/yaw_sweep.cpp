@@ -8,8 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "base/exponential_of_four.h"
-#include "base/wide_loops.h"
 #include "geometry/angles.h"
 #include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
@@ -27,7 +25,7 @@ constexpr int kRefinementSteps = 10;
 // Yaws farther apart than this many steps of the grid have a yaw without a landmark between them.
 constexpr double kGap = 1.5;
 // Number of integration steps of the likelihood between two yaws of the grid.
-constexpr size_t kLikelihoodSteps = 100;
+constexpr int kLikelihoodSteps = 100;
 
 // Integrals of exp(-height^2) between two angles from -pi/2 to pi, with the height linear in the
 // angle: mass, and second moment about 0 modulo pi.
@@ -35,31 +33,20 @@ struct Likelihood {
   double mass = 0.0;
   double squares = 0.0;
 };
-SOSLAM_MULTIVERSION void AddInterval(const std::array<double, 2>& angles,
-                                     const std::array<double, 2>& heights, Likelihood* sum) {
-  constexpr size_t kFours = 5;
+void AddInterval(const std::array<double, 2>& angles, const std::array<double, 2>& heights,
+                 Likelihood* sum) {
   const auto [from, to] = angles;
   const auto [from_height, to_height] = heights;
-  Four mass{}, squares{};
-  for (size_t k = 0; k < kLikelihoodSteps; k += 4 * kFours) {
-    std::array<Four, kFours> distance, density;
-    for (size_t i = 0; i < kFours; ++i) {
-      const Four share = (Four{0.5, 1.5, 2.5, 3.5} + static_cast<double>(k + 4 * i)) /
-                         static_cast<double>(kLikelihoodSteps);
-      const Four height = from_height + share * (to_height - from_height);
-      density[i] = -height * height;
-      const Four angle = from + share * (to - from);
-      distance[i] = angle < std::numbers::pi / 2.0 ? angle : std::numbers::pi - angle;
-    }
-    Exponential(density, &density);
-    for (size_t i = 0; i < kFours; ++i) {
-      mass += density[i];
-      squares += density[i] * distance[i] * distance[i];
-    }
+  const double step = (to - from) / kLikelihoodSteps;
+  for (int k = 0; k < kLikelihoodSteps; ++k) {
+    const double share = (k + 0.5) / kLikelihoodSteps;
+    const double height = from_height + share * (to_height - from_height);
+    const double angle = from + share * (to - from);
+    const double distance = angle < std::numbers::pi / 2.0 ? angle : std::numbers::pi - angle;
+    const double density = std::exp(-height * height);
+    sum->mass += step * density;
+    sum->squares += step * density * distance * distance;
   }
-  const double step = (to - from) / static_cast<double>(kLikelihoodSteps);
-  sum->mass += step * Sum(mass);
-  sum->squares += step * Sum(squares);
 }
 
 // Fits landmarks to an observation and an objective.
@@ -84,28 +71,12 @@ class Fitter {
         {parameters, box_fit_.CostAtOwnDepths(parameters) + further_cost, further_cost});
   }
 
-  using Starts = std::vector<std::optional<StartAtYaw>>;
-  // Fits at the yaws of all starts; none where there is no start or no landmark.
+  // Fits with the yaws of all starts fixed; none where there is no start or no landmark.
+  using Starts = std::vector<std::optional<UprightVector>>;
   std::vector<std::optional<UprightFit>> FitAtYaws(const Starts& starts) const {
     std::vector<std::optional<UprightFit>> fits(starts.size());
-    if (objective_.further_costs || objective_.rounds > 1) {
-      for (size_t i = 0; i < starts.size(); ++i) {
-        if (starts[i]) fits[i] = Fit(starts[i]->parameters, /*yaw_is_free=*/false);
-      }
-      return fits;
-    }
-    std::vector<StartAtYaw> given;
-    for (const auto& start : starts) {
-      if (start) given.push_back(*start);
-    }
-    const std::vector<FitAtYaw> found = box_fit_.MinimiseAtYaws(given);
-    auto next = found.begin();
     for (size_t i = 0; i < starts.size(); ++i) {
-      if (!starts[i]) continue;
-      if (IsPossible(next->cost, next->nearest_depth_m)) {
-        fits[i] = WithExtraCost({next->parameters, next->cost});
-      }
-      ++next;
+      if (starts[i]) fits[i] = Fit(*starts[i], /*yaw_is_free=*/false);
     }
     return fits;
   }
@@ -118,7 +89,7 @@ class Fitter {
     for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
       UprightVector at = start;
       at[0] += i * step / kRefinementSteps;
-      turned.push_back(box_fit_.StartAt(at));
+      turned.push_back(at);
     }
     std::optional<UprightFit> best;
     for (const auto& fit : FitAtYaws(turned)) {
@@ -205,7 +176,13 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
   YawSweep sweep;
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
   for (int i = 0; i < steps; ++i) sweep.yaw.push_back(i * std::numbers::pi / steps);
-  sweep.fits = Fitter(observation, objective).FitAtYaws(ClosedForm(observation).At(sweep.yaw));
+  const ClosedForm closed_form(observation);
+  std::vector<std::optional<UprightVector>> starts;
+  for (const double yaw : sweep.yaw) {
+    const auto solution = closed_form.At(yaw);
+    starts.push_back(solution ? std::optional(solution->parameters) : std::nullopt);
+  }
+  sweep.fits = Fitter(observation, objective).FitAtYaws(starts);
   return sweep;
 }
 

@@ -85,53 +85,6 @@ TEST(BoxFit, EndsWhereTheFitOfTheTermsEnds) {
   EXPECT_GT(checked, 50);
 }
 
-TEST(BoxFit, OfSeveralYawsIsThatOfEachOfThem) {
-  int checked = 0;
-  for (const double p : kShapeExponents) {
-    const double tolerance = p == kEllipsoidExponent ? 1e-9 : 1e-6;  // as above
-    for (int i = 0; i < 10; ++i) {
-      const UprightObservation observation = RandomObservation(p, i);
-      std::vector<StartAtYaw> starts;
-      for (int k = 0; k <= i; ++k) {
-        if (const auto start = ClosedForm(observation).At(RandomYaw())) starts.push_back(*start);
-      }
-      const BoxFit fit(observation);
-      const std::vector<FitAtYaw> together = fit.MinimiseAtYaws(starts);
-      ASSERT_EQ(together.size(), starts.size());
-      for (size_t k = 0; k < starts.size(); ++k) {
-        ++checked;
-        const UprightVector& found = together[k].parameters;
-        const double alone = fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters);
-        EXPECT_NEAR(together[k].cost, alone, tolerance * (1.0 + alone));
-        EXPECT_NEAR(together[k].cost, fit.Evaluate(starts[k].depths_m, found).cost,
-                    1e-9 * (1.0 + alone));
-        EXPECT_NEAR(together[k].nearest_depth_m, fit.NearestDepth(found),
-                    1e-12 * (1.0 + found.segment<2>(1).norm()));
-      }
-    }
-  }
-  EXPECT_GT(checked, 100);
-}
-
-// Four planes in one: the foot may be anywhere on it.
-TEST(BoxFit, OfSeveralYawsIsThatOfEachWhereTheEdgesDoNotTellTheFoot) {
-  const StandingBody body(2.0);
-  UprightObservation observation = body.Observe(body.box);
-  for (BoxEdge& edge : observation.edges) edge.plane = observation.edges.front().plane;
-  const BoxFit fit(observation);
-  UprightVector at = fit.ground().ParametersOf(body.truth);
-  std::vector<StartAtYaw> starts = {fit.StartAt(at)};
-  at[0] += 0.5;
-  starts.push_back(fit.StartAt(at));
-  const std::vector<FitAtYaw> together = fit.MinimiseAtYaws(starts);
-  for (size_t k = 0; k < starts.size(); ++k) {
-    EXPECT_EQ(together[k].cost, fit.Minimise({}, /*yaw_is_free=*/false, &starts[k].parameters));
-    EXPECT_EQ(together[k].parameters, starts[k].parameters);
-    EXPECT_EQ(together[k].nearest_depth_m, fit.NearestDepth(starts[k].parameters));
-    EXPECT_TRUE(std::isfinite(together[k].cost));
-  }
-}
-
 TEST(BoxFit, NearestDepthIsThatOfTheBodysNearestPoint) {
   for (const double p : kShapeExponents) {
     const StandingBody body(p);
