@@ -6,7 +6,6 @@
 
 #include "mapping/back_end_problem.h"
 #include "mapping/covariance.h"
-#include "mapping/start_in_parts.h"
 
 namespace soslam {
 namespace {
@@ -17,9 +16,6 @@ constexpr int kMaxImageRounds = 25;
 // A round need not end at the minimum of what is renewed in the next one.
 constexpr int kIterationsPerRound = 10;
 constexpr double kSettled = 1e-3;
-
-// Few enough for dead reckoning to keep its attitude.
-constexpr size_t kFramesPerPart = 250;
 
 double Change(const Landmark& from, const Landmark& to) {
   const double size = std::cbrt(from.half_axes.prod());
@@ -117,10 +113,7 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
   BackEndProblem problem(input, options, threads);
   MapEstimate map;
-  const bool is_long_drive =
-      !options.hold_poses && StartInParts(input.sequence, problem.AllTerms(), kFramesPerPart,
-                                          &problem.variables(), threads);
-  problem.Solve(options.max_iterations, is_long_drive);
+  problem.Solve(options.max_iterations);
   bool settled = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {

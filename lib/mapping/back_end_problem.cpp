@@ -178,7 +178,6 @@ void BackEndProblem::AddRatio(size_t object_index) {
 }
 
 void BackEndProblem::AddDetections() {
-  HeldViews held_views;
   int added = 0;
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
@@ -195,19 +194,14 @@ void BackEndProblem::AddDetections() {
       ++summary_.gated["landmark_behind_camera"];
       continue;
     }
-    AddDetection(i, start_in_camera, &held_views);
+    AddDetection(i, start_in_camera);
     ++added;
   }
   if (added > 0) summary_.residuals["detection"] = added;
-  for (const auto& [landmark, views] : held_views) {
-    terms_.push_back(std::make_unique<HeldViewsTerm>(landmark, variables_.Values(landmark), views,
-                                                     options_.huber_delta));
-  }
   if (options_.detection_model == DetectionModel::kTangency) AddBias();
 }
 
-void BackEndProblem::AddDetection(size_t index, const Landmark& start_in_camera,
-                                  HeldViews* held_views) {
+void BackEndProblem::AddDetection(size_t index, const Landmark& start_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.CameraOf(detection);
   if (options_.detection_model == DetectionModel::kQuadric) {
@@ -222,21 +216,7 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& start_in_camera,
   // A body so near that it reaches behind the camera has no tangent point in view.
   const int left_out = static_cast<int>(edges.size()) - box.num_edges;
   if (left_out > 0) summary_.gated["edge_behind_camera"] += left_out;
-  AddTangencies(index, box, held_views);
-}
-
-void BackEndProblem::AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views) {
-  const Detection& detection = input_.sequence.detections[index];
   const int landmark = LandmarkOf(detection);
-  if (options_.hold_poses && !(options_.detector_bias_sigma_px > 0.0)) {
-    std::vector<HeldView>& views = (*held_views)[landmark];
-    if (views.empty()) {
-      views.reserve(detections_by_object_[static_cast<size_t>(detection.object_index)].size());
-    }
-    views.push_back(
-        {input_.sequence.FrameOf(detection).world_from_camera, box, view_weights_[index]});
-    return;
-  }
   const int pose = Pose(detection);
   const int bias = variables_.Bias();
   terms_.push_back(std::make_unique<TangencyTerm>(
@@ -352,10 +332,9 @@ std::unique_ptr<const Term> BackEndProblem::ViewTermOf(
       landmark_in_camera.shape_exponent, std::move(cost));
 }
 
-void BackEndProblem::Solve(int max_iterations, bool hardly_damped_near) {
+void BackEndProblem::Solve(int max_iterations) {
   const int iterations = std::min(max_iterations, options_.max_iterations);
-  const Minimisation minimisation =
-      Minimise(AllTerms(), {iterations, threads_, hardly_damped_near}, &variables_.all());
+  const Minimisation minimisation = Minimise(AllTerms(), {iterations, threads_}, &variables_.all());
   const std::vector<double>& costs = minimisation.costs;
   if (summary_.cost_per_iteration.empty()) summary_.initial_cost = costs.front();
   summary_.final_cost = costs.back();

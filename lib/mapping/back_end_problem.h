@@ -11,7 +11,6 @@
 #include "initialisation/landmark_cost.h"
 #include "mapping/back_end.h"
 #include "mapping/back_end_variables.h"
-#include "mapping/held_views_term.h"
 #include "mapping/normal_equations.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
@@ -33,7 +32,7 @@ class BackEndProblem {
   // Minimises from where the variables are, with so many iterations at most and no more than the
   // options say. `hardly_damped_near`: see MinimiseOptions. Throws NumericalError where the cost is
   // not defined there.
-  void Solve(int max_iterations = std::numeric_limits<int>::max(), bool hardly_damped_near = false);
+  void Solve(int max_iterations = std::numeric_limits<int>::max());
 
   const SolverSummary& summary() const { return summary_; }
   // Where Solve has left them.
@@ -49,10 +48,7 @@ class BackEndProblem {
   void AddStanding(size_t object_index);
   void AddRatio(size_t object_index);
   void AddDetections();
-  // Views with fixed poses and without a bias, by the landmark's variable.
-  using HeldViews = std::map<int, std::vector<HeldView>>;
-  void AddDetection(size_t index, const Landmark& start_in_camera, HeldViews* held_views);
-  void AddTangencies(size_t index, const TangentBox& box, HeldViews* held_views);
+  void AddDetection(size_t index, const Landmark& start_in_camera);
   void AddBias();
 
   // What one image says of one landmark, where the variables are; or why nothing.

@@ -4,8 +4,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "mapping/schur_complement.h"
-
 namespace soslam {
 namespace {
 
@@ -172,7 +170,8 @@ bool BlockCholesky::Factor(const SymmetricBlocks& matrix, const Eigen::VectorXd&
     below = dense.bottomLeftCorner(neighbours, front.pivots);
     DivideByRoot(corner, &below);
     Eigen::Map<Eigen::MatrixXd> update(&stack_[front.update], neighbours, neighbours);
-    SchurComplement(dense.bottomRightCorner(neighbours, neighbours), below, &panels_, update);
+    update = dense.bottomRightCorner(neighbours, neighbours);
+    update.selfadjointView<Eigen::Lower>().rankUpdate(below, -1.0);
   }
   return true;
 }

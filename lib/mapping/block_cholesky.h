@@ -82,7 +82,6 @@ class BlockCholesky {
   std::vector<double> factor_;
   std::vector<double> stack_;     // what fronts leave to their parents, until they take it
   Eigen::VectorXd front_values_;  // of the front at work
-  std::vector<double> panels_;    // for SchurComplement
 };
 
 }  // namespace soslam

@@ -39,10 +39,6 @@ constexpr double kNearForLandmarks = 0.3;
 constexpr double kFirstDamping = 1e-4;
 constexpr double kDampingFall = 1e-2;
 constexpr double kLeastDamping = 1e-12;
-// Damping of steps near the minimum (MinimiseOptions::hardly_damped_near), in the end close to
-// rounding errors: 1e-12 still slows down the low-frequency drift of 32000 frames.
-constexpr double kHardlyDamped = 1e-12;
-constexpr double kLeastHardlyDamped = 1e-15;
 
 class Minimiser {
  public:
@@ -184,9 +180,6 @@ class Minimiser {
     if (gain > 0.0) {
       are_set_up_ = false;
       damping_.StepTaken(gain / predicted);
-      if (gain < kNear * before && std::exchange(options_.hardly_damped_near, false)) {
-        damping_ = Damping(kHardlyDamped, kLeastHardlyDamped, kDampingFall);
-      }
       return gain > options_.least_gain * before;
     }
     Restore(values);

@@ -20,9 +20,6 @@ struct Minimisation {
 struct MinimiseOptions {
   int max_iterations;
   int threads = 1;
-  // Once the minimum is near, steps of all variables are hardly damped from then on: what the terms
-  // say little about, as the bend of a long drive, would take many more of them to come to rest.
-  bool hardly_damped_near = false;
   // A share of the cost. What images say has kinks at every pixel, between which steps would go on
   // to and fro for less.
   double least_gain = 1e-8;

@@ -299,29 +299,6 @@ TEST_F(CurveTest, StepsThatAreNotWorthItAreNotTried) {
   }
 }
 
-// What is known of the offset is far less than what damping counts it as.
-TEST_F(CurveTest, IsHardlyDampedNearTheMinimumWhereThatIsAskedFor) {
-  const auto distance = [this](bool hardly_damped_near) {
-    MinimiseCurve(
-        1e5, {.max_iterations = 20, .hardly_damped_near = hardly_damped_near, .least_gain = 1e-12},
-        [](double x) {
-          return Curve{0.5e-15 * x * x, 1e-15 * x, 1e-15, 1e-15};
-        });
-    return std::abs(Offset());
-  };
-  EXPECT_GT(distance(false), 1e4);
-  EXPECT_LT(distance(true), 1e2);
-}
-
-// The first step brings 1.2 hundredths, as it is damped. Hardly damped, the second would lead all
-// the way.
-TEST_F(CurveTest, IsDampedAsUsualWhileStepsBringMore) {
-  MinimiseCurve(1.0, {.max_iterations = 2, .hardly_damped_near = true}, [](double x) {
-    return Curve{3e-8 * x * x, 6e-8 * x, 6e-8, 6e-8};
-  });
-  EXPECT_GT(Offset(), 0.5);
-}
-
 TEST(DampingTest, FallsToItsLeastAndNoFurther) {
   Damping usual;
   Damping hardly(1e-12, 1e-15, 0.1);
