@@ -98,11 +98,12 @@ help: ## List the targets
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
 
 .PHONY: demo
-demo: ## Run all variants on the sequence that comes with the project, and print the table
+demo: ## Run all variants on the sequence that comes with the project, print the tables, make pages
 	@$(MAKE) run DATASET=room_a DATA_ROOT=data VARIANT=all
-	@$(MAKE) tables
+	@$(MAKE) report
 	@echo
-	@echo 'This table: $(RESULTS)/tables.md. Every intermediate result: $(RESULTS)/room_a/<variant>/'
+	@echo 'These tables: $(RESULTS)/tables.md. Pages: $(RESULTS)/report.html, opens in a browser. Every'
+	@echo 'intermediate result: $(RESULTS)/room_a/<variant>/'
 
 FETCH = MIRROR='$(MIRROR)' WITHOUT='$(WITHOUT)' pipelines/fetch.sh $(DOWNLOADS)
 
