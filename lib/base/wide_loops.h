@@ -69,11 +69,6 @@ SOSLAM_FORCE_INLINE void Store(const Four& four, double* to) {
   *reinterpret_cast<FourInMemory*>(to) = four;
 }
 
-// True if the mask is set for any of the four.
-SOSLAM_FORCE_INLINE bool Any(const FourMask& mask) {
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
-}
-
 SOSLAM_FORCE_INLINE void SquareRoot(const Four& of, Four* root) {
   for (size_t k = 0; k < 4; ++k) (*root)[k] = std::sqrt(of[k]);
 }
@@ -106,16 +101,6 @@ SOSLAM_FORCE_INLINE void Load(const float* from, Eight* eight) {
   *eight = *reinterpret_cast<const EightInMemory*>(from);
 }
 
-using EightIntegersInMemory
-    [[gnu::vector_size(8 * sizeof(int)), gnu::aligned(alignof(int)), gnu::may_alias]] = int;
-SOSLAM_FORCE_INLINE void Load(const int* from, EightIntegers* eight) {
-  *eight = *reinterpret_cast<const EightIntegersInMemory*>(from);
-}
-
-SOSLAM_FORCE_INLINE void Store(const EightIntegers& eight, int* to) {
-  *reinterpret_cast<EightIntegersInMemory*>(to) = eight;
-}
-
 SOSLAM_FORCE_INLINE void Store(const Eight& eight, float* to) {
   *reinterpret_cast<EightInMemory*>(to) = eight;
 }
@@ -138,17 +123,6 @@ SOSLAM_FORCE_INLINE double Sum(const Eight& eight) {
   std::array<Four, 2> halves;
   std::memcpy(&halves, &numbers, sizeof(halves));
   return Sum(halves[0] + halves[1]);
-}
-
-// Takes the elements of `from` where the mask is set.
-SOSLAM_FORCE_INLINE void Replace(const FourMask& where, const Four& from, Four* to) {
-  *to = where ? from : *to;
-}
-
-template <size_t kCount>
-SOSLAM_FORCE_INLINE void Replace(const FourMask& where, const std::array<Four, kCount>& from,
-                                 std::array<Four, kCount>* to) {
-  for (size_t i = 0; i < kCount; ++i) Replace(where, from[i], &(*to)[i]);
 }
 
 }  // namespace soslam

@@ -27,17 +27,17 @@ enum class MapReason {
   kWrongSize,
   kWrongYaw,
   kWrongPlace,
-  kWrongInSeveral,  // no single correction helps
+  kWrongInSeveral,  // no single correction makes it match
   kDuplicate,       // overlaps a true object that another landmark matches better
   kMoving,          // its boxes belong to a moving object
-  kBackground,      // its boxes belong to no true object
+  kBackground,      // at most half of its boxes belong to true objects that are looked for
 };
 inline constexpr std::array kMapReasonNames = {
     "not_detected", "gated",       "lost_in_association", "split",
     "joined",       "no_landmark", "wrong_plane",         "wrong_height",
     "wrong_size",   "wrong_yaw",   "wrong_place",         "wrong_in_several",
     "duplicate",    "moving",      "background"};
-// Whether the landmark is that of the true object, at another place.
+// True for a landmark of the true object that does not match it: plane, height, size, yaw or place.
 bool IsWrong(MapReason reason);
 
 struct Explanation {

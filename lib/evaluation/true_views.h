@@ -11,10 +11,10 @@
 
 namespace soslam {
 
-// Where true objects are in the frames. Where the dataset says it for each frame, as it says: an
-// object is not seen in the other frames. Otherwise where the object is in the world, seen from the
-// true pose, or else from the odometry where that is in the world of the truth. No map plays a
-// part.
+// Poses of true objects in the camera frames. If the dataset has the pose of an object for each
+// frame, it is that, and the object is not seen in other frames. Otherwise it is the pose in the
+// world, seen from the true camera pose, or without one from the odometry if that is in the world
+// of the truth. It never depends on a map.
 class TrueViews {
  public:
   // The sequence has to outlive it.
@@ -42,8 +42,9 @@ struct TrueView {
   std::optional<int> rejected_index = std::nullopt;   // or Sequence::rejected
 };
 
-// Minimal IoU of a box with the outline box of a true object, cut to the image, to overlap it. The
-// box belongs to the one with the largest IoU. Boxes with lower scores are ignored.
+// A box overlaps a true object if its IoU with the object's outline box, cut to the image, is at
+// least kMinViewIou. It belongs to the one with the largest IoU. Boxes with a score below
+// kMinViewScore are ignored.
 inline constexpr double kMinViewIou = 0.5;
 inline constexpr double kMinViewScore = 0.25;
 // An object is detectable when boxes overlap it in at least this many frames.

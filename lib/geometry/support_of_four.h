@@ -43,13 +43,6 @@ SOSLAM_FORCE_INLINE void SquaresOfRounded(double shape_exponent, const ThreeFour
   for (Four& square : *squares) square += rounding;
 }
 
-SOSLAM_FORCE_INLINE void FindRounded(double shape_exponent, const ThreeFours& m,
-                                     ThreeFours* rounded) {
-  ThreeFours squares;
-  SquaresOfRounded(shape_exponent, m, &squares);
-  for (size_t i = 0; i < 3; ++i) SquareRoot(squares[i], &(*rounded)[i]);
-}
-
 // SupportFunction of one body in four directions m, not zero, at once.
 struct SupportOfFour {
   ThreeFours inverse_squares;  // 1 / |m_i|^2, rounded; unset for an ellipsoid

@@ -18,11 +18,7 @@ constexpr double kIouTolerance = 0.01;
 constexpr double kAngleToleranceDeg = 1.0;
 constexpr double kDistanceToleranceM = 0.001;
 // How much higher a final cost may be, as a share.
-constexpr double kCostTolerance = 1e-3;
-
-bool EndsWith(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
-}
+constexpr double kCostTolerance = 1e-4;
 
 // Adds a cell where there is a value.
 void Put(const std::string& name, const json& value, json* cells) {
@@ -61,9 +57,9 @@ json Cells(const std::filesystem::path& variant) {
 void ExpectNear(const std::string& name, double expected, double cell) {
   if (name == "cost") {
     EXPECT_LE(cell, expected * (1.0 + kCostTolerance));
-  } else if (EndsWith(name, "_deg")) {
+  } else if (name.ends_with("_deg")) {
     EXPECT_NEAR(cell, expected, kAngleToleranceDeg);
-  } else if (EndsWith(name, "_m")) {
+  } else if (name.ends_with("_m")) {
     EXPECT_NEAR(cell, expected, kDistanceToleranceM);
   } else if (name.starts_with("found_at")) {
     EXPECT_EQ(cell, expected);
