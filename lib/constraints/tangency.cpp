@@ -10,6 +10,8 @@ namespace {
 // Lower limit of sigma: boxes of a few pixels are not more precise than this.
 constexpr double kMinSigmaPx = 1.0;
 
+constexpr double kMinDepthShare = 0.1;  // of the initial depth
+
 constexpr int kMaxNewtonSteps = 20;
 constexpr double kSettledExcess = 1e-10;  // px / sigma
 
@@ -29,27 +31,54 @@ std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
   return edges;
 }
 
-double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double depth_m,
+double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
                 double bias_px, LandmarkJacobian1* jacobian) {
   const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
   const SupportValue support =
       SupportFunction(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent,
                       rotation.conjugate() * edge.plane);
-  const double weight = 1.0 / (depth_m * edge.sigma_px);
-  const double outside = weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.extent) -
-                         bias_px / edge.sigma_px;
-  const bool is_free = edge.is_bound && outside > 0.0;
+  const double weight = 1.0 / (depth.depth_m * edge.sigma_px);
+  const double outside = weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.extent);
+  const double residual = outside - bias_px / edge.sigma_px;
+  const bool is_free = edge.is_bound && residual > 0.0;
   if (jacobian != nullptr) {
     const Eigen::Vector3d contact = rotation * support.contact;
     *jacobian << contact.cross(edge.plane).transpose(), edge.plane.transpose(),
         support.by_log_half_axes.transpose();
-    *jacobian *= is_free ? 0.0 : weight;
+    *jacobian *= weight;
+    (*jacobian)[5] -= outside / depth.depth_m * depth.d_centre_depth;
+    if (is_free) jacobian->setZero();
   }
-  return is_free ? 0.0 : outside;
+  return is_free ? 0.0 : residual;
 }
 
-double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera) {
-  return FindSupportPoint(landmark_in_camera, edge.plane).point.z();
+// A rotation w of the body in its own frame turns the plane's normal m by m x w.
+Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
+                                              const Landmark& landmark_in_camera, double depth_m,
+                                              double tangency) {
+  if (!(tangency > 0.0) || !(landmark_in_camera.shape_exponent < kEllipsoidExponent)) {
+    return Eigen::Matrix<double, 2, 3>::Zero();
+  }
+  const Eigen::Matrix3d camera_from_object =
+      landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
+  const Eigen::Vector3d m = camera_from_object.transpose() * edge.plane;
+  Eigen::Matrix<double, 3, 2> across;  // an orthonormal basis of the directions across m
+  across.col(0) = m.unitOrthogonal();
+  across.col(1) = m.normalized().cross(across.col(0));
+  const Eigen::Matrix2d hessian =
+      across.transpose() *
+      SupportHessian(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent, m) * across;
+  Eigen::Matrix2d root;  // upper Cholesky factor of a matrix that may be singular
+  root(0, 0) = std::sqrt(std::max(0.0, hessian(0, 0)));
+  root(0, 1) = root(0, 0) > 0.0 ? hessian(0, 1) / root(0, 0) : 0.0;
+  root(1, 0) = 0.0;
+  root(1, 1) = std::sqrt(std::max(0.0, hessian(1, 1) - root(0, 1) * root(0, 1)));
+  const double weight = tangency / (depth_m * edge.sigma_px);
+  return std::sqrt(weight) * root * across.transpose() * Skew(m) * camera_from_object.transpose();
+}
+
+TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera) {
+  return {FindSupportPoint(landmark_in_camera, edge.plane).point.z()};
 }
 
 // Newton's method for the outward shift of the edge at which it is tangent to the silhouette. The
@@ -60,8 +89,8 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   moved.is_bound = false;
   double excess = 0.0;
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    const double depth_m = TangentDepth(moved, landmark_in_camera);
-    const double step = Tangency(moved, landmark_in_camera, depth_m, 0.0, jacobian);
+    const TangentDepth depth = FindTangentDepth(moved, landmark_in_camera);
+    const double step = Tangency(moved, landmark_in_camera, depth, 0.0, jacobian);
     excess += step;
     moved.plane.z() -= step * edge.sigma_px;
     if (!(std::abs(step) > kSettledExcess)) break;
@@ -69,6 +98,42 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   if (!edge.is_bound || !(excess > 0.0)) return excess;
   if (jacobian != nullptr) jacobian->setZero();
   return 0.0;
+}
+
+TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,
+                                   const bool* with_curvature)
+    : edge_(edge),
+      shape_exponent_(initial_in_camera.shape_exponent),
+      depth_ratio_(FindTangentDepth(edge, initial_in_camera).depth_m /
+                   initial_in_camera.Centre().z()),
+      min_centre_depth_m_(kMinDepthShare * initial_in_camera.Centre().z()),
+      with_curvature_(with_curvature) {}
+
+bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
+                                double** jacobians) const {
+  const RelativeObservation observation(blocks, shape_exponent_);
+  const Landmark& landmark = observation.landmark_in_camera();
+  const double centre_depth_m = landmark.Centre().z();
+  const bool is_near = !(centre_depth_m > min_centre_depth_m_);
+  const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
+                              is_near ? 0.0 : depth_ratio_};
+  Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
+  d_landmark.setZero();
+  LandmarkJacobian1 d_tangency;
+  const double tangency = Tangency(edge_, landmark, depth, *blocks[2], &d_tangency);
+  Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
+  if (jacobians == nullptr) return true;
+  d_landmark.row(0) = d_tangency;
+  if (*with_curvature_) {
+    d_landmark.bottomLeftCorner<2, 3>() =
+        TangencyCurvature(edge_, landmark, depth.depth_m, tangency);
+  }
+  observation.WriteJacobians<3>(d_landmark, blocks, jacobians);
+  if (jacobians[2] != nullptr) {
+    const bool is_free = edge_.is_bound && !(tangency < 0.0);
+    Eigen::Map<Eigen::Vector3d>(jacobians[2]) << (is_free ? 0.0 : -1.0 / edge_.sigma_px), 0.0, 0.0;
+  }
+  return true;
 }
 
 }  // namespace soslam

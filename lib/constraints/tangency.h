@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ceres/sized_cost_function.h>
+
 #include <Eigen/Core>
 #include <array>
 
@@ -25,22 +27,63 @@ struct BoxEdge {
 std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
                                 const std::array<bool, 4>& is_bound, double sigma_fraction);
 
+// Depth of a tangent point, and its derivative by the depth of the body's centre: 0 if it is fixed.
+struct TangentDepth {
+  double depth_m;
+  double d_centre_depth = 0.0;
+};
+
+// Depth of the point where an object is tangent to a plane parallel to the one behind an edge.
+TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
+
 // Signed distance (px / sigma) by which an object reaches outside a box edge: zero when the plane
 // behind the edge is tangent to it. Equals h(n) + n . c + d of the plane in metres, divided by the
-// depth of the tangent point (fixed: its change alters the residual by less than the residual's own
+// depth of the tangent point (its other changes alter the residual by less than the residual's own
 // size) and multiplied by the focal length. For a bound edge it is zero when positive. At p = 2 it
 // has the same zeros as the paper's eq. (3), as pi^T Q* pi = h^2 - (n . c + d)^2. `bias_px` moves
 // the edge outwards before the comparison.
-double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, double depth_m,
+double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
                 double bias_px, LandmarkJacobian1* jacobian);
 
-// Depth of the point where an object is tangent to a plane parallel to the one behind an edge.
-double TangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
+// Square root of what the curvature of the body adds to the Hessian of the squared tangency, as two
+// rows by a rotation vector in the camera frame. A body that reaches outside an edge, and turns
+// towards its corner, reaches outside faster than its tangent point says: without these rows,
+// Gauss-Newton steps overshoot at the corners of cuboids. Zero inside the edge, where this part is
+// negative, and for ellipsoids, which have no corners.
+Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
+                                              const Landmark& landmark_in_camera, double depth_m,
+                                              double tangency);
 
 // Signed distance (px / sigma) by which an object's silhouette reaches outside a box edge. Tangency
 // is its linearisation; this is exact, so that residual and Jacobian agree wherever the object is.
 // The whole object must be in front of the camera.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian);
+
+// The tangency of one box edge in the back end. The depth of the tangent point is that of the
+// centre times their ratio at the initial estimate: with fixed depths, a smaller world would have
+// smaller residuals. A centre nearer than a tenth of its initial depth, or behind the camera,
+// counts as if it were there.
+//
+// Residuals: 1 + 2, the tangency, and curvature rows: two zeros whose Jacobian is
+// TangencyCurvature. Blocks: world_from_camera; landmark in the world; bias (px) of the detector at
+// this side of boxes.
+class TangencyResidual final
+    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize> {
+ public:
+  // The tangent point of the initial estimate must be in front of the camera. While
+  // `*with_curvature` is false, the Jacobian of the curvature rows is zero.
+  TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,
+                   const bool* with_curvature);
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+
+ private:
+  BoxEdge edge_;
+  double shape_exponent_;
+  double depth_ratio_;  // of the tangent point and the centre
+  double min_centre_depth_m_;
+  const bool* with_curvature_;
+};
 
 }  // namespace soslam

@@ -60,4 +60,30 @@ SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_expo
   return value;
 }
 
+// With r_i the rounded |m_i| and l_i = dh / d log s_i:
+//   sum_i l_i / r_i^2 (e_i e_i^T + e^2 I - (2 - p) g_i g_i^T) - (p - 1) / h c c^T,
+// where g_i = (m_i e_i + e^2 m) / r_i and c = dh / dm.
+Eigen::Matrix3d SupportHessian(const Eigen::Vector3d& half_axes, double shape_exponent,
+                               const Eigen::Vector3d& direction_in_object) {
+  const double p = shape_exponent;
+  const double rounding = SquaredRounding(p);
+  const Eigen::Vector3d& m = direction_in_object;
+  const SupportValue value = SupportFunction(half_axes, p, m);
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  if (!(value.extent > 0.0)) return hessian;
+  for (int i = 0; i < 3; ++i) {
+    const double squared = m[i] * m[i] + rounding * m.squaredNorm();
+    if (!(squared > 0.0)) {  // only at p = 2, where l_i / r_i^2 is s_i^2 / h
+      hessian(i, i) += half_axes[i] * half_axes[i] / value.extent;
+      continue;
+    }
+    const double share = value.by_log_half_axes[i] / squared;
+    const Eigen::Vector3d g = m[i] * Eigen::Vector3d::Unit(i) + rounding * m;
+    hessian.diagonal().array() += share * rounding;
+    hessian(i, i) += share;
+    hessian -= (2.0 - p) * share / squared * g * g.transpose();
+  }
+  return hessian - (p - 1.0) / value.extent * value.contact * value.contact.transpose();
+}
+
 }  // namespace soslam

@@ -32,6 +32,11 @@ constexpr double SquaredRounding(double shape_exponent) {  // e^2
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_exponent,
                              const Eigen::Vector3d& direction_in_object);
 
+// The Hessian d^2 h / dm^2: positive semidefinite, as a support function is convex, with m in its
+// null space, as it is homogeneous. Zero where SupportFunction has no extent.
+Eigen::Matrix3d SupportHessian(const Eigen::Vector3d& half_axes, double shape_exponent,
+                               const Eigen::Vector3d& direction_in_object);
+
 // The derivatives d h / d u_i = (u_i / h)^(p - 1) of the norm h = || u ||_p; u >= 0, not zero.
 Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm);
 

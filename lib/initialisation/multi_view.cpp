@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "constraints/huber.h"
+#include "constraints/loss.h"
 #include "initialisation/box_on_ground.h"
 #include "initialisation/ratio_rows.h"
 #include "initialisation/view_weights.h"
@@ -230,7 +230,8 @@ class LinearViews {
     // outliers.
     if (box.is_bound[edge] != 0.0 && (is_first || contact.excess >= 0.0)) return;
     const double size = std::abs(contact.excess);
-    const double robust = is_first ? 1.0 : HuberLoss{observation_.huber_delta}(size).weight;
+    const double robust =
+        is_first ? 1.0 : EvaluateLoss(ceres::HuberLoss(observation_.huber_delta), size).weight;
     const Eigen::RowVector3d normal = box.normals.row(edge);
     typename LinearSystem<kUnknowns>::Row row;
     row.template head<2>() = normal.head<2>();
@@ -266,14 +267,14 @@ class LinearViews {
   }
 
   double Cost(const Body& body, const Landmark& landmark) const {
-    const HuberLoss loss{observation_.huber_delta};
+    const ceres::HuberLoss loss(observation_.huber_delta);
     double cost = 0.0;
     for (size_t i = 0; i < boxes_.size(); ++i) {
       for (int edge = 0; edge < 4; ++edge) {
         const double excess = Touch(boxes_[i], edge, body, /*is_first=*/false).excess;
         const double size =
             boxes_[i].is_bound[edge] != 0.0 ? std::max(0.0, -excess) : std::abs(excess);
-        cost += observation_.views[i].weight * loss(size).cost;
+        cost += observation_.views[i].weight * EvaluateLoss(loss, size).cost;
       }
     }
     if (ratio_) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "constraints/huber.h"
+#include "constraints/loss.h"
 #include "initialisation/levenberg_marquardt.h"
 
 namespace soslam {
@@ -70,7 +70,8 @@ void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
 
 BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera)
     : edges_(edges) {
-  for (size_t i = 0; i < edges.size(); ++i) depths_m_[i] = TangentDepth(edges[i], start_in_camera);
+  for (size_t i = 0; i < edges.size(); ++i)
+    depths_[i] = FindTangentDepth(edges[i], start_in_camera);
 }
 
 void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
@@ -78,7 +79,7 @@ void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
   for (size_t i = 0; i < edges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     LandmarkJacobian1 by_landmark;
-    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_m_[i], 0.0, &by_landmark);
+    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0, &by_landmark);
     if (jacobian != nullptr) jacobian->row(row) = by_landmark;
   }
 }
@@ -128,7 +129,7 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
     const double size = std::abs(residuals[i]);
     if (!(size > huber_delta_)) continue;
-    const double root = std::sqrt(2.0 * HuberLoss{huber_delta_}(size).cost);
+    const double root = std::sqrt(2.0 * EvaluateLoss(ceres::HuberLoss(huber_delta_), size).cost);
     const double slope = huber_delta_ / root;
     residuals[i] = std::copysign(root, residuals[i]);
     if (jacobian != nullptr) jacobian->row(i) *= slope;

@@ -64,7 +64,7 @@ class BoxTerm final : public LandmarkTerm {
 
  private:
   std::array<BoxEdge, 4> edges_;
-  std::array<double, 4> depths_m_;
+  std::array<TangentDepth, 4> depths_;
 };
 
 // Signed distances (OutlineExcess) by which the silhouette reaches outside the four edges of one

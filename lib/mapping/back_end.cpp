@@ -10,27 +10,19 @@
 namespace soslam {
 namespace {
 
-// What of texture and edges is visible, and where the mirror planes are, settles with the
-// landmarks: renewed until none changes by more than this (m per m of size, rad).
+// Image residuals are renewed until no landmark changes by more than the tolerance (m per m of
+// size, rad): which texture and edges are visible, and where the mirror planes are, depends on the
+// landmarks.
 constexpr int kMaxImageRounds = 25;
-// A round need not end at the minimum of what is renewed in the next one.
+constexpr double kConvergenceTolerance = 1e-3;
+// A round need not converge, as the next one changes its residuals.
 constexpr int kIterationsPerRound = 10;
-constexpr double kSettled = 1e-3;
 
 double Change(const Landmark& from, const Landmark& to) {
   const double size = std::cbrt(from.half_axes.prod());
   return std::max({(to.Centre() - from.Centre()).norm() / size,
                    (to.half_axes - from.half_axes).norm() / size,
                    to.frame_from_object.rotation.angularDistance(from.frame_from_object.rotation)});
-}
-
-// In the world, where the variables are; none for objects without a start.
-std::vector<std::optional<Landmark>> LandmarksOf(const BackEndProblem& problem, size_t objects) {
-  std::vector<std::optional<Landmark>> landmarks;
-  for (size_t i = 0; i < objects; ++i) {
-    landmarks.push_back(problem.variables().LandmarkValue(i));
-  }
-  return landmarks;
 }
 
 double LargestChange(const std::vector<std::optional<Landmark>>& from,
@@ -42,15 +34,19 @@ double LargestChange(const std::vector<std::optional<Landmark>>& from,
   return change;
 }
 
-// Whether they settled: the minimum is where the image terms were made.
-bool SettleWithImages(size_t objects, BackEndProblem* problem) {
+// Returns whether the landmarks converged: they are at the minimum of the residuals made for them.
+bool SolveWithImages(BackEndProblem* problem) {
+  const BackEndVariables& variables = problem->variables();
   for (int round = 0; round < kMaxImageRounds; ++round) {
-    const std::vector<std::optional<Landmark>> before = LandmarksOf(*problem, objects);
-    problem->RenewImageTerms();
+    const std::vector<std::optional<Landmark>> before = variables.LandmarkValues();
+    const auto have_converged = [&] {
+      return LargestChange(before, variables.LandmarkValues()) < kConvergenceTolerance;
+    };
+    problem->RenewImageResiduals();
     problem->Solve(kIterationsPerRound);
-    if (LargestChange(before, LandmarksOf(*problem, objects)) >= kSettled) continue;
+    if (!have_converged()) continue;
     problem->Solve();
-    if (LargestChange(before, LandmarksOf(*problem, objects)) < kSettled) return true;
+    if (have_converged()) return true;
   }
   problem->Solve();
   return false;
@@ -58,7 +54,7 @@ bool SettleWithImages(size_t objects, BackEndProblem* problem) {
 
 void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEstimate* map) {
   const auto detections = DetectionsByObject(input.sequence);
-  const std::vector<std::optional<Landmark>> landmarks = LandmarksOf(problem, input.starts.size());
+  const std::vector<std::optional<Landmark>> landmarks = problem.variables().LandmarkValues();
   for (size_t i = 0; i < landmarks.size(); ++i) {
     ObjectEstimate object;
     object.object_index = static_cast<int>(i);
@@ -74,37 +70,33 @@ void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEst
   }
 }
 
-void AddLandmarkCovariances(const MarginalCovariances& covariances, MapEstimate* map) {
+void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndProblem* problem,
+                            MapEstimate* map) {
   int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
-    const auto index = static_cast<size_t>(object.object_index);
-    if (!covariances.HasLandmark(index)) {
+    if (covariances.AreDetermined()) {
+      object.covariance = covariances.OfLandmark(
+          problem->variables().Landmark(static_cast<size_t>(object.object_index)));
+    } else {
       ++without;
-      continue;
     }
-    object.covariance = covariances.OfLandmark(index);
   }
   if (without > 0) map->solver.gated["covariance_of_undetermined_problem"] = without;
 }
 
-bool DependOn(int variable, const Terms& terms) {
-  return std::ranges::any_of(terms, [variable](const Term* term) {
-    return std::ranges::count(term->variables(), variable) > 0;
-  });
-}
-
 void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
-                         const BackEndProblem& problem, MapEstimate* map) {
+                         BackEndProblem* problem, MapEstimate* map) {
   if (!covariances.AreDetermined()) return;
-  const BackEndVariables& variables = problem.variables();
+  BackEndVariables& variables = problem->variables();
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
-    const bool holds_something = DependOn(variables.Offset(i), problem.AllTerms());
-    if (!sequence.planes[i].attitude_information || !holds_something) continue;
+    const bool has_objects = problem->problem().HasParameterBlock(variables.Offset(i));
+    if (!sequence.planes[i].attitude_information || !has_objects) continue;
     Eigen::Vector4d sides = Eigen::Vector4d::Ones();
     sides.head<3>() *= variables.NormalSide(i);
     map->plane_covariances[static_cast<int>(i)] =
-        sides.asDiagonal() * covariances.OfPlane(i) * sides.asDiagonal();
+        sides.asDiagonal() * covariances.OfPlane(variables.Normal(i), variables.Offset(i)) *
+        sides.asDiagonal();
   }
 }
 
@@ -114,17 +106,17 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   BackEndProblem problem(input, options, threads);
   MapEstimate map;
   problem.Solve(options.max_iterations);
-  bool settled = true;
+  bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
-      settled = SettleWithImages(input.starts.size(), &problem);
+      has_converged = SolveWithImages(&problem);
     }
   } else if (!input.symmetry_images.empty()) {
-    problem.RenewImageTerms();  // the paper's pairs are those of the start
+    problem.RenewImageResiduals();  // the paper's pairs are those of the initial landmarks
     problem.Solve();
   }
   map.solver = problem.summary();
-  map.solver.converged = map.solver.converged && settled;
+  map.solver.converged = map.solver.converged && has_converged;
   const BackEndVariables& variables = problem.variables();
   map.world_from_camera.reserve(input.sequence.frames.size());
   for (size_t i = 0; i < input.sequence.frames.size(); ++i) {
@@ -135,9 +127,10 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   }
   AddObjects(input, problem, &map);
   if (options.covariances) {
-    const MarginalCovariances covariances(problem.variables(), problem.AllTerms());
-    AddLandmarkCovariances(covariances, &map);
-    AddPlaneCovariances(input.sequence, covariances, problem, &map);
+    problem.DropCurvatureRows();
+    const MarginalCovariances covariances(&problem.problem());
+    AddLandmarkCovariances(covariances, &problem, &map);
+    AddPlaneCovariances(input.sequence, covariances, &problem, &map);
   }
   return map;
 }

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/back_end_problem.h"
 
+#include <ceres/normal_prior.h>
+
 #include <algorithm>
 #include <functional>
-#include <iterator>
-#include <limits>
+#include <utility>
 
+#include "base/error.h"
 #include "base/parallel.h"
-#include "constraints/box_bias.h"
+#include "base/progress.h"
 #include "constraints/detection.h"
+#include "constraints/manifolds.h"
 #include "constraints/odometry.h"
 #include "constraints/plane_normal.h"
 #include "constraints/scale_ratio.h"
@@ -16,13 +19,9 @@
 #include "constraints/tangency.h"
 #include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
+#include "initialisation/landmark_term_residual.h"
 #include "initialisation/view_weights.h"
-#include "mapping/axis_cost_term.h"
-#include "mapping/minimise.h"
-#include "mapping/ratio_cost_term.h"
-#include "mapping/residual_term.h"
-#include "mapping/tangency_term.h"
-#include "mapping/view_term.h"
+#include "mapping/image_residual.h"
 #include "orientation/symmetry_samples.h"
 #include "orientation/texture_asymmetry.h"
 
@@ -35,7 +34,41 @@ constexpr const char* kEdges = "edges";
 constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
 constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 
-constexpr double kNoLoss = std::numeric_limits<double>::infinity();
+ceres::Problem::Options ProblemOptions() {
+  ceres::Problem::Options options;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // losses outlive the problem
+  options.enable_fast_removal = true;
+  return options;
+}
+
+ceres::Solver::Options SolverOptions(int max_iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  // CHOLMOD's last digits depend on the BLAS that is installed, sums over several threads on which
+  // one ends first.
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.num_threads = 1;
+  options.max_num_iterations = max_iterations;
+  // In the paper's units a pixel is a residual of 1e-3 or less: the default tolerances would stop
+  // far from the optimum.
+  options.function_tolerance = 1e-8;
+  options.gradient_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-10;
+  options.min_lm_diagonal = 1e-3;  // steps stay short in directions that hardly any residual sees
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
+class IterationProgress final : public ceres::IterationCallback {
+ public:
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    progress_.Step();
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  Progress progress_{"iterations", Progress::kUnknownCount};
+};
 
 }  // namespace
 
@@ -44,61 +77,34 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
     : input_(input),
       options_(options),
       threads_(threads),
-      detections_by_object_(DetectionsByObject(input.sequence)),
-      variables_(input) {
-  HoldPoses();
+      variables_(input),
+      loss_(options.huber_delta),
+      problem_(ProblemOptions()) {
   WeighViews();
   if (!options.hold_poses) AddOdometry();
   for (size_t i = 0; i < input.starts.size(); ++i) {
     if (input.starts[i]) AddLandmark(i);
   }
   AddDetections();
-}
-
-template <typename Residual, VariableKind... kKinds, typename... Arguments>
-std::unique_ptr<const Term> BackEndProblem::TermOf(
-    const std::array<int, sizeof...(kKinds)>& variables, double huber_delta,
-    Arguments&&... arguments) const {
-  using Made = ResidualTerm<Residual, kKinds...>;
-  std::array<typename Made::Block, sizeof...(kKinds)> blocks;
-  for (size_t i = 0; i < blocks.size(); ++i) {
-    blocks[i] = {variables[i], variables_.Values(variables[i])};
-  }
-  return std::make_unique<Made>(blocks, huber_delta, std::forward<Arguments>(arguments)...);
-}
-
-Terms BackEndProblem::AllTerms() const {
-  Terms terms;
-  for (const auto* some : {&terms_, &image_terms_}) {
-    for (const auto& term : *some) terms.push_back(term.get());
-  }
-  return terms;
+  SetManifolds();
+  FixPoses();
 }
 
 Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
   return Transform(variables_.PoseValue(static_cast<size_t>(detection.frame_index)).Inverse(),
-                   *variables_.LandmarkValue(static_cast<size_t>(detection.object_index)));
+                   variables_.LandmarkValue(static_cast<size_t>(detection.object_index)));
 }
 
 void BackEndProblem::WeighViews() {
   view_weights_.assign(input_.sequence.detections.size(), 1.0);
-  for (size_t i = 0; i < detections_by_object_.size(); ++i) {
+  const auto detections_by_object = DetectionsByObject(input_.sequence);
+  for (size_t i = 0; i < detections_by_object.size(); ++i) {
     if (!input_.starts[i]) continue;
-    const std::vector<int>& detections = detections_by_object_[i];
+    const std::vector<int>& detections = detections_by_object[i];
     const auto weights = ViewWeights(input_.sequence, detections, input_.starts[i]->Centre(),
                                      options_.view_correlation_deg * kRadPerDeg);
     for (size_t k = 0; k < weights.size(); ++k) {
       view_weights_[static_cast<size_t>(detections[k])] = weights[k];
-    }
-  }
-}
-
-// The first pose of each segment defines its world.
-void BackEndProblem::HoldPoses() {
-  const auto& frames = input_.sequence.frames;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    if (options_.hold_poses || i == 0 || frames[i].segment != frames[i - 1].segment) {
-      variables_.Hold(variables_.Pose(i));
     }
   }
 }
@@ -109,31 +115,32 @@ void BackEndProblem::AddOdometry() {
     if (frames[i].segment != frames[i - 1].segment) continue;
     const Rigid3d first_from_second =
         frames[i - 1].world_from_camera.Inverse() * frames[i].world_from_camera;
-    terms_.push_back(TermOf<OdometryResidual, VariableKind::kPose, VariableKind::kPose>(
-        {variables_.Pose(i - 1), variables_.Pose(i)}, options_.huber_delta, first_from_second,
-        options_.odometry_rotation_sigma_deg * kRadPerDeg, options_.odometry_translation_sigma_m));
+    problem_.AddResidualBlock(
+        new OdometryResidual(first_from_second, options_.odometry_rotation_sigma_deg * kRadPerDeg,
+                             options_.odometry_translation_sigma_m),
+        &loss_, variables_.Pose(i - 1), variables_.Pose(i));
     ++summary_.residuals["odometry"];
   }
 }
 
-// An estimated plane moves with what stands on it, under what is known of its normal besides.
+// An estimated plane moves with the objects on it, under the prior of its normal. No loss: a body
+// that floats is not an outlier, but wrong.
 void BackEndProblem::AddStanding(size_t object_index) {
   const auto plane_index = static_cast<size_t>(input_.sequence.objects[object_index].plane_index);
-  const int normal = variables_.Normal(plane_index);
-  const int offset = variables_.Offset(plane_index);
-  // No loss: a body that floats is not an outlier, but wrong.
-  terms_.push_back(TermOf<UprightOnPlaneResidual, VariableKind::kLandmark, VariableKind::kNormal,
-                          VariableKind::kOffset>(
-      {variables_.Landmark(object_index), normal, offset}, kNoLoss,
-      options_.standing_angle_sigma_deg * kRadPerDeg, options_.standing_height_sigma_m,
-      variables_.NormalSide(plane_index)));
+  double* normal = variables_.Normal(plane_index);
+  double* offset = variables_.Offset(plane_index);
+  const bool is_new_normal = !problem_.HasParameterBlock(normal);
+  problem_.AddResidualBlock(
+      new UprightOnPlaneResidual(options_.standing_angle_sigma_deg * kRadPerDeg,
+                                 options_.standing_height_sigma_m,
+                                 variables_.NormalSide(plane_index)),
+      nullptr, variables_.Landmark(object_index), normal, offset);
   const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
   if (!attitude || !options_.refine_planes) {
-    variables_.Hold(normal);
-    variables_.Hold(offset);
-  } else if (normals_under_objects_.insert(normal).second) {
-    terms_.push_back(
-        TermOf<PlaneNormalResidual, VariableKind::kNormal>({normal}, kNoLoss, *attitude));
+    problem_.SetParameterBlockConstant(normal);
+    problem_.SetParameterBlockConstant(offset);
+  } else if (is_new_normal) {
+    problem_.AddResidualBlock(new PlaneNormalResidual(*attitude), nullptr, normal);
   }
 }
 
@@ -141,21 +148,22 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
   const Plane& plane =
       input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-  const int landmark = variables_.Landmark(object_index);
+  double* landmark = variables_.Landmark(object_index);
   if (options_.support) {
-    if (options_.detection_model == DetectionModel::kTangency) {
+    if (IsTangency()) {
       AddStanding(object_index);
     } else {
-      terms_.push_back(TermOf<SupportResidual, VariableKind::kLandmark>(
-          {landmark}, options_.huber_delta, plane, options_.variances.SupportAngleRad2(),
-          options_.variances.SupportTangencyM4()));
+      problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
+                                                    options_.variances.SupportTangencyM4()),
+                                &loss_, landmark);
     }
     ++summary_.residuals["support"];
   }
   if (options_.ratio) AddRatio(object_index);
-  if (options_.detection_model == DetectionModel::kTangency && options_.axes_weight > 0.0) {
-    terms_.push_back(std::make_unique<AxisCostTerm>(landmark, variables_.Values(landmark), plane,
-                                                    options_.axes_weight));
+  if (IsTangency() && options_.axes_weight > 0.0) {
+    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<AxisTerm>(
+                                  plane, WorldAxis(plane), options_.axes_weight)),
+                              nullptr, landmark);
   }
 }
 
@@ -165,14 +173,14 @@ void BackEndProblem::AddRatio(size_t object_index) {
     ++summary_.gated["object_without_ratio"];
     return;
   }
-  const int landmark = variables_.Landmark(object_index);
-  if (options_.detection_model == DetectionModel::kTangency) {
+  double* landmark = variables_.Landmark(object_index);
+  if (IsTangency()) {
     // No loss: a ratio far from the prior is as unlikely as its spread says.
-    terms_.push_back(
-        std::make_unique<RatioCostTerm>(landmark, variables_.Values(landmark), *prior));
+    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<RatioTerm>(*prior)),
+                              nullptr, landmark);
   } else {
-    terms_.push_back(TermOf<ScaleRatioResidual, VariableKind::kLandmark>(
-        {landmark}, options_.huber_delta, prior->ratio, options_.variances.ratio));
+    problem_.AddResidualBlock(new ScaleRatioResidual(prior->ratio, options_.variances.ratio),
+                              &loss_, landmark);
   }
   ++summary_.residuals["ratio"];
 }
@@ -181,167 +189,226 @@ void BackEndProblem::AddDetections() {
   int added = 0;
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
-    const auto& start = input_.starts[static_cast<size_t>(detection.object_index)];
-    if (!start) {
+    if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
       ++summary_.gated[input_.sequence.ObjectOf(detection).is_static
                            ? "detection_of_object_without_start"
                            : "detection_of_moving_object"];
       continue;
     }
-    const Rigid3d& world_from_camera = input_.sequence.FrameOf(detection).world_from_camera;
-    const Landmark start_in_camera = Transform(world_from_camera.Inverse(), *start);
-    if (!(start_in_camera.Centre().z() > 0.0)) {
+    const Landmark initial_in_camera = LandmarkInCamera(detection);
+    if (!(initial_in_camera.Centre().z() > 0.0)) {
       ++summary_.gated["landmark_behind_camera"];
       continue;
     }
-    AddDetection(i, start_in_camera);
+    AddDetection(i, initial_in_camera);
     ++added;
   }
   if (added > 0) summary_.residuals["detection"] = added;
-  if (options_.detection_model == DetectionModel::kTangency) AddBias();
+  if (IsTangency()) AddBias();
 }
 
-void BackEndProblem::AddDetection(size_t index, const Landmark& start_in_camera) {
+void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camera) {
   const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.CameraOf(detection);
-  if (options_.detection_model == DetectionModel::kQuadric) {
-    terms_.push_back(TermOf<DetectionResidual, VariableKind::kPose, VariableKind::kLandmark>(
-        {Pose(detection), LandmarkOf(detection)}, options_.huber_delta, camera, detection.box,
-        options_.variances.DetectionM4()));
+  if (!IsTangency()) {
+    problem_.AddResidualBlock(
+        new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()), &loss_,
+        Pose(detection), LandmarkOf(detection));
     return;
   }
+  view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
   const auto edges =
       BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction);
-  const TangentBox box(edges, start_in_camera);
-  // A body so near that it reaches behind the camera has no tangent point in view.
-  const int left_out = static_cast<int>(edges.size()) - box.num_edges;
-  if (left_out > 0) summary_.gated["edge_behind_camera"] += left_out;
-  const int landmark = LandmarkOf(detection);
-  const int pose = Pose(detection);
-  const int bias = variables_.Bias();
-  terms_.push_back(std::make_unique<TangencyTerm>(
-      std::array{pose, landmark, bias},
-      TangencyTerm::Blocks{variables_.Values(pose), variables_.Values(landmark),
-                           variables_.Values(bias)},
-      box, options_.huber_delta, view_weights_[index]));
+  for (size_t side = 0; side < edges.size(); ++side) {
+    // A body so near that it reaches behind the camera has no tangent point in view.
+    if (!(FindTangentDepth(edges[side], initial_in_camera).depth_m > 0.0)) {
+      ++summary_.gated["edge_behind_camera"];
+      continue;
+    }
+    problem_.AddResidualBlock(
+        new TangencyResidual(edges[side], initial_in_camera, &with_curvature_),
+        &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side));
+  }
 }
 
 void BackEndProblem::AddBias() {
-  if (options_.detector_bias_sigma_px > 0.0) {
-    terms_.push_back(TermOf<BoxBiasResidual, VariableKind::kBias>({variables_.Bias()}, kNoLoss,
-                                                                  options_.detector_bias_sigma_px));
-  } else {
-    variables_.Hold(variables_.Bias());
+  for (size_t side = 0; side < variables_.BiasValues().size(); ++side) {
+    double* bias = variables_.Bias(side);
+    if (!problem_.HasParameterBlock(bias)) continue;
+    if (options_.detector_bias_sigma_px > 0.0) {
+      const ceres::Matrix weight =
+          ceres::Matrix::Constant(1, 1, 1.0 / options_.detector_bias_sigma_px);
+      problem_.AddResidualBlock(new ceres::NormalPrior(weight, ceres::Vector::Zero(1)), nullptr,
+                                bias);
+    } else {
+      problem_.SetParameterBlockConstant(bias);
+    }
   }
 }
 
-void BackEndProblem::RenewImageTerms() {
-  image_terms_.clear();
+void BackEndProblem::SetManifolds() {
+  const auto set = [&](double* block, ceres::Manifold* (*make)()) {
+    if (problem_.HasParameterBlock(block)) problem_.SetManifold(block, make());
+  };
+  for (size_t i = 0; i < input_.sequence.frames.size(); ++i) {
+    set(variables_.Pose(i), NewPoseManifold);
+  }
+  for (size_t i = 0; i < input_.starts.size(); ++i)
+    set(variables_.Landmark(i), NewLandmarkManifold);
+  for (size_t i = 0; i < input_.sequence.planes.size(); ++i) {
+    set(variables_.Normal(i), NewNormalManifold);
+  }
+}
+
+// The first pose of each segment defines its world.
+void BackEndProblem::FixPoses() {
+  const auto& frames = input_.sequence.frames;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const bool is_first = i == 0 || frames[i].segment != frames[i - 1].segment;
+    if ((options_.hold_poses || is_first) && problem_.HasParameterBlock(variables_.Pose(i))) {
+      problem_.SetParameterBlockConstant(variables_.Pose(i));
+    }
+  }
+}
+
+void BackEndProblem::RenewImageResiduals() {
+  for (const ceres::ResidualBlockId block : image_blocks_) problem_.RemoveResidualBlock(block);
+  image_blocks_.clear();
   for (const char* kind : {kSymmetry, kEdges}) summary_.residuals.erase(kind);
   for (const char* reason : {kTooFewPairs, kNoEdgeCounts}) summary_.gated.erase(reason);
-  const auto has_start = [&](int detection_index) {
-    const Detection& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
+  const auto is_used = [&](int detection_index) {
+    const auto& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
     return input_.starts[static_cast<size_t>(detection.object_index)].has_value();
   };
-  std::vector<std::function<ImageTerms()>> makers;
+  std::vector<size_t> detections;
+  std::vector<std::function<ImageBlocks()>> makers;
   for (const auto& [index, image] : input_.symmetry_images) {
-    if (!has_start(index)) continue;
-    makers.push_back([this, index = static_cast<size_t>(index), &image = image] {
-      return options_.detection_model == DetectionModel::kTangency ? AsymmetryOf(index, image)
-                                                                   : PairsOf(index, image);
+    if (!is_used(index)) continue;
+    detections.push_back(static_cast<size_t>(index));
+    makers.push_back([this, index = detections.back(), &image = image] {
+      return IsTangency() ? TextureBlocks(index, image) : PairBlocks(index, image);
     });
   }
   for (const auto& [index, image] : input_.edge_images) {
-    if (!has_start(index)) continue;
-    makers.push_back([this, index = static_cast<size_t>(index), &image = image] {
-      return EdgesOf(index, image);
-    });
+    if (!is_used(index)) continue;
+    detections.push_back(static_cast<size_t>(index));
+    makers.push_back(
+        [this, index = detections.back(), &image = image] { return EdgeBlocks(index, image); });
   }
-  std::vector<ImageTerms> made(makers.size());
+  std::vector<ImageBlocks> made(makers.size());
   ParallelFor(static_cast<int>(makers.size()), threads_,
               [&](int i) { made[static_cast<size_t>(i)] = makers[static_cast<size_t>(i)](); });
-  for (ImageTerms& of_image : made) AddImageTerms(std::move(of_image));
+  for (size_t i = 0; i < made.size(); ++i) AddImageBlocks(detections[i], std::move(made[i]));
+  SetManifolds();
+  FixPoses();
 }
 
-void BackEndProblem::AddImageTerms(ImageTerms of_image) {
-  if (of_image.terms.empty()) {
-    ++summary_.gated[of_image.reason_for_none];
+void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
+  if (blocks.functions.empty()) {
+    ++summary_.gated[blocks.reason_for_none];
     return;
   }
-  summary_.residuals[of_image.kind] += of_image.residuals;
-  std::ranges::move(of_image.terms, std::back_inserter(image_terms_));
+  summary_.residuals[blocks.kind] += blocks.count;
+  const Detection& detection = input_.sequence.detections[index];
+  for (auto& function : blocks.functions) {
+    image_blocks_.push_back(problem_.AddResidualBlock(function.release(),
+                                                      blocks.is_robust ? nullptr : &loss_,
+                                                      Pose(detection), LandmarkOf(detection)));
+  }
 }
 
-BackEndProblem::ImageTerms BackEndProblem::AsymmetryOf(
+BackEndProblem::ImageBlocks BackEndProblem::TextureBlocks(
     size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto texture = std::make_unique<AsymmetryTerm>(image, input_.sequence.CameraOf(detection),
                                                  in_camera, options_.texture,
                                                  options_.symmetry_options, view_weights_[index]);
-  ImageTerms made{kSymmetry, kTooFewPairs, texture->NumPairs(), {}};
-  if (made.residuals > 0) {
-    made.terms.push_back(ViewTermOf(detection, in_camera, std::move(texture)));
+  ImageBlocks blocks{kSymmetry, kTooFewPairs, texture->NumPairs(), {}, true};
+  if (blocks.count > 0) {
+    blocks.functions.push_back(
+        std::make_unique<ImageResidual>(std::move(texture), in_camera.shape_exponent));
   }
-  return made;
+  return blocks;
 }
 
-BackEndProblem::ImageTerms BackEndProblem::PairsOf(
+BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
     size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
   const Camera& camera = input_.sequence.CameraOf(detection);
   const SymmetryOptions& symmetry = options_.symmetry_options;
-  const SymmetryDescriptor at_start(symmetry.descriptor, *image, camera, in_camera);
+  const SymmetryDescriptor descriptor(symmetry.descriptor, *image, camera, in_camera);
   std::vector<Eigen::Vector2d> visible;
   for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, in_camera, symmetry)) {
-    if (at_start.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
+    if (descriptor.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
   }
-  ImageTerms made{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}};
-  if (made.residuals < symmetry.min_pairs) return made;
+  ImageBlocks blocks{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}, false};
+  if (blocks.count < symmetry.min_pairs) return blocks;
   for (const Eigen::Vector2d& pixel : visible) {
-    made.terms.push_back(TermOf<SymmetryResidual, VariableKind::kPose, VariableKind::kLandmark>(
-        {Pose(detection), LandmarkOf(detection)}, options_.huber_delta, symmetry.descriptor, image,
-        camera, pixel, in_camera.shape_exponent, options_.symmetry_sigma));
+    blocks.functions.push_back(
+        std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
+                                           in_camera.shape_exponent, options_.symmetry_sigma));
   }
-  return made;
+  return blocks;
 }
 
-BackEndProblem::ImageTerms BackEndProblem::EdgesOf(
+BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
     size_t index, const std::shared_ptr<const EdgeImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto edges = std::make_unique<EdgeTerm>(SupportedEdgeTerm(
       image, input_.sequence.CameraOf(detection), in_camera, options_.edges, view_weights_[index]));
-  ImageTerms made{kEdges, kNoEdgeCounts, 1, {}};
+  ImageBlocks blocks{kEdges, kNoEdgeCounts, 1, {}, true};
   if (edges->NumPoints() > 0) {
-    made.terms.push_back(ViewTermOf(detection, in_camera, std::move(edges)));
+    blocks.functions.push_back(
+        std::make_unique<ImageResidual>(std::move(edges), in_camera.shape_exponent));
   }
-  return made;
+  return blocks;
 }
 
-// No loss: what a pair or a point costs is bounded.
-std::unique_ptr<const Term> BackEndProblem::ViewTermOf(
-    const Detection& detection, const Landmark& landmark_in_camera,
-    std::unique_ptr<const LandmarkCost> cost) const {
-  const int pose = Pose(detection);
-  const int landmark = LandmarkOf(detection);
-  return std::make_unique<ViewTerm>(
-      std::array{pose, landmark},
-      ViewTerm::Blocks{variables_.Values(pose), variables_.Values(landmark)},
-      landmark_in_camera.shape_exponent, std::move(cost));
+std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (size_t i = 0; i < input_.starts.size(); ++i) {
+    double* landmark = variables_.Landmark(i);
+    if (problem_.HasParameterBlock(landmark)) ordering->AddElementToGroup(landmark, 0);
+  }
+  return ordering;
 }
 
 void BackEndProblem::Solve(int max_iterations) {
-  const int iterations = std::min(max_iterations, options_.max_iterations);
-  const Minimisation minimisation = Minimise(AllTerms(), {iterations, threads_}, &variables_.all());
-  const std::vector<double>& costs = minimisation.costs;
-  if (summary_.cost_per_iteration.empty()) summary_.initial_cost = costs.front();
-  summary_.final_cost = costs.back();
-  summary_.iterations += static_cast<int>(costs.size()) - 1;
-  summary_.converged = minimisation.converged;
+  ceres::Solver::Options options = SolverOptions(std::min(max_iterations, options_.max_iterations));
+  if (IsTangency() && !image_blocks_.empty()) {
+    // The costs of images have kinks at pixels: every step that crosses one may be refused.
+    options.use_nonmonotonic_steps = true;
+    options.function_tolerance = 1e-6;
+  } else {
+    // A landmark that its boxes hardly determine would shorten the steps of all others: after each
+    // step, each is optimised alone.
+    options.use_inner_iterations = true;
+    options.inner_iteration_tolerance = 1e-6;
+    options.inner_iteration_ordering = LandmarkOrdering();
+  }
+  IterationProgress progress;
+  options.callbacks.push_back(&progress);
+  ceres::Solver::Summary solution;
+  ceres::Solve(options, &problem_, &solution);
+  if (!solution.IsSolutionUsable()) throw NumericalError("back end: " + solution.message);
+  Record(solution);
+}
+
+void BackEndProblem::Record(const ceres::Solver::Summary& solution) {
+  std::vector<double>& costs = summary_.cost_per_iteration;
+  if (costs.empty()) summary_.initial_cost = solution.initial_cost;
+  summary_.final_cost = solution.final_cost;
+  summary_.iterations += static_cast<int>(std::max<size_t>(1, solution.iterations.size())) - 1;
+  summary_.converged = solution.termination_type == ceres::CONVERGENCE;
   summary_.detector_bias_px = variables_.BiasValues();
-  summary_.cost_per_iteration.insert(summary_.cost_per_iteration.end(), costs.begin(), costs.end());
+  for (const ceres::IterationSummary& iteration : solution.iterations) {
+    // Ceres gives a rejected step the cost where it would have led.
+    const bool is_rejected = iteration.iteration > 0 && !iteration.step_is_successful;
+    costs.push_back(is_rejected ? costs.back() : iteration.cost);
+  }
 }
 
 }  // namespace soslam

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/covariance.h"
 
-#include <cmath>
-
-#include "mapping/block_cholesky.h"
+#include <ceres/crs_matrix.h>
+#include <ceres/manifold.h>
 
 namespace soslam {
 namespace {
@@ -12,48 +11,73 @@ namespace {
 // million times the standard deviation that it would have if they were known.
 constexpr double kLeastIndependentShare = 1e-12;
 
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::SparseMatrix<double> Jacobian(const std::vector<double*>& blocks, ceres::Problem* problem) {
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = blocks;
+  ceres::CRSMatrix rows;
+  if (!problem->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return {};
+  return Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+      rows.num_rows, rows.num_cols, static_cast<int>(rows.values.size()), rows.rows.data(),
+      rows.cols.data(), rows.values.data());
+}
+
 }  // namespace
 
-MarginalCovariances::MarginalCovariances(const BackEndVariables& variables, const Terms& terms)
-    : variables_(variables) {
-  NormalEquations equations(variables.all(), terms);
-  for (size_t i = 0; i < variables.all().size(); ++i) {
-    block_of_.push_back(equations.BlockOf(static_cast<int>(i)));
+// Columns of unit length: units do not count when it is decided what is determined.
+MarginalCovariances::MarginalCovariances(ceres::Problem* problem) : problem_(problem) {
+  std::vector<double*> blocks;
+  problem->GetParameterBlocks(&blocks);
+  std::erase_if(blocks, [&](double* block) { return problem->IsParameterBlockConstant(block); });
+  if (blocks.empty()) return;
+  int columns = 0;
+  for (const double* block : blocks) {
+    first_column_[block] = columns;
+    columns += problem->ParameterBlockTangentSize(block);
   }
-  const SymmetricBlocks& information = equations.hessian();
-  if (information.NumRows() == 0 ||
-      !std::isfinite(equations.Linearise(terms, Hessian::kInformation))) {
-    return;
-  }
-  BlockCholesky factor(information);
-  if (factor.Factor(information, Eigen::VectorXd::Zero(information.NumRows())) &&
-      factor.LeastIndependentShare(information) > kLeastIndependentShare) {
-    inverse_ = factor.InverseOnPattern(information);
-  }
+  Eigen::SparseMatrix<double> jacobian = Jacobian(blocks, problem);
+  if (jacobian.cols() != columns) return;
+  column_norms_ =
+      (jacobian.cwiseAbs2().transpose() * Eigen::VectorXd::Ones(jacobian.rows())).cwiseSqrt();
+  if (!column_norms_.allFinite() || !(column_norms_.minCoeff() > 0.0)) return;
+  jacobian = jacobian * column_norms_.cwiseInverse().asDiagonal();
+  factor_.compute(jacobian.transpose() * jacobian);
+  are_determined_ = factor_.info() == Eigen::Success &&
+                    factor_.matrixL().nestedExpression().diagonal().array().square().minCoeff() >
+                        kLeastIndependentShare;
 }
 
-Covariance9 MarginalCovariances::OfLandmark(size_t object_index) const {
-  const int block = block_of_[static_cast<size_t>(variables_.Landmark(object_index))];
-  return inverse_->At(block, block);
+Eigen::MatrixXd MarginalCovariances::HalfInverse(const double* block) const {
+  const auto first = first_column_.find(block);
+  if (first == first_column_.end()) return Eigen::MatrixXd::Zero(column_norms_.size(), 0);
+  const int size = problem_->ParameterBlockTangentSize(block);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(column_norms_.size(), size);
+  for (int i = 0; i < size; ++i) {
+    const int column = first->second + i;
+    columns(factor_.permutationP().indices()[column], i) = 1.0 / column_norms_[column];
+  }
+  factor_.matrixL().solveInPlace(columns);
+  return columns;
 }
 
-Eigen::Matrix4d MarginalCovariances::OfPlane(size_t plane_index) const {
-  const int normal = variables_.Normal(plane_index);
-  const int normal_block = block_of_[static_cast<size_t>(normal)];
-  const int offset_block = block_of_[static_cast<size_t>(variables_.Offset(plane_index))];
-  const Eigen::MatrixXd by_step = ByStep(VariableKind::kNormal, variables_.Values(normal));
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  if (normal_block >= 0) {
-    covariance.topLeftCorner<3, 3>() =
-        by_step * inverse_->At(normal_block, normal_block) * by_step.transpose();
+Covariance9 MarginalCovariances::OfLandmark(const double* landmark) const {
+  Eigen::Matrix<double, Eigen::Dynamic, 9> half = HalfInverse(landmark);
+  half.leftCols<3>() *= 2.0;  // Ceres' rotation tangent is half the rotation vector
+  return half.transpose() * half;
+}
+
+Eigen::Matrix4d MarginalCovariances::OfPlane(const double* normal, const double* offset) const {
+  Eigen::Matrix<double, Eigen::Dynamic, 4> half = Eigen::MatrixXd::Zero(column_norms_.size(), 4);
+  if (const Eigen::MatrixXd of_normal = HalfInverse(normal); of_normal.cols() > 0) {
+    RowMajorMatrix normal_by_tangent(3, of_normal.cols());
+    problem_->GetManifold(normal)->PlusJacobian(normal, normal_by_tangent.data());
+    half.leftCols<3>() = of_normal * normal_by_tangent.transpose();
   }
-  if (offset_block >= 0) covariance(3, 3) = inverse_->At(offset_block, offset_block)(0, 0);
-  if (normal_block >= 0 && offset_block >= 0) {
-    covariance.topRightCorner<3, 1>() =
-        by_step * inverse_->At(offset_block, normal_block).transpose();
-    covariance.bottomLeftCorner<1, 3>() = covariance.topRightCorner<3, 1>().transpose();
+  if (const Eigen::MatrixXd of_offset = HalfInverse(offset); of_offset.cols() > 0) {
+    half.col(3) = of_offset;
   }
-  return covariance;
+  return half.transpose() * half;
 }
 
 }  // namespace soslam

@@ -1,42 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-#include <vector>
+#include <ceres/problem.h>
 
-#include "mapping/back_end_variables.h"
-#include "mapping/normal_equations.h"
+#include <Eigen/SparseCholesky>
+#include <map>
+
 #include "model/estimates.h"
 
 namespace soslam {
 
-// Marginal covariances of the variables where they are: blocks of the inverse of the information
-// J^T W J, from one sparse Cholesky factor of it. They hold in so far as the residuals' sigmas do.
+// Marginal covariances of parameter blocks at their present values: blocks of (J^T W J)^-1, by one
+// sparse Cholesky factor. They are as right as the residuals' sigmas. (The digits of
+// ceres::Covariance depend on the BLAS that is installed.)
 class MarginalCovariances {
  public:
-  // Evaluates and factors. The variables have to outlive it.
-  MarginalCovariances(const BackEndVariables& variables, const Terms& terms);
+  // Evaluates the Jacobian and factors. The problem must outlive this object.
+  explicit MarginalCovariances(ceres::Problem* problem);
 
-  // Whether the terms determine all variables. If not, there are no covariances.
-  bool AreDetermined() const { return inverse_.has_value(); }
+  // Whether the residuals determine all blocks. If not, there are no covariances.
+  bool AreDetermined() const { return are_determined_; }
 
-  // Covariance of an object's landmark over (rotation vector in the world frame, rad; centre, m;
-  // log half axes).
-  Covariance9 OfLandmark(size_t object_index) const;
-  // Whether there is one: something has to depend on the landmark.
-  bool HasLandmark(size_t object_index) const {
-    return AreDetermined() &&
-           block_of_[static_cast<size_t>(variables_.Landmark(object_index))] >= 0;
-  }
+  // Covariance of a landmark over (rotation vector in the world frame, rad; centre, m; log half
+  // axes).
+  Covariance9 OfLandmark(const double* landmark) const;
 
-  // Covariance of a plane's variables over (normal, offset): its rank is 3, as the normal has unit
-  // length; zero for fixed variables.
-  Eigen::Matrix4d OfPlane(size_t plane_index) const;
+  // Covariance of a plane over (normal, offset): its rank is 3, as the normal has unit length; zero
+  // for constant blocks.
+  Eigen::Matrix4d OfPlane(const double* normal, const double* offset) const;
 
  private:
-  const BackEndVariables& variables_;
-  std::vector<int> block_of_;  // by variable
-  std::optional<SymmetricBlocks> inverse_;
+  // L^-1 P times the columns of a block, so that X^T Y is the covariance of two blocks; no columns
+  // for constant blocks.
+  Eigen::MatrixXd HalfInverse(const double* block) const;
+
+  ceres::Problem* problem_;
+  std::map<const double*, int> first_column_;
+  Eigen::VectorXd column_norms_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
+  bool are_determined_ = false;
 };
 
 }  // namespace soslam

@@ -6,24 +6,25 @@
 #include <iterator>
 #include <limits>
 
-#include "constraints/huber.h"
+#include "constraints/loss.h"
 #include "constraints/tangency.h"
 
 namespace soslam {
 namespace {
 
-constexpr HuberLoss kLoss{1.0};          // of residuals in standard deviations
 constexpr double kStep = 0.01;           // finer than boxes can resolve
 constexpr double kSigmaFraction = 0.02;  // of an edge, as a fraction of the side of its box
 
 double Loss(const Sequence& sequence, const Detection& detection, double shape_exponent) {
   Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
   in_camera.shape_exponent = shape_exponent;
+  const ceres::HuberLoss huber(1.0);  // of residuals in standard deviations
   double loss = 0.0;
   for (const BoxEdge& edge :
        BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_bound, kSigmaFraction)) {
-    const double residual = Tangency(edge, in_camera, TangentDepth(edge, in_camera), 0.0, nullptr);
-    loss += kLoss(std::abs(residual)).cost;
+    const double residual =
+        Tangency(edge, in_camera, FindTangentDepth(edge, in_camera), 0.0, nullptr);
+    loss += EvaluateLoss(huber, residual).cost;
   }
   return loss;
 }

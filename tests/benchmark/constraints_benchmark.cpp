@@ -13,12 +13,10 @@
 #include "constraints/support.h"
 #include "constraints/symmetry.h"
 #include "constraints/tangency.h"
-#include "constraints/tangent_space.h"
 #include "constraints/upright_on_plane.h"
-#include "mapping/tangency_term.h"
+#include "initialisation/landmark_term_residual.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/texture_asymmetry.h"
-#include "support/landmark_term_residual.h"
 
 namespace soslam {
 namespace {
@@ -75,36 +73,17 @@ void QuadricOfBox(benchmark::State& state) {
 }
 BENCHMARK(QuadricOfBox)->Name("residual/detection_quadric");
 
-// The four edges of a box, with all second derivatives; the argument is a hundred times the shape
-// exponent.
-void TangencyOfBox(benchmark::State& state) {
+// One edge of a box, with its curvature rows; the argument is a hundred times the shape exponent.
+void TangencyOfEdge(benchmark::State& state) {
   View view;
   view.landmark_in_camera.shape_exponent = 0.01 * static_cast<double>(state.range(0));
-  const std::array<double, kBiasSize> bias{};
-  const TangencyTerm term({0, 1, 2}, {view.pose.data(), view.landmark.data(), bias.data()},
-                          TangentBox(BoxEdges(view.sequence.camera, view.detection.box, {}, 0.02),
-                                     view.landmark_in_camera),
-                          1.0, 1.0);
-  Eigen::Matrix<double, kPoseDof, 1> of_pose;
-  Eigen::Matrix<double, kLandmarkDof, 1> of_landmark;
-  Eigen::Matrix<double, kPoseDof, kPoseDof> pose_pose;
-  Eigen::Matrix<double, kLandmarkDof, kPoseDof> landmark_pose;
-  Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> landmark_landmark;
-  TermPlaces places;
-  places.gradient = {of_pose.data(), of_landmark.data(), nullptr};
-  places.hessian[0][0] = pose_pose.data();
-  places.hessian[1] = {landmark_pose.data(), landmark_landmark.data(), nullptr};
-  for (auto _ : state) {
-    of_pose.setZero();
-    of_landmark.setZero();
-    pose_pose.setZero();
-    landmark_pose.setZero();
-    landmark_landmark.setZero();
-    benchmark::DoNotOptimize(term.Linearise(Hessian::kNear, places));
-    benchmark::ClobberMemory();
-  }
+  const double bias_px = 0.0;
+  const bool with_curvature = true;
+  const auto edges = BoxEdges(view.sequence.camera, view.detection.box, {}, 0.02);
+  Evaluate(state, TangencyResidual(edges[0], view.landmark_in_camera, &with_curvature),
+           {view.pose.data(), view.landmark.data(), &bias_px});
 }
-BENCHMARK(TangencyOfBox)
+BENCHMARK(TangencyOfEdge)
     ->Name("residual/tangency_of_box")
     ->ArgName("p_percent")
     ->Arg(100)

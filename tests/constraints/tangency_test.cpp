@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/jacobians.h"
 #include "support/random_scene.h"
 #include "support/shape_exponents.h"
 
@@ -18,7 +19,7 @@ BoxEdge RandomEdge() {
 }
 
 double AtOwnDepth(const BoxEdge& edge, const Landmark& landmark, double bias_px = 0.0) {
-  return Tangency(edge, landmark, TangentDepth(edge, landmark), bias_px, nullptr);
+  return Tangency(edge, landmark, FindTangentDepth(edge, landmark), bias_px, nullptr);
 }
 
 TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
@@ -122,8 +123,9 @@ TEST(Tangency, OfAnEllipsoidIsTheDualQuadricForm) {
     const double extent = FindSupportPoint(landmark, edge.plane).distance - at_centre;
     EXPECT_NEAR(form, extent * extent - at_centre * at_centre, 1e-7 * extent * extent);
     // The plane moved along its normal until it touches.
-    const double depth = TangentDepth(edge, landmark);
-    const double in_metres = Tangency(edge, landmark, depth, 0.0, nullptr) * depth * edge.sigma_px;
+    const TangentDepth depth = FindTangentDepth(edge, landmark);
+    const double in_metres =
+        Tangency(edge, landmark, depth, 0.0, nullptr) * depth.depth_m * edge.sigma_px;
     Landmark touching = landmark;
     touching.frame_from_object.translation -= in_metres / edge.plane.squaredNorm() * edge.plane;
     EXPECT_NEAR(AtOwnDepth(edge, touching), 0.0, 1e-9);
@@ -138,8 +140,8 @@ TEST(Tangency, MovesWithCameraAndBody) {
     const Eigen::Quaterniond turn = RandomRotation();
     BoxEdge turned = edge;
     turned.plane = turn * edge.plane;
-    EXPECT_NEAR(Tangency(turned, Transform({turn, {0, 0, 0}}, landmark), 3.0, 0.5, nullptr),
-                Tangency(edge, landmark, 3.0, 0.5, nullptr), 1e-9);
+    EXPECT_NEAR(Tangency(turned, Transform({turn, {0, 0, 0}}, landmark), {3.0}, 0.5, nullptr),
+                Tangency(edge, landmark, {3.0}, 0.5, nullptr), 1e-9);
     // Nor does it change with the unit of length.
     Landmark larger = landmark;
     larger.half_axes *= 10.0;
@@ -173,14 +175,117 @@ TEST(Tangency, OfABoundCountsOnlyWhatIsMissing) {
     bound.is_bound = true;
     const double bias_px = RandomUniform(-3, 3);
     LandmarkJacobian1 of_measured, of_bound;
-    const double expected = Tangency(measured, landmark, 3.0, bias_px, &of_measured);
-    const double found = Tangency(bound, landmark, 3.0, bias_px, &of_bound);
+    const double expected = Tangency(measured, landmark, {3.0}, bias_px, &of_measured);
+    const double found = Tangency(bound, landmark, {3.0}, bias_px, &of_bound);
     EXPECT_EQ(found, std::min(expected, 0.0));
     EXPECT_EQ(of_bound, expected > 0.0 ? LandmarkJacobian1::Zero().eval() : of_measured);
     reached += expected > 0.0 ? 1 : 0;
   }
   EXPECT_GT(reached, 10);
   EXPECT_LT(reached, 90);
+}
+
+// d^2 t / da^2 of a turn by a = contact . d^2 m / da^2 + (dm / da)^T H (dm / da), of which the last
+// is meant.
+TEST(TangencyCurvature, IsThatOfTheSquaredTangencyAcrossItsGradient) {
+  constexpr double kStep = 1e-4;
+  for (int i = 0; i < 50; ++i) {
+    const Landmark landmark = WithShape(RandomLandmarkInCamera(), RandomUniform(1.2, 1.9));
+    BoxEdge edge = RandomEdge();
+    edge.plane.z() += 500.0;  // so that the body reaches outside
+    LandmarkJacobian1 jacobian;
+    const double tangency = Tangency(edge, landmark, {3.0}, 0.0, &jacobian);
+    ASSERT_GT(tangency, 0.0);
+    const auto rows = TangencyCurvature(edge, landmark, 3.0, tangency);
+    const Eigen::Vector3d axis = RandomDirection();
+    const auto at = [&](double angle) {
+      Landmark turned = landmark;
+      turned.frame_from_object.rotation =
+          ExpRotation(angle * axis) * landmark.frame_from_object.rotation;
+      return Tangency(edge, turned, {3.0}, 0.0, nullptr);
+    };
+    const double second = (at(kStep) - 2.0 * tangency + at(-kStep)) / (kStep * kStep);
+    // A turned plane's normal moves on a circle: its second derivative, along the contact.
+    const Eigen::Vector3d contact =
+        FindSupportPoint(landmark, edge.plane).point - landmark.Centre();
+    const double bends = axis.cross(axis.cross(edge.plane)).dot(contact) / (3.0 * edge.sigma_px);
+    EXPECT_NEAR((rows * axis).squaredNorm(), tangency * (second - bends),
+                1e-4 * tangency * (std::abs(second) + std::abs(bends)));
+  }
+}
+
+TEST(TangencyCurvature, IsZeroInsideTheEdgeAndForEllipsoids) {
+  const Landmark cuboid = WithShape(RandomLandmarkInCamera(), kCuboidExponent);
+  const BoxEdge edge = RandomEdge();
+  EXPECT_TRUE(TangencyCurvature(edge, cuboid, 3.0, -1.0).isZero(0.0));
+  EXPECT_FALSE(TangencyCurvature(edge, cuboid, 3.0, 1.0).isZero(0.0));
+  const Landmark ellipsoid = WithShape(cuboid, kEllipsoidExponent);
+  EXPECT_TRUE(TangencyCurvature(edge, ellipsoid, 3.0, 1.0).isZero(0.0));
+}
+
+struct View {
+  PoseBlock pose = ToParameterBlock(RandomRigid());
+  Landmark initial_in_camera = RandomLandmarkInCamera();
+  double bias_px = RandomUniform(-3, 3);
+
+  LandmarkBlock LandmarkInWorld() const {
+    return ToParameterBlock(Transform(UnpackPose(pose.data()), initial_in_camera));
+  }
+};
+
+TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
+  const bool with_curvature = false;
+  for (int i = 0; i < 30; ++i) {
+    View view;
+    // Sharper bodies have derivatives that numbers do not follow.
+    view.initial_in_camera.shape_exponent = RandomUniform(1.4, 2.0);
+    const LandmarkBlock landmark = view.LandmarkInWorld();
+    BoxEdge edge = RandomEdge();
+    edge.is_bound = i % 2 == 0;
+    const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
+    ExpectCorrectJacobians(residual, {view.pose.data(), landmark.data(), &view.bias_px});
+  }
+}
+
+// Their residuals are zero: they change neither cost nor gradient.
+TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
+  const bool with = true, without = false;
+  int curved = 0;
+  for (int i = 0; i < 30; ++i) {
+    View view;
+    view.initial_in_camera.shape_exponent = RandomUniform(1.0, 1.9);
+    const LandmarkBlock landmark = view.LandmarkInWorld();
+    const BoxEdge edge = RandomEdge();
+    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+    using Rows = Eigen::Matrix<double, 3, kLandmarkSize, Eigen::RowMajor>;
+    Rows with_rows, without_rows;
+    Eigen::Vector3d with_residuals, without_residuals;
+    double* with_jacobians[] = {nullptr, with_rows.data(), nullptr};
+    double* without_jacobians[] = {nullptr, without_rows.data(), nullptr};
+    ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &with)
+                    .Evaluate(blocks, with_residuals.data(), with_jacobians));
+    ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &without)
+                    .Evaluate(blocks, without_residuals.data(), without_jacobians));
+    EXPECT_EQ(with_residuals, without_residuals);
+    EXPECT_EQ(with_residuals.tail<2>(), Eigen::Vector2d::Zero());
+    EXPECT_EQ(with_rows.row(0), without_rows.row(0));
+    EXPECT_TRUE(without_rows.bottomRows<2>().isZero(0.0));
+    curved += with_rows.bottomRows<2>().isZero(0.0) ? 0 : 1;
+  }
+  EXPECT_GT(curved, 5);
+  EXPECT_LT(curved, 25);
+}
+
+// A tenth of the initial depth is the least that counts.
+TEST(TangencyResidual, StaysDefinedBehindTheCamera) {
+  const bool with_curvature = true;
+  View view;
+  const BoxEdge edge = RandomEdge();
+  const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
+  Landmark behind = view.initial_in_camera;
+  behind.frame_from_object.translation.z() = -1.0;
+  const LandmarkBlock landmark = ToParameterBlock(Transform(UnpackPose(view.pose.data()), behind));
+  ExpectCorrectJacobians(residual, {view.pose.data(), landmark.data(), &view.bias_px});
 }
 
 }  // namespace

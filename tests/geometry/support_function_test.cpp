@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -48,6 +50,37 @@ TEST(SupportFunction, DerivativesAgreeWithNumbers) {
           << p;
     }
   }
+}
+
+TEST(SupportHessian, IsTheDerivativeOfTheContact) {
+  constexpr double kStep = 1e-6;
+  for (size_t i = 0; i < kCases; ++i) {
+    RandomCase random(i);
+    random.direction = random.direction.array().sign() * (0.1 + random.direction.array().abs());
+    const auto& [p, half_axes, direction] = random;
+    const Eigen::Matrix3d hessian = SupportHessian(half_axes, p, direction);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
+      const Eigen::Vector3d numeric = (SupportFunction(half_axes, p, direction + step).contact -
+                                       SupportFunction(half_axes, p, direction - step).contact) /
+                                      (2 * kStep);
+      EXPECT_LT((hessian.col(k) - numeric).norm(), 1e-7) << p;
+    }
+  }
+}
+
+TEST(SupportHessian, IsPositiveSemidefiniteWithItsDirectionInTheNullSpace) {
+  for (size_t i = 0; i < kCases; ++i) {
+    RandomCase random(i);
+    if (i % 3 == 0) random.direction[static_cast<int>(i / 3 % 3)] = 0.0;
+    const auto& [p, half_axes, direction] = random;
+    const Eigen::Matrix3d hessian = SupportHessian(half_axes, p, direction);
+    const double scale = 1e-12 * (1.0 + hessian.norm());
+    EXPECT_LT((hessian * direction).norm(), scale) << p;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(hessian);
+    EXPECT_GT(eigen.eigenvalues().minCoeff(), -scale) << p;
+  }
+  EXPECT_TRUE(SupportHessian({0, 0, 1}, 2.0, {1, 0, 0}).isZero(0.0));  // no extent
 }
 
 TEST(SupportFunction, TheContactReachesAsFarAsTheExtentInAnyDirection) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/covariance.h"
 
-#include <ceres/sized_cost_function.h>
+#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <memory>
+#include <vector>
 
 #include "mapping/back_end_problem.h"
-#include "support/cost_function_term.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
@@ -35,59 +34,85 @@ class MarginalCovariancesTest : public testing::Test {
   BackEndProblem problem_{input_, options_};
 };
 
-// The inverse of the whole information matrix, rows and columns in the order of the blocks.
-Eigen::MatrixXd DenseCovariance(const SymmetricBlocks& information) {
-  Eigen::MatrixXd dense(information.NumRows(), information.NumRows());
-  dense.setZero();
-  for (const auto& block : information.blocks()) {
-    dense.block(information.FirstRow(block.row), information.FirstRow(block.column),
-                information.Size(block.row), information.Size(block.column)) =
-        information.At(block.row, block.column);
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// d block / d tangent of the manifold, rotations by their whole rotation vector.
+Rows PlusJacobian(const ceres::Problem& problem, const double* block) {
+  Rows plus = Rows::Identity(problem.ParameterBlockSize(block), problem.ParameterBlockSize(block));
+  if (const ceres::Manifold* manifold = problem.GetManifold(block)) {
+    plus.resize(manifold->AmbientSize(), manifold->TangentSize());
+    manifold->PlusJacobian(block, plus.data());
   }
-  return Eigen::MatrixXd(dense.selfadjointView<Eigen::Lower>()).inverse();
+  return plus;
+}
+
+// The Jacobian by the tangents of all blocks that are not constant, dense, in their order.
+Rows DenseJacobian(const std::vector<double*>& blocks, ceres::Problem* problem) {
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = blocks;
+  ceres::CRSMatrix sparse;
+  problem->Evaluate(options, nullptr, nullptr, nullptr, &sparse);
+  Rows jacobian = Rows::Zero(sparse.num_rows, sparse.num_cols);
+  for (int row = 0; row < sparse.num_rows; ++row) {
+    for (int k = sparse.rows[static_cast<size_t>(row)];
+         k < sparse.rows[static_cast<size_t>(row) + 1]; ++k) {
+      jacobian(row, sparse.cols[static_cast<size_t>(k)]) = sparse.values[static_cast<size_t>(k)];
+    }
+  }
+  return jacobian;
 }
 
 TEST_F(MarginalCovariancesTest, AreBlocksOfTheInverseOfTheInformation) {
   problem_.Solve();
-  const BackEndVariables& variables = problem_.variables();
-  const Terms terms = problem_.AllTerms();
-  NormalEquations equations(variables.all(), terms);
-  equations.Linearise(terms, Hessian::kInformation);
-  const SymmetricBlocks& information = equations.hessian();
-  const Eigen::MatrixXd expected = DenseCovariance(information);
-  const auto row = [&](int variable) { return information.FirstRow(equations.BlockOf(variable)); };
+  problem_.DropCurvatureRows();
+  ceres::Problem& problem = problem_.problem();
+  BackEndVariables& variables = problem_.variables();
+  std::vector<double*> blocks;
+  problem.GetParameterBlocks(&blocks);
+  std::erase_if(blocks, [&](double* block) { return problem.IsParameterBlockConstant(block); });
+  const Rows jacobian = DenseJacobian(blocks, &problem);
+  const Eigen::MatrixXd expected = (jacobian.transpose() * jacobian).inverse();
+  const auto column = [&](const double* block) {
+    int first = 0;
+    for (size_t i = 0; blocks[i] != block; ++i)
+      first += problem.ParameterBlockTangentSize(blocks[i]);
+    return first;
+  };
 
-  const MarginalCovariances covariances(variables, terms);
+  const MarginalCovariances covariances(&problem);
   ASSERT_TRUE(covariances.AreDetermined());
   for (size_t i = 0; i < sequence_.objects.size(); ++i) {
-    const int first = row(variables.Landmark(i));
-    EXPECT_TRUE(covariances.OfLandmark(i).isApprox(
-        (expected.block<kLandmarkDof, kLandmarkDof>(first, first)), 1e-6));
+    const int first = column(variables.Landmark(i));
+    Covariance9 of_landmark = expected.block<kLandmarkDof, kLandmarkDof>(first, first);
+    of_landmark.topRows<3>() *= 2.0;  // Ceres' rotation tangent is half the rotation vector
+    of_landmark.leftCols<3>() *= 2.0;
+    EXPECT_TRUE(covariances.OfLandmark(variables.Landmark(i)).isApprox(of_landmark, 1e-6));
   }
   for (size_t i = 0; i < 2; ++i) {
-    const Eigen::MatrixXd by_step =
-        ByStep(VariableKind::kNormal, variables.Values(variables.Normal(i)));
-    const int normal = row(variables.Normal(i));
-    const int offset = row(variables.Offset(i));
+    const Rows plus = PlusJacobian(problem, variables.Normal(i));
+    const int normal = column(variables.Normal(i));
+    const int offset = column(variables.Offset(i));
     const Eigen::MatrixXd of_normal =
-        by_step * expected.block<2, 2>(normal, normal) * by_step.transpose();
-    const Eigen::Vector3d mixed = by_step * expected.block<2, 1>(normal, offset);
+        plus * expected.block<2, 2>(normal, normal) * plus.transpose();
+    const Eigen::Vector3d mixed = plus * expected.block<2, 1>(normal, offset);
     Eigen::Matrix4d of_plane;
     of_plane << of_normal, mixed, mixed.transpose(), expected(offset, offset);
-    EXPECT_TRUE(covariances.OfPlane(i).isApprox(of_plane, 1e-6));
+    EXPECT_TRUE(
+        covariances.OfPlane(variables.Normal(i), variables.Offset(i)).isApprox(of_plane, 1e-6));
   }
 }
 
-TEST_F(MarginalCovariancesTest, OfAPlaneThatIsHeldAreZero) {
+TEST_F(MarginalCovariancesTest, OfAConstantPlaneAreZero) {
   problem_.Solve();
-  BackEndVariables& variables = problem_.variables();
-  variables.Hold(variables.Normal(0));
-  const Eigen::Matrix4d held_normal =
-      MarginalCovariances(variables, problem_.AllTerms()).OfPlane(0);
-  EXPECT_TRUE(held_normal.topRows<3>().isZero(0.0));
-  EXPECT_GT(held_normal(3, 3), 0.0);
-  variables.Hold(variables.Offset(0));
-  EXPECT_TRUE(MarginalCovariances(variables, problem_.AllTerms()).OfPlane(0).isZero(0.0));
+  ceres::Problem& problem = problem_.problem();
+  double* normal = problem_.variables().Normal(0);
+  double* offset = problem_.variables().Offset(0);
+  problem.SetParameterBlockConstant(normal);
+  const Eigen::Matrix4d covariance = MarginalCovariances(&problem).OfPlane(normal, offset);
+  EXPECT_TRUE(covariance.topRows<3>().isZero(0.0));
+  EXPECT_GT(covariance(3, 3), 0.0);
+  problem.SetParameterBlockConstant(offset);
+  EXPECT_TRUE(MarginalCovariances(&problem).OfPlane(normal, offset).isZero(0.0));
 }
 
 // The difference of two numbers and, with some weight, the first of them.
@@ -107,19 +132,12 @@ class TwoNumbers final : public ceres::SizedCostFunction<2, 1, 1> {
   double weight_;
 };
 
-// True if a term of this weight determines the offsets of two planes.
+// True if residuals of this weight determine two numbers.
 bool AreDetermined(double weight) {
-  Sequence sequence;
-  sequence.planes = {{0, Plane{}}, {1, Plane{}}};
-  const BackEndInput input{sequence, {}, {}, {}, {}};
-  const BackEndVariables variables(input);
-  std::vector<CostFunctionTerm::Block> blocks;
-  for (size_t i = 0; i < 2; ++i) {
-    const int offset = variables.Offset(i);
-    blocks.push_back({offset, VariableKind::kOffset, variables.Values(offset)});
-  }
-  const CostFunctionTerm term(std::make_unique<TwoNumbers>(weight), blocks);
-  return MarginalCovariances(variables, {&term}).AreDetermined();
+  double numbers[] = {1.0, 2.0};
+  ceres::Problem problem;
+  problem.AddResidualBlock(new TwoNumbers(weight), nullptr, &numbers[0], &numbers[1]);
+  return MarginalCovariances(&problem).AreDetermined();
 }
 
 TEST(MarginalCovariances, AreNoneWhereResidualsDoNotDetermineAllVariables) {
@@ -131,9 +149,8 @@ TEST(MarginalCovariances, AreNoneWhereResidualsDoNotDetermineAllVariables) {
 }
 
 TEST(MarginalCovariances, AreNoneOfAProblemWithoutVariables) {
-  const Sequence sequence;
-  const BackEndInput input{sequence, {}, {}, {}, {}};
-  EXPECT_FALSE(MarginalCovariances(BackEndVariables(input), {}).AreDetermined());
+  ceres::Problem problem;
+  EXPECT_FALSE(MarginalCovariances(&problem).AreDetermined());
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "constraints/tangent_space.h"
 #include "initialisation/landmark_cost.h"
 #include "support/shape_exponents.h"
 
@@ -12,9 +11,12 @@ namespace soslam {
 // Where a step of its nine parameters leads.
 inline Landmark Moved(const Landmark& landmark,
                       const Eigen::Matrix<double, kLandmarkDof, 1>& step) {
-  LandmarkBlock block = ToParameterBlock(landmark);
-  Move(VariableKind::kLandmark, step.data(), block.data());
-  return WithShape(UnpackLandmark(block.data()), landmark.shape_exponent);
+  Landmark moved = landmark;
+  moved.frame_from_object.rotation =
+      ExpRotation(step.head<3>()) * landmark.frame_from_object.rotation;
+  moved.frame_from_object.translation += step.segment<3>(3);
+  moved.half_axes.array() *= step.tail<3>().array().exp();
+  return moved;
 }
 
 // The model's cost is the value, and its gradient what central differences of fourth order say.

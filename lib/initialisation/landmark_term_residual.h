@@ -11,7 +11,8 @@
 
 namespace soslam {
 
-// A term for ceres. Residuals: the term's. Block: landmark in the term's frame.
+// A LandmarkTerm as a Ceres cost function. Residuals: those of the term. Block: landmark in the
+// frame of the term.
 class LandmarkTermResidual final : public ceres::CostFunction {
  public:
   explicit LandmarkTermResidual(std::unique_ptr<const LandmarkTerm> term) : term_(std::move(term)) {
