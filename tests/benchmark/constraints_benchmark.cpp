@@ -84,7 +84,7 @@ void TangencyOfEdge(benchmark::State& state) {
            {view.pose.data(), view.landmark.data(), &bias_px});
 }
 BENCHMARK(TangencyOfEdge)
-    ->Name("residual/tangency_of_box")
+    ->Name("residual/tangency_of_edge")
     ->ArgName("p_percent")
     ->Arg(100)
     ->Arg(125)
