@@ -15,9 +15,11 @@
 #include <vector>
 
 #include "base/error.h"
-#include "dataset/nearest_rotation.h"
+#include "dataset/colmap_model.h"
+#include "dataset/dataset_json.h"
+#include "dataset/nerfstudio.h"
 #include "dataset/text_file.h"
-#include "dataset/xml_fields.h"
+#include "dataset/trajectories.h"
 #include "dataset/yaml_fields.h"
 #include "geometry/image_size.h"
 
@@ -241,6 +243,21 @@ Calibration ReadCalibration(const std::filesystem::path& path) {
   const NamedFields fields =
       path.extension() == ".xml" ? ReadXmlFields(path) : ReadYamlFields(path);
   return CalibrationReader(fields, path.string()).Read();
+}
+
+Calibration ReadCameraFile(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".yaml" || extension == ".yml" || extension == ".xml") {
+    return ReadCalibration(path);
+  }
+  Calibration read;
+  if (extension == ".txt" || extension == ".bin") {
+    read.camera = ReadColmapCamera(path);
+  } else {
+    const auto of_nerfstudio = ReadNerfstudioCamera(path);
+    read.camera = of_nerfstudio ? *of_nerfstudio : ReadCamera(path);
+  }
+  return read;
 }
 
 }  // namespace soslam

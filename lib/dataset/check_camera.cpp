@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "dataset/dataset_checks.h"
+#include "dataset/image_path.h"
+#include "image/image_header.h"
 
 namespace soslam {
 namespace {
@@ -92,6 +96,102 @@ std::vector<Finding> CheckCamera(const ImportView& view) {
     seen.push_back(camera);
     std::ranges::move(CheckIntrinsics(camera), std::back_inserter(findings));
   }
+  return findings;
+}
+
+namespace {
+
+// An image size that differs from the camera's.
+struct Mismatch {
+  Camera camera;
+  ImageSize size;
+  bool is_of_stored;  // the camera has the size of the stored image, before EXIF rotation
+  std::string first_image;
+  int images = 0;
+};
+
+Finding Explained(const Mismatch& mismatch, size_t all) {
+  const auto& [camera, size, is_of_stored, first_image, images] = mismatch;
+  Finding finding{
+      "camera_size",
+      Severity::kError,
+      fmt::format("{} of {} images are of {} x {} pixels (the first is {}), the camera of "
+                  "{} x {}",
+                  images, all, size.width, size.height, first_image, camera.width, camera.height),
+      "images of the camera's size",
+      "",
+      ""};
+  const double scale = static_cast<double>(size.width) / camera.width;
+  const double scale_y = static_cast<double>(size.height) / camera.height;
+  if (is_of_stored) {
+    finding.cause = "a camera of the images as they are stored, which a note of EXIF turns";
+    finding.remedy =
+        "image_orientation stored where boxes and poses are of the stored images, too; otherwise "
+        "the camera of the images as they are shown";
+  } else if (size.width == camera.height && size.height == camera.width) {
+    finding.cause = "width and height swapped, or images of a camera held upright";
+    finding.remedy = "give the camera of the images as they are shown";
+  } else if (std::abs(scale - scale_y) <= 0.02 * scale) {
+    finding.cause = "a camera of images before they were made smaller or larger";
+    finding.remedy = fmt::format("width {}, height {}, and fx, fy, cx, cy times {:.4g}", size.width,
+                                 size.height, scale);
+  } else {
+    finding.cause = "another camera, or images that were cropped";
+    finding.remedy = "give the camera that these images are of";
+  }
+  return finding;
+}
+
+// Checks images with an EXIF rotation when their size does not determine whether camera and boxes
+// refer to the rotated image, or when the poses are COLMAP's.
+std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportOptions& options) {
+  if (turned == 0 || options.image_orientation == ImageOrientation::kStored) return {};
+  Finding finding{
+      "image_orientation",
+      Severity::kWarning,
+      fmt::format("{} of {} images have a note of EXIF that turns them, and are read as viewers "
+                  "show them",
+                  turned, all),
+      "camera and boxes of the images as they are shown, which no size tells here",
+      "a camera that was held upside down, or a program that set the note",
+      "nothing where boxes fit the images on the report page; otherwise image_orientation stored"};
+  if (options.folder.trajectory_format == TrajectoryFormat::kColmap) {
+    finding.expected = "images as they are stored, of which COLMAP's poses and camera are";
+    finding.cause = "images of a phone that was held upright";
+    finding.remedy =
+        "image_orientation stored, for soslam-detect, too; or turn the files before COLMAP reads "
+        "them (exiftran -ai)";
+  }
+  return {finding};
+}
+
+}  // namespace
+
+std::vector<Finding> CheckImages(const ImportView& view) {
+  const ImageOrientation read_as = view.options.image_orientation;
+  const bool are_of_colmap = view.options.folder.trajectory_format == TrajectoryFormat::kColmap;
+  std::map<std::pair<std::int64_t, std::int64_t>, Mismatch> mismatches;
+  size_t all = 0;
+  size_t turned = 0;
+  for (const Frame& frame : view.sequence.frames) {
+    if (frame.image.empty()) continue;
+    const auto header = ReadImageHeader(ImagePath(view.folder, frame.image, view.folder.string()));
+    if (!header) continue;
+    ++all;
+    const Camera& camera = view.sequence.CameraOf(frame);
+    const ImageSize size = header->Size(read_as);
+    if (size.width == camera.width && size.height == camera.height) {
+      const bool size_tells = header->IsTurnedByAQuarter() && size.width != size.height;
+      if (header->orientation != 1 && (!size_tells || are_of_colmap)) ++turned;
+      continue;
+    }
+    Mismatch& mismatch = mismatches[{size.width, size.height}];
+    const ImageSize stored = header->Size(ImageOrientation::kStored);
+    const bool is_of_stored = stored.width == camera.width && stored.height == camera.height;
+    if (mismatch.images++ == 0) mismatch = {camera, size, is_of_stored, frame.image, 1};
+  }
+  std::vector<Finding> findings = CheckTurned(turned, all, view.options);
+  for (const auto& [size, mismatch] : mismatches) findings.push_back(Explained(mismatch, all));
   return findings;
 }
 

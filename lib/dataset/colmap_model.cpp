@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "dataset/text_file.h"
-#include "dataset/unit_quaternion.h"
+#include "dataset/trajectories.h"
 #include "geometry/image_size.h"
 
 namespace soslam {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dataset/lens_camera.h"
-#include "dataset/named_pose.h"
+#include "dataset/trajectories.h"
 
 namespace soslam {
 

@@ -7,7 +7,7 @@
 
 #include "dataset/dataset_content.h"
 #include "dataset/import_options.h"
-#include "dataset/tum_list.h"
+#include "dataset/trajectories.h"
 #include "model/finding.h"
 #include "model/sequence.h"
 

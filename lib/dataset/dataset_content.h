@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "dataset/detection_row.h"
 #include "dataset/gate.h"
 #include "geometry/camera.h"
 #include "model/finding.h"

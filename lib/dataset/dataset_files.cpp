@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "dataset/folder_entries.h"
 
 namespace soslam {
 namespace {
@@ -103,6 +102,31 @@ DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& optio
   files.trajectory = wanted ? *wanted : *other;
   files.trajectory_is_fallback = !wanted;
   return files;
+}
+
+namespace {
+
+template <typename Iterator>
+std::vector<fs::path> Sorted(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  try {
+    for (const fs::directory_entry& entry : Iterator(folder)) entries.push_back(entry.path());
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(fmt::format("{}: cannot be listed ({}); expected a folder that can be read",
+                                 folder.string(), error.code().message()));
+  }
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+}  // namespace
+
+std::vector<fs::path> FolderEntries(const fs::path& folder) {
+  return Sorted<fs::directory_iterator>(folder);
+}
+
+std::vector<fs::path> EntriesAtAnyDepth(const fs::path& folder) {
+  return Sorted<fs::recursive_directory_iterator>(folder);
 }
 
 }  // namespace soslam

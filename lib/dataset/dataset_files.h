@@ -30,4 +30,9 @@ struct DatasetFiles {
 // true poses may be absent under their default names; files that the options name must exist.
 DatasetFiles FindDatasetFiles(const std::filesystem::path& folder, const ImportOptions& options);
 
+// Entries of a folder, sorted by name. Throws InputError when it cannot be listed.
+std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
+// Entries at any depth, sorted by name.
+std::vector<std::filesystem::path> EntriesAtAnyDepth(const std::filesystem::path& folder);
+
 }  // namespace soslam

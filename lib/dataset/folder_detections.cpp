@@ -13,16 +13,12 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "dataset/coco_labels.h"
-#include "dataset/coco_results.h"
-#include "dataset/detections_csv.h"
-#include "dataset/folder_entries.h"
-#include "dataset/frame_lookup.h"
-#include "dataset/kitti_boxes.h"
-#include "dataset/label_file.h"
-#include "dataset/oa_slam_boxes.h"
+#include "dataset/class_names.h"
+#include "dataset/dataset_files.h"
+#include "dataset/image_path.h"
+#include "dataset/kitti_object.h"
+#include "dataset/labelled_box.h"
 #include "dataset/yolo_boxes.h"
-#include "dataset/yolo_texts.h"
 
 namespace soslam {
 namespace {

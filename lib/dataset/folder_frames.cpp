@@ -14,13 +14,10 @@
 #include "base/file_kind.h"
 #include "dataset/colmap_model.h"
 #include "dataset/dataset_checks.h"
-#include "dataset/euroc_trajectory.h"
-#include "dataset/frame_lookup.h"
-#include "dataset/icl_nuim.h"
 #include "dataset/image_path.h"
-#include "dataset/kitti_trajectory.h"
 #include "dataset/nerfstudio.h"
 #include "dataset/text_file.h"
+#include "dataset/trajectories.h"
 
 namespace soslam {
 namespace {

@@ -9,7 +9,7 @@
 #include "dataset/dataset_files.h"
 #include "dataset/import_options.h"
 #include "dataset/labelled_box.h"
-#include "dataset/tum_list.h"
+#include "dataset/trajectories.h"
 
 namespace soslam {
 

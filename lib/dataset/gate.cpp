@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "dataset/text_file.h"
 #include "geometry/box.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 
@@ -109,6 +112,111 @@ std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
     return true;
   });
   return rows;
+}
+
+namespace {
+
+// Edges this close to the image border (px) count as cut by it. Tools differ by up to a pixel in
+// the position of the border (width - 1 or width), and detectors round.
+constexpr double kCutAtBorderPx = 1.5;
+
+// Rounding tolerance: a covered share equal to the option's value counts as occluded.
+constexpr double kShareTolerance = 1e-9;
+
+// Share of a box's lower edge that lies inside the union of other boxes.
+double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
+  std::vector<std::pair<double, double>> intervals;
+  for (const Box& other : others) {
+    if (box.y_max < other.y_min || box.y_max > other.y_max) continue;
+    intervals.emplace_back(std::max(box.x_min, other.x_min), std::min(box.x_max, other.x_max));
+  }
+  std::sort(intervals.begin(), intervals.end());
+  double covered = 0.0;
+  double covered_until = -std::numeric_limits<double>::infinity();
+  for (const auto& [begin, end] : intervals) {
+    covered += std::max(0.0, end - std::max(begin, covered_until));
+    covered_until = std::max(covered_until, end);
+  }
+  return covered / box.Width();
+}
+
+}  // namespace
+
+std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
+  return {box.x_min + 0.5 <= kCutAtBorderPx,                 //
+          box.y_min + 0.5 <= kCutAtBorderPx,                 //
+          camera.width - 0.5 - box.x_max <= kCutAtBorderPx,  //
+          camera.height - 0.5 - box.y_max <= kCutAtBorderPx};
+}
+
+// Nearer objects make only the lower edge a bound. They stand on the same support, so they occlude
+// what is behind them from the base upwards, and a box that ends within another has probably lost
+// its base. Sides and tops are less certain: the box of a tall object full of gaps (a chair) covers
+// much that is visible past its back and between its legs, and the edge of the object behind is
+// then measured as well as any.
+void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence) {
+  for (Detection& detection : sequence->detections) {
+    const double hidden_share =
+        CoveredShareOfLowerEdge(detection.box, BoxesInFront(*sequence, detection));
+    if (hidden_share >= options.hidden_edge_fraction - kShareTolerance) {
+      detection.is_bound[3] = true;
+    }
+  }
+}
+
+namespace {
+
+// New place of a frame of the whole sequence.
+struct Destination {
+  bool is_held_out;
+  size_t index;  // index in Sequence::held_out or Sequence::frames
+};
+
+// Elements of frames that are not held out, with new frame indices.
+template <typename OfFrame>
+std::vector<OfFrame> InKeptFrames(std::vector<OfFrame> all,
+                                  const std::vector<Destination>& destinations) {
+  std::vector<OfFrame> kept;
+  for (OfFrame& one : all) {
+    const auto [is_held_out, index] = destinations[static_cast<size_t>(one.frame_index)];
+    if (is_held_out) continue;
+    one.frame_index = static_cast<int>(index);
+    kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+}  // namespace
+
+Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out) {
+  if (held_out == HeldOutFrames::kNone) return sequence;
+  const std::vector<Frame> frames = std::exchange(sequence.frames, {});
+  std::vector<Destination> destinations;
+  size_t place = 0;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    place = i > 0 && frames[i].segment == frames[i - 1].segment ? place + 1 : 0;
+    if (place % 2 == 1) {
+      destinations.push_back({true, sequence.held_out.size()});
+      sequence.held_out.push_back({frames[i], {}});
+      sequence.held_out.back().frame.boxes_in_view.clear();
+    } else {
+      destinations.push_back({false, sequence.frames.size()});
+      sequence.frames.push_back(frames[i]);
+    }
+  }
+  for (Detection& detection : std::exchange(sequence.detections, {})) {
+    const auto [is_held_out, index] = destinations[static_cast<size_t>(detection.frame_index)];
+    if (is_held_out) {
+      const std::string& label = sequence.ObjectOf(detection).label;
+      sequence.held_out[index].boxes.push_back({label, detection.score, detection.box});
+    } else {
+      detection.frame_index = static_cast<int>(index);
+      sequence.detections.push_back(std::move(detection));
+    }
+  }
+  sequence.rejected = InKeptFrames(std::move(sequence.rejected), destinations);
+  sequence.truth_in_frames = InKeptFrames(std::move(sequence.truth_in_frames), destinations);
+  return sequence;
 }
 
 }  // namespace soslam

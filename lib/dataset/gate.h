@@ -1,16 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "dataset/detection_row.h"
 #include "dataset/import_options.h"
+#include "geometry/box.h"
 #include "geometry/camera.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "model/sequence.h"
 
 namespace soslam {
+
+// DetectionRow::object_id of an unused row that belongs to no object; never a real id.
+inline constexpr int kNoObject = std::numeric_limits<int>::min();
+
+// A 2D box of one object in one frame, as in the dataset.
+struct DetectionRow {
+  std::string place;  // "<file>:<line>", for error messages
+  int frame_id;
+  int object_id;
+  std::string label;
+  double score;
+  Box box;
+  // Distorted box in the image file, in a dataset with distorted images.
+  std::optional<Box> box_in_image_file = std::nullopt;
+  // Further values from the dataset's labels, if any; geometry is in the camera frame.
+  double truncation = 0.0;  // amount outside the image, in the dataset's own measure
+  int occlusion = 0;        // occlusion level, in the dataset's own measure
+  std::optional<Plane> plane_in_camera = std::nullopt;  // its support plane
+  std::optional<Landmark> true_landmark_in_camera = std::nullopt;
+};
 
 // Reason why a detection is not used. Sequence::rejected_detections counts them by name.
 enum class RejectReason {
@@ -72,5 +97,18 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Reje
 // Drops all rows of objects that have fewer than `min_observations`.
 std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
                                                  int min_observations, Rejections* rejected);
+
+// Marks edges of boxes that are only bounds (Detection::is_bound): edges cut by the image border,
+// and lower edges occluded by nearer objects.
+
+// True for the edges of a box (left, top, right, bottom) at the border of its image.
+std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera);
+
+// Marks lower edges that BoxesInFront cover (hidden_edge_fraction).
+void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence);
+
+// Moves the held-out frames and their detections to Sequence::held_out, where no estimate uses
+// them. Positions of frames are counted from 0 in each segment.
+Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out);
 
 }  // namespace soslam

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <set>
+#include <utility>
+
 #include "base/error.h"
 #include "base/paths.h"
 
@@ -51,5 +55,102 @@ std::string NameInDataset(const fs::path& dataset, const std::string& image) {
 void AllowOutsidePaths(bool is_allowed) { OutsidePathsFlag() = is_allowed; }
 
 bool OutsidePathsAreAllowed() { return OutsidePathsFlag(); }
+
+namespace {
+
+fs::path FolderOf(const std::string& image) {
+  return fs::path(image).lexically_normal().parent_path();
+}
+
+// Innermost components in which two folders differ, up to the length of the shorter; empty where
+// they do not.
+std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
+  for (; one.has_filename() && other.has_filename();
+       one = one.parent_path(), other = other.parent_path()) {
+    if (one.filename() != other.filename()) {
+      return {one.filename().string(), other.filename().string()};
+    }
+  }
+  return {};
+}
+
+// Normalised folder name: lower case, numbers without leading zeros; image_02 and image_2 are one
+// folder.
+std::string PlainName(const std::string& name) {
+  std::string plain;
+  for (size_t i = 0; i < name.size(); ++i) {
+    const auto is_digit = [&](size_t at) {
+      return at < name.size() && std::isdigit(static_cast<unsigned char>(name[at])) != 0;
+    };
+    const bool begins_number = is_digit(i) && (i == 0 || !is_digit(i - 1));
+    if (begins_number) {
+      while (name[i] == '0' && is_digit(i + 1)) ++i;
+    }
+    plain += static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
+  }
+  return plain;
+}
+
+// Folder name in lower case, without the part that distinguishes the cameras of a rig.
+std::string RigOf(std::string folder) {
+  for (const std::string side : {"left", "right"}) {
+    const size_t found = folder.find(side);
+    if (found != folder.npos) folder.replace(found, side.size(), "0");
+  }
+  std::string rig;
+  for (const char c : folder) {
+    const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    if (!is_digit) rig += c;
+    if (is_digit && !rig.ends_with('0')) rig += '0';
+  }
+  return rig;
+}
+
+bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
+  const auto names = Difference(folder, other);
+  const std::string name = PlainName(names.first), other_name = PlainName(names.second);
+  return name != other_name && RigOf(name) == RigOf(other_name);
+}
+
+}  // namespace
+
+FrameLookup::FrameLookup(const std::vector<ListedImage>& images) {
+  for (const ListedImage& image : images) {
+    const fs::path path = image.image;
+    const std::set<std::string> names = {path.string(), path.filename().string(),
+                                         path.stem().string()};
+    const auto row = static_cast<int>(folders_.size());
+    for (const std::string& name : names) rows_by_name_[name].push_back(row);
+    folders_.push_back(FolderOf(image.image));
+  }
+}
+
+std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& place) {
+  if (const int* row = std::get_if<int>(&key)) {
+    return *row >= 0 && *row < std::ssize(folders_) ? std::optional(*row) : std::nullopt;
+  }
+  const std::string& name = std::get<std::string>(key);
+  auto found = rows_by_name_.find(name);
+  if (found == rows_by_name_.end()) {
+    found = rows_by_name_.find(fs::path(name).filename().string());
+  }
+  if (found == rows_by_name_.end()) return std::nullopt;
+  const std::vector<int>& rows = found->second;
+  if (rows.size() > 1) {
+    throw InputError(fmt::format("{}: image '{}' could be rows {} of the list; expected one", place,
+                                 name, fmt::join(rows, ", ")));
+  }
+  const int row = rows.front();
+  const fs::path folder = FolderOf(name);
+  if (AreOfTwoCameras(folder, folders_[static_cast<size_t>(row)])) return std::nullopt;
+  const fs::path& named = named_folders_.try_emplace(row, folder).first->second;
+  if (!Difference(folder, named).first.empty()) {
+    throw InputError(
+        fmt::format("{}: image '{}' would be row {} of the list, as that of the same name in '{}' "
+                    "is; expected images of one folder",
+                    place, name, row, named.string()));
+  }
+  return row;
+}
 
 }  // namespace soslam

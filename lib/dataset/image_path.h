@@ -2,7 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "dataset/labelled_box.h"
+#include "dataset/trajectories.h"
 
 namespace soslam {
 
@@ -20,5 +26,23 @@ std::string NameInDataset(const std::filesystem::path& dataset, const std::strin
 // allowed.
 void AllowOutsidePaths(bool is_allowed);
 bool OutsidePathsAreAllowed();
+
+// Finds the row of an image list that a box belongs to.
+class FrameLookup {
+ public:
+  explicit FrameLookup(const std::vector<ListedImage>& images);
+
+  // The 0-based row; none when the list has no such image. A name is the path in the list, or the
+  // file name without folder, or that without extension. A folder may have another name than in the
+  // list, but not that of another camera (cam0 and cam1, left and right). Throws InputError, naming
+  // `place`, for a name shared by several images, and for names with several folders of one image.
+  std::optional<int> Find(const FrameKey& key, const std::string& place);
+
+ private:
+  std::vector<std::filesystem::path> folders_;  // folder of each row
+  std::map<std::string, std::vector<int>> rows_by_name_;
+  // Folder in the first name that was looked up, keyed by row.
+  std::map<int, std::filesystem::path> named_folders_;
+};
 
 }  // namespace soslam

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "geometry/box.h"
 
@@ -32,5 +34,39 @@ inline Box FromCornerOrigin(const Box& box) {
 inline Box ToCornerOrigin(const Box& box) {
   return {box.x_min + 0.5, box.y_min + 0.5, box.x_max + 0.5, box.y_max + 0.5};
 }
+
+// Reads detections.csv, a table whose first line names the columns, in any order: frame, object_id,
+// label, score, x1, y1, x2, y2; others are ignored. Column names are case-insensitive, with blanks
+// equal to underscores. Fields may be quoted (SplitCsvLine) and use the separator of the header:
+// comma, semicolon or tab. Frames are rows of rgb.txt.
+//
+// The column object_id may be absent, and its fields may be empty. Throws InputError naming the
+// line, and for a file without header.
+std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path);
+
+// CSV text of a table without object ids, pixels with two decimals, scores with four. The frames
+// must be rows of rgb.txt, the labels without comma.
+std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes);
+
+// Reads detections in COCO's results format: [{"image_id", "category_id", "bbox": [x, y, w, h],
+// "score"}], pixels from the image's outer corner; or a COCO data set with such boxes as
+// "annotations", without those of crowds. A missing "score" is 1. A "track_id" of an entry, or of
+// its "attributes", is the object id.
+//
+// `dataset`, when given, is the JSON file that the results belong to: its "images" ({"id",
+// "file_name"}) and "categories" ({"id", "name"}) define the ids; a data set with boxes contains
+// them itself. Without either, an integer image_id is a 0-based row of the image list, and
+// category_id is COCO's own (1 to 90). A text as image_id is the name of an image. In file order.
+// Throws InputError with file and JSON pointer.
+std::vector<LabelledBox> ReadCocoResults(
+    const std::filesystem::path& results,
+    const std::optional<std::filesystem::path>& dataset = std::nullopt);
+
+// Reads detections in OA-SLAM's format (M. Zins, G. Simon, M.-O. Berger, "OA-SLAM", ISMAR 2022):
+// [{"file_name", "detections": [{"category_id", "detection_score", "bbox": [x1, y1, x2, y2]}]}],
+// pixels from the image's outer corner. `labels` are the names of the categories, from 0; OA-SLAM's
+// own files use COCO's 80. In file order. Throws InputError with file and JSON pointer.
+std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
+                                         const std::vector<std::string>& labels);
 
 }  // namespace soslam

@@ -10,7 +10,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "dataset/json_entry.h"
-#include "dataset/nearest_rotation.h"
+#include "dataset/trajectories.h"
 #include "geometry/image_size.h"
 
 namespace soslam {

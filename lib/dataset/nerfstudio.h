@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "dataset/lens_camera.h"
-#include "dataset/named_pose.h"
-#include "dataset/tum_list.h"
+#include "dataset/trajectories.h"
 #include "model/finding.h"
 
 namespace soslam {

@@ -2,12 +2,156 @@
 #include "dataset/object_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "base/error.h"
 
 namespace soslam {
+namespace {
+
+// Number of images in which each id occurs more than once; without ids below 0.
+std::map<int, int> ImagesWithSeveral(const std::vector<LabelledBox>& boxes) {
+  std::map<std::pair<FrameKey, int>, int> counts;
+  std::map<int, int> images;
+  for (const LabelledBox& box : boxes) {
+    if (!box.object_id || *box.object_id < 0) continue;
+    if (++counts[{box.frame, *box.object_id}] == 2) ++images[*box.object_id];
+  }
+  return images;
+}
+
+bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
+  const bool has_others = std::ranges::any_of(
+      boxes, [](const LabelledBox& box) { return box.object_id && *box.object_id > 0; });
+  const auto images = ImagesWithSeveral(boxes);
+  return images.size() == 1 && images.contains(0) && images.at(0) >= (has_others ? 2 : 1);
+}
+
+}  // namespace
+
+std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
+                                             const std::vector<ListedObject>& objects,
+                                             const std::filesystem::path& file,
+                                             std::vector<LabelledBox>* left_out,
+                                             std::vector<Finding>* findings) {
+  if (!HaveObjectIds(boxes)) return boxes;
+  std::set<int> listed;
+  for (const ListedObject& object : objects) listed.insert(object.id);
+  const bool zero_is_of_none = ZeroIsOfNoTrack(boxes);
+  std::set<int> ids_of_none;
+  for (LabelledBox& box : boxes) {
+    if (!box.object_id || listed.contains(*box.object_id)) continue;
+    if (*box.object_id > 0 || (*box.object_id == 0 && !zero_is_of_none)) continue;
+    ids_of_none.insert(*box.object_id);
+    box.object_id.reset();
+  }
+  const std::string which = ids_of_none.empty()
+                                ? "no object_id"
+                                : fmt::format("object_id {}", fmt::join(ids_of_none, ", "));
+  if (!HaveObjectIds(boxes)) {
+    findings->push_back(
+        {"object_ids", Severity::kWarning,
+         fmt::format("{}: all {} boxes have {}, that of no track", file.filename().string(),
+                     boxes.size(), which),
+         "an id for each object, or no object_id",
+         "boxes of a detector, or of a tracker that found no track: nobody has said which are of "
+         "one object",
+         "leave object_id away, and let association be estimated (setting of soslam-associate)"});
+    return boxes;
+  }
+  const auto first_without = std::stable_partition(
+      boxes.begin(), boxes.end(), [](const LabelledBox& box) { return box.object_id.has_value(); });
+  left_out->assign(std::make_move_iterator(first_without), std::make_move_iterator(boxes.end()));
+  boxes.erase(first_without, boxes.end());
+  const size_t without = left_out->size();
+  if (without == 0) return boxes;
+  fmt::print("{}: {} of {} boxes have {}, that of no track, and are not used\n",
+             file.filename().string(), without, without + boxes.size(), which);
+  return boxes;
+}
+
+bool HaveObjectIds(const std::vector<LabelledBox>& boxes) {
+  return std::ranges::any_of(boxes,
+                             [](const LabelledBox& box) { return box.object_id.has_value(); });
+}
+
+namespace {
+
+struct Votes {
+  int rows = 0;
+  double score = 0.0;
+};
+
+// Votes of the rows of one object, keyed by label.
+using Ballot = std::map<std::string, Votes>;
+
+std::string Winner(const Ballot& ballot) {
+  auto best = ballot.begin();
+  for (auto votes = ballot.begin(); votes != ballot.end(); ++votes) {
+    if (std::tuple(votes->second.rows, votes->second.score) >
+        std::tuple(best->second.rows, best->second.score)) {
+      best = votes;
+    }
+  }
+  return best->first;
+}
+
+std::map<int, Ballot> Count(const std::vector<DetectionRow>& rows) {
+  std::map<int, Ballot> ballots;
+  for (const DetectionRow& row : rows) {
+    Votes& votes = ballots[row.object_id][row.label];
+    ++votes.rows;
+    votes.score += row.score;
+  }
+  return ballots;
+}
+
+void RefuseOtherThanListed(const ListedObject& object, const Ballot& ballot,
+                           const std::vector<DetectionRow>& rows) {
+  int all = 0, others = 0;
+  for (const auto& [label, votes] : ballot) {
+    all += votes.rows;
+    if (label != object.label) others += votes.rows;
+  }
+  if (2 * others <= all) return;
+  for (const DetectionRow& row : rows) {
+    if (row.object_id != object.id || row.label == object.label) continue;
+    throw InputError(fmt::format(
+        "{}: label of object {} is '{}', as another than '{}' is in {} of its {} boxes; expected "
+        "'{}', as in objects.json",
+        row.place, row.object_id, row.label, object.label, others, all, object.label));
+  }
+}
+
+}  // namespace
+
+int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionRow>* rows) {
+  const std::map<int, Ballot> ballots = Count(*rows);
+  std::map<int, std::string> labels;
+  for (const auto& [id, ballot] : ballots) labels[id] = Winner(ballot);
+  for (const ListedObject& object : objects) {
+    const auto ballot = ballots.find(object.id);
+    if (ballot == ballots.end()) continue;
+    RefuseOtherThanListed(object, ballot->second, *rows);
+    labels[object.id] = object.label;
+  }
+  int changed = 0;
+  for (DetectionRow& row : *rows) {
+    if (row.label == labels.at(row.object_id)) continue;
+    row.label = labels.at(row.object_id);
+    ++changed;
+  }
+  return changed;
+}
+
 namespace {
 
 int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& planes,

@@ -8,11 +8,11 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "dataset/dataset_files.h"
 #include "dataset/dataset_json.h"
-#include "dataset/folder_entries.h"
 #include "dataset/json_entry.h"
-#include "dataset/nearest_rotation.h"
 #include "dataset/text_file.h"
+#include "dataset/trajectories.h"
 
 namespace soslam {
 namespace {

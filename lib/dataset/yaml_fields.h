@@ -26,4 +26,10 @@ NamedFields ReadYamlFields(const std::filesystem::path& path);
 // ReadYamlFields for a text that is not a file of its own; `name` stands for it in error messages.
 NamedFields YamlFields(const std::string& text, const std::string& name);
 
+// Reads the words in each element of an XML file written by OpenCV, keyed by the names of the
+// enclosing elements without the outermost one: "camera_matrix.data". Attributes and comments are
+// skipped; entities and CDATA are not supported. Throws InputError for an element that is not
+// closed or occurs twice, and for a file larger or nested deeper than a calibration.
+NamedFields ReadXmlFields(const std::filesystem::path& path);
+
 }  // namespace soslam

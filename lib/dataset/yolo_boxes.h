@@ -1,14 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dataset/gate.h"
 #include "dataset/labelled_box.h"
-#include "dataset/yolo_texts.h"
+#include "dataset/text_file.h"
 
 namespace soslam {
+
+// The boxes of one image, one per line.
+struct YoloText {
+  std::string image;  // its name without extension
+  std::vector<TextLine> lines;
+};
+
+// Content of a folder or an archive of YOLO's labels.
+struct YoloTexts {
+  std::vector<YoloText> images;                   // sorted by name
+  std::optional<std::vector<std::string>> names;  // of the classes, in an archive that has them
+  std::string names_place;                        // place of the names, for messages
+};
+
+// Reads the *.txt of a folder, or of an archive (ReadTextArchive) at any depth. Skipped are hidden
+// files (of macOS), __MACOSX, README*, and the lists classes.txt, train.txt, val.txt, valid.txt and
+// test.txt of CVAT and others unless they begin with a number, as boxes do. Throws InputError when
+// there is nothing to read, and for two files of one name.
+YoloTexts ReadYoloTexts(const std::filesystem::path& path);
+
+// A line of YOLO's labels, in numbers.
+struct YoloRow {
+  std::string place;  // "<file>:<line>"
+  std::string image;
+  int class_index;
+  std::array<double, 4> box;
+  std::vector<double> extras;  // further values: none, one or two
+  double score = 1.0;
+  std::optional<int> track = std::nullopt;
+};
+
+// Determines from all rows together which of the extras are confidences and which tracks, as tools
+// write both in either order, and fills `score` and `track`. Confidences are in [0, 1]; tracks are
+// integers from -1 (none).
+//
+//   one extra   confidences if all values allow it (also if all are 1), otherwise tracks, each
+//               at most once per image; only confidences if other rows have two extras
+//   two extras  confidence and track, as written by Ultralytics, if all values allow it,
+//               otherwise track and confidence
+//
+// Throws InputError, naming a row, in all other cases.
+void ReadYoloExtras(std::vector<YoloRow>* rows);
 
 // Readers of detections written by YOLO programs: one text file per image, named like the image,
 // one line per box. The two conventions cannot be distinguished with certainty from the numbers, so

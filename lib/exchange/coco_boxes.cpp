@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "dataset/coco_labels.h"
+#include "dataset/class_names.h"
 #include "dataset/labelled_box.h"
 #include "initialisation/semantic_table.h"
 

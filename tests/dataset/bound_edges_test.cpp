@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/bound_edges.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "dataset/gate.h"
 #include "model/occlusion.h"
 #include "support/level_sequence.h"
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "dataset/camera_file.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

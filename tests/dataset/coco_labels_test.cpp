@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/coco_labels.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
+
+#include "dataset/class_names.h"
 
 namespace soslam {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/coco_results.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "dataset/labelled_box.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 #include "support/temporary_folder.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/csv_line.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/text_file.h"
 #include "support/expect_error.h"
 
 namespace soslam {

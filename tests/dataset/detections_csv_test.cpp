@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/detections_csv.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "base/error.h"
+#include "dataset/labelled_box.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 #include "support/temporary_folder.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/folder_entries.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/dataset_files.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

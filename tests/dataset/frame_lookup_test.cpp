@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/frame_lookup.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/image_path.h"
 #include "support/expect_error.h"
 
 namespace soslam {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/icl_nuim.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/trajectories.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 

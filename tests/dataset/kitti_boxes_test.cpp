@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_boxes.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/kitti_object.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 #include "support/temporary_folder.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_trajectory.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/trajectories.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"

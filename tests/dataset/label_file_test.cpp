@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/label_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/class_names.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

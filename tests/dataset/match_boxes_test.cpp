@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/match_boxes.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "dataset/kitti_object.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "dataset/camera_file.h"
+#include "dataset/calibration_file.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/object_ids.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "dataset/object_table.h"
 
 namespace soslam {
 namespace {

@@ -8,11 +8,11 @@
 #include <set>
 
 #include "base/options.h"
-#include "dataset/coco_labels.h"
+#include "dataset/class_names.h"
 #include "dataset/import.h"
-#include "dataset/kitti_boxes.h"
-#include "dataset/kitti_trajectory.h"
-#include "dataset/oa_slam_boxes.h"
+#include "dataset/kitti_object.h"
+#include "dataset/labelled_box.h"
+#include "dataset/trajectories.h"
 #include "dataset/yolo_boxes.h"
 #include "geometry/distortion.h"
 #include "support/real_data.h"

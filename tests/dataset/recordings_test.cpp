@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/recordings.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/kitti_label.h"
 #include "support/expect_error.h"
 
 namespace soslam {

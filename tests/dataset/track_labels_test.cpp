@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/track_labels.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/object_table.h"
 #include "support/expect_error.h"
 
 namespace soslam {

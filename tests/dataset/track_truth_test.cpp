@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/track_truth.h"
-
 #include <gtest/gtest.h>
 
+#include "dataset/kitti_tracking.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "dataset/xml_fields.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

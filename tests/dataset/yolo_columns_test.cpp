@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/yolo_columns.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/yolo_boxes.h"
 #include "support/expect_error.h"
 
 namespace soslam {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/yolo_texts.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/yolo_boxes.h"
 #include "support/expect_error.h"
 #include "support/run_command.h"
 #include "support/temporary_folder.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dataset/hold_out.h"
+#include "dataset/gate.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "dataset/coco_results.h"
+#include "dataset/labelled_box.h"
 #include "support/exported_world.h"
 #include "support/labelled_boxes.h"
 #include "support/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "dataset/tum_list.h"
+#include "dataset/trajectories.h"
 #include "support/exported_world.h"
 #include "support/temporary_folder.h"
 

@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
-#include "dataset/detections_csv.h"
+#include "dataset/labelled_box.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/labelled_boxes.h"

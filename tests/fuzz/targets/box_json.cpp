@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/coco_results.h"
-#include "dataset/oa_slam_boxes.h"
+#include "dataset/labelled_box.h"
 #include "fuzz/fuzz_target.h"
 
 namespace soslam {

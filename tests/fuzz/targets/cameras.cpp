@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/camera_file.h"
+#include "dataset/calibration_file.h"
 #include "fuzz/fuzz_target.h"
 
 namespace soslam {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/detections_csv.h"
-
-#include "dataset/label_file.h"
+#include "dataset/class_names.h"
+#include "dataset/labelled_box.h"
 #include "fuzz/fuzz_target.h"
 
 namespace soslam {

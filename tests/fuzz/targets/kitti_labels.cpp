@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_boxes.h"
 #include "dataset/kitti_label.h"
+#include "dataset/kitti_object.h"
 #include "fuzz/fuzz_target.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/tum_list.h"
+#include "dataset/trajectories.h"
 #include "fuzz/fuzz_target.h"
 
 namespace soslam {

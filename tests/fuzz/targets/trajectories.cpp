@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/trajectories.h"
+
 #include "dataset/colmap_model.h"
-#include "dataset/euroc_trajectory.h"
-#include "dataset/kitti_trajectory.h"
 #include "dataset/nerfstudio.h"
-#include "dataset/tum_list.h"
 #include "fuzz/fuzz_target.h"
 
 namespace soslam {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/tum_list.h"
+#include "dataset/trajectories.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,12 +12,49 @@
 
 #include "base/error.h"
 #include "dataset/text_file.h"
-#include "dataset/unit_quaternion.h"
 
 namespace soslam {
+
+Eigen::Quaterniond UnitQuaternion(const Eigen::Vector4d& xyzw, const std::string& place) {
+  constexpr double kTolerance = 1e-2;
+  if (!(std::abs(xyzw.norm() - 1.0) <= kTolerance)) {
+    throw InputError(fmt::format("{}: quaternion has norm {:.6g}; expected 1", place, xyzw.norm()));
+  }
+  return Eigen::Quaterniond(xyzw).normalized();
+}
+
+Eigen::Quaterniond NearestRotation(const Eigen::Matrix3d& matrix, const std::string& place) {
+  constexpr double kTolerance = 1e-3;  // of each entry of R R^T: three digits were kept at least
+  const double deviation =
+      (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(deviation <= kTolerance)) {
+    throw InputError(
+        fmt::format("{}: rotation is not orthonormal, R R^T is off by {:.3g}; expected at most {}",
+                    place, deviation, kTolerance));
+  }
+  if (matrix.determinant() < 0.0) {
+    throw InputError(place +
+                     ": rotation has determinant -1; expected 1, a matrix without mirroring");
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose()))
+      .normalized();
+}
+
+Rigid3d RigidMotion(const Eigen::Matrix4d& matrix, const std::string& place) {
+  constexpr double kTolerance = 1e-6;
+  const Eigen::RowVector4d last = matrix.row(3);
+  if (!((last - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kTolerance)) {
+    throw InputError(fmt::format(
+        "{}: last row of the 4 x 4 matrix is {} {} {} {}; expected 0 0 0 1: is it transposed?",
+        place, last[0], last[1], last[2], last[3]));
+  }
+  return {NearestRotation(matrix.topLeftCorner<3, 3>(), place), matrix.topRightCorner<3, 1>()};
+}
+
 namespace {
 
-TimedPose ParsePose(const TextLine& line) {
+TimedPose ParseTumPose(const TextLine& line) {
   constexpr std::array kFields = {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   const auto words = SplitWords(line.text);
   if (words.size() != kFields.size()) {
@@ -92,7 +131,7 @@ std::vector<ListedImage> ReadPairedImageList(const std::filesystem::path& path, 
 
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
   std::vector<TimedPose> trajectory;
-  for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParsePose(line));
+  for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParseTumPose(line));
   return SortedTrajectory(std::move(trajectory), path);
 }
 
@@ -133,6 +172,85 @@ std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, d
   }
   if (difference(*nearest) > max_difference_s) return std::nullopt;
   return *nearest;
+}
+
+namespace {
+
+TimedPose ParseEurocPose(const TextLine& line) {
+  constexpr double kSecondsPerUnit = 1e-9;
+  constexpr std::array kFields = {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"};
+  const auto fields = SplitFields(line.text);
+  if (fields.size() < kFields.size()) {
+    throw InputError(fmt::format("{}: has {} fields; expected {}", line.place, fields.size(),
+                                 fmt::join(kFields, ",")));
+  }
+  std::array<double, kFields.size()> v;
+  for (size_t i = 0; i < v.size(); ++i) v[i] = ParseReal(fields[i], line.place, kFields[i]);
+  if (v[0] != std::floor(v[0])) {
+    throw InputError(fmt::format("{}: timestamp is {}; expected nanoseconds, an integer",
+                                 line.place, fields[0]));
+  }
+  return {v[0] * kSecondsPerUnit,
+          {UnitQuaternion({v[5], v[6], v[7], v[4]}, line.place), {v[1], v[2], v[3]}}};
+}
+
+}  // namespace
+
+std::vector<TimedPose> ReadEurocTrajectory(const std::filesystem::path& path) {
+  std::vector<TimedPose> trajectory;
+  for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParseEurocPose(line));
+  return SortedTrajectory(std::move(trajectory), path);
+}
+
+namespace {
+
+Rigid3d ParseKittiPose(const TextLine& line) {
+  constexpr size_t kNumbers = 12;
+  const auto words = SplitWords(line.text);
+  if (words.size() != kNumbers) {
+    throw InputError(fmt::format("{}: has {} numbers; expected {}, the upper 3 x 4 of a pose",
+                                 line.place, words.size(), kNumbers));
+  }
+  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> pose;
+  for (size_t i = 0; i < kNumbers; ++i) {
+    pose.data()[i] = ParseReal(words[i], line.place, fmt::format("number {}", i + 1));
+  }
+  return {NearestRotation(pose.leftCols<3>(), line.place), pose.col(3)};
+}
+
+}  // namespace
+
+std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path) {
+  std::vector<Rigid3d> poses;
+  for (const TextLine& line : ReadTextLines(path)) poses.push_back(ParseKittiPose(line));
+  if (poses.empty()) throw InputError(path.string() + ": has no pose");
+  return poses;
+}
+
+Camera WithYDown(const Camera& camera_with_y_up) {
+  if (!(camera_with_y_up.fy < 0.0)) {
+    throw InputError(
+        fmt::format("fy is {}; expected ICL-NUIM's, which is negative", camera_with_y_up.fy));
+  }
+  Camera camera = camera_with_y_up;
+  camera.fy = -camera.fy;
+  return camera;
+}
+
+Rigid3d MirroredInY(const Rigid3d& world_from_camera) {
+  // With S = diag(1, -1, 1), S R S rotates about the mirrored axis by the opposite angle.
+  const Eigen::Quaterniond& q = world_from_camera.rotation;
+  const Eigen::Vector3d& t = world_from_camera.translation;
+  return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), {t.x(), -t.y(), t.z()}};
+}
+
+std::vector<TimedPose> FromIclNuim(const std::vector<TimedPose>& published) {
+  std::vector<TimedPose> trajectory;
+  for (const TimedPose& pose : published) {
+    trajectory.push_back(
+        {pose.timestamp / kIclNuimFramesPerSecond, MirroredInY(pose.world_from_camera)});
+  }
+  return trajectory;
 }
 
 }  // namespace soslam

@@ -25,4 +25,15 @@ bool IsLabelFile(const std::filesystem::path& name);
 std::optional<std::filesystem::path> FindLabelFile(const std::filesystem::path& labels,
                                                    const std::filesystem::path& dataset);
 
+// Names of COCO's 80 object classes, in the order of detectors trained on COCO, from 0 (T.-Y. Lin
+// et al., "Microsoft COCO: Common Objects in Context", ECCV 2014).
+const std::vector<std::string>& CocoLabels();
+
+// Index in CocoLabels of a category id of COCO's annotation files. These ids run from 1 to 90
+// without ten numbers of dropped categories; none for these and others.
+std::optional<int> CocoClassIndex(int category_id);
+
+// Category id of an index in CocoLabels.
+int CocoCategoryId(int class_index);
+
 }  // namespace soslam

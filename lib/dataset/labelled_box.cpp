@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/labelled_box.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "base/table.h"
+#include "dataset/class_names.h"
+#include "dataset/json_entry.h"
+#include "dataset/text_file.h"
+
+namespace soslam {
+namespace {
+
+constexpr std::array kColumns = {"frame", "label", "score", "x1", "y1", "x2", "y2"};
+constexpr const char* kIdColumn = "object_id";
+
+// Normalised column name: lower case, underscores instead of blanks.
+std::string ColumnName(std::string field) {
+  for (char& c : field) {
+    c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return field;
+}
+
+// Table format given by the first line.
+struct Header {
+  char separator;
+  size_t size;
+  std::map<std::string, size_t> positions;  // column name -> index, for the columns that are read
+};
+
+Header ParseHeader(const TextLine& line) {
+  Header header{SeparatorOf(line.text), 0, {}};
+  const auto fields = SplitCsvLine(line.text, header.separator, line.place);
+  header.size = fields.size();
+  const auto refuse = [&](const std::string& column, const char* how_often) {
+    throw InputError(fmt::format("{}: column '{}' is {}; expected each of {} once", line.place,
+                                 column, how_often, fmt::join(kColumns, ",")));
+  };
+  for (size_t i = 0; i < fields.size(); ++i) {
+    const std::string name = ColumnName(fields[i]);
+    if (name != kIdColumn && std::ranges::find(kColumns, name) == kColumns.end()) continue;
+    if (!header.positions.emplace(name, i).second) refuse(name, "twice");
+  }
+  for (const char* column : kColumns) {
+    if (!header.positions.contains(column)) refuse(column, "missing");
+  }
+  return header;
+}
+
+// Fields of one row, accessed by column name.
+class Row {
+ public:
+  Row(const TextLine& line, const Header& header)
+      : place_(line.place),
+        fields_(SplitCsvLine(line.text, header.separator, line.place)),
+        header_(header) {
+    if (fields_.size() == header.size) return;
+    throw InputError(fmt::format("{}: has {} fields; expected {}, as the header has", place_,
+                                 fields_.size(), header.size));
+  }
+
+  LabelledBox Parse() const {
+    LabelledBox box{place_,
+                    ParseInteger(Field("frame"), place_, "frame"),
+                    Field("label"),
+                    Real("score"),
+                    {Real("x1"), Real("y1"), Real("x2"), Real("y2")}};
+    if (box.label.empty()) throw InputError(place_ + ": label is empty; expected a category");
+    if (header_.positions.contains(kIdColumn)) box.object_id = ObjectId();
+    return box;
+  }
+
+ private:
+  const std::string& Field(const char* column) const {
+    return fields_[header_.positions.at(column)];
+  }
+  // Some programs write a column with gaps as real numbers: 7 is "7.0".
+  std::optional<int> ObjectId() const {
+    std::string_view text = Field(kIdColumn);
+    if (text.empty()) return std::nullopt;
+    if (text.ends_with(".0")) text.remove_suffix(2);
+    return ParseInteger(text, place_, kIdColumn);
+  }
+  double Real(const char* column) const { return ParseReal(Field(column), place_, column); }
+
+  const std::string& place_;
+  std::vector<std::string> fields_;
+  const Header& header_;
+};
+
+}  // namespace
+
+std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
+  const std::vector<TextLine> lines = ReadTableLines(path);
+  if (lines.empty()) {
+    throw InputError(
+        fmt::format("{}: is empty; expected a header {}", path.string(), fmt::join(kColumns, ",")));
+  }
+  const Header header = ParseHeader(lines[0]);
+  std::vector<LabelledBox> boxes;
+  for (size_t i = 1; i < lines.size(); ++i) boxes.push_back(Row(lines[i], header).Parse());
+  return boxes;
+}
+
+std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes) {
+  std::string text = fmt::format("{}\n", fmt::join(kColumns, ","));
+  for (const LabelledBox& row : boxes) {
+    text += fmt::format("{},{},{:.4f},{:.2f},{:.2f},{:.2f},{:.2f}\n", std::get<int>(row.frame),
+                        CsvText(row.label), row.score, row.box.x_min, row.box.y_min, row.box.x_max,
+                        row.box.y_max);
+  }
+  return text;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// Names of the ids in a results file.
+struct CocoNames {
+  std::map<int, std::string> images;
+  std::map<int, std::string> categories;
+};
+
+std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list_name,
+                                     const char* text_name) {
+  const json& list = document.List(list_name);
+  std::map<int, std::string> names;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const JsonEntry entry(list[i], fmt::format("{}#/{}/{}", document.place(), list_name, i));
+    if (!names.emplace(entry.Integer("id"), entry.Text(text_name)).second) {
+      entry.Refuse("id", "one that no other entry has");
+    }
+  }
+  return names;
+}
+
+CocoNames NamesOf(const json& document, const fs::path& path) {
+  const JsonEntry entry(document, path.string());
+  return {ReadNames(entry, "images", "file_name"), ReadNames(entry, "categories", "name")};
+}
+
+const std::string& NameOf(const std::map<int, std::string>& names, const JsonEntry& entry,
+                          const char* field) {
+  const auto found = names.find(entry.Integer(field));
+  if (found == names.end()) entry.Refuse(field, "an id of the dataset's JSON file");
+  return found->second;
+}
+
+FrameKey ParseFrame(const JsonEntry& entry, const std::optional<CocoNames>& names) {
+  if (entry.Field("image_id").is_string()) return entry.Text("image_id");
+  if (names) return NameOf(names->images, entry, "image_id");
+  return entry.Integer("image_id");
+}
+
+std::string ParseLabel(const JsonEntry& entry, const std::optional<CocoNames>& names) {
+  if (names) return NameOf(names->categories, entry, "category_id");
+  const auto index = CocoClassIndex(entry.Integer("category_id"));
+  if (!index) entry.Refuse("category_id", "a category of COCO, 1 to 90");
+  return CocoLabels()[static_cast<size_t>(*index)];
+}
+
+Box ParseBox(const JsonEntry& entry) {
+  const Eigen::Vector4d xywh = entry.Vector<4>("bbox");
+  if (xywh[2] < 0.0 || xywh[3] < 0.0) entry.Refuse("bbox", "[x, y, width, height]");
+  return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
+}
+
+// Track id as CVAT writes it; none without one.
+std::optional<int> ParseTrack(const JsonEntry& entry) {
+  if (entry.Has("track_id")) return entry.Integer("track_id");
+  if (!entry.Has("attributes") || !entry.Field("attributes").is_object()) return std::nullopt;
+  const JsonEntry attributes(entry.Field("attributes"), entry.place() + "/attributes");
+  return attributes.Has("track_id") ? std::optional(attributes.Integer("track_id")) : std::nullopt;
+}
+
+// True if the box is around a crowd of objects.
+bool IsCrowd(const JsonEntry& entry) { return entry.Has("iscrowd") && entry.Field("iscrowd") == 1; }
+
+std::vector<LabelledBox> ParseBoxes(const json& list, const std::string& place,
+                                    const std::optional<CocoNames>& names) {
+  std::vector<LabelledBox> boxes;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const JsonEntry entry(list[i], fmt::format("{}/{}", place, i));
+    if (IsCrowd(entry)) continue;
+    boxes.push_back({entry.place(), ParseFrame(entry, names), ParseLabel(entry, names),
+                     entry.Has("score") ? entry.Real("score") : 1.0, ParseBox(entry),
+                     ParseTrack(entry)});
+  }
+  return boxes;
+}
+
+}  // namespace
+
+std::vector<LabelledBox> ReadCocoResults(const fs::path& results,
+                                         const std::optional<fs::path>& dataset) {
+  const json document = ParseJsonFile(results);
+  const auto names =
+      dataset ? std::optional(NamesOf(ParseJsonFile(*dataset), *dataset)) : std::nullopt;
+  if (document.is_array()) return ParseBoxes(document, results.string() + "#", names);
+  if (!document.is_object() || !document.contains("annotations")) {
+    throw InputError(results.string() +
+                     ": is not a list of results, nor a data set with \"images\", "
+                     "\"annotations\" and \"categories\"");
+  }
+  const JsonEntry entry(document, results.string());
+  return ParseBoxes(entry.List("annotations"), results.string() + "#/annotations",
+                    names ? names : NamesOf(document, results));
+}
+
+namespace {
+
+LabelledBox ParseDetection(const JsonEntry& entry, const std::string& image,
+                           const std::vector<std::string>& labels) {
+  const int category = entry.Integer("category_id");
+  if (category < 0 || category >= static_cast<int>(labels.size())) {
+    entry.Refuse("category_id", fmt::format("0 to {}", labels.size() - 1));
+  }
+  const Eigen::Vector4d corners = entry.Vector<4>("bbox");
+  if (corners[2] < corners[0] || corners[3] < corners[1]) {
+    entry.Refuse("bbox", "[x1, y1, x2, y2] with x1 <= x2 and y1 <= y2");
+  }
+  return {entry.place(), image, labels[static_cast<size_t>(category)],
+          entry.Real("detection_score"),
+          FromCornerOrigin({corners[0], corners[1], corners[2], corners[3]})};
+}
+
+}  // namespace
+
+std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
+                                         const std::vector<std::string>& labels) {
+  const json images = ParseJsonFile(path);
+  if (!images.is_array()) throw InputError(path.string() + ": is not a list of images");
+  std::vector<LabelledBox> boxes;
+  for (size_t i = 0; i < images.size(); ++i) {
+    const JsonEntry image(images[i], fmt::format("{}#/{}", path.string(), i));
+    const std::string name = image.Text("file_name");
+    const json& detections = image.List("detections");
+    for (size_t k = 0; k < detections.size(); ++k) {
+      const JsonEntry entry(detections[k], fmt::format("{}/detections/{}", image.place(), k));
+      boxes.push_back(ParseDetection(entry, name, labels));
+    }
+  }
+  return boxes;
+}
+
+}  // namespace soslam
