@@ -8,7 +8,7 @@
 
 #include "dataset/dataset_checks.h"
 #include "dataset/image_path.h"
-#include "image/image_header.h"
+#include "image/image_format.h"
 
 namespace soslam {
 namespace {

@@ -7,9 +7,18 @@
 #include <vector>
 
 #include "base/options.h"
-#include "image/sample_bilinear.h"  // IWYU pragma: export
+#include "image/sample_bilinear.h"
 
 namespace soslam {
+
+// The nearest edge pixel u^E of each pixel, eq. (20), exact: CV_16SC2, (x, y). Of several at the
+// same distance it is the leftmost, and in a column the upper one. (-1, -1) everywhere when there
+// is no edge. `edges` is CV_8UC1, not 0 on edge pixels, with at most 32767 pixels a side.
+cv::Mat NearestEdgeMap(const cv::Mat& edges);
+
+// Distance (px) from each pixel to its entry in such a map, eq. (17): CV_32FC1; infinite where
+// there is no edge.
+cv::Mat DistanceMap(const cv::Mat& nearest_edge);
 
 struct EdgesOptions {
   double blur_sigma_px = 1.0;
@@ -54,5 +63,15 @@ EdgeMaps ComputeEdgeMaps(const cv::Mat& grey, const EdgesOptions& options);
 // The edge pixel nearest to the centre of the pixel that `pixel` lies in. None outside the image,
 // and when the image has no edges.
 std::optional<Eigen::Vector2d> NearestEdge(const EdgeMaps& maps, const Eigen::Vector2d& pixel);
+
+// A straight edge in an image, pixels.
+struct LineSegment {
+  Eigen::Vector2d begin;
+  Eigen::Vector2d end;
+};
+
+// The straight edges of a grey image (CV_8UC1) that are at least this long (px): the line segment
+// detector of Grompone von Gioi et al. (2010).
+std::vector<LineSegment> FindLineSegments(const cv::Mat& grey, double min_length_px);
 
 }  // namespace soslam

@@ -1,15 +1,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
-#include "image/image_bytes.h"
-#include "image/image_header.h"
+#include "model/image_orientation.h"
 
 namespace soslam {
+
+struct ImageSize {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+};
+
+// Properties that an image file states before any pixel is decoded.
+struct ImageHeader {
+  ImageSize stored;     // size of the pixels that the file stores
+  int orientation = 1;  // EXIF's, 1 to 8: 1 upright, 3 upside down, 5 to 8 turned by a quarter
+
+  bool IsTurnedByAQuarter() const { return orientation >= 5; }
+  // The size of the image when it is read with this setting.
+  ImageSize Size(ImageOrientation read_as) const {
+    const bool swaps = read_as == ImageOrientation::kUpright && IsTurnedByAQuarter();
+    return swaps ? ImageSize{stored.height, stored.width} : stored;
+  }
+};
+
+// Reads only the necessary part of the file, usually a few hundred bytes. None for a file that
+// cannot be opened, is of no format that FindImageFormat knows, or ends before its size.
+std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path);
+
+enum class ByteOrder { kLittleEndian, kBigEndian };
+
+// An unsigned integer stored in at most eight bytes.
+std::uint64_t NumberFromBytes(std::string_view bytes, ByteOrder order);
+
+// Access to the bytes of a file, in memory or on disk: reads only the bytes that are requested.
+class ImageBytes {
+ public:
+  // `read` returns `count` bytes from `begin` on, fewer at the end of the file.
+  using ReadAt = std::function<std::string(std::uint64_t begin, size_t count)>;
+  explicit ImageBytes(ReadAt read) : read_(std::move(read)) {}
+  // Reads from `bytes`, which must outlive this object.
+  explicit ImageBytes(std::string_view bytes);
+
+  // Up to `count` bytes from `begin` on, fewer at the end of the file.
+  std::string UpTo(std::uint64_t begin, size_t count) const { return read_(begin, count); }
+  // Exactly `count` bytes; none when there are fewer.
+  std::optional<std::string> At(std::uint64_t begin, size_t count) const;
+  // The same bytes as an unsigned integer.
+  std::optional<std::uint64_t> NumberAt(std::uint64_t begin, size_t count, ByteOrder order) const;
+
+ private:
+  ReadAt read_;
+};
 
 // A format of image files. OpenCV decodes more formats; some of them allocate as much memory as a
 // few bytes demand, or read other files.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/image_format.h"
-#include "image/tiff_directory.h"
+#include "image/tiff_file.h"
 
 namespace soslam {
 namespace {

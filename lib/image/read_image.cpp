@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/core/eigen.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string_view>
 #include <vector>
 
@@ -14,9 +18,22 @@
 #include "base/run_log.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
-#include "image/turn_upright.h"
 
 namespace soslam {
+
+cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation) {
+  if (exif_orientation == 1) return stored;
+  const bool swaps = exif_orientation >= 5;
+  const bool from_the_right = exif_orientation == 2 || exif_orientation == 3 ||
+                              exif_orientation == 6 || exif_orientation == 7;
+  const bool from_the_bottom = exif_orientation == 3 || exif_orientation == 4 ||
+                               exif_orientation == 7 || exif_orientation == 8;
+  cv::Mat image = swaps ? cv::Mat(stored.t()) : stored.clone();
+  if (from_the_right) cv::flip(image, image, 1);
+  if (from_the_bottom) cv::flip(image, image, 0);
+  return image;
+}
+
 namespace {
 
 std::vector<char> ReadBytes(const std::filesystem::path& path) {
@@ -140,6 +157,20 @@ cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height,
 cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,
                         ImageOrientation orientation) {
   return OfSize(ReadImage(path, cv::IMREAD_COLOR, orientation), width, height, path);
+}
+
+ImageUndistorter::ImageUndistorter(const Camera& camera, const Distortion& distortion) {
+  cv::Matx33d intrinsics;
+  cv::eigen2cv(camera.Intrinsics(), intrinsics);
+  cv::initUndistortRectifyMap(intrinsics, DistortionCoefficients(distortion), cv::noArray(),
+                              intrinsics, {camera.width, camera.height}, CV_32FC1, source_x_,
+                              source_y_);
+}
+
+cv::Mat ImageUndistorter::Undistort(const cv::Mat& distorted) const {
+  cv::Mat undistorted;
+  cv::remap(distorted, undistorted, source_x_, source_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return undistorted;
 }
 
 }  // namespace soslam

@@ -4,9 +4,17 @@
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 
+#include "geometry/camera.h"
+#include "geometry/distortion.h"
 #include "model/image_orientation.h"
 
 namespace soslam {
+
+// Turns an image upright, as viewers show it, from the stored pixels and EXIF's orientation. That
+// states at which sides of the upright image the first stored row and the first stored column are:
+//   1 top, left    2 top, right    3 bottom, right    4 bottom, left
+//   5 left, top    6 right, top    7 right, bottom    8 left, bottom
+cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation);
 
 // Reads an image as grey values, CV_8UC1. JPEG, PNG, WebP, BMP or TIFF, of the latter the first
 // page; bytes after the image are ignored. Throws InputError when the file is missing, empty,
@@ -23,5 +31,19 @@ cv::Mat ReadColourImage(const std::filesystem::path& path,
                         ImageOrientation orientation = ImageOrientation::kUpright);
 cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,
                         ImageOrientation orientation = ImageOrientation::kUpright);
+
+// Undistorts images: the result is that of a pinhole camera of the same size and intrinsics.
+class ImageUndistorter {
+ public:
+  ImageUndistorter(const Camera& camera, const Distortion& distortion);
+
+  // `distorted` has the camera's size; any type. Interpolates linearly. Pixels that the lens did
+  // not see take the value of the nearest pixel that it saw, so that the border of the picture
+  // creates no edge. Thread-safe.
+  cv::Mat Undistort(const cv::Mat& distorted) const;
+
+ private:
+  cv::Mat source_x_, source_y_;  // CV_32FC1, px: source of each pixel in the distorted image
+};
 
 }  // namespace soslam

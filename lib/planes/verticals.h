@@ -6,7 +6,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
-#include "image/line_segments.h"
+#include "image/edge_maps.h"
 #include "planes/up_prior.h"
 
 namespace soslam {

@@ -10,7 +10,7 @@
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
-#include "report/page_json.h"
+#include "report/page_geometry.h"
 
 namespace soslam {
 namespace {

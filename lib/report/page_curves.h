@@ -6,7 +6,7 @@
 
 #include "model/sequence.h"
 #include "model/symmetry_record.h"
-#include "report/page_selection.h"
+#include "report/page_sequence.h"
 
 namespace soslam {
 

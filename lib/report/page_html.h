@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/table.h"
+#include "report/results_tree.h"
 
 namespace soslam {
 
@@ -38,5 +39,13 @@ std::string HtmlTable(const Table& table, const std::vector<size_t>& indices = {
 enum class PageScripts { kNone, kDataset };
 std::string PageHtml(const std::string& title, const std::string& content,
                      const nlohmann::json& data, PageScripts scripts);
+
+// The findings in all artefacts of a dataset's variants, errors first, each once:
+//   severity ("error" or "warning"), check, found, expected, cause, remedy: as in the artefact;
+//   where: "sequence.json of all variants", "map.json of OursP, OursPT"
+nlohmann::json PageFindings(const DatasetResult& dataset);
+
+// The same as HTML, escaped; empty if there are none.
+std::string FindingsHtml(const nlohmann::json& findings);
 
 }  // namespace soslam

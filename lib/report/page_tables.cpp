@@ -13,9 +13,8 @@
 #include <set>
 
 #include "base/table.h"
-#include "report/page_findings.h"
+#include "report/dataset_tables.h"
 #include "report/page_html.h"
-#include "report/quality_tables.h"
 #include "report/results_tree.h"
 
 namespace soslam {
@@ -343,27 +342,6 @@ std::string CountsText(const json& counts) {
 
 }  // namespace
 
-std::vector<size_t> DetailedVariants(const json& page) {
-  const json& variants = page.at("variants");
-  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
-  names.insert(names.end(), kShapeVariants.begin(), kShapeVariants.end());
-  std::ranges::reverse(names);
-  const std::array<std::string, 3> kinds = {"map", "views", "frames"};
-  const auto place = [](const auto& in, const json& name) {
-    return std::find(in.begin(), in.end(), name.get<std::string>()) - in.begin();
-  };
-  const auto rank = [&](size_t index) {
-    const json& variant = variants[index];
-    return std::pair(place(kinds, variant.at("kind")), place(names, variant.at("name")));
-  };
-  std::vector<size_t> detailed;
-  for (size_t i = 0; i < variants.size(); ++i) {
-    if (!variants[i].at("numbers_only")) detailed.push_back(i);
-  }
-  std::ranges::stable_sort(detailed, {}, rank);
-  return detailed;
-}
-
 std::string DatasetTables(const json& page) {
   if (page.at("variants").empty()) return "";
   const json& sequence = page.at("sequences").front();
@@ -381,8 +359,6 @@ std::string DatasetTables(const json& page) {
          NumbersSection(page) + QualitySection(page) + ObjectsSection(page) +
          AblationSection(page) + StagesSection(page);
 }
-
-size_t PageBytes(const json& page) { return PageText(page).size() + DatasetTables(page).size(); }
 
 std::string OverviewTables(const json& overview) {
   std::string sections;

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 namespace soslam {
 
@@ -11,13 +10,5 @@ namespace soslam {
 // datasets (see OverviewData). Texts of the data are escaped.
 std::string DatasetTables(const nlohmann::json& page);
 std::string OverviewTables(const nlohmann::json& overview);
-
-// Size of a dataset's data and of these tables.
-size_t PageBytes(const nlohmann::json& page);
-
-// Variants of a dataset's page that have more than numbers, as indices into its "variants", in the
-// order of interest: maps before views before single frames, and of each kind the variant with the
-// most parts first.
-std::vector<size_t> DetailedVariants(const nlohmann::json& page);
 
 }  // namespace soslam

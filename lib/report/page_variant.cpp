@@ -2,6 +2,7 @@
 #include "report/page_variant.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -10,9 +11,8 @@
 #include "artefact/landmarks_file.h"
 #include "artefact/map_file.h"
 #include "geometry/angles.h"
-#include "report/page_json.h"
-#include "report/page_planes.h"
-#include "report/variant_state.h"
+#include "report/page_geometry.h"
+#include "report/results_tree.h"
 
 namespace soslam {
 namespace {
@@ -195,6 +195,27 @@ json PageVariant(const VariantResult& result, const Sequence& sequence,
   for (const char* key : {"artefact", "findings"}) variant["metrics"].erase(key);
   AddEstimates(result, sequence, selection, &variant);
   return variant;
+}
+
+std::vector<size_t> DetailedVariants(const json& page) {
+  const json& variants = page.at("variants");
+  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
+  names.insert(names.end(), kShapeVariants.begin(), kShapeVariants.end());
+  std::ranges::reverse(names);
+  const std::array<std::string, 3> kinds = {"map", "views", "frames"};
+  const auto place = [](const auto& in, const json& name) {
+    return std::find(in.begin(), in.end(), name.get<std::string>()) - in.begin();
+  };
+  const auto rank = [&](size_t index) {
+    const json& variant = variants[index];
+    return std::pair(place(kinds, variant.at("kind")), place(names, variant.at("name")));
+  };
+  std::vector<size_t> detailed;
+  for (size_t i = 0; i < variants.size(); ++i) {
+    if (!variants[i].at("numbers_only")) detailed.push_back(i);
+  }
+  std::ranges::stable_sort(detailed, {}, rank);
+  return detailed;
 }
 
 }  // namespace soslam

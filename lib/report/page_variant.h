@@ -2,9 +2,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "model/sequence.h"
-#include "report/page_selection.h"
+#include "report/page_sequence.h"
 #include "report/results_tree.h"
 
 namespace soslam {
@@ -24,5 +25,10 @@ namespace soslam {
 // Throws InputError when a file that the variant should have is missing or not valid.
 nlohmann::json PageVariant(const VariantResult& result, const Sequence& sequence,
                            const PageSelection& selection);
+
+// Variants of a dataset's page that have more than numbers, as indices into its "variants", in the
+// order of interest: maps before views before single frames, and of each kind the variant with the
+// most parts first.
+std::vector<size_t> DetailedVariants(const nlohmann::json& page);
 
 }  // namespace soslam

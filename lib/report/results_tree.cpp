@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/results_tree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 
@@ -8,12 +10,39 @@
 #include "artefact/schema.h"
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "report/run_folder.h"
+#include "base/run_log.h"
 
 namespace soslam {
-namespace {
 
 namespace fs = std::filesystem;
+
+std::vector<std::string> RunsIn(const fs::path& list) {
+  constexpr size_t kMaxName = 255;  // bytes; limit of names on Linux
+  RecordInput(list);
+  std::vector<std::string> runs;
+  std::ifstream lines(list);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    if (line.size() > kMaxName || fs::path(line).filename() != line || line == "..") {
+      throw InputError(
+          fmt::format("{}: run is '{}'; expected the name of a folder", list.string(), line));
+    }
+    runs.push_back(line);
+  }
+  return runs;
+}
+
+std::string StageOf(const std::string& run) { return run.substr(0, run.rfind('-')); }
+
+std::string FailureIn(const fs::path& run_folder) {
+  std::ifstream stream(run_folder / "failed");
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+namespace {
+
 using nlohmann::json;
 
 // Rank in the order of variants; equal for all that are neither the paper's nor ours.
@@ -123,6 +152,24 @@ std::vector<ObjectValue> ObjectValues(const VariantResult& variant, const Quanti
     if (!value.is_null()) values.push_back({object.at("object"), value});
   }
   return values;
+}
+
+std::string WhyUnfinished(const VariantResult& variant) {
+  for (const StageRun& run : variant.stages) {
+    const std::string failure = FailureIn(run.folder);
+    if (!failure.empty()) return "failed: " + run.stage + ": " + failure;
+    if (!Exists(run.folder / "done")) return "incomplete: " + run.stage + " has not run";
+  }
+  const bool is_older =
+      !std::ranges::equal(variant.stages, variant.shown_runs, {},
+                          [](const StageRun& run) { return run.folder.filename().string(); });
+  return is_older ? "incomplete: its files are those of an earlier plan" : "";
+}
+
+bool ShowsStage(const VariantResult& variant, const std::string& stage, const std::string& file) {
+  if (variant.shown_runs.empty()) return Exists(variant.folder / file);
+  return std::ranges::any_of(variant.shown_runs,
+                             [&](const std::string& run) { return StageOf(run) == stage; });
 }
 
 }  // namespace soslam

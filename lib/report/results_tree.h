@@ -12,6 +12,16 @@
 
 namespace soslam {
 
+// The runs, <stage>-<key>, that a stages.txt or .linked lists, in its order; empty if the file does
+// not exist. Throws InputError for an entry that is not the name of a folder.
+std::vector<std::string> RunsIn(const std::filesystem::path& list);
+
+// The stage of a run: "learn-priors" for "learn-priors-0123456789".
+std::string StageOf(const std::string& run);
+
+// Error of the last run in a folder: the first line of its file `failed`; empty if it did not fail.
+std::string FailureIn(const std::filesystem::path& run_folder);
+
 // The methods that the paper compares, in its order.
 inline constexpr std::array kPaperVariants = {"SVD",     "Init1-1", "InitP", "InitPT",
                                               "Quadric", "OursP",   "OursPT"};
@@ -92,5 +102,14 @@ struct ObjectValue {
   double value = 0.0;
 };
 std::vector<ObjectValue> ObjectValues(const VariantResult& variant, const Quantity& quantity);
+
+// The reason why the variant's folder does not show the planned results: "failed: refine: exit code
+// 3: ..." or "incomplete: refine has not run"; empty if it does, and for folders without
+// stages.txt.
+std::string WhyUnfinished(const VariantResult& variant);
+
+// True if this stage contributed to the results in the variant's folder: by its list of stages or,
+// without one, by the stage's file in it.
+bool ShowsStage(const VariantResult& variant, const std::string& stage, const std::string& file);
 
 }  // namespace soslam

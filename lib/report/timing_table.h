@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/table.h"
-#include "report/published.h"
+#include "report/paper_tables.h"
 #include "report/results_tree.h"
 
 namespace soslam {

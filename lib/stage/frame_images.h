@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/stage_files.h"
-#include "image/image_undistorter.h"
+#include "image/read_image.h"
 #include "model/sequence.h"
 
 namespace soslam {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/stage_files.h"
-#include "image/detector_options.h"
+#include "image/yolo_detector.h"
 
 namespace soslam {
 

@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "cli/report_findings.h"
 #include "evaluation/result_checks.h"
-#include "image/line_segments.h"
+#include "image/edge_maps.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
 #include "planes/camera_height.h"

@@ -10,11 +10,9 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/table.h"
-#include "report/dataset_table.h"
+#include "report/dataset_tables.h"
 #include "report/paired_differences.h"
 #include "report/paper_tables.h"
-#include "report/published.h"
-#include "report/quality_tables.h"
 #include "report/results_tree.h"
 #include "report/timing_table.h"
 

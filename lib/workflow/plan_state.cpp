@@ -12,7 +12,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"
-#include "report/run_folder.h"
+#include "report/results_tree.h"
 
 namespace soslam {
 namespace {

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "report/results_tree.h"
-#include "report/run_folder.h"
 
 namespace soslam {
 namespace {

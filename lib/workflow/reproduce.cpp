@@ -13,7 +13,7 @@
 #include "base/paths.h"
 #include "dataset/image_path.h"
 #include "inspection/difference.h"
-#include "report/run_folder.h"
+#include "report/results_tree.h"
 #include "workflow/run_program.h"
 
 namespace soslam {

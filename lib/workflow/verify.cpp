@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/hash.h"
-#include "report/run_folder.h"
+#include "report/results_tree.h"
 
 namespace soslam {
 namespace {

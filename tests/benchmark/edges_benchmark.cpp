@@ -10,7 +10,6 @@
 #include "artefact/edges_file.h"
 #include "benchmark/inputs.h"
 #include "image/edge_maps.h"
-#include "image/nearest_edge.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/image_header.h"
-
 #include <gtest/gtest.h>
 
 #include "image/image_format.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/image_undistorter.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+
+#include "image/read_image.h"
 
 namespace soslam {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/letterbox.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
 
+#include "image/yolo_detector.h"
 #include "support/labelled_boxes.h"
 #include "support/random.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/nearest_edge.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
 
+#include "image/edge_maps.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/yolo_output.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "image/yolo_detector.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 

@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "image/nearest_edge.h"
+#include "image/edge_maps.h"
 #include "orientation/model_edges.h"
 #include "support/calibration.h"
 

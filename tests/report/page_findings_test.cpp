@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_findings.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/page_html.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_fit.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/page.h"
 #include "report/page_html.h"
 
 namespace soslam {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_planes.h"
-
 #include <gtest/gtest.h>
 
+#include "report/page_geometry.h"
 #include "support/cuboid_sequence.h"
 #include "support/random.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_selection.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "report/page_sequence.h"
 
 namespace soslam {
 namespace {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/page_variant.h"
+
 namespace soslam {
 namespace {
 

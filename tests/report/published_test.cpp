@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/published.h"
-
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/quality_tables.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/dataset_tables.h"
 #include "support/table_cells.h"
 
 namespace soslam {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/variant_state.h"
-
 #include <gtest/gtest.h>
 
+#include "report/results_tree.h"
 #include "support/results_folder.h"
 
 namespace soslam {

@@ -15,7 +15,7 @@
 
 #include "artefact/json_file.h"
 #include "base/table.h"
-#include "report/published.h"
+#include "report/paper_tables.h"
 
 namespace soslam {
 namespace {

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz_target.h"
-#include "image/image_header.h"
+#include "image/image_format.h"
 #include "image/read_image.h"
 
 namespace soslam {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/fuzz_target.h"
-#include "report/dataset_table.h"
+#include "report/dataset_tables.h"
 #include "report/paired_differences.h"
 #include "report/paper_tables.h"
-#include "report/published.h"
 #include "report/results_tree.h"
 #include "report/timing_table.h"
 #include "workflow/plan_makefile.h"

@@ -11,6 +11,10 @@
 
 namespace soslam {
 
+// All summary metrics of one dataset, one row per variant: the paper's variants always, with "-" if
+// they have no metrics; others if they have metrics.
+Table DatasetTable(const DatasetResult& dataset);
+
 // A variant's name and its metrics.json.
 using NamedMetrics = std::pair<std::string, nlohmann::json>;
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/image_bytes.h"
+#include "image/image_format.h"
 
 namespace soslam {
 
