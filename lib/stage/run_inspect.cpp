@@ -20,7 +20,7 @@
 #include "dataset/image_path.h"
 #include "inspection/inspection.h"
 #include "inspection/overlay.h"
-#include "stage/frame_images.h"
+#include "stage/image_stages.h"
 
 namespace soslam {
 namespace {

@@ -4,10 +4,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+#include <cstdlib>
 #include <set>
 
+#include "base/error.h"
 #include "base/table.h"
 #include "cli/command_line.h"
+#include "workflow/plan.h"
+#include "workflow/reproduce.h"
 #include "workflow/verify.h"
 
 namespace soslam {
@@ -57,6 +62,95 @@ int RunVerify(const VerifyOptions& /*options*/, const StageFiles& files, int /*t
     table.rows.push_back(Row(dataset, verification));
     has_findings = has_findings || !verification.discrepancies.empty();
   }
+  fmt::print("{}", ToMarkdown(table));
+  return has_findings ? kFindings : static_cast<int>(ExitCode::kDone);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kOutcomeNames = {"same", "differs", "not rerun"};
+
+// Temporary folder beside another one, removed with its content at the end.
+class FolderBeside {
+ public:
+  explicit FolderBeside(const fs::path& folder) {
+    std::string name = fs::canonical(folder).string() + ".again-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) {
+      throw SettingsError(name + ": cannot be made; expected a folder that can be written to");
+    }
+    path_ = name;
+  }
+  ~FolderBeside() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  FolderBeside(const FolderBeside&) = delete;
+  FolderBeside& operator=(const FolderBeside&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+void Print(const Outcome& outcome) {
+  fmt::print("{:<9}  {}{}\n", kOutcomeNames.at(static_cast<size_t>(outcome.kind)),
+             outcome.path.string(), outcome.detail.empty() ? "" : ": " + outcome.detail);
+  std::fflush(stdout);  // the next run takes long
+}
+
+std::set<std::string> WrittenArgumentsOf(const std::string& executable) {
+  constexpr std::string_view kPrefix = "soslam-";
+  std::set<std::string> arguments;
+  const std::string stage = executable.substr(kPrefix.size());
+  for (const StageOutput& output : OutputsOfStage(stage)) {
+    arguments.insert(output.argument);
+  }
+  return arguments;
+}
+
+using Counts = std::array<size_t, kOutcomeNames.size()>;  // indexed by kind of outcome
+
+Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
+  Counts counts = {};
+  const auto count = [&counts](const Outcome& outcome) {
+    Print(outcome);
+    ++counts.at(static_cast<size_t>(outcome.kind));
+  };
+  for (const VariantRuns& variant : dataset.variants) {
+    if (variant.problem.empty()) continue;
+    count({Outcome::Kind::kNotRerun, dataset.results / variant.name, variant.problem});
+  }
+  for (const RecordedRun& run : dataset.runs) {
+    for (const Outcome& outcome : reproduction->Rerun(run)) count(outcome);
+  }
+  return counts;
+}
+
+}  // namespace
+
+int RunReproduce(const ReproduceOptions& /*options*/, const StageFiles& files, int threads) {
+  Table table;
+  table.title = "Results made again";
+  table.header = {"dataset", "runs", "artefacts the same", "that differ", "runs not rerun"};
+  std::set<std::string> software_changes;
+  bool has_findings = false;
+  const std::vector<DatasetRuns> datasets = FindRuns(files);
+  const FolderBeside again(files.at("results"));
+  for (const DatasetRuns& dataset : datasets) {
+    Reproduction reproduction(dataset, files.at("executables"), &WrittenArgumentsOf,
+                              again.path() / dataset.name, threads);
+    const Counts counts = RerunAll(dataset, &reproduction);
+    const auto [same, differ, not_rerun] = counts;
+    table.rows.push_back({dataset.name, std::to_string(dataset.runs.size()), std::to_string(same),
+                          std::to_string(differ), std::to_string(not_rerun)});
+    software_changes.insert(reproduction.software_changes().begin(),
+                            reproduction.software_changes().end());
+    has_findings = has_findings || differ + not_rerun > 0;
+  }
+  for (const std::string& change : software_changes) fmt::print("recorded with {}\n", change);
   fmt::print("{}", ToMarkdown(table));
   return has_findings ? kFindings : static_cast<int>(ExitCode::kDone);
 }

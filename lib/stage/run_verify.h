@@ -21,4 +21,16 @@ std::vector<DatasetRuns> FindRuns(const StageFiles& files);
 // and a table of all datasets. The exit code is kFindings when there is any. Throws as FindRuns.
 int RunVerify(const VerifyOptions& options, const StageFiles& files, int threads);
 
+struct ReproduceOptions {
+  void Describe(OptionVisitor&) {}
+};
+
+// soslam-reproduce: repeats the runs of the variants in folder "results", as recorded in their
+// run.json, with the programs in folder "executables", into a folder beside "results" that is
+// removed at the end. Prints which artefacts are identical, and the first difference in the others.
+// Datasets are in folder "data_root"; without it at their recorded place. The exit code is
+// kFindings when an artefact differs or could not be made again. Throws as FindRuns; SettingsError
+// when nothing can be written beside "results".
+int RunReproduce(const ReproduceOptions& options, const StageFiles& files, int threads);
+
 }  // namespace soslam

@@ -9,12 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "stage/run_edges.h"
-#include "stage/run_evaluate.h"
-#include "stage/run_import.h"
-#include "stage/run_initialise.h"
-#include "stage/run_optimise.h"
-#include "stage/run_refine.h"
+#include "stage/data_stages.h"
+#include "stage/image_stages.h"
+#include "stage/landmark_stages.h"
+#include "stage/map_stages.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_associate.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "stage/structure_stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
 #include "support/posts_and_mats.h"

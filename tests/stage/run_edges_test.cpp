@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_edges.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "image/read_image.h"
+#include "stage/image_stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/random.h"

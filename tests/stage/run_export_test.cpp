@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
-#include "stage/run_evaluate.h"
+#include "stage/map_stages.h"
 #include "support/cuboid_sequence.h"
 #include "support/expect_error.h"
 #include "support/gltf_document.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_import.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "stage/data_stages.h"
 #include "support/dataset_fixture.h"
 
 namespace soslam {

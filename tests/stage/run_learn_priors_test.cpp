@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_learn_priors.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "stage/data_stages.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

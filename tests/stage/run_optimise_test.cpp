@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_optimise.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
 #include "evaluation/metrics.h"
+#include "stage/map_stages.h"
 #include "support/cuboid_sequence.h"
 #include "support/temporary_folder.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_pages.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 #include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "report/page_html.h"
+#include "stage/result_pages.h"
 #include "support/cuboid_sequence.h"
 #include "support/expect_error.h"
 #include "support/page_data.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_planes.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "stage/structure_stages.h"
 #include "support/expect_error.h"
 #include "support/rolled.h"
 #include "support/standing_scene.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_report.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "stage/result_pages.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

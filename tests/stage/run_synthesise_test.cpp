@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_synthesise.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "stage/data_stages.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_learn_priors.h"
+#include "stage/data_stages.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,42 @@
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "base/run_log.h"
+#include "cli/report_findings.h"
+#include "dataset/gate.h"
+#include "dataset/import.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_priors.h"
+#include "synthesis/scene_file.h"
+#include "synthesis/simulate.h"
+#include "synthesis/write_dataset.h"
 
 namespace soslam {
+
+void RunImport(const ImportOptions& options, const StageFiles& files, int /*threads*/) {
+  const auto& folder = files.at("dataset");
+  std::vector<std::filesystem::path> inputs;
+  const Sequence sequence = ImportDataset(folder, options, &inputs);
+  ReportFindings("import", sequence.findings);
+  WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
+  fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
+             sequence.frames.size(), sequence.objects.size(), sequence.detections.size(),
+             DescribeRejections(sequence.rejected_detections));
+}
+
+void RunSynthesise(const SynthesiseOptions& options, const StageFiles& files, int threads) {
+  const std::filesystem::path& path = files.at("scene");
+  Scene scene = ReadScene(path);
+  if (options.seed >= 0) scene.seed = options.seed;
+  NoteSeed(scene.seed);
+  if (Simulate(scene, options.noise).detections.empty()) {
+    throw NothingUsableError(path.string() +
+                             ": no object is detected in any frame; expected objects wholly inside "
+                             "the image with their centre in sight");
+  }
+  WriteDataset(scene, options.noise, files.at("output"), threads);
+}
+
 namespace {
 
 std::vector<Sequence> ReadSequences(const std::vector<std::filesystem::path>& paths) {

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_detect.h"
+#include "stage/image_stages.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <vector>
 
 #include "artefact/atomic_file.h"
+#include "artefact/edges_file.h"
 #include "artefact/json_file.h"
+#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -21,9 +26,90 @@
 #include "image/yolo_detector.h"
 
 namespace soslam {
+
+std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& files) {
+  std::vector<FrameImage> images;
+  for (const Frame& frame : sequence.frames) {
+    if (frame.image.empty()) continue;
+    images.push_back(
+        {&frame, ImagePath(files.at("dataset"), frame.image,
+                           fmt::format("{}: frame {}", files.at("sequence").string(), frame.id))});
+  }
+  if (images.empty()) {
+    throw NothingUsableError(
+        fmt::format("{}: none of its {} frames has an image; expected at least one",
+                    files.at("sequence").string(), sequence.frames.size()));
+  }
+  return images;
+}
+
+FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequence) {
+  if (sequence.image_distortion) undistorter_.emplace(sequence.camera, *sequence.image_distortion);
+}
+
+cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
+  const Camera& camera = sequence_.CameraOf(*image.frame);
+  const cv::Mat grey =
+      ReadGreyImage(image.path, camera.width, camera.height, sequence_.image_orientation);
+  return undistorter_ ? undistorter_->Undistort(grey) : grey;
+}
+
+cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
+  const Camera& camera = sequence_.CameraOf(*image.frame);
+  const cv::Mat colour =
+      ReadColourImage(image.path, camera.width, camera.height, sequence_.image_orientation);
+  return undistorter_ ? undistorter_->Undistort(colour) : colour;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
+
+// Checks the image size, as nearest edges are stored as 16-bit coordinates.
+void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
+  constexpr int kMaxSide = std::numeric_limits<std::int16_t>::max();
+  if (std::max(camera.width, camera.height) > kMaxSide) {
+    throw InputError(fmt::format("{}: camera is {} x {} pixels; expected at most {} a side",
+                                 sequence_file.string(), camera.width, camera.height, kMaxSide));
+  }
+}
+
+}  // namespace
+
+void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads) {
+  options.Check();
+  const fs::path& sequence_file = files.at("sequence");
+  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
+  const std::vector<FrameImage> images = FrameImages(sequence, files);
+  std::vector<fs::path> inputs = {sequence_file};
+  for (const FrameImage& image : images) {
+    CheckCamera(sequence.CameraOf(*image.frame), sequence_file);
+    inputs.push_back(image.path);
+  }
+  EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});
+
+  const FrameImageReader reader(sequence);
+  const int frames = static_cast<int>(images.size());
+  Progress progress("frames", frames);
+  const int batch = 4 * threads;  // limits the maps in memory that wait to be written
+  for (int begin = 0; begin < frames; begin += batch) {
+    std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
+    ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
+      const cv::Mat grey = reader.ReadGrey(images[static_cast<size_t>(begin + i)]);
+      maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
+      progress.Step();
+    });
+    for (size_t i = 0; i < maps.size(); ++i) {
+      writer.Write(images[static_cast<size_t>(begin) + i].frame->id, maps[i]);
+    }
+  }
+  writer.Commit();
+  if (images.size() < sequence.frames.size()) {
+    fmt::print("{} of {} frames have an image\n", images.size(), sequence.frames.size());
+  }
+}
+
+namespace {
 
 std::vector<fs::path> ImagePaths(const fs::path& dataset) {
   const fs::path list = dataset / "rgb.txt";

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "cli/stage_files.h"
+#include "image/edge_maps.h"
 #include "image/read_image.h"
+#include "image/yolo_detector.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -37,5 +39,18 @@ class FrameImageReader {
   const Sequence& sequence_;
   std::optional<ImageUndistorter> undistorter_;
 };
+
+// soslam-edges: computes the edge maps of the undistorted image of every frame. Files: "dataset",
+// the folder of the frames' images; "sequence", sequence.json; "output", edges.h5. Throws
+// InputError for an image that is missing, damaged, outside the dataset folder or not of the
+// camera's size; NothingUsableError when no frame has an image; SettingsError.
+void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads);
+
+// soslam-detect: runs a YOLO network on every image of a dataset. Files: "dataset", the folder with
+// rgb.txt; "network", ONNX; "labels" (optional; COCO's when absent), the names of its classes, one
+// per line; "output", a detections.csv without object ids, with its provenance as comments above
+// the header. Prints a one-line summary. Throws InputError for a bad list, image, network or label
+// file; NothingUsableError when nothing was detected.
+void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

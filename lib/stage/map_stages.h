@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/stage_files.h"
+#include "evaluation/options.h"
 #include "mapping/options.h"
 
 namespace soslam {
@@ -11,5 +12,10 @@ namespace soslam {
 // edges or with a descriptor that has no derivative, NothingUsableError when no object has an
 // initial guess.
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads);
+
+// soslam-evaluate: evaluates any landmarks artefact (initial.json, refined.json, map.json) and
+// writes metrics.json: files "sequence", "landmarks", "output". Without ground truth the summary
+// has 0 objects and no numbers.
+void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

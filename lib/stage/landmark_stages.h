@@ -2,9 +2,14 @@
 #pragma once
 
 #include "cli/stage_files.h"
+#include "initialisation/options.h"
 #include "orientation/options.h"
 
 namespace soslam {
+
+// soslam-initialise: sequence.json and the semantic table to initial.json: files "sequence",
+// "table", "output". Throws NothingUsableError when no observation gave a landmark.
+void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads);
 
 // soslam-refine: initial.json and edges.h5 to refined.json and symmetry.h5: files "sequence",
 // "table", "initial", "edges", "output", "curves". Throws SettingsError for a descriptor without
