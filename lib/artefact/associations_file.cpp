@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/associations_file.h"
 
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 
 namespace soslam {
 namespace {

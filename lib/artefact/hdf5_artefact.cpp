@@ -3,11 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
 #include <string_view>
+#include <utility>
 
+#include "artefact/atomic_file.h"
 #include "base/error.h"
 
 namespace soslam {
@@ -73,6 +79,167 @@ std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string&
     pixels.emplace_back(matrix.at<float>(i, 0), matrix.at<float>(i, 1));
   }
   return pixels;
+}
+
+namespace {
+
+constexpr const char* kEdgesKind = "edges";
+
+constexpr const char* kFrames = "/frames";
+
+std::string FrameGroup(int frame_id) { return fmt::format("{}/{:06d}", kFrames, frame_id); }
+
+// Checks that all values are pixels of the maps, as they are used as indices.
+void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
+  const cv::Rect image(0, 0, nearest_edge.cols, nearest_edge.rows);
+  for (int y = 0; y < nearest_edge.rows; ++y) {
+    for (int x = 0; x < nearest_edge.cols; ++x) {
+      const auto& edge = nearest_edge.at<cv::Vec2s>(y, x);
+      const cv::Point pixel(edge[0], edge[1]);
+      if (image.contains(pixel) || pixel == cv::Point(-1, -1)) continue;
+      throw InputError(
+          fmt::format("{}: found ({}, {}) at ({}, {}); expected a pixel of the image or (-1, -1)",
+                      where, pixel.x, pixel.y, x, y));
+    }
+  }
+}
+
+}  // namespace
+
+EdgesWriter::EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info)
+    : atomic_(path), file_(Hdf5File::Create(atomic_.TemporaryPath(), path)) {
+  WriteArtefactHeader(kEdgesKind, info, &file_);
+}
+
+void EdgesWriter::Write(int frame_id, const EdgeMaps& maps) {
+  const std::string group = FrameGroup(frame_id);
+  file_.WriteMatrix(group + "/grey", maps.grey);
+  file_.WriteMatrix(group + "/edges", maps.edges);
+  file_.WriteMatrix(group + "/distance", maps.distance);
+  file_.WriteMatrix(group + "/nearest_edge", maps.nearest_edge);
+  WritePixels(group + "/corners", maps.corners, &file_);
+}
+
+void EdgesWriter::Commit() {
+  file_.Close();
+  atomic_.Commit();
+}
+
+EdgesReader::EdgesReader(const std::filesystem::path& path)
+    : file_(OpenArtefact(path, kEdgesKind)) {}
+
+bool EdgesReader::Has(int frame_id) const { return file_.Has(FrameGroup(frame_id)); }
+
+std::vector<int> EdgesReader::FrameIds() const {
+  std::vector<int> ids;
+  if (!file_.Has(kFrames)) return ids;  // no frame has an image
+  for (const std::string& name : file_.Children(kFrames)) {
+    int id = 0;
+    const auto parsed = std::from_chars(name.data(), name.data() + name.size(), id);
+    if (parsed.ec != std::errc() || FrameGroup(id) != fmt::format("{}/{}", kFrames, name)) {
+      throw InputError(fmt::format("{}: {}/{}: expected the id of a frame with at least six digits",
+                                   file_.path().string(), kFrames, name));
+    }
+    ids.push_back(id);
+  }
+  std::ranges::sort(ids);
+  return ids;
+}
+
+EdgeMaps EdgesReader::Read(int frame_id) const {
+  const std::string group = FrameGroup(frame_id);
+  EdgeMaps maps;
+  maps.grey = file_.ReadMatrix(group + "/grey", CV_8UC1);
+  const auto read = [&](const char* name, int type) {
+    return file_.ReadMatrix(group + name, type, maps.grey.rows, maps.grey.cols);
+  };
+  maps.edges = read("/edges", CV_8UC1);
+  maps.distance = read("/distance", CV_32FC1);
+  maps.nearest_edge = read("/nearest_edge", CV_16SC2);
+  CheckNearestEdges(maps.nearest_edge, file_.path().string() + ": " + group + "/nearest_edge");
+  maps.corners = ReadPixels(file_, group + "/corners");
+  return maps;
+}
+
+namespace {
+
+constexpr const char* kSymmetryKind = "symmetry";
+constexpr const char* kObservations = "/observations";
+
+void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
+  const std::string group =
+      fmt::format("{}/{:06d}_{:06d}", kObservations, record.frame_id, record.object_id);
+  file->WriteVector(group + "/yaw", record.yaw);
+  file->WriteGroup(group + "/cost");
+  for (const auto& [descriptor, cost] : record.cost) {
+    file->WriteVector(group + "/cost/" + descriptor, cost);
+  }
+  WritePixels(group + "/samples", record.samples, file);
+  WritePixels(group + "/mirrored", record.mirrored, file);
+  file->WriteNumber(group, "frame_id", record.frame_id);
+  file->WriteNumber(group, "object_id", record.object_id);
+  file->WriteNumber(group, "initial_yaw", record.initial_yaw);
+  file->WriteNumber(group, "refined_yaw", record.refined_yaw);
+  if (record.yaw_sigma) file->WriteNumber(group, "yaw_sigma", *record.yaw_sigma);
+  if (record.mirror_planes) file->WriteNumber(group, "mirror_planes", *record.mirror_planes);
+  if (record.true_yaw) file->WriteNumber(group, "true_yaw", *record.true_yaw);
+}
+
+int ReadMirrorPlanes(const Hdf5File& file, const std::string& group) {
+  const double value = file.ReadNumber(group, "mirror_planes");
+  for (const int planes : {0, 1, 2}) {
+    if (value == planes) return planes;
+  }
+  throw InputError(fmt::format("{}: {}/mirror_planes: found {}; expected 0, 1 or 2",
+                               file.path().string(), group, value));
+}
+
+SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
+  SymmetryRecord record;
+  record.frame_id = static_cast<int>(std::lround(file.ReadNumber(group, "frame_id")));
+  record.object_id = static_cast<int>(std::lround(file.ReadNumber(group, "object_id")));
+  record.yaw = file.ReadVector<double>(group + "/yaw");
+  const int yaws = static_cast<int>(record.yaw.size());
+  for (const std::string& descriptor : file.Children(group + "/cost")) {
+    record.cost[descriptor] = file.ReadVector<double>(group + "/cost/" + descriptor, yaws);
+  }
+  record.samples = ReadPixels(file, group + "/samples");
+  record.mirrored = ReadPixels(file, group + "/mirrored", static_cast<int>(record.samples.size()));
+  record.initial_yaw = file.ReadNumber(group, "initial_yaw");
+  record.refined_yaw = file.ReadNumber(group, "refined_yaw");
+  if (file.HasAttribute(group, "yaw_sigma")) {
+    record.yaw_sigma = file.ReadNumber(group, "yaw_sigma");
+  }
+  if (file.HasAttribute(group, "mirror_planes")) {
+    record.mirror_planes = ReadMirrorPlanes(file, group);
+  }
+  if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");
+  return record;
+}
+
+}  // namespace
+
+void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
+                   const ArtefactInfo& info) {
+  AtomicFile atomic(path);
+  Hdf5File file = Hdf5File::Create(atomic.TemporaryPath(), path);
+  WriteArtefactHeader(kSymmetryKind, info, &file);
+  file.WriteGroup(kObservations);
+  for (const SymmetryRecord& record : records) WriteRecord(record, &file);
+  file.Close();
+  atomic.Commit();
+}
+
+std::vector<SymmetryRecord> ReadSymmetry(const std::filesystem::path& path) {
+  const Hdf5File file = OpenArtefact(path, kSymmetryKind);
+  std::vector<SymmetryRecord> records;
+  for (const std::string& name : file.Children(kObservations)) {
+    records.push_back(ReadRecord(file, fmt::format("{}/{}", kObservations, name)));
+  }
+  const auto key = [](const SymmetryRecord& r) { return std::pair(r.frame_id, r.object_id); };
+  std::sort(records.begin(), records.end(),
+            [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  return records;
 }
 
 }  // namespace soslam

@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "artefact/atomic_file.h"
 #include "artefact/hdf5_file.h"
 #include "artefact/json_file.h"
+#include "image/edge_maps.h"
+#include "model/symmetry_record.h"
 
 namespace soslam {
 
@@ -33,5 +36,42 @@ void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pi
                  Hdf5File* file);
 std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name,
                                         int count = Hdf5File::kAny);
+
+// Writes edges.h5 (layout: schemas/hdf5-layout.md) frame by frame; it appears with Commit(). Throws
+// SettingsError when it cannot be written.
+class EdgesWriter {
+ public:
+  EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info);
+  // Each frame once; the bytes of the file depend on the order.
+  void Write(int frame_id, const EdgeMaps& maps);
+  void Commit();
+
+ private:
+  AtomicFile atomic_;
+  Hdf5File file_;
+};
+
+// Reads edges.h5. Throws InputError when it is missing, damaged, not of kind "edges" or too new.
+class EdgesReader {
+ public:
+  explicit EdgesReader(const std::filesystem::path& path);
+  bool Has(int frame_id) const;
+  // Frame ids, ascending. Throws InputError for a group whose name is no frame id.
+  std::vector<int> FrameIds() const;
+  // Thread-safe. Throws InputError when the frame is missing, or its maps differ in size.
+  EdgeMaps Read(int frame_id) const;
+
+ private:
+  Hdf5File file_;
+};
+
+// Writes symmetry.h5 (layout: schemas/hdf5-layout.md) atomically. At most one record per frame and
+// object. Throws SettingsError when it cannot be written.
+void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
+                   const ArtefactInfo& info);
+
+// The records, sorted by frame id, then object id. Throws InputError when the file is missing,
+// damaged, not of kind "symmetry" or too new.
+std::vector<SymmetryRecord> ReadSymmetry(const std::filesystem::path& path);
 
 }  // namespace soslam

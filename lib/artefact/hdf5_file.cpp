@@ -15,8 +15,6 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "artefact/hdf5_checks.h"
-#include "artefact/hdf5_chunk.h"
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
 #include "base/file_kind.h"

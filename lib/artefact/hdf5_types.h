@@ -3,6 +3,12 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
 #include "artefact/hdf5_file.h"
 
 namespace soslam {
@@ -28,5 +34,22 @@ Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape);
 
 // Texts are of fixed length and UTF-8; HDF5 has no length 0.
 Hdf5Handle Hdf5TextType(size_t length);
+
+// Error message when a data set of this shape must not be read, with found and expected values;
+// none when it may be. Its values must be stored in the file itself and fit in a file of
+// `file_bytes`.
+std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const ArrayShape& shape,
+                                          std::uint64_t file_bytes);
+
+// Chunks as Hdf5File writes them, read without the HDF5 library's filters: those of version 1.10 do
+// not check that a chunk holds as many values as the data set says, and read beyond it.
+
+// The stored bytes of a data set of this shape that is one chunk, shuffled and deflated; none of
+// any other.
+std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape);
+
+// Inflates and unshuffles a chunk of elements of so many bytes. False when it is damaged, or does
+// not fill `values`.
+bool DecodeChunk(const std::string& chunk, size_t element_size, std::span<std::byte> values);
 
 }  // namespace soslam

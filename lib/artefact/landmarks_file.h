@@ -17,4 +17,12 @@ LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequenc
 void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,
                     const Sequence& sequence, const ArtefactInfo& info);
 
+// The artefact of kind "map". `sequence` is the one that the map was made from; files refer to its
+// frames and objects by id. Throws InputError for a file that is not valid, refers to an object
+// that the sequence lacks, or whose trajectory does not have exactly the sequence's frames.
+MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence);
+// Errors as WriteArtefact.
+void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,
+              const ArtefactInfo& info);
+
 }  // namespace soslam

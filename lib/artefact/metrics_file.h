@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "artefact/json_file.h"
+#include "evaluation/map_quality.h"
 #include "evaluation/metrics.h"
 #include "model/sequence.h"
 

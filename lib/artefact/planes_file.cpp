@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 #include "geometry/angles.h"
 
 namespace soslam {

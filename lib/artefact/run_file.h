@@ -8,9 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "artefact/software.h"
-
 namespace soslam {
+
+// Software that results may depend on besides inputs and settings.
+struct Software {
+  std::string version;                           // "soslam 0.1.0"
+  std::string compiler;                          // "GCC 12.2.0"
+  std::map<std::string, std::string> libraries;  // name -> version: "opencv" -> "4.6.0"
+
+  bool operator==(const Software&) const = default;
+};
+
+// The software of this program. The version of a library is that of the running one where it can be
+// queried, otherwise (Ceres, CLI11, Eigen, fmt, nlohmann-json) that of the headers.
+Software ThisSoftware();
 
 // Base folders of RunFile paths, in addition to the folders given as arguments.
 inline constexpr const char* kRelativeToRun = "run";    // the folder of run.json

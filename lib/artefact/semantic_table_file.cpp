@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "artefact/schema.h"
+#include "artefact/json_file.h"
 
 namespace soslam {
 namespace {

@@ -6,14 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
 
-#include "artefact/findings_json.h"
-#include "artefact/ids.h"
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 #include "base/error.h"
 #include "model/occlusion.h"
 
@@ -21,19 +18,6 @@ namespace soslam {
 namespace {
 
 using nlohmann::json;
-
-json FrameToJson(const Frame& frame) {
-  const auto& truth = frame.true_world_from_camera;
-  json fields = {{"frame", frame.id},
-                 {"timestamp", frame.timestamp},
-                 {"image", frame.image.empty() ? json() : json(frame.image)},
-                 {"world_from_camera", frame.world_from_camera},
-                 {"true_world_from_camera", truth ? json(*truth) : json()},
-                 {"segment", frame.segment}};
-  if (frame.camera) fields["camera"] = *frame.camera;
-  if (!frame.boxes_in_view.empty()) fields["boxes_in_view"] = frame.boxes_in_view;
-  return fields;
-}
 
 Frame FrameFromJson(const json& json) {
   Frame frame;
@@ -50,25 +34,10 @@ Frame FrameFromJson(const json& json) {
   return frame;
 }
 
-json GroundTruthToJson(const GroundTruth& truth) {
-  return {{"landmark", LandmarkToJson(truth.landmark_in_world, "world")},
-          {"mirror_symmetric", truth.mirror_symmetric},
-          {"mirror_symmetric_yz", truth.mirror_symmetric_yz},
-          {"rotationally_symmetric", truth.rotationally_symmetric}};
-}
-
 GroundTruth GroundTruthFromJson(const json& json) {
   return {LandmarkFromJson(json.at("landmark"), "world"), json.at("mirror_symmetric").get<bool>(),
           json.at("mirror_symmetric_yz").get<bool>(),
           json.at("rotationally_symmetric").get<bool>()};
-}
-
-json SupportPlaneToJson(const SupportPlane& plane) {
-  json fields = {{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}};
-  if (plane.attitude_information) {
-    fields["attitude_information"] = MatrixToJson(*plane.attitude_information);
-  }
-  return fields;
 }
 
 SupportPlane SupportPlaneFromJson(const json& json) {
@@ -77,26 +46,6 @@ SupportPlane SupportPlaneFromJson(const json& json) {
     plane.attitude_information = MatrixFromJson(json["attitude_information"]);
   }
   return plane;
-}
-
-json ObjectToJson(const Object& object, const Sequence& sequence) {
-  return {{"object", object.id},
-          {"label", object.label},
-          {"plane", sequence.planes.empty()
-                        ? json()
-                        : json(sequence.planes.at(static_cast<size_t>(object.plane_index)).id)},
-          {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
-          {"is_static", object.is_static}};
-}
-
-json TrueObjectToJson(const TrueObject& object) {
-  json fields = {{"object", object.id},
-                 {"label", object.label},
-                 {"segment", object.segment},
-                 {"is_static", object.is_static},
-                 {"ground_truth", GroundTruthToJson(object.truth)}};
-  if (object.is_ignored) fields["is_ignored"] = true;
-  return fields;
 }
 
 TrueObject TrueObjectFromJson(const json& json) {
@@ -125,17 +74,6 @@ void AddTruthOfOldVersions(Sequence* sequence) {
   }
 }
 
-// Row of numbers: frame, object, rotation (x, y, z, w), translation (m), half axes (m).
-json TruthInFrameToJson(const TruthInFrame& truth, const Sequence& sequence) {
-  const auto& [rotation, translation] = truth.landmark_in_camera.frame_from_object;
-  const Eigen::Vector3d& half_axes = truth.landmark_in_camera.half_axes;
-  json row = {sequence.frames.at(static_cast<size_t>(truth.frame_index)).id, truth.true_object_id};
-  for (const double number : rotation.coeffs()) row.push_back(number);
-  for (const double number : translation) row.push_back(number);
-  for (const double number : half_axes) row.push_back(number);
-  return row;
-}
-
 TruthInFrame TruthInFrameFromJson(const json& row, const IdTable<Frame>& frames) {
   const json pose = {{"rotation_xyzw", {row.at(2), row.at(3), row.at(4), row.at(5)}},
                      {"translation", {row.at(6), row.at(7), row.at(8)}}};
@@ -145,13 +83,6 @@ TruthInFrame TruthInFrameFromJson(const json& row, const IdTable<Frame>& frames)
     row.at(static_cast<size_t>(9 + axis)).get_to(landmark.half_axes[axis]);
   }
   return {frames.IndexOf(row.at(0).get<int>()), row.at(1).get<int>(), landmark};
-}
-
-json IgnoredToJson(const IgnoredThings& things) {
-  json fields = json::object();
-  if (things.label) fields["label"] = *things.label;
-  if (things.volume_in_world) fields["landmark"] = LandmarkToJson(*things.volume_in_world, "world");
-  return fields;
 }
 
 IgnoredThings IgnoredFromJson(const json& json) {
@@ -175,14 +106,6 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   return object;
 }
 
-json BoundsToJson(const std::array<bool, 4>& is_bound) {
-  json names = json::array();
-  for (size_t i = 0; i < is_bound.size(); ++i) {
-    if (is_bound[i]) names.push_back(kEdgeNames[i]);
-  }
-  return names;
-}
-
 // Coefficients of the distortion: 5 in all versions; 8, 12 or 14 since version 1.6.
 Distortion DistortionFromJson(const json& json) {
   const auto coefficients = json.get<std::vector<double>>();
@@ -200,24 +123,6 @@ std::array<bool, 4> BoundsFromJson(const json& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   });
   return is_bound;
-}
-
-json DetectionToJson(const Detection& detection, const Sequence& sequence) {
-  json fields = {
-      {"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
-      {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
-      {"score", detection.score},
-      {"box", detection.box},
-      {"plane_in_camera", sequence.planes.empty() ? json() : json(detection.plane_in_camera)},
-      {"bounds", BoundsToJson(detection.is_bound)},
-      {"nearer_in_view", detection.nearer_in_view}};
-  if (detection.own_in_view) fields["own_in_view"] = *detection.own_in_view;
-  if (!detection.nearer_boxes.empty()) fields["nearer_boxes"] = detection.nearer_boxes;
-  if (detection.true_landmark_in_camera) {
-    fields["true_landmark"] = LandmarkToJson(*detection.true_landmark_in_camera, "camera");
-  }
-  if (detection.true_object_id) fields["true_object"] = *detection.true_object_id;
-  return fields;
 }
 
 Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
@@ -243,14 +148,6 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   return detection;
 }
 
-json HeldOutToJson(const HeldOutFrame& held_out) {
-  json boxes = json::array();
-  for (const auto& [label, score, box] : held_out.boxes) {
-    boxes.push_back({{"label", label}, {"score", score}, {"box", box}});
-  }
-  return {{"frame", FrameToJson(held_out.frame)}, {"boxes", boxes}};
-}
-
 HeldOutFrame HeldOutFromJson(const json& json) {
   HeldOutFrame held_out{FrameFromJson(json.at("frame")), {}};
   for (const auto& box : json.at("boxes")) {
@@ -258,35 +155,6 @@ HeldOutFrame HeldOutFromJson(const json& json) {
                               box.at("box").get<Box>()});
   }
   return held_out;
-}
-
-// Rejected detections as rows of numbers, because they may be many: frame, index in `reasons`,
-// index in `labels`, true object or null, score, box.
-json RejectedToJson(const Sequence& sequence) {
-  std::map<std::pair<RejectingStage, std::string>, size_t> reasons;
-  std::map<std::string, size_t> labels;
-  for (const RejectedDetection& rejected : sequence.rejected) {
-    reasons.try_emplace({rejected.stage, rejected.reason});
-    labels.try_emplace(rejected.label);
-  }
-  json fields = {{"reasons", json::array()}, {"labels", json::array()}, {"rows", json::array()}};
-  for (auto& [reason, row] : reasons) {
-    row = fields["reasons"].size();
-    fields["reasons"].push_back({{"stage", kRejectingStageNames[static_cast<size_t>(reason.first)]},
-                                 {"reason", reason.second}});
-  }
-  for (auto& [label, row] : labels) {
-    row = fields["labels"].size();
-    fields["labels"].push_back(label);
-  }
-  for (const RejectedDetection& rejected : sequence.rejected) {
-    const Box& box = rejected.box;
-    fields["rows"].push_back({sequence.frames.at(static_cast<size_t>(rejected.frame_index)).id,
-                              reasons.at({rejected.stage, rejected.reason}),
-                              labels.at(rejected.label), OrNull(rejected.true_object_id),
-                              rejected.score, box.x_min, box.y_min, box.x_max, box.y_max});
-  }
-  return fields;
 }
 
 // The element of `list` whose index is in a row of rejected detections.
@@ -490,51 +358,6 @@ Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need) {
         path.string()));
   }
   return sequence;
-}
-
-void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
-                   const ArtefactInfo& info) {
-  json body = {
-      {"name", sequence.name},
-      {"camera", sequence.camera},
-      {"image_orientation",
-       kImageOrientationNames[static_cast<size_t>(sequence.image_orientation)]},
-      {"frames", json::array()},
-      {"planes", json::array()},
-      {"objects", json::array()},
-      {"detections", json::array()},
-      {"rejected_detections", sequence.rejected_detections},
-      {"true_objects", json::array()},
-      {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]}};
-  if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
-  if (sequence.image_distortion)
-    body["image_distortion"] = DistortionCoefficients(*sequence.image_distortion);
-  for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
-  for (const SupportPlane& plane : sequence.planes) {
-    body["planes"].push_back(SupportPlaneToJson(plane));
-  }
-  for (const Object& object : sequence.objects) {
-    body["objects"].push_back(ObjectToJson(object, sequence));
-  }
-  for (const Detection& detection : sequence.detections) {
-    body["detections"].push_back(DetectionToJson(detection, sequence));
-  }
-  for (const HeldOutFrame& held_out : sequence.held_out) {
-    body["held_out"].push_back(HeldOutToJson(held_out));
-  }
-  for (const TruthInFrame& truth : sequence.truth_in_frames) {
-    body["truth_in_frames"].push_back(TruthInFrameToJson(truth, sequence));
-  }
-  for (const TrueObject& object : sequence.true_objects) {
-    body["true_objects"].push_back(TrueObjectToJson(object));
-  }
-  for (const IgnoredThings& things : sequence.ignored) {
-    body["ignored"].push_back(IgnoredToJson(things));
-  }
-  if (!sequence.rejected.empty()) body["rejected"] = RejectedToJson(sequence);
-  ArtefactInfo with_findings = info;
-  with_findings.findings = sequence.findings;
-  WriteArtefact(path, "sequence", with_findings, std::move(body));
 }
 
 }  // namespace soslam

@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "artefact/ids.h"
+#include "artefact/model_json.h"
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "dataset/dataset_checks.h"

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 #include "evaluation/alignment.h"
 
 namespace soslam {

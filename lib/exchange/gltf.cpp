@@ -8,8 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "artefact/json_geometry.h"
-#include "artefact/object_estimate_json.h"
+#include "artefact/model_json.h"
 #include "base/base64.h"
 #include "exchange/body_mesh.h"
 #include "geometry/angles.h"

@@ -8,8 +8,7 @@
 #include <cmath>
 
 #include "artefact/json_file.h"
-#include "artefact/json_geometry.h"
-#include "artefact/object_estimate_json.h"
+#include "artefact/model_json.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "inspection/kinds.h"

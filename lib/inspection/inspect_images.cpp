@@ -5,8 +5,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "artefact/edges_file.h"
-#include "artefact/symmetry_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "inspection/kinds.h"

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "artefact/json_file.h"
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 #include "inspection/kinds.h"
 
 namespace soslam {

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "artefact/findings_json.h"
 #include "artefact/hdf5_artefact.h"
+#include "artefact/model_json.h"
 #include "base/error.h"
 #include "base/one_line.h"
 #include "base/table.h"

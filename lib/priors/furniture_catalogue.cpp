@@ -8,7 +8,6 @@
 #include <cctype>
 
 #include "artefact/json_file.h"
-#include "artefact/schema.h"
 #include "base/error.h"
 #include "dataset/text_file.h"
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "artefact/hdf5_artefact.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "report/page_curves.h"
 #include "report/page_html.h"

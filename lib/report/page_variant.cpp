@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "geometry/angles.h"
 #include "report/page_geometry.h"
 #include "report/results_tree.h"

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "artefact/json_file.h"
-#include "artefact/schema.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "artefact/json_file.h"
-#include "artefact/schema.h"
 #include "base/error.h"
 #include "base/file_kind.h"
 #include "base/run_log.h"

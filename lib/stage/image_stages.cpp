@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "artefact/atomic_file.h"
-#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"

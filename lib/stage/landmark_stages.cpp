@@ -13,11 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cli/report_findings.h"

@@ -9,10 +9,9 @@
 #include <set>
 #include <vector>
 
-#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "artefact/metrics_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"

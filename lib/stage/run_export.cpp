@@ -9,7 +9,7 @@
 
 #include "artefact/atomic_file.h"
 #include "artefact/json_file.h"
-#include "artefact/map_file.h"
+#include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/hash.h"

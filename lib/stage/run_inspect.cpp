@@ -9,12 +9,9 @@
 #include <vector>
 
 #include "artefact/atomic_file.h"
-#include "artefact/edges_file.h"
 #include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "dataset/image_path.h"

@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "artefact/findings_json.h"
 #include "artefact/json_file.h"
+#include "artefact/model_json.h"
 #include "artefact/run_file.h"
 #include "base/error.h"
 #include "base/file_kind.h"

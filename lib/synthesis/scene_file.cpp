@@ -8,7 +8,6 @@
 #include <map>
 
 #include "artefact/json_file.h"
-#include "artefact/schema.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 

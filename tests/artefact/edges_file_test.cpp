@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/edges_file.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

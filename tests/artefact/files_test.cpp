@@ -5,9 +5,8 @@
 
 #include <limits>
 
-#include "artefact/json_geometry.h"
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
+#include "artefact/model_json.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "model/occlusion.h"

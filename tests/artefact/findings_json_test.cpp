@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/findings_json.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "artefact/model_json.h"
 
 namespace soslam {
 namespace {

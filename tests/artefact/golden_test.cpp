@@ -4,7 +4,6 @@
 
 #include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "artefact/run_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/hdf5_checks.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
 #include <thread>
 
 #include "artefact/hdf5_artefact.h"
+#include "artefact/hdf5_types.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"

@@ -8,7 +8,6 @@
 #include <functional>
 #include <limits>
 
-#include "artefact/schema.h"
 #include "base/error.h"
 #include "support/dataset_fixture.h"
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/symmetry_file.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"

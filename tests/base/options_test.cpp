@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "artefact/schema.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 
-#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "benchmark/inputs.h"
 #include "image/edge_maps.h"
 

@@ -11,7 +11,6 @@
 #include <new>
 
 #include "artefact/json_file.h"
-#include "artefact/schema.h"
 #include "base/error.h"
 #include "support/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 #include "support/exported_world.h"
 
 namespace soslam {

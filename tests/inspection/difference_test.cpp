@@ -6,10 +6,9 @@
 
 #include <cmath>
 
-#include "artefact/edges_file.h"
-#include "artefact/map_file.h"
+#include "artefact/hdf5_artefact.h"
+#include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"

@@ -9,7 +9,7 @@
 #include <regex>
 #include <sstream>
 
-#include "artefact/schema.h"
+#include "artefact/json_file.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

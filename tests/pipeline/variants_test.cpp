@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "artefact/map_file.h"
+#include "artefact/hdf5_artefact.h"
+#include "artefact/landmarks_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

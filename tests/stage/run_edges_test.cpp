@@ -5,7 +5,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "artefact/edges_file.h"
 #include "artefact/hdf5_artefact.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "artefact/map_file.h"
+#include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "dataset/labelled_box.h"

@@ -6,11 +6,10 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "artefact/edges_file.h"
+#include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/metrics_file.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "inspection/canvas.h"
 #include "support/expect_error.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
 #include "evaluation/metrics.h"
 #include "stage/map_stages.h"

@@ -5,10 +5,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
-#include "artefact/symmetry_file.h"
 #include "base/error.h"
 #include "report/page_html.h"
 #include "stage/result_pages.h"

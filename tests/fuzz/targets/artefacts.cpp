@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "artefact/landmarks_file.h"
-#include "artefact/map_file.h"
 #include "artefact/sequence_file.h"
 #include "fuzz/fuzz_target.h"
 #include "inspection/difference.h"

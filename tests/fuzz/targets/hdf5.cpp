@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <optional>
 
-#include "artefact/edges_file.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/symmetry_file.h"
 #include "fuzz/fuzz_target.h"
 #include "inspection/difference.h"
 #include "inspection/inspection.h"

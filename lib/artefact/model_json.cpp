@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/json_geometry.h"
+#include "artefact/model_json.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,35 @@
 #include "geometry/image_size.h"
 
 namespace soslam {
-namespace {
 
 using nlohmann::json;
+
+json FindingsToJson(const std::vector<Finding>& findings) {
+  json list = json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"check", finding.check},
+                    {"severity", kSeverityNames[static_cast<size_t>(finding.severity)]},
+                    {"found", finding.found},
+                    {"expected", finding.expected},
+                    {"cause", finding.cause},
+                    {"remedy", finding.remedy}});
+  }
+  return list;
+}
+
+std::vector<Finding> FindingsFromJson(const json& artefact) {
+  std::vector<Finding> findings;
+  for (const json& entry : artefact.value("findings", json::array())) {  // since version 1.6
+    const bool is_error = entry.at("severity") == kSeverityNames[1];
+    findings.push_back(
+        {entry.at("check").get<std::string>(), is_error ? Severity::kError : Severity::kWarning,
+         entry.at("found").get<std::string>(), entry.at("expected").get<std::string>(),
+         entry.at("cause").get<std::string>(), entry.at("remedy").get<std::string>()});
+  }
+  return findings;
+}
+
+namespace {
 
 // Tolerance far above the rounding of composed poses, but below the error of a number typed by
 // hand.
@@ -97,6 +123,66 @@ json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
 Landmark LandmarkFromJson(const json& json, const std::string& frame) {
   return {json.at(frame + "_from_object").get<Rigid3d>(), VectorFromJson(json.at("half_axes")),
           json.value("shape_exponent", kEllipsoidExponent)};
+}
+
+namespace {
+
+using CovarianceRows = std::array<std::array<double, 9>, 9>;
+
+Covariance9 CovarianceFromJson(const json& json) {
+  const auto rows = json.get<CovarianceRows>();
+  return Eigen::Map<const Eigen::Matrix<double, 9, 9, Eigen::RowMajor>>(rows[0].data());
+}
+
+json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
+  const auto& landmark = estimate.landmark_in_world;
+  const auto& covariance = estimate.covariance;
+  return {{"object", sequence.objects.at(static_cast<size_t>(estimate.object_index)).id},
+          {"observations", estimate.observations},
+          {"landmark", landmark ? LandmarkToJson(*landmark, "world") : json()},
+          {"covariance", covariance ? CovarianceToJson(*covariance) : json()},
+          {"failure", estimate.failure},
+          {"proper_ellipsoid", estimate.proper_ellipsoid}};
+}
+
+}  // namespace
+
+json CovarianceToJson(const Covariance9& covariance) {
+  json rows = json::array();
+  for (const auto& row : covariance.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
+  json rows = json::array();
+  for (const ObjectEstimate& estimate : estimates) {
+    rows.push_back(EstimateToJson(estimate, sequence));
+  }
+  return rows;
+}
+
+ObjectEstimate ObjectEstimateFromJson(const json& row) {
+  ObjectEstimate estimate;
+  row.at("observations").get_to(estimate.observations);
+  const auto& landmark = row.at("landmark");
+  if (!landmark.is_null()) estimate.landmark_in_world = LandmarkFromJson(landmark, "world");
+  const auto& covariance = row.at("covariance");
+  if (!covariance.is_null()) estimate.covariance = CovarianceFromJson(covariance);
+  row.at("failure").get_to(estimate.failure);
+  row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
+  return estimate;
+}
+
+std::vector<ObjectEstimate> ObjectEstimatesFromJson(const json& json, const Sequence& sequence) {
+  const IdTable<Object> objects("object", sequence.objects);
+  std::vector<ObjectEstimate> estimates;
+  for (const auto& row : json) {
+    estimates.push_back(ObjectEstimateFromJson(row));
+    estimates.back().object_index = objects.IndexOf(row.at("object").get<int>());
+  }
+  return estimates;
 }
 
 }  // namespace soslam

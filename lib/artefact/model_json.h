@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "geometry/rigid3.h"
+#include "model/estimates.h"
+#include "model/finding.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Maps ids to indices. Files refer to frames, planes and objects by id, code by index in a vector
+// sorted by id. `Item` has a member `id`.
+template <typename Item>
+class IdTable {
+ public:
+  // `name` is the name of the items in error messages. Throws InputError unless ids ascend.
+  IdTable(std::string name, const std::vector<Item>& items) : name_(std::move(name)) {
+    for (const Item& item : items) {
+      if (!ids_.empty() && item.id <= ids_.back()) {
+        throw InputError(fmt::format("{} {} follows {} {}; expected ascending ids", name_, item.id,
+                                     name_, ids_.back()));
+      }
+      ids_.push_back(item.id);
+    }
+  }
+
+  // Throws InputError when there is no such id.
+  int IndexOf(int id) const {
+    const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
+    if (found == ids_.end() || *found != id) {
+      throw InputError(fmt::format("{} {} is not in the sequence", name_, id));
+    }
+    return static_cast<int>(found - ids_.begin());
+  }
+
+ private:
+  std::string name_;
+  std::vector<int> ids_;
+};
+
+// The list "findings" of JSON artefacts, which is absent when empty.
+nlohmann::json FindingsToJson(const std::vector<Finding>& findings);
+
+// The findings in an artefact of any kind and version.
+std::vector<Finding> FindingsFromJson(const nlohmann::json& artefact);
+
+// Geometry in JSON, for nlohmann's `json = value` and `json.get<Value>()`. Doubles round-trip bit
+// by bit. Readers assume JSON that the artefact's schema has accepted; they throw InputError,
+// without the file's name, for errors that a schema cannot express.
+
+// {"rotation_xyzw": [x, y, z, w], "translation": [x, y, z] in metres}. Reading throws InputError
+// unless the quaternion has unit norm.
+void to_json(nlohmann::json& json, const Rigid3d& rigid);
+void from_json(const nlohmann::json& json, Rigid3d& rigid);
+
+// {"normal": [x, y, z], "offset": metres}. Reading throws InputError unless the normal has unit
+// length.
+void to_json(nlohmann::json& json, const Plane& plane);
+void from_json(const nlohmann::json& json, Plane& plane);
+
+// [x_min, y_min, x_max, y_max] in pixels.
+void to_json(nlohmann::json& json, const Box& box);
+void from_json(const nlohmann::json& json, Box& box);
+
+// {"width", "height", "fx", "fy", "cx", "cy"} in pixels.
+void to_json(nlohmann::json& json, const Camera& camera);
+void from_json(const nlohmann::json& json, Camera& camera);
+
+// Names of the edges of a box, in the order of Box::EdgeLines.
+inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
+
+nlohmann::json VectorToJson(const Eigen::Vector3d& vector);
+
+// Matrix as rows of three numbers.
+nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);
+Eigen::Matrix3d MatrixFromJson(const nlohmann::json& json);
+
+// {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2};
+// `frame` is "world" or "camera". Schema version 1.0 had no shape exponent: all were ellipsoids.
+nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);
+Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
+
+// Covariance as nine rows of nine numbers.
+nlohmann::json CovarianceToJson(const Covariance9& covariance);
+
+// The field "objects" of the artefacts "landmarks" and "map": the estimates of each object from all
+// its observations.
+nlohmann::json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates,
+                                     const Sequence& sequence);
+// One row of "objects", read without the sequence: object_index stays 0.
+ObjectEstimate ObjectEstimateFromJson(const nlohmann::json& row);
+// Throws InputError for an object that the sequence does not have.
+std::vector<ObjectEstimate> ObjectEstimatesFromJson(const nlohmann::json& json,
+                                                    const Sequence& sequence);
+
+}  // namespace soslam
