@@ -8,7 +8,7 @@
 #include "dataset/dataset_checks.h"
 #include "dataset/pose_readings.h"
 #include "dataset/tracked_rays.h"
-#include "evaluation/trajectory_gap.h"
+#include "evaluation/trajectory_error.h"
 #include "geometry/angles.h"
 
 namespace soslam {

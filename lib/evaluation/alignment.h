@@ -5,15 +5,34 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/options.h"
-#include "evaluation/trajectory_gap.h"
+#include "base/options.h"
+#include "evaluation/trajectory_error.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
+#include "model/estimates.h"
 #include "model/finding.h"
 #include "model/sequence.h"
 
 namespace soslam {
+
+enum class AlignmentChoice { kAuto, kNone, kRigid, kSimilarity };
+inline constexpr const char* kAlignmentChoiceNames[] = {"auto", "none", "rigid", "similarity"};
+
+// The paper's protocol has no settings: numbers from different runs stay comparable.
+struct EvaluateOptions {
+  AlignmentChoice alignment = AlignmentChoice::kAuto;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Comparison of maps");
+    visit.Choice(
+        "alignment", &alignment, kAlignmentChoiceNames,
+        "how a map is moved, for map_quality only, so that its camera centres fit the true "
+        "ones best: as a whole (rigid), also scaled (similarity), not at all (none); auto: "
+        "none where odometry and truth are in one world, rigid where the odometry has a "
+        "world of its own, similarity where it has a scale of its own");
+  }
+};
 
 enum class AlignmentKind { kNone, kRigid, kSimilarity };
 inline constexpr const char* kAlignmentKindNames[] = {"none", "rigid", "similarity"};
@@ -61,5 +80,24 @@ struct Alignments {
 };
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
                          AlignmentChoice choice);
+
+// A landmark of a map, aligned with the true world.
+struct AlignedLandmark {
+  int object_index = 0;  // into Sequence::objects
+  int segment = 0;
+  Landmark landmark_in_world;
+};
+
+// A map, aligned with the true world.
+struct AlignedMap {
+  std::vector<AlignedLandmark> landmarks;               // by object
+  std::vector<Rigid3d> world_from_camera;               // one per Sequence::frames
+  std::vector<std::optional<Plane>> plane_of_landmark;  // support plane of each landmark
+};
+
+// `world_from_camera` and `planes_in_world` as in MapEstimate.
+AlignedMap ApplyAlignments(const Sequence& sequence, const std::vector<ObjectEstimate>& estimates,
+                           const std::vector<Rigid3d>& world_from_camera,
+                           const std::vector<Plane>& planes_in_world, const Alignments& alignments);
 
 }  // namespace soslam

@@ -1,19 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/landmark_errors.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "evaluation/iou.h"
-#include "evaluation/rotation_error.h"
 #include "geometry/angles.h"
+#include "geometry/landmark.h"
+#include "geometry/rigid3.h"
 
 namespace soslam {
+
+NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
+                          const Eigen::Quaterniond& frame_from_truth) {
+  const Eigen::Matrix3d truth_from_estimate =
+      (frame_from_truth.conjugate() * frame_from_estimate).toRotationMatrix();
+  NearestAxes nearest{Eigen::Matrix3d::Identity(), std::numbers::pi};
+  std::array<int, 3> axes = {0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d cube = Eigen::Matrix3d::Zero();
+      for (int i = 0; i < 3; ++i) {
+        cube(i, axes[static_cast<size_t>(i)]) = (signs >> i & 1) != 0 ? -1.0 : 1.0;
+      }
+      if (cube.determinant() < 0.0) continue;
+      const Eigen::Quaterniond difference(Eigen::Matrix3d(truth_from_estimate * cube));
+      const double angle = LogRotation(difference.normalized()).norm();
+      if (angle < nearest.angle) nearest = {cube, angle};
+    }
+  } while (std::next_permutation(axes.begin(), axes.end()));
+  return nearest;
+}
+
+double RotationError(const Eigen::Quaterniond& frame_from_estimate,
+                     const Eigen::Quaterniond& frame_from_truth) {
+  return NearestAxesOf(frame_from_estimate, frame_from_truth).angle;
+}
+
+double YawError(const Eigen::Quaterniond& frame_from_estimate,
+                const Eigen::Quaterniond& frame_from_truth) {
+  const Eigen::Vector3d front =
+      frame_from_truth.conjugate() * (frame_from_estimate * Eigen::Vector3d::UnitX());
+  if (front.head<2>().norm() < 1e-9) return std::numbers::pi / 2.0;
+  return std::abs(YawDifferenceModuloPi(std::atan2(front.y(), front.x()), 0.0));
+}
+
 namespace {
 
-// The landmark, rotated about its z axis until its x axis points as the estimate's does.
-Landmark WithYawOf(const Landmark& estimate, const Landmark& landmark) {
+// The landmark, rotated about its z axis until its x axis points as that of `other` does.
+Landmark WithYawOf(const Landmark& other, const Landmark& landmark) {
   const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
-                                (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());
+                                (other.frame_from_object.rotation * Eigen::Vector3d::UnitX());
   return RotatedAboutZ(landmark, std::atan2(front.y(), front.x()));
 }
 
@@ -33,6 +72,127 @@ LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& tru
   errors.rotation_deg = kDegPerRad * RotationError(estimated, exact);
   errors.yaw_deg = kDegPerRad * YawError(estimated, exact);
   return errors;
+}
+
+namespace {
+
+// Minimal gain in IoU by the correction of a part.
+constexpr double kLeastGain = 1e-6;
+
+Eigen::Vector3d Up(const Landmark& landmark) {
+  return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+}
+
+// Contact point: the centre of the base.
+Eigen::Vector3d Foot(const Landmark& landmark) {
+  return landmark.Centre() - landmark.half_axes.z() * Up(landmark);
+}
+
+Landmark WithFootAt(Landmark landmark, const Eigen::Vector3d& foot) {
+  landmark.frame_from_object.translation = foot + landmark.half_axes.z() * Up(landmark);
+  return landmark;
+}
+
+Landmark WithSizeOf(const Landmark& truth, const Landmark& estimate) {
+  Landmark corrected = estimate;
+  corrected.half_axes = truth.half_axes;
+  return WithFootAt(corrected, Foot(estimate));
+}
+
+Landmark WithPlaceOf(const Landmark& truth, const Landmark& estimate) {
+  const Eigen::Vector3d up = Up(truth);
+  const Eigen::Vector3d shift = Foot(truth) - Foot(estimate);
+  return WithFootAt(estimate, Foot(estimate) + shift - up.dot(shift) * up);
+}
+
+Landmark Upright(const Landmark& truth, const Landmark& estimate) {
+  Landmark corrected = estimate;
+  corrected.frame_from_object.rotation =
+      (Eigen::Quaterniond::FromTwoVectors(Up(estimate), Up(truth)) *
+       estimate.frame_from_object.rotation)
+          .normalized();
+  return WithFootAt(corrected, Foot(estimate));
+}
+
+Landmark StraightOntoPlane(const Landmark& truth, const Landmark& estimate) {
+  const double height = SupportPlaneOf(truth).SignedDistance(Foot(estimate));
+  return WithFootAt(Upright(truth, estimate), Foot(estimate) - height * Up(truth));
+}
+
+// The estimate, moved along the line of sight onto the true plane; none if that does not meet the
+// plane.
+std::optional<Landmark> AlongSightOntoPlane(const Landmark& truth, const Landmark& estimate,
+                                            const Eigen::Vector3d& camera_centre) {
+  const Plane plane = SupportPlaneOf(truth);
+  const double camera_height = plane.SignedDistance(camera_centre);
+  const double factor = camera_height / (camera_height - plane.SignedDistance(Foot(estimate)));
+  if (!std::isfinite(factor) || factor <= 0.0) return std::nullopt;
+  Landmark corrected = Upright(truth, estimate);
+  corrected.half_axes *= factor;
+  return WithFootAt(corrected, camera_centre + factor * (Foot(estimate) - camera_centre));
+}
+
+}  // namespace
+
+Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
+  const Eigen::Quaterniond& rotation = estimate.frame_from_object.rotation;
+  const Eigen::Matrix3d old_from_new =
+      NearestAxesOf(rotation, truth.frame_from_object.rotation).old_from_new;
+  Landmark named = estimate;
+  named.frame_from_object.rotation = (rotation * Eigen::Quaterniond(old_from_new)).normalized();
+  named.half_axes = old_from_new.cwiseAbs().transpose() * estimate.half_axes;
+  return named;
+}
+
+BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
+                         const Landmark& truth_in_frame) {
+  const Landmark named = NamedLike(estimate, truth_in_frame);
+  const LandmarkErrors own = CompareLandmarks(estimate, truth, truth_in_frame);
+  BodyErrors errors;
+  errors.iou = own.iou;
+  errors.centre_m = own.centre_m;
+  errors.centre_relative = own.centre_m / (2.0 * std::cbrt(truth_in_frame.half_axes.prod()));
+  errors.log_size = named.half_axes.cwiseQuotient(truth_in_frame.half_axes).array().log();
+  errors.log_scale = errors.log_size.mean();
+  errors.up_deg = AngleBetweenDeg(Up(estimate), Up(truth_in_frame));
+  if (truth.rotationally_symmetric) return errors;
+  errors.yaw_deg = kDegPerRad * YawError(named.frame_from_object.rotation,
+                                         truth_in_frame.frame_from_object.rotation);
+  const Eigen::Vector3d front = named.frame_from_object.rotation.conjugate() *
+                                (estimate.frame_from_object.rotation * Eigen::Vector3d::UnitX());
+  errors.is_quarter_turned = std::abs(front.y()) > 0.5;
+  return errors;
+}
+
+PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {
+  const Eigen::Vector3d up = Up(truth);
+  return {-plane.SignedDistance(Foot(truth)),
+          kDegPerRad * std::atan2(plane.normal.cross(up).norm(), plane.normal.dot(up))};
+}
+
+bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landmark& truth) {
+  return std::abs(plane.SignedDistance(Foot(estimate))) >
+         std::abs(plane.SignedDistance(Foot(truth)));
+}
+
+std::optional<WrongPart> FindDominantError(const Landmark& estimate, const GroundTruth& truth,
+                                           const Landmark& truth_in_frame,
+                                           const Eigen::Vector3d& camera_centre) {
+  const Landmark named = NamedLike(estimate, truth_in_frame);
+  const auto iou = [&](const Landmark& corrected) {
+    return CompareLandmarks(corrected, truth, truth_in_frame).iou;
+  };
+  double on_plane = iou(StraightOntoPlane(truth_in_frame, named));
+  if (const auto along = AlongSightOntoPlane(truth_in_frame, named, camera_centre)) {
+    on_plane = std::max(on_plane, iou(*along));
+  }
+  const std::array candidates = {
+      WrongPart{BodyPart::kPlane, on_plane},
+      WrongPart{BodyPart::kSize, iou(WithSizeOf(truth_in_frame, named))},
+      WrongPart{BodyPart::kYaw, iou(WithYawOf(truth_in_frame, named))},
+      WrongPart{BodyPart::kPlace, iou(WithPlaceOf(truth_in_frame, named))}};
+  const WrongPart& best = *std::ranges::max_element(candidates, {}, &WrongPart::iou);
+  return best.iou > iou(named) + kLeastGain ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace soslam

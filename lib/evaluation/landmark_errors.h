@@ -1,12 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 
 #include "geometry/landmark.h"
+#include "geometry/plane.h"
 #include "model/truth.h"
 
 namespace soslam {
+
+// Renaming of a box's axes: of the 24 rotations of the cube, the one from the new names to the old
+// ones that leaves the smallest angle (rad) to the axes of the truth.
+struct NearestAxes {
+  Eigen::Matrix3d old_from_new;
+  double angle = 0.0;
+};
+NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
+                          const Eigen::Quaterniond& frame_from_truth);
+
+// The paper's Rot, rad: the smallest rotation that brings the estimate's three axes onto any axes
+// of the truth, over the 24 rotations of the cube. It does not detect quarter turns.
+double RotationError(const Eigen::Quaterniond& frame_from_estimate,
+                     const Eigen::Quaterniond& frame_from_truth);
+
+// The angle (rad, in [0, pi/2]) between the x axes about the truth's z axis, modulo half a turn:
+// the mirror plane has no front or back. pi/2 when the estimate's x axis is the truth's z axis.
+double YawError(const Eigen::Quaterniond& frame_from_estimate,
+                const Eigen::Quaterniond& frame_from_truth);
 
 // Errors of one landmark. Rotation and yaw are absent for rotationally symmetric objects, whose yaw
 // has no meaning; for IoU the truth is then rotated to the estimate's yaw.
@@ -19,5 +41,57 @@ struct LandmarkErrors {
 
 LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
                                 const Landmark& truth_in_frame);
+
+// Differences between a landmark and the true one as solids: the estimate's axes are renamed to be
+// nearest the true ones, so that a body with other names for its axes is the same. Logarithms are
+// of estimate over truth.
+struct BodyErrors {
+  double iou = 0.0;
+  double centre_m = 0.0;
+  double centre_relative = 0.0;  // centre_m over the side of a cube with the true volume
+  Eigen::Vector3d log_size = Eigen::Vector3d::Zero();  // along the true x, y, z
+  double log_scale = 0.0;                              // of the cube root of the volume
+  double up_deg = 0.0;            // between the z axes as they are named, 180 for upside down
+  std::optional<double> yaw_deg;  // between the x axes about the true z; none of a body of rotation
+  bool is_quarter_turned = false;  // its own x axis is named y
+};
+
+BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
+                         const Landmark& truth_in_frame);
+
+// The estimate with its axes renamed as above.
+Landmark NamedLike(const Landmark& estimate, const Landmark& truth);
+
+// Errors of a landmark's support plane against that of the true one.
+struct PlaneErrors {
+  double offset_m = 0.0;  // height above the true contact point, along the plane's own normal
+  double tilt_deg = 0.0;
+};
+PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
+
+// Whether the estimate is farther from the plane that it should stand on than the truth is: then
+// its height is wrong, rather than the plane.
+bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landmark& truth);
+
+// The parts that make up a body on its plane.
+enum class BodyPart {
+  kPlane,  // the up direction and the height of the contact point
+  kSize,
+  kYaw,
+  kPlace,  // the contact point's position on the plane
+};
+inline constexpr const char* kBodyPartNames[] = {"plane", "size", "yaw", "place"};
+
+// The part with the largest error: its correction alone raises IoU most.
+struct WrongPart {
+  BodyPart part = BodyPart::kPlane;
+  double iou = 0.0;  // with the part corrected
+};
+// `camera_centre`: approximate viewpoint. An object whose plane is corrected moves straight onto
+// it, or along the line of sight with its size scaled, as an object would whose boxes had been
+// placed on that plane: whichever gives the higher IoU. None if no single correction helps.
+std::optional<WrongPart> FindDominantError(const Landmark& estimate, const GroundTruth& truth,
+                                           const Landmark& truth_in_frame,
+                                           const Eigen::Vector3d& camera_centre);
 
 }  // namespace soslam

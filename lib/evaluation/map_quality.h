@@ -6,9 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/aligned_map.h"
-#include "evaluation/body_errors.h"
-#include "evaluation/map_matching.h"
+#include "evaluation/alignment.h"
+#include "evaluation/landmark_errors.h"
 #include "evaluation/map_reasons.h"
 #include "model/estimates.h"
 #include "model/sequence.h"

@@ -8,6 +8,33 @@
 
 namespace soslam {
 
+// An estimated and a true pose of one frame, world_from_camera.
+struct PosePair {
+  Rigid3d estimated;
+  Rigid3d truth;
+};
+
+// Difference of two trajectories, medians over frames.
+struct TrajectoryGap {
+  double rotation_deg = 0.0;
+  double translation_m = 0.0;
+};
+// `pairs` must not be empty.
+TrajectoryGap GapOf(const std::vector<PosePair>& pairs);
+
+// Extent of a camera's path (m): the diagonal of the box around it.
+double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
+
+// Whether both cameras move about as far, by the medians of their distances from where they are
+// mostly.
+bool HaveSameScale(const std::vector<PosePair>& pairs);
+
+// True if the gap is no more than the usual drift of odometry over this extent.
+bool IsDrift(const TrajectoryGap& gap, double extent_m);
+
+// True if both trajectories are in the same world and unit, apart from drift.
+bool AreInOneWorld(const std::vector<PosePair>& pairs);
+
 // Absolute trajectory error, m: the root mean square distance between estimated and true camera
 // centres after the rigid alignment that makes it smallest (Umeyama, no scale). Frames without
 // truth are left out. None with fewer than three true poses.

@@ -11,7 +11,7 @@
 #include "association/options.h"
 #include "base/options.h"
 #include "dataset/import_options.h"
-#include "evaluation/options.h"
+#include "evaluation/alignment.h"
 #include "image/edge_maps.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"

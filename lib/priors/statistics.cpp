@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include "evaluation/statistics.h"
 
 namespace soslam {
 namespace {
@@ -26,9 +29,7 @@ std::vector<double> Standardised(const std::vector<double>& values, double sigma
 
 double Median(std::vector<double> values) {
   if (values.empty()) throw std::logic_error("median of no values");
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+  return *MedianOf(std::move(values));
 }
 
 double RobustSigma(const std::vector<double>& values) {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "evaluation/map_matching.h"
+#include "evaluation/map_reasons.h"
 
 namespace soslam {
 namespace {

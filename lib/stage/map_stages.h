@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/stage_files.h"
-#include "evaluation/options.h"
+#include "evaluation/alignment.h"
 #include "mapping/options.h"
 
 namespace soslam {

@@ -13,7 +13,7 @@
 #include "base/options.h"
 #include "cli/settings_file.h"
 #include "dataset/import_options.h"
-#include "evaluation/options.h"
+#include "evaluation/alignment.h"
 #include "image/edge_maps.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/body_errors.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "evaluation/landmark_errors.h"
 #include "geometry/angles.h"
 #include "support/random.h"
 

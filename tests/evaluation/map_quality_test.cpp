@@ -10,7 +10,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "evaluation/map_matching.h"
+#include "evaluation/map_reasons.h"
 #include "geometry/angles.h"
 #include "support/random.h"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/rotation_error.h"
-
 #include <gtest/gtest.h>
 
+#include "evaluation/landmark_errors.h"
 #include "geometry/rigid3.h"
 #include "support/random.h"
 
