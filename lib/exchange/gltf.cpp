@@ -10,7 +10,7 @@
 
 #include "artefact/model_json.h"
 #include "base/base64.h"
-#include "exchange/body_mesh.h"
+#include "exchange/meshes.h"
 #include "geometry/angles.h"
 
 namespace soslam {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "exchange/label_colours.h"
+#include "exchange/meshes.h"
 #include "exchange/world.h"
 
 namespace soslam {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,5 +65,13 @@ Eigen::Vector3d UpOf(const World& world);
 
 // The yaw (rad) of the object's landmark about its support normal. The object must have a landmark.
 double YawOf(const WorldObject& object);
+
+// `quality` is map_quality of the metrics.json that belongs to the map.
+
+// Gives each landmark the verdict of its evaluation.
+void AddVerdicts(const nlohmann::json& quality, std::vector<World>* worlds);
+
+// Moves each world to the true one by the alignment of its segment, including covariances.
+void AlignWorlds(const nlohmann::json& quality, std::vector<World>* worlds);
 
 }  // namespace soslam

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sequences: rows are objects.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
 
+#include "artefact/json_file.h"
+#include "artefact/model_json.h"
+#include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
-#include "inspection/kinds.h"
+#include "inspection/inspection.h"
+
+// Sequences: rows are objects.
 
 namespace soslam {
 namespace {
@@ -104,6 +109,170 @@ Inspection InspectSequence(const std::filesystem::path& file) {
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     inspection.table.rows.push_back(ObjectRow(sequence, sequence.objects[i], by_object[i]));
   }
+  return inspection;
+}
+
+// Associations: rows are the objects that were found.
+
+namespace {
+
+using nlohmann::json;
+
+// Number of rows for each value of a field.
+std::string FrequenciesInWords(const json& rows, const char* field) {
+  std::map<std::string, int> counts;
+  for (const json& row : rows) ++counts[row.at(field)];
+  return fmt::format("{}: {}", rows.size(), CountsInWords(counts));
+}
+
+std::string AgreementInWords(const json& agreement) {
+  const auto share = [&](const char* name) {
+    const json& value = agreement.at(name);
+    return value.is_null() ? "-" : fmt::format("{:.3f}", value.get<double>());
+  };
+  return fmt::format(
+      "{} objects found, {} given, {} of them the same; precision {}, recall {}, F1 {}",
+      agreement.at("objects").get<int>(), agreement.at("given_objects").get<int>(),
+      agreement.at("matched").get<int>(), share("precision"), share("recall"), share("f1"));
+}
+
+}  // namespace
+
+Inspection InspectAssociations(const std::filesystem::path& file) {
+  return ReadArtefactAs(file, "associations", [](const json& document) {
+    Inspection inspection;
+    inspection.facts = {{"agreement", AgreementInWords(document.at("agreement"))},
+                        {"detections", FrequenciesInWords(document.at("detections"), "decision")},
+                        {"tracks", FrequenciesInWords(document.at("tracks"), "fate")}};
+    inspection.table.columns = {{"object", ""},     {"label", ""},        {"track", ""},
+                                {"detections", ""}, {"given_object", ""}, {"label_votes", ""}};
+    for (const json& object : document.at("objects")) {
+      inspection.table.rows.push_back(
+          {object.at("object"), object.at("label"), object.at("track"), object.at("detections"),
+           object.at("given_object"),
+           CountsInWords(object.at("label_votes").get<std::map<std::string, int>>())});
+    }
+    return inspection;
+  });
+}
+
+// Estimated planes: rows are planes.
+
+namespace {
+
+// "1 sofa, 3 armchair (lowest_cost)"; without a reason if the plane follows from an object's own
+// views.
+std::string ObjectsOn(const json& plane, const json& objects) {
+  std::vector<std::string> words;
+  for (const json& object : objects) {
+    if (object.at("plane") != plane.at("plane")) continue;
+    const std::string reason = object.at("reason");
+    words.push_back(fmt::format("{} {}", object.at("object").get<int>(),
+                                object.at("label").get<std::string>()));
+    if (reason != "own_height") words.back() += " (" + reason + ")";
+  }
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::vector<Value> PlaneRow(const json& fields, const json& objects) {
+  const Plane plane = fields.at("plane_in_world").get<Plane>();
+  const json error = fields.at("error").is_null() ? json::object() : fields.at("error");
+  return {fields.at("plane"),
+          plane.normal.x(),
+          plane.normal.y(),
+          plane.normal.z(),
+          plane.offset,
+          fields.at("tilt_sigma_deg"),
+          fields.at("height_sigma_m"),
+          error.value("angle_deg", json()),
+          error.value("offset_m", json()),
+          ObjectsOn(fields, objects)};
+}
+
+}  // namespace
+
+Inspection InspectPlanes(const std::filesystem::path& file) {
+  return ReadArtefactAs(file, "planes", [](const json& document) {
+    const json& objects = document.at("objects");
+    std::map<std::string, int> reasons;
+    for (const json& object : objects) ++reasons[object.at("reason")];
+    Inspection inspection;
+    inspection.facts = {
+        {"dataset", document.at("dataset")},
+        {"found",
+         fmt::format("planes: {}, objects: {}; {} after {} rounds", document.at("planes").size(),
+                     objects.size(), document.at("settled").get<bool>() ? "settled" : "NOT settled",
+                     document.at("rounds").get<int>())},
+        {"decided by", CountsInWords(reasons)}};
+    if (!document.at("cost").is_null()) {
+      inspection.facts.push_back(
+          {"cost", fmt::format("{:.6g}", document.at("cost").get<double>())});
+    }
+    inspection.table.columns = {{"plane", ""},
+                                {"normal_x", "", 4},
+                                {"normal_y", "", 4},
+                                {"normal_z", "", 4},
+                                {"offset", "m", 3},
+                                {"sigma_tilt", "deg", 2},
+                                {"sigma_height", "m", 3},
+                                {"tilt_error", "deg", 2},
+                                {"height_error", "m", 3},
+                                {"objects", ""}};
+    for (const json& plane : document.at("planes")) {
+      inspection.table.rows.push_back(PlaneRow(plane, objects));
+    }
+    return inspection;
+  });
+}
+
+// Semantic tables: rows are labels.
+
+namespace {
+
+std::vector<Value> RowOf(const SemanticRow& row) {
+  const ShapePrior& prior = row.prior;
+  const bool has_height = prior.height_m.has_value();
+  return {row.label,
+          prior.ratio.x(),
+          prior.ratio.y(),
+          prior.log_sigma.x(),
+          prior.log_sigma.y(),
+          prior.log_correlation,
+          has_height ? Value(prior.height_m->median) : Value(),
+          has_height ? Value(prior.height_m->log_sigma) : Value(),
+          prior.shape_exponent,
+          kMountNames[static_cast<size_t>(prior.mount)],
+          row.samples,
+          row.aliases.empty() ? Value() : Value(fmt::format("{}", fmt::join(row.aliases, ", "))),
+          row.source};
+}
+
+}  // namespace
+
+Inspection InspectSemanticTable(const std::filesystem::path& file) {
+  const SemanticRows rows = ReadSemanticRows(file);
+  const auto learned =
+      std::ranges::count_if(rows.rows, [](const SemanticRow& row) { return row.samples > 0; });
+  Inspection inspection;
+  inspection.facts = {
+      {"what", rows.description},
+      {"labels", fmt::format("{}, {} of them from samples; {} for others", rows.rows.size(),
+                             learned, rows.default_row ? "a default" : "nothing")}};
+  inspection.table.columns = {{"label", ""},
+                              {"a_by_c", ""},
+                              {"b_by_c", ""},
+                              {"a_by_c_log_sigma", ""},
+                              {"b_by_c_log_sigma", ""},
+                              {"log_correlation", ""},
+                              {"height", "m"},
+                              {"height_log_sigma", ""},
+                              {"p", ""},
+                              {"mount", ""},
+                              {"samples", ""},
+                              {"aliases", ""},
+                              {"source", ""}};
+  if (rows.default_row) inspection.table.rows.push_back(RowOf(*rows.default_row));
+  for (const SemanticRow& row : rows.rows) inspection.table.rows.push_back(RowOf(row));
   return inspection;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,5 +35,21 @@ std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 
 // "3 near_border, 2 duplicate", the most frequent first; "none" when there are none.
 std::string CountsInWords(const std::map<std::string, int>& counts);
+
+// Contents of an artefact of each kind; Inspect adds title and provenance. Errors as there.
+Inspection InspectAssociations(const std::filesystem::path& file);
+Inspection InspectEdges(const std::filesystem::path& file);
+Inspection InspectLandmarks(const std::filesystem::path& file,
+                            const std::optional<Sequence>& sequence);
+Inspection InspectMap(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
+Inspection InspectMetrics(const std::filesystem::path& file);
+Inspection InspectPlanes(const std::filesystem::path& file);
+Inspection InspectSemanticTable(const std::filesystem::path& file);
+Inspection InspectSequence(const std::filesystem::path& file);
+Inspection InspectSymmetry(const std::filesystem::path& file,
+                           const std::optional<Sequence>& sequence);
+
+// The label of an object by its id; null without a sequence that has it.
+Value LabelOf(const std::optional<Sequence>& sequence, int object_id);
 
 }  // namespace soslam

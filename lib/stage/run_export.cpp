@@ -14,11 +14,10 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "exchange/coco_boxes.h"
-#include "exchange/evaluated_world.h"
 #include "exchange/gltf.h"
-#include "exchange/landmarks_csv.h"
-#include "exchange/ply.h"
-#include "exchange/tum_trajectory.h"
+#include "exchange/meshes.h"
+#include "exchange/text_exports.h"
+#include "exchange/world.h"
 
 namespace soslam {
 namespace {

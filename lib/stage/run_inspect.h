@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "inspection/pictures.h"
+#include "inspection/canvas.h"
 
 namespace soslam {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/body_mesh.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "exchange/meshes.h"
 #include "geometry/support_function.h"
 #include "geometry/surface.h"
 #include "support/mesh_checks.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/evaluated_world.h"
-
 #include <gtest/gtest.h>
 
 #include "artefact/model_json.h"
+#include "exchange/world.h"
 #include "support/exported_world.h"
 
 namespace soslam {

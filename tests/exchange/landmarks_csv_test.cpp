@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/landmarks_csv.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
+#include "exchange/text_exports.h"
 #include "geometry/angles.h"
 #include "support/exported_world.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/ply.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <sstream>
 
+#include "exchange/meshes.h"
 #include "support/exported_world.h"
 #include "support/mesh_checks.h"
 

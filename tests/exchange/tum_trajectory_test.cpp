@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/tum_trajectory.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
 #include "dataset/trajectories.h"
+#include "exchange/text_exports.h"
 #include "support/exported_world.h"
 #include "support/temporary_folder.h"
 

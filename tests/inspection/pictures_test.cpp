@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/pictures.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>

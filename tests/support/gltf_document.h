@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "exchange/body_mesh.h"
+#include "exchange/meshes.h"
 
 namespace soslam {
 

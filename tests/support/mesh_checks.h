@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "exchange/body_mesh.h"
+#include "exchange/meshes.h"
 
 namespace soslam {
 

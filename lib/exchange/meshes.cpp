@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/body_mesh.h"
+#include "exchange/meshes.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -83,6 +86,67 @@ TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, double shape_exponent) {
     }
   }
   return mesh;
+}
+
+namespace {
+
+constexpr double kSaturation = 0.65;
+constexpr double kValue = 0.9;
+
+// `hue` in turns: 0 red, 1/3 green, 2/3 blue.
+Colour ColourOfHue(double hue) {
+  const Eigen::Array3d offset(5.0, 3.0, 1.0);
+  Colour colour;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double sector = std::fmod(6.0 * hue + offset[channel], 6.0);
+    const double missing = std::clamp(std::min(sector, 4.0 - sector), 0.0, 1.0);
+    colour[channel] = kValue * (1.0 - kSaturation * missing);
+  }
+  return colour;
+}
+
+}  // namespace
+
+LabelColours ColoursOfLabels(const std::vector<World>& worlds) {
+  LabelColours colours;
+  for (const World& world : worlds) {
+    for (const WorldObject& object : world.objects) colours[object.label];
+  }
+  // Steps of the golden ratio keep their distance from the hues of the last few steps.
+  double hue = 0.0;
+  for (auto& [label, colour] : colours) {
+    colour = ColourOfHue(hue);
+    hue = std::fmod(hue + 1.0 / std::numbers::phi, 1.0);
+  }
+  return colours;
+}
+
+std::string PlyText(const World& world, const LabelColours& colours) {
+  std::string vertices;
+  std::string faces;
+  size_t num_vertices = 0;
+  size_t num_faces = 0;
+  for (const WorldObject& object : world.objects) {
+    if (!object.estimate.landmark_in_world) continue;
+    const Landmark& landmark = *object.estimate.landmark_in_world;
+    const TriangleMesh mesh = BodyMesh(landmark.half_axes, landmark.shape_exponent);
+    const Eigen::Array3i rgb = (colours.at(object.label).array() * 255.0).round().cast<int>();
+    for (const Eigen::Vector3d& vertex : mesh.vertices) {
+      vertices += fmt::format("{} {}\n", fmt::join(landmark.frame_from_object * vertex, " "),
+                              fmt::join(rgb, " "));
+    }
+    for (const auto& [a, b, c] : mesh.triangles) {
+      faces += fmt::format("3 {} {} {}\n", num_vertices + a, num_vertices + b, num_vertices + c);
+    }
+    num_vertices += mesh.vertices.size();
+    num_faces += mesh.triangles.size();
+  }
+  return fmt::format(
+      "ply\nformat ascii 1.0\ncomment landmarks in the world frame, metres\n"
+      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n{}{}",
+      num_vertices, num_faces, vertices, faces);
 }
 
 }  // namespace soslam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/landmarks_csv.h"
+#include "exchange/text_exports.h"
 
 #include <fmt/format.h>
 
@@ -113,6 +113,18 @@ std::string LandmarksCsvText(const std::vector<World>& worlds) {
     for (const WorldObject& object : world.objects) table.rows.push_back(RowOf(object));
   }
   return ToCsv(table);
+}
+
+std::string TumTrajectoryText(const World& world) {
+  std::string text = "# world_from_camera: timestamp tx ty tz qx qy qz qw\n";
+  std::vector<WorldFrame> frames = world.frames;
+  std::ranges::stable_sort(frames, {}, &WorldFrame::timestamp);
+  for (const WorldFrame& frame : frames) {
+    text += fmt::format("{} {} {}\n", frame.timestamp,
+                        fmt::join(frame.world_from_camera.translation, " "),
+                        fmt::join(frame.world_from_camera.rotation.coeffs(), " "));
+  }
+  return text;
 }
 
 }  // namespace soslam

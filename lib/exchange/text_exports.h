@@ -14,4 +14,8 @@ namespace soslam {
 // values of a missing landmark, and the verdict (`fate` and following) without an evaluation.
 std::string LandmarksCsvText(const std::vector<World>& worlds);
 
+// The poses in the text format of the TUM RGB-D benchmark: a line "timestamp tx ty tz qx qy qz qw"
+// per frame, world_from_camera, below a comment that states this. Numbers round-trip exactly.
+std::string TumTrajectoryText(const World& world);
+
 }  // namespace soslam
