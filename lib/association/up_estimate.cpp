@@ -10,8 +10,7 @@
 #include "geometry/angles.h"
 #include "geometry/rigid3.h"
 #include "initialisation/multi_view.h"
-#include "planes/choose_holding.h"
-#include "planes/search_up.h"
+#include "planes/camera_holding.h"
 #include "planes/up_prior.h"
 
 namespace soslam {

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planes/camera_holding.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 
@@ -24,6 +30,96 @@ HeldAxes AxesOf(CameraHolding holding) {
       return {y, -z};
   }
   throw std::logic_error("holding without axes");
+}
+
+namespace {
+
+// Negative log prior probabilities: a holding other than level, wrongly classified vertical edges,
+// all objects seen from below, an object with wrong boxes.
+const double kNotLevel = std::log(100.0);
+const double kWrongVerticals = std::log(100.0);
+const double kFromBelow = std::log(1000.0);
+const double kWrongObject = std::log(1e4);
+
+constexpr double kSameUp = 5.0 * kRadPerDeg;
+
+using Costs = std::vector<double>;
+
+// Per object, the lowest cost over all evidence; infinite for an object that has no body in any.
+Costs LowestCosts(const std::vector<HoldingEvidence>& evidence) {
+  Costs lowest(evidence.front().object_costs.size(), std::numeric_limits<double>::infinity());
+  for (const HoldingEvidence& one : evidence) {
+    for (size_t i = 0; i < lowest.size(); ++i) {
+      if (one.object_costs[i]) lowest[i] = std::min(lowest[i], *one.object_costs[i]);
+    }
+  }
+  return lowest;
+}
+
+// Factor, at least 1, by which the boxes cost more than expected from their noise.
+double Misfit(const Costs& lowest, double expected_cost) {
+  double sum = 0.0;
+  for (const double cost : lowest) sum += std::isfinite(cost) ? cost : 0.0;
+  return expected_cost > 0.0 ? std::max(1.0, sum / expected_cost) : 1.0;
+}
+
+double CostOf(const HoldingEvidence& evidence, const Costs& lowest, double misfit) {
+  double cost = evidence.other_cost / misfit + kFromBelow * evidence.share_from_below;
+  if (evidence.holding != CameraHolding::kLevel) cost += kNotLevel;
+  if (evidence.ignores_verticals) cost += kWrongVerticals;
+  for (size_t i = 0; i < lowest.size(); ++i) {
+    if (!std::isfinite(lowest[i])) continue;
+    const auto& own = evidence.object_costs[i];
+    cost += own ? std::min(kWrongObject, (*own - lowest[i]) / misfit) : kWrongObject;
+  }
+  return cost;
+}
+
+size_t BestOf(const std::vector<HoldingEvidence>& evidence, const Costs& costs) {
+  size_t best = 0;
+  for (size_t i = 1; i < costs.size(); ++i) {
+    if (!evidence[i].can_be_chosen) continue;
+    if (!evidence[best].can_be_chosen || costs[i] < costs[best]) best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  return AngleBetween(one, other) < kSameUp;
+}
+
+HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double expected_cost,
+                            double clear) {
+  const Costs lowest = LowestCosts(evidence);
+  const double misfit = Misfit(lowest, expected_cost);
+  HoldingChoice choice;
+  for (const HoldingEvidence& one : evidence) {
+    choice.costs.push_back(CostOf(one, lowest, misfit));
+  }
+  choice.best = BestOf(evidence, choice.costs);
+  const double best_cost = choice.costs[choice.best];
+  // possibly of one that cannot be chosen
+  const double lowest_cost = std::ranges::min(choice.costs);
+  double sum = 0.0;
+  std::vector<double> weights;
+  for (double& cost : choice.costs) {
+    weights.push_back(std::exp(lowest_cost - cost));
+    sum += weights.back();
+    cost -= best_cost;
+  }
+  double variance = 0.0;
+  double others = 0.0;
+  for (size_t i = 0; i < evidence.size(); ++i) {
+    choice.probabilities.push_back(weights[i] / sum);
+    const double angle = AngleBetween(evidence[i].up_in_world, evidence[choice.best].up_in_world);
+    variance += choice.probabilities[i] * angle * angle;
+    if (!IsSameUp(evidence[i].up_in_world, evidence[choice.best].up_in_world))
+      others += choice.probabilities[i];
+  }
+  if (others >= clear) choice.tilt_variance = variance;
+  return choice;
 }
 
 }  // namespace soslam

@@ -11,10 +11,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/angles.h"
-#include "planes/mounts.h"
 #include "planes/plane_heights.h"
-#include "planes/search_up.h"
-#include "planes/standing_bodies.h"
+#include "planes/planes_estimate.h"
+#include "planes/standing_body.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 namespace {

@@ -6,7 +6,6 @@
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
 #include "planes/up_prior.h"
-#include "planes/verticals.h"
 
 namespace soslam {
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "geometry/angles.h"
-#include "planes/choose_holding.h"
+#include "planes/camera_holding.h"
 #include "planes/estimate_planes.h"
 #include "planes/level_trajectory.h"
 

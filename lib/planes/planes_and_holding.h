@@ -8,7 +8,7 @@
 #include "model/sequence.h"
 #include "planes/options.h"
 #include "planes/planes_estimate.h"
-#include "planes/verticals.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 

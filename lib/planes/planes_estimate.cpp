@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planes/planes_estimate.h"
 
+#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,98 @@ std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEs
   return PlaneError{most->first,
                     std::atan2(normal.cross(truth.normal).norm(), normal.dot(truth.normal)),
                     truth.SignedDistance(found.point_in_world)};
+}
+
+namespace {
+
+EstimatedPlane MeanOf(const std::vector<Rigid3d>& world_from_camera, double height_m) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  Eigen::Vector3d below = Eigen::Vector3d::Zero();
+  for (const Rigid3d& pose : world_from_camera) {
+    up -= pose.rotation * Eigen::Vector3d::UnitY();
+    below += pose * Eigen::Vector3d(0.0, height_m, 0.0);
+  }
+  EstimatedPlane plane;
+  plane.point_in_world = below / static_cast<double>(world_from_camera.size());
+  const Eigen::Vector3d normal = up.normalized();
+  plane.plane_in_world = {normal, -normal.dot(plane.point_in_world)};
+  plane.x_axis_in_world = UprightRotation(normal, 0.0) * Eigen::Vector3d::UnitX();
+  return plane;
+}
+
+}  // namespace
+
+Plane GroundInCamera(double height_m) { return {-Eigen::Vector3d::UnitY(), height_m}; }
+
+PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m) {
+  PlanesEstimate estimate;
+  std::vector<Rigid3d> all;
+  for (const Frame& frame : sequence.frames) all.push_back(frame.world_from_camera);
+  estimate.up_of_cameras = MeanOf(all, height_m).plane_in_world.normal;
+  estimate.settled = true;
+  for (const std::vector<int>& detections : DetectionsByObject(sequence)) {
+    std::vector<Rigid3d> poses;
+    for (const int index : detections) {
+      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+      poses.push_back(all[static_cast<size_t>(detection.frame_index)]);
+    }
+    const int plane_index = static_cast<int>(estimate.planes.size());
+    estimate.planes.push_back(MeanOf(poses.empty() ? all : poses, height_m));
+    estimate.objects.push_back(
+        {plane_index,
+         poses.empty() ? SupportReason::kNoViews : SupportReason::kCameraHeight,
+         {},
+         {},
+         {}});
+  }
+  return estimate;
+}
+
+namespace {
+
+// The ceiling made parallel to the floor, through its own point.
+EstimatedPlane Opposite(const EstimatedPlane& floor, EstimatedPlane ceiling) {
+  const Eigen::Vector3d normal = -floor.plane_in_world.normal;
+  ceiling.plane_in_world = {normal, -normal.dot(ceiling.point_in_world)};
+  const Eigen::Vector3d& x = ceiling.x_axis_in_world;
+  ceiling.x_axis_in_world = (x - normal.dot(x) * normal).normalized();
+  return ceiling;
+}
+
+}  // namespace
+
+Mount MountOf(const std::optional<ShapePrior>& prior) { return prior.value_or(ShapePrior()).mount; }
+
+UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& floors) {
+  UpPrior down{attitude.information, -attitude.up_in_world};
+  if (!floors) return down;
+  const EstimatedPlane& floor = floors->planes.front();
+  down.up_in_world = -floor.plane_in_world.normal;
+  // Rotations about x move the normal by -y, those about y by x.
+  Eigen::Matrix<double, 3, 2> by_turns;
+  by_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
+  by_turns.col(1) = -floor.x_axis_in_world;
+  down.information =
+      by_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * by_turns.transpose();
+  return down;
+}
+
+PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
+                            bool parallel, const std::vector<std::optional<ShapePrior>>& priors) {
+  PlanesEstimate joined = floors;
+  for (const EstimatedPlane& ceiling : ceilings.planes) {
+    joined.planes.push_back(parallel ? Opposite(floors.planes.front(), ceiling) : ceiling);
+  }
+  for (size_t i = 0; i < priors.size(); ++i) {
+    if (MountOf(priors[i]) != Mount::kHanging) continue;
+    joined.objects[i] = ceilings.objects[i];
+    joined.objects[i].plane_index += static_cast<int>(floors.planes.size());
+  }
+  joined.cost = *floors.cost + *ceilings.cost;
+  joined.expected_cost += ceilings.expected_cost;
+  joined.rounds = std::max(floors.rounds, ceilings.rounds);
+  joined.settled = floors.settled && ceilings.settled;
+  return joined;
 }
 
 }  // namespace soslam

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "geometry/plane.h"
+#include "initialisation/semantic_table.h"
 #include "model/sequence.h"
 #include "planes/camera_holding.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -86,5 +88,25 @@ struct PlaneError {
 };
 std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEstimate& estimate,
                                            int plane_index);
+
+// Ground planes for cameras that a vehicle holds level at a known height (m): y = height in each
+// camera's frame. The ground of a long trajectory is not one plane, so each object gets its own:
+// the mean of the planes of the cameras that see it (of all cameras when none does).
+PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m);
+
+// The ground plane in the camera's frame.
+Plane GroundInCamera(double height_m);
+
+// Mount of an object with this prior; standing if it has none.
+Mount MountOf(const std::optional<ShapePrior>& prior);
+
+// Attitude for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
+// are any.
+UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& floors);
+
+// Floors and ceilings in one estimate, with the objects of each on their own planes; ceilings are
+// made parallel to the floor if `parallel`.
+PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
+                            bool parallel, const std::vector<std::optional<ShapePrior>>& priors);
 
 }  // namespace soslam

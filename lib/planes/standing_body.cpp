@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "initialisation/upright.h"
+#include "planes/plane_heights.h"
 
 namespace soslam {
 namespace {
@@ -136,6 +138,130 @@ std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation
     lowest = cost;
   }
   return best;
+}
+
+namespace {
+
+constexpr int kMaxIterations = 60;
+constexpr double kSettledCost = 1e-9;  // relative
+constexpr double kMaxDamping = 1e8;
+
+// Quadratic approximation of the cost of all bodies and of the cameras' attitude, in the planes'
+// motions.
+struct Quadratic {
+  double cost = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+
+  explicit Quadratic(size_t planes)
+      : gradient(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(planes) + 2)),
+        information(Eigen::MatrixXd::Zero(gradient.size(), gradient.size())) {}
+
+  void Add(const PlaneEvidence& evidence, int plane) {
+    const std::array<Eigen::Index, 3> at = {0, 1, 2 + plane};
+    cost += evidence.cost;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      gradient(at[i]) += evidence.gradient(i);
+      for (Eigen::Index k = 0; k < 3; ++k) information(at[i], at[k]) += evidence.information(i, k);
+    }
+  }
+};
+
+Quadratic QuadraticOf(const StandingBodies& standing, const Eigen::Vector3d& pivot) {
+  Quadratic quadratic(standing.planes.size());
+  quadratic.Add(EvidenceOf(standing.attitude, standing.planes.front()), 0);
+  for (size_t i = 0; i < standing.bodies.size(); ++i) {
+    const StandingBody& body = standing.bodies[i];
+    const double sigma = HeightSigma(body, standing.height_sigma_fraction);
+    quadratic.Add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
+  }
+  return quadratic;
+}
+
+PlaneMotion MotionOfPlane(const Eigen::VectorXd& step, int plane) {
+  return {step(0), step(1), step(2 + plane)};
+}
+
+// All planes moved with their bodies, which are then fitted again; none when a fit fails.
+std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eigen::Vector3d& pivot,
+                                      const Eigen::VectorXd& step, int threads) {
+  StandingBodies stepped = standing;
+  for (size_t i = 0; i < standing.planes.size(); ++i) {
+    stepped.planes[i] = Moved(standing.planes[i], pivot, MotionOfPlane(step, static_cast<int>(i)));
+  }
+  std::vector<char> lost(standing.bodies.size(), 0);
+  ParallelFor(static_cast<int>(standing.bodies.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    const int plane = standing.plane_of[index];
+    StandingBody body = standing.bodies[index];
+    body.landmark = Moved(standing.planes[static_cast<size_t>(plane)], pivot,
+                          MotionOfPlane(step, plane), body.landmark);
+    body.observation.plane_in_world = stepped.planes[static_cast<size_t>(plane)];
+    const auto settled = FitOnPlane(std::move(body));
+    if (settled) {
+      stepped.bodies[index] = *settled;
+    } else {
+      lost[index] = 1;
+    }
+  });
+  if (std::find(lost.begin(), lost.end(), 1) != lost.end()) return std::nullopt;
+  return stepped;
+}
+
+}  // namespace
+
+PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane) {
+  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+  Eigen::Matrix<double, 3, 2> normal_by_turns;  // t x n
+  normal_by_turns << -level.col(1), level.col(0);
+  const Eigen::Vector3d by_normal = attitude.information * plane.normal;
+  PlaneEvidence evidence;
+  evidence.cost = 0.5 * plane.normal.dot(by_normal);
+  evidence.gradient.head<2>() = normal_by_turns.transpose() * by_normal;
+  evidence.information.topLeftCorner<2, 2>() =
+      normal_by_turns.transpose() * attitude.information * normal_by_turns;
+  return evidence;
+}
+
+double HeightSigma(const StandingBody& body, double height_sigma_fraction) {
+  return height_sigma_fraction * 2.0 * body.landmark.half_axes.z();
+}
+
+Eigen::Vector3d MeanBasePoint(const std::vector<StandingBody>& bodies) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const StandingBody& body : bodies) {
+    sum += body.landmark.Centre() -
+           body.landmark.half_axes.z() * body.observation.plane_in_world.normal;
+  }
+  return sum / static_cast<double>(bodies.size());
+}
+
+std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads) {
+  const Eigen::Vector3d pivot = MeanBasePoint(standing->bodies);
+  const Eigen::VectorXd no_step =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing->planes.size()) + 2);
+  const auto start = Stepped(*standing, pivot, no_step, threads);
+  if (!start) return std::nullopt;
+  *standing = *start;
+  Quadratic quadratic = QuadraticOf(*standing, pivot);
+  double damping = 1e-4;
+  for (int i = 0; i < kMaxIterations && damping < kMaxDamping; ++i) {
+    Eigen::MatrixXd damped = quadratic.information;
+    damped.diagonal() *= 1.0 + damping;
+    const Eigen::VectorXd step = -damped.ldlt().solve(quadratic.gradient);
+    const auto stepped = step.allFinite() ? Stepped(*standing, pivot, step, threads) : std::nullopt;
+    const auto next = stepped ? std::optional(QuadraticOf(*stepped, pivot)) : std::nullopt;
+    if (!next || !(next->cost < quadratic.cost)) {
+      damping = 10.0 * std::max(damping, 1e-6);
+      continue;
+    }
+    const double gain = quadratic.cost - next->cost;
+    *standing = *stepped;
+    quadratic = *next;
+    damping *= 0.1;
+    if (gain < kSettledCost * quadratic.cost) break;
+  }
+  return RefinedPlanes{quadratic.cost, pivot, quadratic.information.inverse()};
 }
 
 }  // namespace soslam

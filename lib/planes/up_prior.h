@@ -2,9 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "geometry/camera.h"
 #include "geometry/rigid3.h"
+#include "image/edge_maps.h"
+#include "initialisation/multi_view.h"
 #include "planes/camera_holding.h"
 
 namespace soslam {
@@ -31,5 +35,43 @@ std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
 UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
                            double pitch_sigma, double correlation_rad,
                            CameraHolding holding = CameraHolding::kLevel);
+
+// Straight edges in one image.
+struct SegmentView {
+  Camera camera;
+  std::vector<LineSegment> segments;
+  Rigid3d world_from_camera;
+};
+
+// Information on up from one camera's segments, linearised at `up_in_world`, as
+// UpPrior::information; see WithVerticals. The camera has weight 1.
+Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
+                                       const Eigen::Vector3d& up_in_world);
+
+// Adds vertical edges of man-made structures to the attitude. The plane through a camera's centre
+// and the image of a vertical edge contains the up direction. Each segment is weighted by its
+// length, relative to a tenth of the image's height; `sigma` (rad) is the standard deviation of the
+// angle between up and its plane. The loss is bounded (Geman-McClure), so that segments off by more
+// than three standard deviations, which are not vertical, have little influence. Cameras whose
+// optical axes are closer than about `correlation_rad` see the same edges and count together as
+// one. The result is linearised at the up direction of least cost within `max_tilt` (rad) of the
+// attitude's own.
+UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
+                      double correlation_rad, double max_tilt);
+
+// Cost of an object for an up direction in which it has no body; worse than any in which it has
+// one.
+inline constexpr double kCostWithoutBody = 1e4;
+
+// Cost of an object's boxes with the best upright body of free height; none when there is none.
+std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
+                                        MultiViewObservation observation);
+
+// Local minima of up, among the directions that the cameras allow, in which upright bodies of free
+// height fit the boxes best, lowest cost first. There are several minima, because bodies may stand
+// on another of their axes. `observations`: per object; none for objects that do not take part.
+std::vector<Eigen::Vector3d> SearchUp(
+    const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
+    int threads);
 
 }  // namespace soslam

@@ -19,8 +19,8 @@
 #include "image/edge_maps.h"
 #include "mapping/back_end.h"
 #include "mapping/choose_starts.h"
-#include "planes/camera_height.h"
 #include "planes/planes_and_holding.h"
+#include "planes/planes_estimate.h"
 #include "stage/image_stages.h"
 
 namespace soslam {

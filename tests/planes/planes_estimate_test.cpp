@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "planes/camera_height.h"
 #include "support/random.h"
 #include "support/standing_scene.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/verticals.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "planes/up_prior.h"
 #include "support/random.h"
 
 namespace soslam {
