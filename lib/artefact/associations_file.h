@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "artefact/json_file.h"
-#include "association/agreement.h"
 #include "association/association.h"
 #include "model/sequence.h"
 

@@ -89,4 +89,75 @@ Sequence WithoutPlanes(Sequence sequence);
 Association Associate(const Sequence& sequence, const SemanticTable& table,
                       const AssociateOptions& options, int threads);
 
+// Models shared by all steps of data association: landmark fit, predicted box, and likelihood of
+// box and label. Keeps references.
+class AssociationModel {
+ public:
+  AssociationModel(const Sequence& sequence, const SemanticTable& table,
+                   const AssociateOptions& options);
+
+  const Sequence& sequence() const { return sequence_; }
+  const AssociateOptions& options() const { return options_; }
+  const std::map<int, UpEstimate>& up_of_segments() const { return up_of_segments_; }
+  const std::string& LabelOf(const Detection& detection) const {
+    return sequence_.ObjectOf(detection).label;
+  }
+  int PlaneOf(const Detection& detection) const {
+    return sequence_.ObjectOf(detection).plane_index;
+  }
+
+  // Fits the track's landmark to its detections with the prior of its label. When they determine no
+  // landmark, the track keeps its previous one.
+  void Fit(Track* track) const;
+
+  // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
+  // entirely in front of the camera, or the frame is of another segment. Odometry drift is counted
+  // from the nearest frame in which the track was detected.
+  std::optional<Prediction> Predict(const Track& track, int frame_index) const;
+
+  // Likelihood of a detection's box and label given the track. None when an unseen object is more
+  // likely, or the detection is on another plane.
+  std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
+                                const Detection& detection) const;
+  // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.
+  double NewObjectCost(const Detection& detection) const;
+
+ private:
+  int SegmentOf(const Track& track) const;
+
+  const Sequence& sequence_;
+  const SemanticTable& table_;
+  const AssociateOptions& options_;
+  std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
+  BoxLikelihood boxes_;
+  LabelConfusion labels_;
+};
+
+// Agreement of the estimated objects with the objects given in the sequence.
+struct Agreement {
+  // For each estimated object the index of its given object in Sequence::objects. One to one,
+  // assigned greedily by the number of shared detections; none when no remaining given object
+  // shares a detection.
+  std::vector<std::optional<int>> given_of_object;
+  // Number of static given objects with at least min_observations detections, and number of pairs
+  // of such an object and an estimated one whose intersection over union of detections is above
+  // 0.5.
+  int given_objects = 0;
+  int matched = 0;
+
+  // Shares of the estimated and of the given objects that are matched, and their harmonic mean.
+  // None without given objects.
+  std::optional<double> Precision() const;
+  std::optional<double> Recall() const;
+  std::optional<double> F1() const;
+};
+Agreement CompareWithGiven(const Sequence& sequence, const Association& association,
+                           int min_observations);
+
+// The sequence with the estimated objects (ids from 1) in place of the given ones. Keeps the
+// detections of these objects; all others are counted as rejected. Each object takes the ground
+// truth of its given object, if that is static, for evaluation.
+Sequence AssociatedSequence(const Sequence& sequence, const Association& association,
+                            const Agreement& agreement);
+
 }  // namespace soslam

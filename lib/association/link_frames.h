@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "association/association_model.h"
+#include "association/association.h"
 
 namespace soslam {
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "association/association_model.h"
+#include "association/association.h"
 
 namespace soslam {
+
+// Decides which of the tracks left after merging are objects, and sets the fate of all.
+void DropFalseTracks(const AssociationModel& model, int threads, Association* association);
 
 // Merges tracks of the same object: the larger track's landmark fits at least merge_share of the
 // smaller one's boxes (at most max_views of them, evenly spread), and the two are detected in the

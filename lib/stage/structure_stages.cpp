@@ -10,7 +10,6 @@
 #include "artefact/planes_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
-#include "association/agreement.h"
 #include "association/association.h"
 #include "base/error.h"
 #include "base/parallel.h"

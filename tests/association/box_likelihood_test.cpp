@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/box_likelihood.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "association/fit_object.h"
 #include "support/association_scenes.h"
 
 namespace soslam {

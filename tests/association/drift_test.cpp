@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/drift.h"
-
 #include <gtest/gtest.h>
 
+#include "association/fit_object.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "association/false_tracks.h"
 #include "support/association_scenes.h"
 
 namespace soslam {

@@ -6,7 +6,6 @@
 #include <tuple>
 #include <vector>
 
-#include "association/agreement.h"
 #include "association/association.h"
 #include "support/random.h"
 #include "synthesis/random_scene.h"
