@@ -15,7 +15,7 @@
 #include "dataset/import.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_priors.h"
-#include "synthesis/scene_file.h"
+#include "synthesis/scene.h"
 #include "synthesis/simulate.h"
 #include "synthesis/write_dataset.h"
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -95,5 +97,14 @@ std::vector<Body> Furniture(const Scene& scene);
 // The true pose of each frame. Throws InputError when the camera looks straight up or down, or at
 // its own position, which leaves its roll undefined.
 std::vector<Rigid3d> TruePoses(const Scene& scene);
+
+// The scene in a JSON document, see schemas/scene.schema.json. Throws InputError, naming `where`
+// and the field, when it is not valid or not possible: a duplicate id, an unknown plane, a normal
+// that is not of unit length, the camera inside an object, behind a plane or looking straight up or
+// down.
+Scene ParseScene(const nlohmann::json& document, const std::string& where);
+
+// The scene in a file; throws InputError as above, and when there is no such file.
+Scene ReadScene(const std::filesystem::path& path);
 
 }  // namespace soslam

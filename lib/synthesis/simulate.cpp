@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "geometry/angles.h"
-#include "synthesis/noise.h"
 
 namespace soslam {
 namespace {

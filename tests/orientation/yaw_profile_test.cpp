@@ -12,7 +12,7 @@
 #include "orientation/symmetry_samples.h"
 #include "support/random.h"
 #include "synthesis/render.h"
-#include "synthesis/scene_file.h"
+#include "synthesis/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

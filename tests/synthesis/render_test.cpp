@@ -9,7 +9,6 @@
 #include "support/random.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
-#include "synthesis/texture.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/scene_file.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "support/expect_error.h"
+#include "synthesis/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

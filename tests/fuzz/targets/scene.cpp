@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "synthesis/scene.h"
+
 #include "fuzz/fuzz_target.h"
-#include "synthesis/scene_file.h"
 
 namespace soslam {
 namespace {
