@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/run_log.h"
 
 namespace soslam {

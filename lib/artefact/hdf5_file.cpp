@@ -17,7 +17,7 @@
 
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/run_log.h"
 
 namespace soslam {

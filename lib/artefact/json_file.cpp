@@ -16,9 +16,9 @@
 #include "artefact/atomic_file.h"
 #include "artefact/model_json.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/run_log.h"
-#include "base/text_encoding.h"
+#include "base/text.h"
 
 // Silences GCC 12, which falsely reports an overflow in a std::string::replace inlined into
 // valijson.

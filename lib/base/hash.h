@@ -12,4 +12,7 @@ std::string Sha256OfText(std::string_view text);
 // SHA-256 of a file's bytes. Throws InputError when the file cannot be read.
 std::string Sha256OfFile(const std::filesystem::path& path);
 
+// The bytes in base 64 (RFC 4648).
+std::string Base64(std::string_view bytes);
+
 }  // namespace soslam

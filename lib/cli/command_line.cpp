@@ -8,18 +8,53 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <opencv2/core/utility.hpp>
 #include <optional>
 #include <thread>
 
-#include "base/one_line.h"
+#include "artefact/json_file.h"
+#include "base/error.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/help.h"
 #include "cli/run_recorder.h"
-#include "cli/settings_file.h"
 #include "dataset/image_path.h"
+
+namespace soslam {
+
+void ReportFindings(const std::string& stage, const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings) {
+    fmt::print(stderr, "soslam-{}: {}: {}\n", stage,
+               kSeverityNames[static_cast<size_t>(finding.severity)], OneLine(InWords(finding)));
+  }
+}
+
+namespace {
+
+// Converts InputError to SettingsError, which has another exit code.
+nlohmann::json ParseAsSettings(const std::filesystem::path& path) {
+  try {
+    return ParseJsonFile(path);
+  } catch (const InputError& error) {
+    throw SettingsError(error.what());
+  }
+}
+
+}  // namespace
+
+nlohmann::json ReadSettingsFile(const std::filesystem::path& path) {
+  nlohmann::json settings = ParseAsSettings(path);
+  if (!settings.is_object()) {
+    throw SettingsError(path.string() + ": expected an object of settings, found a JSON " +
+                        settings.type_name());
+  }
+  return settings;
+}
+
+}  // namespace soslam
 
 namespace soslam::internal {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,12 +11,20 @@
 #include "base/error.h"
 #include "base/options.h"
 #include "cli/stage_files.h"
+#include "model/finding.h"
 
 namespace CLI {
 class App;
 }
 
 namespace soslam {
+
+// Prints findings on stderr, one per line.
+void ReportFindings(const std::string& stage, const std::vector<Finding>& findings);
+
+// Reads a settings file written by a user, a JSON object. Throws SettingsError, naming the file,
+// when it cannot be read, is malformed or is not an object.
+nlohmann::json ReadSettingsFile(const std::filesystem::path& path);
 
 // A file or folder argument of a stage: --<name> PATH.
 struct FileArgument {

@@ -7,9 +7,8 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
-#include "base/machine.h"
 #include "base/paths.h"
+#include "base/process.h"
 #include "dataset/image_path.h"
 
 namespace soslam::internal {

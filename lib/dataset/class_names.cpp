@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file_kind.h"
 #include "base/paths.h"
 #include "dataset/text_file.h"
 #include "dataset/yaml_fields.h"

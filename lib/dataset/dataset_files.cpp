@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 
 namespace soslam {
 namespace {

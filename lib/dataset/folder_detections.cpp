@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/class_names.h"
 #include "dataset/dataset_files.h"
 #include "dataset/image_path.h"

@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/colmap_model.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/image_path.h"

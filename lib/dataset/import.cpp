@@ -12,7 +12,7 @@
 
 #include "artefact/model_json.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"

@@ -11,7 +11,7 @@
 #include <span>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/text_file.h"
 #include "geometry/image_size.h"
 #include "image/read_image.h"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/text_file.h"

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/kitti_object.h"

@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/run_log.h"
-#include "base/text_encoding.h"
+#include "base/text.h"
 
 namespace soslam {
 namespace {

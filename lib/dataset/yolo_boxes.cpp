@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "dataset/class_names.h"
 #include "dataset/dataset_files.h"
 #include "dataset/text_archive.h"

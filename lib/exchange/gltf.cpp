@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "artefact/model_json.h"
-#include "base/base64.h"
+#include "base/hash.h"
 #include "exchange/meshes.h"
 #include "geometry/angles.h"
 

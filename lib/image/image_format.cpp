@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "base/file_kind.h"
+#include "base/paths.h"
 
 namespace soslam {
 

@@ -13,8 +13,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
-#include "base/file_kind.h"
-#include "base/own_process.h"
+#include "base/paths.h"
+#include "base/process.h"
 #include "base/run_log.h"
 #include "image/onnx_check.h"
 

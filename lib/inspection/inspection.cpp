@@ -16,9 +16,9 @@
 #include "artefact/model_json.h"
 #include "association/options.h"
 #include "base/error.h"
-#include "base/one_line.h"
 #include "base/options.h"
 #include "base/table.h"
+#include "base/text.h"
 #include "dataset/import_options.h"
 #include "evaluation/alignment.h"
 #include "image/edge_maps.h"
@@ -26,7 +26,7 @@
 #include "mapping/options.h"
 #include "orientation/options.h"
 #include "planes/options.h"
-#include "priors/options.h"
+#include "priors/learn_priors.h"
 
 namespace soslam {
 namespace {

@@ -7,8 +7,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "base/base64.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 
 namespace soslam {

@@ -8,7 +8,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/run_log.h"
 
 namespace soslam {

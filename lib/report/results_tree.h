@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/machine.h"
+#include "base/process.h"
 
 namespace soslam {
 

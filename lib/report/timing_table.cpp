@@ -10,7 +10,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 
 namespace soslam {
 namespace {

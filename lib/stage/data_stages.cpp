@@ -10,7 +10,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/run_log.h"
-#include "cli/report_findings.h"
+#include "cli/command_line.h"
 #include "dataset/gate.h"
 #include "dataset/import.h"
 #include "priors/furniture_catalogue.h"

@@ -4,7 +4,7 @@
 #include "base/options.h"
 #include "cli/stage_files.h"
 #include "dataset/import_options.h"
-#include "priors/options.h"
+#include "priors/learn_priors.h"
 
 namespace soslam {
 

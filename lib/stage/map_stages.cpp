@@ -17,7 +17,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "cli/report_findings.h"
+#include "cli/command_line.h"
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
 #include "mapping/back_end.h"

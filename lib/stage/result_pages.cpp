@@ -11,7 +11,7 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "base/table.h"
 #include "dataset/image_path.h"
 #include "report/dataset_tables.h"

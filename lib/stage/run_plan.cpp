@@ -12,11 +12,10 @@
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
 #include "workflow/plan_makefile.h"
-#include "workflow/work_units.h"
 
 namespace soslam {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/options.h"
 #include "cli/stage_files.h"
-#include "workflow/recorded_runs.h"
+#include "workflow/verify.h"
 
 namespace soslam {
 

@@ -13,7 +13,7 @@
 #include "association/association.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "cli/report_findings.h"
+#include "cli/command_line.h"
 #include "evaluation/result_checks.h"
 #include "image/edge_maps.h"
 #include "mapping/back_end.h"

@@ -16,7 +16,6 @@
 #include <system_error>
 
 #include "base/error.h"
-#include "base/file_kind.h"
 #include "base/parallel.h"
 #include "base/paths.h"
 #include "base/run_log.h"

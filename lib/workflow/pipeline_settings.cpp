@@ -9,9 +9,9 @@
 
 #include "association/options.h"
 #include "base/error.h"
-#include "base/file_kind.h"
 #include "base/options.h"
-#include "cli/settings_file.h"
+#include "base/paths.h"
+#include "cli/command_line.h"
 #include "dataset/import_options.h"
 #include "evaluation/alignment.h"
 #include "image/edge_maps.h"

@@ -3,10 +3,27 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "workflow/plan.h"
 
 namespace soslam {
+
+// Stage instances of a plan that form one job on a cluster.
+struct WorkUnit {
+  std::string name;                         // "trunk", or the id of the first instance of a branch
+  std::vector<std::string> instances = {};  // ids, each after the instances that it reads from
+  std::vector<std::string> variants = {};   // variants that are complete when this unit is
+  std::vector<std::string> needs = {};      // ids of the trunk's instances that a branch reads from
+};
+
+inline constexpr const char* kTrunk = "trunk";
+
+// Splits a plan into the trunk, which all others need, and its branches. A branch begins at a stage
+// that can take long (refine, optimise) and continues to the end of all variants that share its
+// beginning, so branches do not share instances and can run in parallel. Everything else is the
+// trunk: stages that take less time than a job costs, and the edges, which many branches read.
+std::vector<WorkUnit> WorkUnitsOf(const Plan& plan);
 
 // Folders of a plan; relative paths are relative to where make runs.
 struct PlanFolders {

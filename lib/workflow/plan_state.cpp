@@ -11,7 +11,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
+#include "base/paths.h"
 #include "report/results_tree.h"
 
 namespace soslam {

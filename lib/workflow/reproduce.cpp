@@ -2,21 +2,39 @@
 #include "workflow/reproduce.h"
 
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <utility>
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
-#include "base/file_kind.h"
 #include "base/hash.h"
 #include "base/paths.h"
 #include "dataset/image_path.h"
 #include "inspection/difference.h"
 #include "report/results_tree.h"
-#include "workflow/run_program.h"
 
 namespace soslam {
+namespace {
+
+// The word quoted for a shell.
+std::string Quoted(const std::string& word) {
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+int RunProgram(const std::vector<std::string>& words, const std::filesystem::path& printed) {
+  std::string command = "exec";  // so that the status is the program's, not the shell's
+  for (const std::string& word : words) command += " " + Quoted(word);
+  const int status = std::system((command + " > " + Quoted(printed.string()) + " 2>&1").c_str());
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -7,9 +7,47 @@
 #include <string>
 #include <vector>
 
-#include "workflow/recorded_runs.h"
+#include "artefact/run_file.h"
 
 namespace soslam {
+
+// A folder of results that should have a run.json.
+struct RecordedRun {
+  std::string name;  // its path in the results of the dataset: "shared/refine-c664bee12d"
+  std::filesystem::path folder;
+  std::vector<std::string> variants;  // variants that use it
+};
+
+struct VariantRuns {
+  std::string name;
+  std::vector<std::string> runs = {};  // as in its stages.txt
+  std::string problem = {};            // error in its stages.txt; empty: none
+};
+
+// All runs found in <results>/<dataset>/.
+struct DatasetRuns {
+  std::string name;
+  std::filesystem::path results;
+  std::filesystem::path dataset;  // the folder of the dataset itself
+  std::vector<VariantRuns> variants;
+  std::vector<RecordedRun> runs;  // runs used by variants, each after the runs that it reads from
+  std::vector<RecordedRun> exports;  // exports with a run.json in a folder of a variant
+  std::vector<std::string> unused;   // "shared/<stage>-<key>" that no variant uses any more
+};
+
+// Runs of all datasets in a results folder, sorted by name. `data_root` has a folder for each
+// dataset; empty: datasets are at their recorded place. Throws InputError when there is no such
+// folder, NothingUsableError when no dataset has results in it.
+std::vector<DatasetRuns> FindRuns(const std::filesystem::path& results,
+                                  const std::filesystem::path& data_root);
+
+// Current path of a file of a run.
+std::filesystem::path PathOf(const RunFile& file, const RunRecord& record, const RecordedRun& run,
+                             const DatasetRuns& dataset);
+
+// Current path of a folder argument of a run; that of a dataset may have moved.
+std::filesystem::path FolderOf(const std::string& argument, const RunRecord& record,
+                               const DatasetRuns& dataset);
 
 // Compares files with their recorded digests; each file is read only once.
 class FileDigests {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/base64.h"
-
 #include <gtest/gtest.h>
+
+#include "base/hash.h"
 
 namespace soslam {
 namespace {

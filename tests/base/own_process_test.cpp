@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/own_process.h"
-
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
@@ -8,6 +6,8 @@
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
+
+#include "base/process.h"
 
 namespace soslam {
 namespace {

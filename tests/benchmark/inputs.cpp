@@ -6,8 +6,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "artefact/semantic_table_file.h"
-#include "base/machine.h"
 #include "base/parallel.h"
+#include "base/process.h"
 #include "dataset/import.h"
 #include "evaluation/iou.h"
 #include "geometry/angles.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "base/machine.h"
+#include "base/process.h"
 #include "benchmark/back_end_input.h"
 #include "support/drive.h"
 

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "base/base64.h"
+#include "base/hash.h"
 #include "geometry/angles.h"
 #include "support/exported_world.h"
 #include "support/gltf_document.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
-#include "base/base64.h"
+#include "base/hash.h"
 #include "support/image_files.h"
 #include "support/small_pipeline.h"
 

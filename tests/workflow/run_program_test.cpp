@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/run_program.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 
 #include "support/temporary_folder.h"
+#include "workflow/reproduce.h"
 
 namespace soslam {
 namespace {

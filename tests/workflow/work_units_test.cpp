@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/work_units.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "workflow/pipeline_settings.h"
+#include "workflow/plan_makefile.h"
 
 namespace soslam {
 namespace {

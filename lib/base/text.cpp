@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/one_line.h"
+#include "base/text.h"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,11 @@
 
 namespace soslam {
 
+// The message as one line of printable text. Messages quote files, which may hold any bytes:
+// control characters are escaped. A long message keeps its begin and its end, which hold the place
+// of the error and what was expected.
+std::string OneLine(const std::string& message);
+
 // Throws InputError, naming the file, if a text's first byte belongs to a byte order mark of UTF-16
 // or UTF-32, as some editors write it. No text in UTF-8 begins with these bytes.
 inline void CheckIsNotUtf16(int first_byte, const std::string& file) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/own_process.h"
+#include "base/process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,12 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <new>
 #include <system_error>
+#include <thread>
 
 namespace soslam {
 namespace {
@@ -71,6 +73,19 @@ std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
   }
   if (WEXITSTATUS(status) != 0) return fmt::format("exit code {}", WEXITSTATUS(status));
   return std::nullopt;
+}
+
+Machine ThisMachine() {
+  Machine machine{"unknown", std::max(1, static_cast<int>(std::thread::hardware_concurrency()))};
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      machine.cpu = line.substr(colon + 2);
+      break;
+    }
+  }
+  return machine;
 }
 
 }  // namespace soslam

@@ -21,4 +21,12 @@ struct ProcessLimits {
 std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
                                              const ProcessLimits& limits = {});
 
+// The hardware that a program runs on, as far as it matters for run times.
+struct Machine {
+  std::string cpu;  // model name of the processor; "unknown" if the system does not report it
+  int cores = 1;    // available to this process, hyper-threads counted
+};
+
+Machine ThisMachine();
+
 }  // namespace soslam
