@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "dataset/lens_camera.h"
+#include "dataset/calibration_file.h"
 #include "dataset/trajectories.h"
 
 namespace soslam {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dataset/import_options.h"
@@ -34,5 +36,18 @@ DatasetFiles FindDatasetFiles(const std::filesystem::path& folder, const ImportO
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
 // Entries at any depth, sorted by name.
 std::vector<std::filesystem::path> EntriesAtAnyDepth(const std::filesystem::path& folder);
+
+// A file in an archive.
+struct ArchivedText {
+  std::string name;  // its path in the archive
+  std::string text;
+};
+
+// Reads the files of an archive (tar, also compressed; zip) whose names (ArchivedText::name) are
+// `wanted`, sorted by name. Throws InputError for a file that is no archive, is truncated, or
+// unpacks to more than text files would.
+std::vector<ArchivedText> ReadTextArchive(
+    const std::filesystem::path& path,
+    const std::function<bool(const std::filesystem::path&)>& wanted);
 
 }  // namespace soslam

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "dataset/calibration_file.h"
 #include "dataset/json_entry.h"
-#include "dataset/lens_camera.h"
 #include "model/sequence.h"
 
 namespace soslam {

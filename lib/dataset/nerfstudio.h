@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/lens_camera.h"
+#include "dataset/calibration_file.h"
 #include "dataset/trajectories.h"
 #include "model/finding.h"
 

@@ -24,7 +24,7 @@ Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_
 //   soslam    the listed images must exist when a stage reads them
 //   tum_rgbd  images may be absent; lists may be pairs, colour images first
 //   icl_nuim  like tum_rgbd, but depth images first; times are frame numbers; camera and world
-//             have y up, and are mirrored (see icl_nuim.h)
+//             have y up, and are mirrored (see FromIclNuim)
 //
 // Without planes.json no plane is known. Each detection without object id is a separate object.
 // Ground truth, if present, is stored in the sequence for evaluation. Throws InputError,

@@ -16,7 +16,6 @@
 #include "base/paths.h"
 #include "dataset/class_names.h"
 #include "dataset/dataset_files.h"
-#include "dataset/text_archive.h"
 #include "dataset/text_file.h"
 
 namespace soslam {

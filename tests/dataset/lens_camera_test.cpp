@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/lens_camera.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "base/error.h"
+#include "dataset/calibration_file.h"
 #include "support/expect_error.h"
 
 namespace soslam {

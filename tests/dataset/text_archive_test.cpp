@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/text_archive.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/dataset_files.h"
 #include "support/expect_error.h"
 
 namespace soslam {
