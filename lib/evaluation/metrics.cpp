@@ -92,13 +92,13 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
   return objects;
 }
 
-std::vector<Rigid3d> Odometry(const Sequence& sequence) {
+}  // namespace
+
+std::vector<Rigid3d> OdometryPoses(const Sequence& sequence) {
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
   return poses;
 }
-
-}  // namespace
 
 Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
                           AlignmentChoice alignment) {
@@ -128,7 +128,7 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
   for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
   if (estimates.observations.empty()) {
     metrics.map_quality =
-        EvaluateMapQuality(sequence, estimates.objects, Odometry(sequence), planes, alignment);
+        EvaluateMapQuality(sequence, estimates.objects, OdometryPoses(sequence), planes, alignment);
   }
   return metrics;
 }
@@ -150,7 +150,7 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentC
   std::vector<std::optional<Rigid3d>> truth;
   for (const Frame& frame : sequence.frames) truth.push_back(frame.true_world_from_camera);
   const auto optimised_error = AbsoluteTrajectoryError(map.world_from_camera, truth);
-  const auto odometry_error = AbsoluteTrajectoryError(Odometry(sequence), truth);
+  const auto odometry_error = AbsoluteTrajectoryError(OdometryPoses(sequence), truth);
   if (optimised_error && odometry_error) metrics.trajectory = {*optimised_error, *odometry_error};
   return metrics;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "artefact/landmarks_file.h"
+#include "evaluation/metrics.h"
 #include "geometry/angles.h"
 #include "report/page_geometry.h"
 #include "report/results_tree.h"
@@ -80,12 +81,6 @@ json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Seque
                  : json());
   }
   return outlines;
-}
-
-std::vector<Rigid3d> OdometryPoses(const Sequence& sequence) {
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return poses;
 }
 
 json PageSolver(const SolverSummary& solver) {
