@@ -21,7 +21,7 @@ constexpr double kUnlikeShare = 0.5;
 // Centres are on a line when they determine the rotation about it no better than this (standard
 // deviation): cameras' own rotations do then.
 constexpr double kLineDeg = 0.5;
-// What exact paths are taken to err by at least, as a share of the distance above.
+// Smallest noise that is assumed of a path, also of an exact one, as a share of the distance above.
 constexpr double kLeastNoise = 1e-5;
 
 // Camera centres and their means.
@@ -95,8 +95,9 @@ double Rmse(const std::vector<PosePair>& pairs, const Alignment& alignment) {
   return std::sqrt(sum / static_cast<double>(pairs.size()));
 }
 
-// Whether estimates have to be scaled onto the truth: the best scale is another than 1, and leaves
-// less than half of what the best motion alone does. Two poses or fewer fit any scale.
+// True if estimates have to be scaled onto the truth: the best scale differs from 1, and leaves
+// less than half of the distances that the best motion alone leaves. Two poses or fewer fit any
+// scale.
 bool HaveOtherScale(const Alignment& rigid, const Alignment& similarity) {
   constexpr int kFewest = 3;
   constexpr double kLeastLogScale = 0.1;

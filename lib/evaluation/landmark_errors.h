@@ -69,8 +69,8 @@ struct PlaneErrors {
 };
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
 
-// Whether the estimate is farther from the plane that it should stand on than the truth is: then
-// its height is wrong, rather than the plane.
+// True if the estimate is farther from the plane that it should stand on than the truth is: its
+// height is then wrong, not the plane.
 bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landmark& truth);
 
 // The parts that make up a body on its plane.

@@ -14,7 +14,7 @@
 
 namespace soslam {
 
-// A map compared with all true objects, whoever associated the detections with objects.
+// Comparison of a map with all true objects, independent of the ids of detections.
 
 // Errors of a landmark in the frames of the cameras that observed it, means over these
 // observations: estimated landmark at the estimated pose against true landmark at the true pose, or

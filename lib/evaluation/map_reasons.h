@@ -20,7 +20,7 @@ namespace soslam {
 inline constexpr std::array kMapIous = {0.25, 0.5};
 
 // Intersections over unions of boxes in the world: rows are the map's landmarks, columns the true
-// objects, of which those that are not looked for and those of other segments have 0. Bodies of
+// objects; unwanted true objects and those of other segments have 0. Bodies of
 // rotation take the landmark's yaw.
 Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map);
 
@@ -28,9 +28,9 @@ Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map);
 // maximal, among pairs with at least this IoU. Labels and ids are ignored.
 std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou);
 
-// Whether a landmark is of things of which nobody says where they are, or that nobody asked for:
-// its label is ignored, or it is in the volume of ignored things or of an ignored true object: half
-// of it, or so much that it would match a true object there.
+// True if a landmark is neither right nor wrong: its label is ignored everywhere, or it is in the
+// volume of ignored things or of an ignored true object, with half of its own volume at least or
+// with an IoU at which it would match a true object there.
 bool IsIgnored(const Sequence& sequence, const std::string& label, const AlignedLandmark& landmark);
 
 // Reasons for a true object without landmark, or a landmark without true object.

@@ -28,8 +28,8 @@ double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
 
 namespace {
 
-// How far a camera is from the middle of its path (m): medians, which single wrong poses do not
-// move.
+// Distance of a camera from the middle of its path (m). Both are medians, which single wrong poses
+// do not move.
 double SpreadOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   Eigen::Vector3d middle;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

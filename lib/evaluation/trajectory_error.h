@@ -25,8 +25,7 @@ TrajectoryGap GapOf(const std::vector<PosePair>& pairs);
 // Extent of a camera's path (m): the diagonal of the box around it.
 double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
 
-// Whether both cameras move about as far, by the medians of their distances from where they are
-// mostly.
+// True if the median distances of both cameras from the middles of their paths are about equal.
 bool HaveSameScale(const std::vector<PosePair>& pairs);
 
 // True if the gap is no more than the usual drift of odometry over this extent.
