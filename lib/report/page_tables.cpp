@@ -15,6 +15,7 @@
 #include "base/table.h"
 #include "report/dataset_tables.h"
 #include "report/page_html.h"
+#include "report/page_variant.h"
 #include "report/results_tree.h"
 
 namespace soslam {
