@@ -25,7 +25,7 @@ namespace {
 constexpr int kMaxParameters = 7;
 using Information =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParameters, kMaxParameters>;
-using ByParameters =
+using ParameterJacobian =
     Eigen::Matrix<double, kLandmarkDof, Eigen::Dynamic, 0, kLandmarkDof, kMaxParameters>;
 
 // Weak prior that keeps the information regular, as standard deviations: yaw uniform over half a
@@ -36,34 +36,35 @@ Information PriorInformation(Eigen::Index parameters) {
   return sigmas.head(parameters).array().square().inverse().matrix().asDiagonal();
 }
 
-ByParameters LandmarkByParameters(const MultiViewObservation& observation,
-                                  const Landmark& landmark) {
+ParameterJacobian LandmarkByParameters(const MultiViewObservation& observation,
+                                       const Landmark& landmark) {
   const Plane& plane = observation.plane_in_world;
-  ByParameters by_parameters = ByParameters::Zero(kLandmarkDof, observation.height_is_free ? 7 : 6);
-  by_parameters.leftCols<6>() = UprightGround(plane).ByParameters(landmark);
-  if (observation.height_is_free) by_parameters.block<3, 1>(3, 6) = plane.normal;
-  return by_parameters;
+  ParameterJacobian d_parameters =
+      ParameterJacobian::Zero(kLandmarkDof, observation.height_is_free ? 7 : 6);
+  d_parameters.leftCols<6>() = UprightGround(plane).ParameterJacobian(landmark);
+  if (observation.height_is_free) d_parameters.block<3, 1>(3, 6) = plane.normal;
+  return d_parameters;
 }
 
 // Marginal covariance of the landmark including that of `up`: the landmark tilts with `up`, and its
 // other parameters adapt so that it still fits the boxes.
 Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark& landmark,
                          const Eigen::Matrix3d& up_covariance) {
-  const ByParameters by_parameters = LandmarkByParameters(observation, landmark);
+  const ParameterJacobian d_parameters = LandmarkByParameters(observation, landmark);
   LandmarkModel model;
   for (const auto& term :
        observation.height_is_free ? OutlineTerms(observation) : ViewTerms(observation, landmark)) {
     term->AddTo(landmark, &model);
   }
-  const Information information = PriorInformation(by_parameters.cols()) +
-                                  by_parameters.transpose() * model.information * by_parameters;
+  const Information information = PriorInformation(d_parameters.cols()) +
+                                  d_parameters.transpose() * model.information * d_parameters;
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed =
-      by_parameters.transpose() * model.information.leftCols<3>();
+      d_parameters.transpose() * model.information.leftCols<3>();
   const Eigen::LDLT<Information> solver(information);
-  Eigen::Matrix<double, kLandmarkDof, 3> by_turn = -by_parameters * solver.solve(mixed);
-  by_turn.topRows<3>() += Eigen::Matrix3d::Identity();
-  return by_parameters * solver.solve(ByParameters(by_parameters).transpose()) +
-         by_turn * up_covariance * by_turn.transpose();
+  Eigen::Matrix<double, kLandmarkDof, 3> d_turn = -d_parameters * solver.solve(mixed);
+  d_turn.topRows<3>() += Eigen::Matrix3d::Identity();
+  return d_parameters * solver.solve(ParameterJacobian(d_parameters).transpose()) +
+         d_turn * up_covariance * d_turn.transpose();
 }
 
 // Landmark from one box: the best yaw of a sweep.
@@ -224,14 +225,14 @@ Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& ca
   const RobustViewTerm term(std::make_unique<BoxTerm>(edges, prediction.landmark_in_camera),
                             prediction.camera_from_world, kNoHuber, 1.0);
   Eigen::VectorXd residuals(4);
-  LandmarkTerm::Jacobian by_landmark(4, kLandmarkDof);
-  term.Evaluate(object.landmark_in_world, residuals, &by_landmark);
+  LandmarkTerm::Jacobian d_landmark(4, kLandmarkDof);
+  term.Evaluate(object.landmark_in_world, residuals, &d_landmark);
   for (size_t i = 0; i < edges.size(); ++i) {
-    by_landmark.row(static_cast<Eigen::Index>(i)) *= edges[i].sigma_px;
+    d_landmark.row(static_cast<Eigen::Index>(i)) *= edges[i].sigma_px;
   }
   Covariance9 covariance = object.covariance;
   covariance.block<3, 3>(3, 3) += prediction.drift_covariance;
-  return by_landmark * covariance * by_landmark.transpose();
+  return d_landmark * covariance * d_landmark.transpose();
 }
 
 bool IsOutOfReach(const Innovation& innovation) {

@@ -95,8 +95,8 @@ UpEstimate UpOf(const UpPrior& attitude, double tilt_variance) {
   Eigen::Matrix<double, 3, 2> axes;
   axes.col(0) = up.unitOrthogonal();
   axes.col(1) = up.cross(axes.col(0));
-  const Eigen::Matrix<double, 3, 2> by_turns = -Skew(up) * axes;
-  const Eigen::Matrix2d information = by_turns.transpose() * attitude.information * by_turns;
+  const Eigen::Matrix<double, 3, 2> d_turns = -Skew(up) * axes;
+  const Eigen::Matrix2d information = d_turns.transpose() * attitude.information * d_turns;
   Eigen::Matrix2d covariance = information.inverse();
   covariance.diagonal().array() += 0.5 * tilt_variance;
   return {up, axes * covariance * axes.transpose()};

@@ -22,18 +22,18 @@ bool DetectionResidual::Evaluate(double const* const* blocks, double* residuals,
   const Eigen::Vector3d squared_axes = landmark.half_axes.cwiseAbs2();
   if (!squared_axes.allFinite()) return false;  // the step was too large: the solver shortens it
 
-  Eigen::Matrix<double, 4, kLandmarkDof> by_landmark;
+  Eigen::Matrix<double, 4, kLandmarkDof> d_landmark;
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d& normal = normals_in_camera_[static_cast<size_t>(i)];
     const Eigen::Vector3d normal_in_object = object_from_camera * normal;
     const Eigen::Vector3d weighted = squared_axes.cwiseProduct(normal_in_object);
     const double distance = normal.dot(landmark.Centre());
     residuals[i] = weight_ * (weighted.dot(normal_in_object) - distance * distance);
-    by_landmark.row(i) << 2.0 * weighted.transpose() * object_from_camera * Skew(normal),
+    d_landmark.row(i) << 2.0 * weighted.transpose() * object_from_camera * Skew(normal),
         -2.0 * distance * normal.transpose(),
         2.0 * weighted.cwiseProduct(normal_in_object).transpose();
   }
-  observation.WriteJacobians<4>(weight_ * by_landmark, blocks, jacobians);
+  observation.WriteJacobians<4>(weight_ * d_landmark, blocks, jacobians);
   return true;
 }
 

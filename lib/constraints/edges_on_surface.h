@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/batch.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 
@@ -22,8 +21,11 @@ class EdgesOnSurface {
   std::optional<Eigen::Vector2d> Nearest(const Eigen::Vector3d& point_in_object) const;
 
  private:
-  std::vector<BatchOfVectors> in_object_;  // object frame, m; the last batch is padded with NaN
-  std::vector<Eigen::Vector2d> pixels_;
+  struct Edge {
+    Eigen::Vector2d pixel;
+    Eigen::Vector3d in_object;  // m
+  };
+  std::vector<Edge> edges_;
 };
 
 }  // namespace soslam

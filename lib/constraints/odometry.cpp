@@ -39,23 +39,22 @@ bool OdometryResidual::Evaluate(double const* const* blocks, double* residuals,
 
   using Block = Eigen::Matrix<double, 6, 3>;
   const Eigen::Matrix3d first_from_world = world_from_first.rotation.toRotationMatrix().transpose();
-  const Eigen::Matrix3d error_by_second = InverseRightJacobian(rotation_error) *
-                                          world_from_second.rotation.toRotationMatrix().transpose();
-  Block by_rotation = Block::Zero();
-  Block by_translation = Block::Zero();
+  const Eigen::Matrix3d d_second = InverseRightJacobian(rotation_error) *
+                                   world_from_second.rotation.toRotationMatrix().transpose();
+  Block d_rotation = Block::Zero();
+  Block d_translation = Block::Zero();
   if (jacobians[0] != nullptr) {
-    by_rotation.topRows<3>() = -rotation_weight_ * error_by_second;
-    by_rotation.bottomRows<3>() =
-        translation_weight_ * first_from_world *
-        Skew(world_from_second.translation - world_from_first.translation);
-    by_translation.bottomRows<3>() = -translation_weight_ * first_from_world;
-    WritePoseJacobian<6>(blocks[0], by_rotation, by_translation, jacobians[0]);
+    d_rotation.topRows<3>() = -rotation_weight_ * d_second;
+    d_rotation.bottomRows<3>() = translation_weight_ * first_from_world *
+                                 Skew(world_from_second.translation - world_from_first.translation);
+    d_translation.bottomRows<3>() = -translation_weight_ * first_from_world;
+    WritePoseJacobian<6>(blocks[0], d_rotation, d_translation, jacobians[0]);
   }
   if (jacobians[1] != nullptr) {
-    by_rotation.topRows<3>() = rotation_weight_ * error_by_second;
-    by_rotation.bottomRows<3>().setZero();
-    by_translation.bottomRows<3>() = translation_weight_ * first_from_world;
-    WritePoseJacobian<6>(blocks[1], by_rotation, by_translation, jacobians[1]);
+    d_rotation.topRows<3>() = rotation_weight_ * d_second;
+    d_rotation.bottomRows<3>().setZero();
+    d_translation.bottomRows<3>() = translation_weight_ * first_from_world;
+    WritePoseJacobian<6>(blocks[1], d_rotation, d_translation, jacobians[1]);
   }
   return true;
 }

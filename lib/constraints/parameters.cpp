@@ -28,7 +28,7 @@ Landmark UnpackLandmark(const double* block) {
   return {UnpackPose(block), Eigen::Vector3d(block + kPoseSize).array().exp()};
 }
 
-Eigen::Matrix<double, 3, 4> RotationVectorByQuaternion(const double* quaternion_xyzw) {
+Eigen::Matrix<double, 3, 4> RotationVectorJacobian(const double* quaternion_xyzw) {
   // dw = 2 vec(dq q*), with q* the conjugate of the unit quaternion q.
   const Eigen::Vector3d vec(quaternion_xyzw);
   Eigen::Matrix<double, 3, 4> matrix;

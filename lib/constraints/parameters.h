@@ -35,7 +35,7 @@ inline Plane UnpackPlane(const double* normal, const double* offset) {
 // Jacobians are derived for a rotation vector w applied from the left, R -> exp(w) R. Ceres expects
 // derivatives by quaternion coefficients; this 3 x 4 matrix, dw / d(qx, qy, qz, qw), converts one
 // to the other.
-Eigen::Matrix<double, 3, 4> RotationVectorByQuaternion(const double* quaternion_xyzw);
+Eigen::Matrix<double, 3, 4> RotationVectorJacobian(const double* quaternion_xyzw);
 
 // kRows may be Eigen::Dynamic below.
 //
@@ -43,25 +43,25 @@ Eigen::Matrix<double, 3, 4> RotationVectorByQuaternion(const double* quaternion_
 // and translation.
 template <int kRows>
 void WritePoseJacobian(const double* pose_block,
-                       const Eigen::Matrix<double, kRows, 3>& by_rotation_vector,
-                       const Eigen::Matrix<double, kRows, 3>& by_translation, double* jacobian) {
+                       const Eigen::Matrix<double, kRows, 3>& d_rotation_vector,
+                       const Eigen::Matrix<double, kRows, 3>& d_translation, double* jacobian) {
   Eigen::Map<Eigen::Matrix<double, kRows, kPoseSize, Eigen::RowMajor>> map(
-      jacobian, by_translation.rows(), kPoseSize);
-  map.template leftCols<4>() = by_rotation_vector * RotationVectorByQuaternion(pose_block);
-  map.template rightCols<3>() = by_translation;
+      jacobian, d_translation.rows(), kPoseSize);
+  map.template leftCols<4>() = d_rotation_vector * RotationVectorJacobian(pose_block);
+  map.template rightCols<3>() = d_translation;
 }
 
 // Writes d residual / d landmark block (row-major, rows x 10) from the derivatives by the
 // landmark's nine degrees of freedom, in the order of kLandmarkDof.
 template <int kRows>
 void WriteLandmarkJacobian(const double* landmark_block,
-                           const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,
+                           const Eigen::Matrix<double, kRows, kLandmarkDof>& d_landmark,
                            double* jacobian) {
   Eigen::Map<Eigen::Matrix<double, kRows, kLandmarkSize, Eigen::RowMajor>> map(
-      jacobian, by_landmark.rows(), kLandmarkSize);
+      jacobian, d_landmark.rows(), kLandmarkSize);
   map.template leftCols<4>() =
-      by_landmark.template leftCols<3>() * RotationVectorByQuaternion(landmark_block);
-  map.template rightCols<6>() = by_landmark.template rightCols<6>();
+      d_landmark.template leftCols<3>() * RotationVectorJacobian(landmark_block);
+  map.template rightCols<6>() = d_landmark.template rightCols<6>();
 }
 
 // An observation depends on camera_from_object and the half axes only. This class computes that
@@ -80,21 +80,21 @@ class RelativeObservation {
   }  // centre minus camera
 
   template <int kRows>
-  void WriteJacobians(const Eigen::Matrix<double, kRows, kLandmarkDof>& by_landmark,
+  void WriteJacobians(const Eigen::Matrix<double, kRows, kLandmarkDof>& d_landmark,
                       double const* const* blocks, double** jacobians) const {
     if (jacobians == nullptr) return;
     using Block = Eigen::Matrix<double, kRows, 3>;
     // A rotation w of a world_from_x rotation is a rotation R^T w in the camera frame, R =
     // world_from_camera.
-    const Block by_rotation = by_landmark.template leftCols<3>() * camera_from_world_;
-    const Block by_centre = by_landmark.template middleCols<3>(3) * camera_from_world_;
+    const Block d_rotation = d_landmark.template leftCols<3>() * camera_from_world_;
+    const Block d_centre = d_landmark.template middleCols<3>(3) * camera_from_world_;
     if (jacobians[0] != nullptr) {
-      WritePoseJacobian<kRows>(blocks[0], -by_rotation + by_centre * Skew(offset_in_world_),
-                               -by_centre, jacobians[0]);
+      WritePoseJacobian<kRows>(blocks[0], -d_rotation + d_centre * Skew(offset_in_world_),
+                               -d_centre, jacobians[0]);
     }
     if (jacobians[1] != nullptr) {
-      Eigen::Matrix<double, kRows, kLandmarkDof> in_world(by_landmark.rows(), kLandmarkDof);
-      in_world << by_rotation, by_centre, by_landmark.template rightCols<3>();
+      Eigen::Matrix<double, kRows, kLandmarkDof> in_world(d_landmark.rows(), kLandmarkDof);
+      in_world << d_rotation, d_centre, d_landmark.template rightCols<3>();
       WriteLandmarkJacobian<kRows>(blocks[1], in_world, jacobians[1]);
     }
   }

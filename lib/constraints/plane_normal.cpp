@@ -17,8 +17,8 @@ bool PlaneNormalResidual::Evaluate(double const* const* blocks, double* residual
   values = root_ * Eigen::Map<const Eigen::Vector3d>(blocks[0]);
   if (jacobians != nullptr && jacobians[0] != nullptr) {
     using RowMajor = Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>;
-    Eigen::Map<RowMajor> by_normal(jacobians[0]);
-    by_normal = root_;
+    Eigen::Map<RowMajor> d_normal(jacobians[0]);
+    d_normal = root_;
   }
   return true;
 }

@@ -28,15 +28,15 @@ bool SupportResidual::Evaluate(double const* const* blocks, double* residuals,
   residuals[2] = tangency_weight_ * (weighted.dot(normal_in_object) - distance * distance);
   if (jacobians == nullptr || jacobians[0] == nullptr) return true;
 
-  const Eigen::Matrix3d normal_by_rotation = object_from_world * Skew(normal);
-  Eigen::Matrix<double, 3, kLandmarkDof> by_landmark;
-  by_landmark.setZero();
-  by_landmark.topLeftCorner<2, 3>() = angle_weight_ * normal_by_rotation.topRows<2>();
-  by_landmark.row(2) << 2.0 * weighted.transpose() * normal_by_rotation,
+  const Eigen::Matrix3d d_rotation = object_from_world * Skew(normal);
+  Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
+  d_landmark.setZero();
+  d_landmark.topLeftCorner<2, 3>() = angle_weight_ * d_rotation.topRows<2>();
+  d_landmark.row(2) << 2.0 * weighted.transpose() * d_rotation,
       -2.0 * distance * normal.transpose(),
       2.0 * weighted.cwiseProduct(normal_in_object).transpose();
-  by_landmark.row(2) *= tangency_weight_;
-  WriteLandmarkJacobian<3>(blocks[0], by_landmark, jacobians[0]);
+  d_landmark.row(2) *= tangency_weight_;
+  WriteLandmarkJacobian<3>(blocks[0], d_landmark, jacobians[0]);
   return true;
 }
 

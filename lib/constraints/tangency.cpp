@@ -44,7 +44,7 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const T
   if (jacobian != nullptr) {
     const Eigen::Vector3d contact = rotation * support.contact;
     *jacobian << contact.cross(edge.plane).transpose(), edge.plane.transpose(),
-        support.by_log_half_axes.transpose();
+        support.d_log_half_axes.transpose();
     *jacobian *= weight;
     (*jacobian)[5] -= outside / depth.depth_m * depth.d_centre_depth;
     if (is_free) jacobian->setZero();

@@ -19,18 +19,18 @@ bool UprightOnPlaneResidual::Evaluate(double const* const* blocks, double* resid
       height_weight_ * (plane.SignedDistance(landmark.Centre()) - landmark.half_axes.z());
   if (jacobians == nullptr) return true;
   if (jacobians[0] != nullptr) {
-    Eigen::Matrix<double, 3, kLandmarkDof> by_landmark;
-    by_landmark.setZero();
-    by_landmark.topLeftCorner<2, 3>() =
+    Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
+    d_landmark.setZero();
+    d_landmark.topLeftCorner<2, 3>() =
         angle_weight_ * (object_from_world * Skew(plane.normal)).topRows<2>();
-    by_landmark.block<1, 3>(2, 3) = height_weight_ * plane.normal.transpose();
-    by_landmark(2, 8) = -height_weight_ * landmark.half_axes.z();
-    WriteLandmarkJacobian<3>(blocks[0], by_landmark, jacobians[0]);
+    d_landmark.block<1, 3>(2, 3) = height_weight_ * plane.normal.transpose();
+    d_landmark(2, 8) = -height_weight_ * landmark.half_axes.z();
+    WriteLandmarkJacobian<3>(blocks[0], d_landmark, jacobians[0]);
   }
   if (jacobians[1] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>> by_normal(jacobians[1]);
-    by_normal.topRows<2>() = side_ * angle_weight_ * object_from_world.topRows<2>();
-    by_normal.row(2) = side_ * height_weight_ * landmark.Centre().transpose();
+    Eigen::Map<Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>> d_normal(jacobians[1]);
+    d_normal.topRows<2>() = side_ * angle_weight_ * object_from_world.topRows<2>();
+    d_normal.row(2) = side_ * height_weight_ * landmark.Centre().transpose();
   }
   if (jacobians[2] != nullptr) {
     Eigen::Map<Eigen::Vector3d>(jacobians[2]) << 0.0, 0.0, height_weight_;

@@ -1,26 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/body_in_camera.h"
 
-#include "base/wide_loops.h"
-
 namespace soslam {
-namespace {
-
-// Rotates the rays (x, y, 1) into the object frame.
-SOSLAM_MULTIVERSION void TurnBack(const Eigen::Matrix3d& rotation, const double* x, const double* y,
-                                  BatchOfVectors* rays) {
-  for (int i = 0; i < 3; ++i) {
-    const double by_x = rotation(0, i), by_y = rotation(1, i), by_z = rotation(2, i);
-    for (int at = 0; at < kBatchSize; at += 4) {
-      Four four_x, four_y;
-      Load(x + at, &four_x);
-      Load(y + at, &four_y);
-      Store(by_x * four_x + by_y * four_y + by_z, (*rays)[i].data() + at);
-    }
-  }
-}
-
-}  // namespace
 
 BodyInCamera::BodyInCamera(const Landmark& landmark_in_camera)
     : rotation(landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
@@ -29,7 +10,11 @@ BodyInCamera::BodyInCamera(const Landmark& landmark_in_camera)
       surface(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent) {}
 
 void BodyInCamera::Meet(const double* x, const double* y, RayBatch* rays) const {
-  TurnBack(rotation, x, y, &rays->direction);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Map<const Batch> along_x(x), along_y(y);
+    rays->direction[static_cast<size_t>(i)] =
+        rotation(0, i) * along_x + rotation(1, i) * along_y + rotation(2, i);
+  }
   surface.Meet(camera_in_object, rays);
 }
 

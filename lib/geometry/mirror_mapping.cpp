@@ -58,11 +58,11 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
   point.in_object = camera_in_object_ + depth * ray;
   if (with_jacobian) {
     // The plane normal . x = 1 moves with the contact point and the half axes.
-    const Eigen::Vector3d by_contact =
-        surface_.GradientByPoint(contact.in_object).cwiseProduct(point.in_object);
+    const Eigen::Vector3d d_contact =
+        surface_.GradientDerivatives(contact.in_object).cwiseProduct(point.in_object);
     point.jacobian = FixedPointJacobian(point.in_object);
     LandmarkJacobian1 plane =
-        normal.transpose() * point.jacobian + by_contact.transpose() * contact.jacobian;
+        normal.transpose() * point.jacobian + d_contact.transpose() * contact.jacobian;
     plane.tail<3>() -=
         surface_.GradientByLogHalfAxes() * normal.cwiseProduct(point.in_object).transpose();
     point.jacobian -= ray * (plane / slope);

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <tuple>
 
-#include "base/wide_loops.h"
+#include "base/simd.h"
 #include "geometry/body_in_camera.h"
 #include "geometry/support_function.h"
 
@@ -108,7 +108,7 @@ using ThreeEights = std::array<Eights, 3>;
 struct RaysInBall {
   ThreeEights direction;
   Eights squared;           // squared length of the direction
-  Eights by_squared;        // 1 / squared
+  Eights inverse_squared;   // 1 / squared
   Eights depth_of_closest;  // depth of the point that is closest to the centre
   Eights length_in_camera;  // squared length of the direction in the camera frame
 };
@@ -132,8 +132,8 @@ SOSLAM_FORCE_INLINE void TurnToBall(const UnitBall& ball, const double* rays_x,
       rays->direction[k][i] = direction;
     }
     rays->squared[i] = squared;
-    rays->by_squared[i] = 1.0F / squared;
-    rays->depth_of_closest[i] = -along * rays->by_squared[i];
+    rays->inverse_squared[i] = 1.0F / squared;
+    rays->depth_of_closest[i] = -along * rays->inverse_squared[i];
     rays->length_in_camera[i] = x * x + y * y + 1.0F;
   }
 }
@@ -158,7 +158,7 @@ SOSLAM_FORCE_INLINE void MeetBall(const UnitBall& ball, const RaysInBall& rays,
       points->mirror_image[k][i] = closest;
     }
     points->squared_half_chord[i] = squared_half_chord;
-    SquareRoot(squared_half_chord * rays.by_squared[i], &points->half_chord[i]);
+    SquareRoot(squared_half_chord * rays.inverse_squared[i], &points->half_chord[i]);
   }
   for (size_t i = 0; i < rays.squared.size(); ++i) {
     points->exist[i] = rays.depth_of_closest[i] > points->half_chord[i];

@@ -26,7 +26,7 @@ Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double shape_e
 
 }  // namespace
 
-Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm) {
+Eigen::Array3d NormDerivatives(const Eigen::Array3d& u, double p, double* norm) {
   if (p == kCuboidExponent) {
     *norm = u.sum();
     return Eigen::Array3d::Ones();
@@ -51,12 +51,11 @@ SupportValue SupportFunction(const Eigen::Vector3d& half_axes, double shape_expo
   if (!(u.maxCoeff() > 0.0)) return NoExtent();
 
   SupportValue value;
-  const Eigen::Array3d by_u = NormByComponents(u, p, &value.extent);
-  value.by_log_half_axes = by_u * u;
+  const Eigen::Array3d d_u = NormDerivatives(u, p, &value.extent);
+  value.d_log_half_axes = d_u * u;
   // d u_i / d m_j = s_i (m_i [i = j] + e^2 m_j) / rounded_i; rounded is nowhere zero for p < 2
-  const Eigen::Array3d by_squares = by_u * half_axes.array() / rounded;
-  value.contact =
-      (by_squares + by_squares.sum() * SquaredRounding(p)) * direction_in_object.array();
+  const Eigen::Array3d d_squares = d_u * half_axes.array() / rounded;
+  value.contact = (d_squares + d_squares.sum() * SquaredRounding(p)) * direction_in_object.array();
   return value;
 }
 
@@ -77,7 +76,7 @@ Eigen::Matrix3d SupportHessian(const Eigen::Vector3d& half_axes, double shape_ex
       hessian(i, i) += half_axes[i] * half_axes[i] / value.extent;
       continue;
     }
-    const double share = value.by_log_half_axes[i] / squared;
+    const double share = value.d_log_half_axes[i] / squared;
     const Eigen::Vector3d g = m[i] * Eigen::Vector3d::Unit(i) + rounding * m;
     hessian.diagonal().array() += share * rounding;
     hessian(i, i) += share;

@@ -18,9 +18,9 @@ inline constexpr double kEllipsoidExponent = 2.0;
 // convex and homogeneous, hence the support function of a body whose edges are rounded by a
 // thousandth of its size.
 struct SupportValue {
-  double extent;                     // h, in metres where |m| = 1
-  Eigen::Vector3d contact;           // dh / dm: the support point
-  Eigen::Vector3d by_log_half_axes;  // dh / d log (a, b, c)
+  double extent;                    // h, in metres where |m| = 1
+  Eigen::Vector3d contact;          // dh / dm: the support point
+  Eigen::Vector3d d_log_half_axes;  // dh / d log (a, b, c)
 };
 inline constexpr double kEdgeRounding = 1e-3;
 constexpr double SquaredRounding(double shape_exponent) {  // e^2
@@ -38,6 +38,6 @@ Eigen::Matrix3d SupportHessian(const Eigen::Vector3d& half_axes, double shape_ex
                                const Eigen::Vector3d& direction_in_object);
 
 // The derivatives d h / d u_i = (u_i / h)^(p - 1) of the norm h = || u ||_p; u >= 0, not zero.
-Eigen::Array3d NormByComponents(const Eigen::Array3d& u, double p, double* norm);
+Eigen::Array3d NormDerivatives(const Eigen::Array3d& u, double p, double* norm);
 
 }  // namespace soslam

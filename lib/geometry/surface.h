@@ -11,8 +11,7 @@ namespace soslam {
 // Rays from one origin, and their first intersections with a surface.
 struct RayBatch {
   BatchOfVectors direction;
-  Batch
-      depth;  // point = origin + depth * direction; not positive (maybe NaN) for a ray that misses
+  Batch depth;  // point = origin + depth * direction; -1 for a ray that misses
   BatchOfVectors point;
   BatchOfVectors gradient;  // see BodySurface::Gradient
 };
@@ -42,7 +41,7 @@ class BodySurface {
   // Derivatives of Gradient: d gradient_i / d x_i (mixed ones are 0 on the surface up to a multiple
   // of the gradient, which leaves the tangent plane gradient . x = 1 unchanged), and the factor k
   // of d gradient_i / d log s_i = -k gradient_i, s the half axes.
-  Eigen::Vector3d GradientByPoint(const Eigen::Vector3d& point) const;
+  Eigen::Vector3d GradientDerivatives(const Eigen::Vector3d& point) const;
   double GradientByLogHalfAxes() const { return is_cuboid_ ? 1.0 : q_; }
 
  private:

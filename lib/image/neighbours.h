@@ -8,7 +8,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "base/wide_loops.h"
+#include "base/simd.h"
 #include "geometry/batch.h"
 
 namespace soslam {
@@ -45,8 +45,8 @@ class Neighbours {
   std::vector<float> values_;
 };
 
-// Position of each pixel of a batch between the pixel centres of a map, like Cells of
-// sample_batch.h.
+// Position of each pixel of a batch between the pixel centres of a map. All pixels are located
+// before any is looked up: alternating would make the processor wait for each lookup.
 struct CellsOfEight {
   static constexpr size_t kCount = kBatchSize / 8;
 

@@ -6,9 +6,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "base/wide_loops.h"
-#include "image/sample_batch.h"
-
 namespace soslam {
 namespace {
 
@@ -33,39 +30,6 @@ std::optional<Sample> SampleTyped(const cv::Mat& map, const Eigen::Vector2d& pix
   return sample;
 }
 
-template <typename Scalar>
-SOSLAM_FORCE_INLINE void SampleBatch(const MapView<Scalar>& map, const BatchOfPixels& pixels,
-                                     Batch* values, BatchOfPixels* gradients) {
-  Cells cells;
-  for (int i = 0; i < kBatchSize; i += 4) {
-    Four x, y;
-    Load(pixels[0].data() + i, &x);
-    Load(pixels[1].data() + i, &y);
-    cells.Locate(map, x, y, i);
-  }
-  for (int i = 0; i < kBatchSize; i += 4) {
-    const SampleOfFour sample(map, cells, i);
-    Four value;
-    sample.Interpolate(&value);
-    Store(value, values->data() + i);
-    if (gradients == nullptr) continue;
-    Four by_x, by_y;
-    sample.Differentiate(&by_x, &by_y);
-    Store(by_x, (*gradients)[0].data() + i);
-    Store(by_y, (*gradients)[1].data() + i);
-  }
-}
-
-SOSLAM_MULTIVERSION void SampleBytes(const MapView<std::uint8_t>& map, const BatchOfPixels& pixels,
-                                     Batch* values, BatchOfPixels* gradients) {
-  SampleBatch(map, pixels, values, gradients);
-}
-
-SOSLAM_MULTIVERSION void SampleFloats(const MapView<float>& map, const BatchOfPixels& pixels,
-                                      Batch* values, BatchOfPixels* gradients) {
-  SampleBatch(map, pixels, values, gradients);
-}
-
 }  // namespace
 
 bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel) {  // false for NaN
@@ -82,14 +46,14 @@ std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& 
 }
 
 Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels, BatchOfPixels* gradients) {
-  CV_Assert(map.type() == CV_8UC1 || map.type() == CV_32FC1);
-  if (map.cols < 2 || map.rows < 2) {
-    if (gradients != nullptr) gradients->fill(Batch::Zero());
-    return Batch::Constant(kNone);
-  }
   Batch values;
-  map.type() == CV_8UC1 ? SampleBytes(MapView<std::uint8_t>(map), pixels, &values, gradients)
-                        : SampleFloats(MapView<float>(map), pixels, &values, gradients);
+  for (int i = 0; i < kBatchSize; ++i) {
+    const auto sample = SampleBilinear(map, {pixels[0][i], pixels[1][i]});
+    values[i] = sample ? sample->value : kNone;
+    if (gradients == nullptr) continue;
+    (*gradients)[0][i] = sample ? sample->gradient.x() : 0.0;
+    (*gradients)[1][i] = sample ? sample->gradient.y() : 0.0;
+  }
   return values;
 }
 

@@ -15,6 +15,24 @@ constexpr double kDepthTolerance = 1e-10;
 
 }  // namespace
 
+BoxOnGround::BoxOnGround(const std::array<BoxEdge, 4>& edges, const Rigid3d& camera_from_reference,
+                         const UprightGround& ground) {
+  Eigen::Matrix3d reference_from_ground;
+  reference_from_ground << ground.x, ground.y, ground.normal;
+  const Eigen::Matrix3d camera_from_ground =
+      camera_from_reference.rotation.toRotationMatrix() * reference_from_ground;
+  const Eigen::Vector3d origin = camera_from_reference * ground.origin;
+  for (int i = 0; i < 4; ++i) {
+    const BoxEdge& edge = edges[static_cast<size_t>(i)];
+    normals.row(i) = edge.plane.transpose() * camera_from_ground;
+    at_origin[i] = edge.plane.dot(origin);
+    sigma_px[i] = edge.sigma_px;
+    is_bound[i] = edge.is_bound ? 1.0 : 0.0;
+  }
+  optical_axis = camera_from_ground.row(2);
+  origin_depth = origin.z();
+}
+
 ClosedForm::ClosedForm(const UprightObservation& observation)
     : box_(observation.edges, Rigid3d(), UprightGround(observation.plane_in_camera)),
       proportions_(observation.prior.ratio.x(), observation.prior.ratio.y(), 1.0),
@@ -27,10 +45,10 @@ ClosedForm::ClosedForm(const UprightObservation& observation)
 }
 
 ClosedForm::HalfHeightCoefficients ClosedForm::CoefficientsAt(const Heading& heading) const {
-  const Eigen::Vector3d axis = heading.TurnedBack(box_.optical_axis);
+  const Eigen::Vector3d axis = heading.ToObjectFrame(box_.optical_axis);
   HalfHeightCoefficients coefficients;
   for (int edge = 0; edge < 4; ++edge) {
-    const Eigen::Vector3d normal = heading.TurnedBack(box_.normals.row(edge));
+    const Eigen::Vector3d normal = heading.ToObjectFrame(box_.normals.row(edge));
     const SupportValue support = SupportFunction(proportions_, shape_exponent_, normal);
     coefficients.residuals[edge] = normal.z() + support.extent;
     coefficients.tangent_depths[edge] = axis.z() + axis.dot(support.contact);

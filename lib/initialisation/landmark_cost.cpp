@@ -39,14 +39,12 @@ double ViewCost::Value(const Landmark& landmark_in_reference) const {
 void ViewCost::AddTo(const Landmark& landmark_in_reference, LandmarkModel* sum) const {
   LandmarkModel in_camera;
   in_camera_->AddTo(Transform(camera_from_reference_, landmark_in_reference), &in_camera);
-  const LandmarkModel model =
-      in_camera.Chained(LandmarkInCameraBy(camera_from_reference_.rotation.toRotationMatrix()));
-  sum->cost += weight_ * model.cost;
-  sum->gradient += weight_ * model.gradient;
-  sum->information += weight_ * model.information;
+  sum->Add(in_camera.Chained(
+               LandmarkInCameraJacobian(camera_from_reference_.rotation.toRotationMatrix())),
+           weight_);
 }
 
-Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> LandmarkInCameraBy(
+Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> LandmarkInCameraJacobian(
     const Eigen::Matrix3d& rotation_camera_from_reference) {
   Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> jacobian;
   jacobian.setIdentity();

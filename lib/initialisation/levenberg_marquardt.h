@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
-
-#include "initialisation/quadratic_model.h"
+#include <optional>
 
 namespace soslam {
 
@@ -15,85 +15,58 @@ inline constexpr double kNegligibleDecrease = 1e-11;
 // the steps oscillate with decreasing length, and would take most of the time.
 inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
 
-namespace levenberg_marquardt {
+struct LevenbergMarquardtOptions {
+  int max_iterations = 50;
+  double negligible_decrease = kNegligibleDecrease;
+};
 
-// The damping multiplies the diagonal of the information, or kMinDiagonal for parameters with
-// almost no influence. It grows by a factor that doubles with each failed step, and falls with
-// successful steps.
-inline constexpr double kFirstDamping = 1e-4;
-inline constexpr double kMaxDamping = 1e16;
-inline constexpr double kMinDiagonal = 1e-6;
-inline constexpr double kGrowth = 2.0;
-inline constexpr double kLeastFall = 1.0 / 3.0;
-
-}  // namespace levenberg_marquardt
-
-// Solves A x = -b by A = L D L^T, which needs no square roots and takes half the time of Eigen::LLT
-// at size 6. Reads the lower triangle of A. Returns false if A is not positive definite.
-template <int kSize>
-bool SolveForNegative(Eigen::Matrix<double, kSize, kSize> a,
-                      const Eigen::Matrix<double, kSize, 1>& b,
-                      Eigen::Matrix<double, kSize, 1>* x) {
-  Eigen::Matrix<double, kSize, 1>& solution = *x;
-  Eigen::Matrix<double, kSize, 1> inverse_d;
-  solution = -b;
-  for (int j = 0; j < kSize; ++j) {
-    if (!(a(j, j) > 0.0)) return false;
-    inverse_d[j] = 1.0 / a(j, j);
-    // Updating whole columns takes no longer than updating the part below the diagonal.
-    for (int k = j + 1; k < kSize; ++k) a.col(k) -= a(k, j) * inverse_d[j] * a.col(j);
-    const double share = solution[j] * inverse_d[j];
-    for (int i = j + 1; i < kSize; ++i) solution[i] -= share * a(i, j);
-  }
-  for (int j = kSize - 1; j >= 0; --j) {
-    for (int i = j + 1; i < kSize; ++i) solution[j] -= a(i, j) * solution[i];
-    solution[j] *= inverse_d[j];
-  }
-  return true;
-}
-
-// Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen, Tingleff: Methods for non-linear
-// least squares problems, 2004, section 3.2). `evaluate` returns the QuadraticModel at given
-// parameters. Ends if the predicted decrease, relative to 1 + cost, is negligible, after
-// `max_iterations`, or if no step lowers the cost. Parameters without influence are not changed.
-// Returns the cost at the final parameters: not finite if it is not finite at the start.
-template <int kSize, typename Evaluate>
-double MinimiseSquares(Evaluate evaluate, int max_iterations,
-                       Eigen::Matrix<double, kSize, 1>* parameters,
-                       double negligible_decrease = kNegligibleDecrease) {
-  using namespace levenberg_marquardt;
-  QuadraticModel<kSize> at = evaluate(*parameters);
-  double damping = kFirstDamping;
-  double growth = kGrowth;
-  for (int i = 0; i < max_iterations && damping < kMaxDamping; ++i) {
-    const Eigen::Matrix<double, kSize, 1> weights =
-        damping * at.information.diagonal().cwiseMax(kMinDiagonal);
-    typename QuadraticModel<kSize>::Matrix damped = at.information;
+// Least squares over a few unknowns, by Levenberg-Marquardt with Nielsen's damping (Madsen,
+// Nielsen, Tingleff: Methods for non-linear least squares problems, 2004, section 3.2). The damping
+// multiplies the diagonal of the information, or 1e-6 for unknowns with almost no influence.
+//
+// `linearise(state)` returns cost, gradient and information (see QuadraticModel) about a state;
+// `plus(state, step)` the state after a step, none if there is none. Ends if the predicted decrease
+// is negligible, after max_iterations, or if no step lowers the cost. Returns the QuadraticModel at
+// the final state: its cost is not finite if it is not at the initial one.
+template <typename State, typename Linearise, typename Plus>
+auto MinimiseSquares(const Linearise& linearise, const Plus& plus,
+                     const LevenbergMarquardtOptions& options, State* state) {
+  constexpr double kMinDiagonal = 1e-6;
+  constexpr double kMaxDamping = 1e16;
+  auto at = linearise(*state);
+  using Vector = decltype(at.gradient);
+  using Matrix = decltype(at.information);
+  double damping = 1e-4;
+  double growth = 2.0;  // of the damping; doubles with each failed step
+  for (int i = 0; i < options.max_iterations && damping < kMaxDamping; ++i) {
+    const Vector weights = damping * at.information.diagonal().cwiseMax(kMinDiagonal);
+    Matrix damped = at.information;
     damped.diagonal() += weights;
-    Eigen::Matrix<double, kSize, 1> step;
-    if (!SolveForNegative(damped, at.gradient, &step)) {
-      damping *= growth;
-      growth *= 2.0;
-      continue;
+    const Eigen::LLT<Matrix> factor(damped);
+    double gain_ratio = 0.0;
+    if (factor.info() == Eigen::Success) {
+      const Vector step = -factor.solve(at.gradient);
+      const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
+      if (!(decrease > options.negligible_decrease * (1.0 + at.cost))) break;
+      if (std::optional<State> moved = plus(*state, step)) {
+        auto there = linearise(*moved);
+        gain_ratio = (at.cost - there.cost) / decrease;
+        if (gain_ratio > 0.0) {
+          *state = std::move(*moved);
+          at = there;
+        }
+      }
     }
-    // Predicted decrease of the undamped quadratic model.
-    const double decrease = 0.5 * step.dot(weights.cwiseProduct(step) - at.gradient);
-    if (!(decrease > negligible_decrease * (1.0 + at.cost))) break;
-    const Eigen::Matrix<double, kSize, 1> moved = *parameters + step;
-    const QuadraticModel<kSize> there = evaluate(moved);
-    const double gain = (at.cost - there.cost) / decrease;
-    if (gain > 0.0) {
-      *parameters = moved;
-      at = there;
-      const double surprise = 2.0 * gain - 1.0;
-      damping *= std::max(kLeastFall, 1.0 - surprise * surprise * surprise);
-      growth = kGrowth;
+    if (gain_ratio > 0.0) {
+      const double surprise = 2.0 * gain_ratio - 1.0;
+      damping *= std::max(1.0 / 3.0, 1.0 - surprise * surprise * surprise);
+      growth = 2.0;
     } else {
       damping *= growth;
       growth *= 2.0;
     }
   }
-  return at.cost;
+  return at;
 }
 
 }  // namespace soslam

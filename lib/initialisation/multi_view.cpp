@@ -8,8 +8,7 @@
 #include <numbers>
 
 #include "constraints/loss.h"
-#include "initialisation/box_on_ground.h"
-#include "initialisation/ratio_rows.h"
+#include "initialisation/landmark_terms.h"
 #include "initialisation/view_weights.h"
 #include "initialisation/yaw_sweep.h"
 
@@ -110,187 +109,6 @@ Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
   return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
 }
 
-// Least squares solver over the views of an observation in the ground frame, where a yaw is a
-// rotation about z.
-class LinearViews {
- public:
-  explicit LinearViews(const MultiViewObservation& observation)
-      : observation_(observation), ground_(observation.plane_in_world) {
-    for (const BoxView& view : observation.views) {
-      boxes_.emplace_back(view.edges, view.camera_from_world, ground_);
-    }
-    if (HasRatio(observation)) ratio_.emplace(*observation.prior);
-    Start();
-  }
-
-  std::optional<UprightSolution> SolveAt(double yaw) const {
-    Body body = start_;
-    body.yaw = yaw;
-    body.heading = Heading(yaw);
-    for (int round = 0; round < kMaxRounds; ++round) {
-      const Eigen::Vector3d before = body.half_axes;
-      const bool is_first = round == 0;
-      if (!(observation_.height_is_free ? Step<6>(is_first, &body) : Step<5>(is_first, &body))) {
-        return std::nullopt;
-      }
-      if ((body.half_axes - before).norm() < kSettled * before.norm()) break;
-    }
-    for (const BoxOnGround& box : boxes_) {
-      const double reach = SupportOf(body, box.optical_axis).extent;
-      if (!(box.DepthOf(body.centre) > reach)) return std::nullopt;
-    }
-    const Landmark landmark = LandmarkOf(body);
-    return UprightSolution{landmark, Cost(body, landmark)};
-  }
-
- private:
-  struct Body {
-    Eigen::Vector3d centre;
-    Eigen::Vector3d half_axes;
-    double yaw = 0.0;
-    Heading heading;
-  };
-
-  // Initial guess at the point nearest to all rays, as high as the boxes.
-  void Start() {
-    const Eigen::Vector3d point = NearestToAllRays(observation_);
-    const Eigen::Vector3d from_origin = point - ground_.origin;
-    start_.centre = {from_origin.dot(ground_.x), from_origin.dot(ground_.y),
-                     from_origin.dot(ground_.normal)};
-    start_.half_axes.setOnes();
-    if (observation_.prior) start_.half_axes.head<2>() = observation_.prior->ratio;
-    double sum = 0.0;
-    for (const BoxView& view : observation_.views) {
-      const double depth = (view.camera_from_world * point).z();
-      sum += 0.5 * std::abs(depth) * HeightAtUnitDepth(view);
-    }
-    start_.half_axes *= sum / static_cast<double>(observation_.views.size());
-  }
-
-  Landmark LandmarkOf(const Body& body) const {
-    UprightVector parameters;
-    parameters << body.yaw, body.centre.head<2>(), body.half_axes.array().log().matrix();
-    Landmark landmark = ground_.LandmarkAt(parameters, observation_.ShapeExponent());
-    landmark.frame_from_object.translation +=
-        (body.centre.z() - body.half_axes.z()) * ground_.normal;
-    return landmark;
-  }
-
-  // Support function of the object; `direction` in the ground frame.
-  SupportValue SupportOf(const Body& body, const Eigen::Vector3d& direction) const {
-    return SupportFunction(body.half_axes, observation_.ShapeExponent(),
-                           body.heading.TurnedBack(direction));
-  }
-
-  template <int kUnknowns>
-  bool Step(bool is_first, Body* body) const {
-    LinearSystem<kUnknowns> system;
-    for (size_t i = 0; i < boxes_.size(); ++i) {
-      const double weight = observation_.views[i].weight;
-      for (int edge = 0; edge < 4; ++edge) {
-        AddEdge(boxes_[i], edge, weight, *body, is_first, &system);
-      }
-    }
-    if (ratio_) AddRatio(*body, &system);
-    if (HasSize(observation_)) AddSize(*body, &system);
-    // Later rounds reweight, drop and add edges; Solve rejects systems that become singular.
-    if (is_first && !system.KnowsAllDirections()) return false;
-    const auto unknowns = system.Solve();
-    if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;
-    body->half_axes = unknowns->template segment<3>(2);
-    const double height = kUnknowns == 6 ? (*unknowns)(kUnknowns - 1) : 0.0;
-    body->centre = {(*unknowns)(0), (*unknowns)(1), (*unknowns)(4) + height};
-    return true;
-  }
-
-  // Signed distance by which the object reaches outside an edge, as Tangency, with the tangent
-  // point at its own depth, in the first round at that of the centre.
-  struct Contact {
-    SupportValue support;
-    double depth_m;
-    double excess;  // px / sigma
-  };
-  Contact Touch(const BoxOnGround& box, int edge, const Body& body, bool is_first) const {
-    const Eigen::Vector3d normal = box.normals.row(edge);
-    Contact contact{SupportOf(body, normal), box.DepthOf(body.centre), 0.0};
-    if (!is_first) {
-      contact.depth_m += body.heading.TurnedBack(box.optical_axis).dot(contact.support.contact);
-    }
-    const double outside = box.at_origin[edge] + normal.dot(body.centre) + contact.support.extent;
-    contact.excess = outside / (contact.depth_m * box.sigma_px[edge]);
-    return contact;
-  }
-
-  template <int kUnknowns>
-  void AddEdge(const BoxOnGround& box, int edge, double weight, const Body& body, bool is_first,
-               LinearSystem<kUnknowns>* system) const {
-    const Contact contact = Touch(box, edge, body, is_first);
-    if (!(contact.depth_m > 0.0)) return;
-    // The initial guess is too rough to decide which bounds are active and which edges are
-    // outliers.
-    if (box.is_bound[edge] != 0.0 && (is_first || contact.excess >= 0.0)) return;
-    const double size = std::abs(contact.excess);
-    const double robust =
-        is_first ? 1.0 : EvaluateLoss(ceres::HuberLoss(observation_.huber_delta), size).weight;
-    const Eigen::RowVector3d normal = box.normals.row(edge);
-    typename LinearSystem<kUnknowns>::Row row;
-    row.template head<2>() = normal.head<2>();
-    row.template segment<3>(2) = contact.support.by_log_half_axes.cwiseQuotient(body.half_axes);
-    row(4) += normal.z();
-    if (kUnknowns == 6) row(kUnknowns - 1) = normal.z();
-    const double scale = 1.0 / (contact.depth_m * box.sigma_px[edge]);
-    system->Add(scale * row, scale * box.at_origin[edge], weight * robust);
-  }
-
-  // RatioTerm to first order about the object of this height with the prior's ratios. There both
-  // residuals are zero, and a derivative by a half axis is that by its logarithm divided by the
-  // half axis.
-  template <int kUnknowns>
-  void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
-    const Eigen::Vector3d of_prior = body.half_axes.z() * observation_.prior->ratio.homogeneous();
-    for (int i = 0; i < 2; ++i) {
-      typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
-      row.template segment<3>(2) =
-          ratio_->by_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
-      system->Add(row, 0.0, 1.0);
-    }
-  }
-
-  // HeightTerm to first order about the previous height.
-  template <int kUnknowns>
-  void AddSize(const Body& body, LinearSystem<kUnknowns>* system) const {
-    const LogNormal& height_m = *observation_.prior->height_m;
-    const double before = body.half_axes.z();
-    typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
-    row(4) = 1.0 / (height_m.log_sigma * before);
-    system->Add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
-  }
-
-  double Cost(const Body& body, const Landmark& landmark) const {
-    const ceres::HuberLoss loss(observation_.huber_delta);
-    double cost = 0.0;
-    for (size_t i = 0; i < boxes_.size(); ++i) {
-      for (int edge = 0; edge < 4; ++edge) {
-        const double excess = Touch(boxes_[i], edge, body, /*is_first=*/false).excess;
-        const double size =
-            boxes_[i].is_bound[edge] != 0.0 ? std::max(0.0, -excess) : std::abs(excess);
-        cost += observation_.views[i].weight * EvaluateLoss(loss, size).cost;
-      }
-    }
-    if (ratio_) {
-      cost += 0.5 * ratio_->Residuals(body.half_axes.array().log()).squaredNorm();
-    }
-    if (HasSize(observation_)) cost += HeightTerm(*observation_.prior->height_m).Value(landmark);
-    return cost;
-  }
-
-  const MultiViewObservation& observation_;
-  UprightGround ground_;
-  std::vector<BoxOnGround> boxes_;  // one per view
-  std::optional<RatioRows> ratio_;
-  Body start_;
-};
-
 // Costs that do not depend on the boxes.
 LandmarkCosts PriorTerms(const MultiViewObservation& observation) {
   LandmarkCosts terms;
@@ -309,6 +127,161 @@ std::unique_ptr<const LandmarkTerm> TermOfView(const MultiViewObservation& obser
   return std::make_unique<RobustViewTerm>(std::move(box), view.camera_from_world,
                                           observation.huber_delta, view.weight);
 }
+
+// Gauss-Newton over the views of an observation, in the foot and the half axes at a fixed yaw.
+class LinearViews {
+ public:
+  explicit LinearViews(const MultiViewObservation& observation)
+      : observation_(observation), ground_(observation.plane_in_world) {
+    if (HasRatio(observation)) ratio_.emplace(*observation.prior);
+    Start();
+  }
+
+  std::optional<UprightSolution> SolveAt(double yaw) const {
+    Body body = start_;
+    body.yaw = yaw;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const Eigen::Vector3d before = body.half_axes;
+      const bool is_first = round == 0;
+      if (!(observation_.height_is_free ? Step<6>(is_first, &body) : Step<5>(is_first, &body))) {
+        return std::nullopt;
+      }
+      if ((body.half_axes - before).norm() < kSettled * before.norm()) break;
+    }
+    const Landmark landmark = LandmarkOf(body);
+    for (const BoxView& view : observation_.views) {
+      if (!IsInFront(Transform(view.camera_from_world, landmark))) return std::nullopt;
+    }
+    return UprightSolution{landmark, Cost(landmark)};
+  }
+
+ private:
+  struct Body {
+    double yaw = 0.0;
+    Eigen::Vector2d foot;       // on the ground's x and y, m
+    double height_m = 0.0;      // of the foot over the plane
+    Eigen::Vector3d half_axes;  // m
+  };
+
+  // Initial guess at the point nearest to all rays, as high as the boxes.
+  void Start() {
+    const Eigen::Vector3d point = NearestToAllRays(observation_);
+    const Eigen::Vector3d from_origin = point - ground_.origin;
+    start_.foot = {from_origin.dot(ground_.x), from_origin.dot(ground_.y)};
+    start_.half_axes.setOnes();
+    if (observation_.prior) start_.half_axes.head<2>() = observation_.prior->ratio;
+    double sum = 0.0;
+    for (const BoxView& view : observation_.views) {
+      const double depth = (view.camera_from_world * point).z();
+      sum += 0.5 * std::abs(depth) * HeightAtUnitDepth(view);
+    }
+    start_.half_axes *= sum / static_cast<double>(observation_.views.size());
+    start_.height_m = from_origin.dot(ground_.normal) - start_.half_axes.z();
+  }
+
+  Landmark LandmarkOf(const Body& body) const {
+    UprightVector parameters;
+    parameters << body.yaw, body.foot, body.half_axes.array().log().matrix();
+    Landmark landmark = ground_.LandmarkAt(parameters, observation_.ShapeExponent());
+    landmark.frame_from_object.translation += body.height_m * ground_.normal;
+    return landmark;
+  }
+
+  template <int kUnknowns>
+  bool Step(bool is_first, Body* body) const {
+    LinearSystem<kUnknowns> system;
+    const Landmark landmark = LandmarkOf(*body);
+    for (const BoxView& view : observation_.views)
+      AddView(view, landmark, *body, is_first, &system);
+    if (ratio_) AddRatio(*body, &system);
+    if (HasSize(observation_)) AddSize(*body, &system);
+    // Later rounds reweight, drop and add edges; Solve rejects systems that become singular.
+    if (is_first && !system.KnowsAllDirections()) return false;
+    const auto unknowns = system.Solve();
+    if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;
+    body->foot = unknowns->template head<2>();
+    body->half_axes = unknowns->template segment<3>(2);
+    body->height_m = kUnknowns == 6 ? (*unknowns)(kUnknowns - 1) : 0.0;
+    return true;
+  }
+
+  // Tangencies of a view's edges to first order about the body, whose tangent points are at their
+  // own depths, in the first round at that of the centre.
+  template <int kUnknowns>
+  void AddView(const BoxView& view, const Landmark& landmark_in_world, const Body& body,
+               bool is_first, LinearSystem<kUnknowns>* system) const {
+    using Row = typename LinearSystem<kUnknowns>::Row;
+    const Landmark landmark = Transform(view.camera_from_world, landmark_in_world);
+    const Eigen::Matrix3d world_from_camera =
+        view.camera_from_world.rotation.toRotationMatrix().transpose();
+    Row at;
+    at << body.foot, body.half_axes,
+        Eigen::Matrix<double, kUnknowns - 5, 1>::Constant(body.height_m);
+    for (const BoxEdge& edge : view.edges) {
+      // The initial guess is too rough to decide which bounds are active and which edges are
+      // outliers.
+      if (is_first && edge.is_bound) continue;
+      const TangentDepth depth =
+          is_first ? TangentDepth{landmark.Centre().z()} : FindTangentDepth(edge, landmark);
+      if (!(depth.depth_m > 0.0)) continue;
+      LandmarkJacobian1 d_landmark;
+      const double residual = Tangency(edge, landmark, depth, 0.0, &d_landmark);
+      const double robust =
+          is_first ? 1.0
+                   : EvaluateLoss(ceres::HuberLoss(observation_.huber_delta), residual).weight;
+      const Eigen::Vector3d d_centre = world_from_camera * d_landmark.segment<3>(3).transpose();
+      const double d_height = d_centre.dot(ground_.normal);
+      Row row;
+      row.template head<2>() << d_centre.dot(ground_.x), d_centre.dot(ground_.y);
+      row.template segment<3>(2) = d_landmark.tail<3>().transpose().cwiseQuotient(body.half_axes);
+      row(4) += d_height;
+      if (kUnknowns == 6) row(kUnknowns - 1) = d_height;
+      system->Add(row, residual - row.dot(at), view.weight * robust);
+    }
+  }
+
+  // RatioTerm to first order about the object of this height with the prior's ratios. There both
+  // residuals are zero, and a derivative by a half axis is that by its logarithm divided by the
+  // half axis.
+  template <int kUnknowns>
+  void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
+    const Eigen::Vector3d of_prior = body.half_axes.z() * observation_.prior->ratio.homogeneous();
+    for (int i = 0; i < 2; ++i) {
+      typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
+      row.template segment<3>(2) =
+          ratio_->d_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
+      system->Add(row, 0.0, 1.0);
+    }
+  }
+
+  // HeightTerm to first order about the previous height.
+  template <int kUnknowns>
+  void AddSize(const Body& body, LinearSystem<kUnknowns>* system) const {
+    const LogNormal& height_m = *observation_.prior->height_m;
+    const double before = body.half_axes.z();
+    typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
+    row(4) = 1.0 / (height_m.log_sigma * before);
+    system->Add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
+  }
+
+  // Without the preference of axes, which does not depend on foot and size.
+  double Cost(const Landmark& landmark) const {
+    double cost = 0.0;
+    for (const BoxView& view : observation_.views) {
+      const Landmark in_camera = Transform(view.camera_from_world, landmark);
+      cost += TermOfView(observation_, view, std::make_unique<BoxTerm>(view.edges, in_camera))
+                  ->Value(landmark);
+    }
+    if (ratio_) cost += RatioTerm(*observation_.prior).Value(landmark);
+    if (HasSize(observation_)) cost += HeightTerm(*observation_.prior->height_m).Value(landmark);
+    return cost;
+  }
+
+  const MultiViewObservation& observation_;
+  UprightGround ground_;
+  std::optional<RatioRows> ratio_;
+  Body start_;
+};
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "initialisation/landmark_terms.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright.h"
 #include "model/sequence.h"

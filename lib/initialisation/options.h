@@ -6,7 +6,7 @@
 #include "base/options.h"
 #include "constraints/variances.h"
 #include "initialisation/semantic_table.h"
-#include "initialisation/upright_options.h"
+#include "initialisation/upright_observation.h"
 #include "initialisation/yaw_prior.h"
 
 namespace soslam {

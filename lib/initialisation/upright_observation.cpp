@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/upright_observation.h"
 
-#include "initialisation/upright.h"
+#include <memory>
 
 namespace soslam {
 
@@ -14,6 +14,20 @@ UprightObservation MakeUprightObservation(const Sequence& sequence, const Detect
           prior,
           WorldAxisInCamera(sequence, detection),
           options.axes_weight};
+}
+
+LandmarkCosts ObservationTerms(const UprightObservation& observation,
+                               const Landmark& start_in_camera) {
+  const Plane& plane = observation.plane_in_camera;
+  LandmarkCosts terms;
+  terms.push_back(std::make_unique<BoxTerm>(observation.edges, start_in_camera));
+  terms.push_back(std::make_unique<RatioTerm>(observation.prior));
+  terms.push_back(
+      std::make_unique<AxisTerm>(plane, observation.world_axis_in_camera, observation.axes_weight));
+  if (observation.yaw_prior) {
+    terms.push_back(std::make_unique<YawTerm>(plane, *observation.yaw_prior));
+  }
+  return terms;
 }
 
 Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection) {

@@ -5,19 +5,32 @@
 #include <array>
 #include <optional>
 
+#include "base/options.h"
 #include "constraints/tangency.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
+#include "initialisation/landmark_terms.h"
 #include "initialisation/semantic_table.h"
-#include "initialisation/upright_options.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
-// Prior of an object's yaw (rad, see Yaw), modulo half a turn.
-struct YawPrior {
-  double yaw = 0.0;
-  double sigma = 1.0;  // standard deviation, rad
+// Options of the fit of an upright landmark to the box of one detection.
+struct UprightOptions {
+  double detection_sigma_fraction = 0.02;
+  double axes_weight = 1.0;
+  double yaw_grid_deg = 3.0;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Upright bodies (any shape, on a grid of yaws)");
+    visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
+               "standard deviation of a detector's box edge, as a fraction of the box's width or "
+               "height; at least 1 px");
+    visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
+               "cost (negative logarithm of a likelihood) of a yaw half-way between the world's "
+               "horizontal axes; 0 for objects that stand anyhow");
+    visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0}, "grid of the sweep over half a turn");
+  }
 };
 
 // One box of an object and its priors.
@@ -32,6 +45,11 @@ struct UprightObservation {
 };
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
                                           const ShapePrior& prior, const UprightOptions& options);
+
+// Costs of a landmark in the camera: box, with the tangent points at the depths that they have on
+// `start`, ratio, world axes and yaw prior.
+LandmarkCosts ObservationTerms(const UprightObservation& observation,
+                               const Landmark& start_in_camera);
 
 // A horizontal axis of the world at a detection's support plane: x, or y where x is vertical.
 Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection);

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "geometry/angles.h"
-#include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
 
 namespace soslam {
@@ -53,22 +53,28 @@ void AddInterval(const std::array<double, 2>& angles, const std::array<double, 2
 class Fitter {
  public:
   Fitter(const UprightObservation& observation, const YawObjective& objective)
-      : objective_(objective),
-        box_fit_(observation),
-        shape_exponent_(observation.prior.shape_exponent) {}
+      : observation_(observation), objective_(objective), ground_(observation.plane_in_camera) {}
 
-  // Repeats the fit with further costs that depend on their initial guess, each time made for the
-  // last result; the cost returned is that of the result with the costs made for it.
-  std::optional<UprightFit> Fit(UprightVector parameters, bool yaw_is_free) const {
-    double cost = 0.0;
+  // Repeats the fit, each time with costs made for the last result; the cost returned is that of
+  // the result with the costs made for it.
+  std::optional<UprightFit> Fit(const UprightVector& start, bool yaw_is_free) const {
+    UprightSolution at{LandmarkAt(start), 0.0};
     for (int round = 0; round < objective_.rounds; ++round) {
-      cost = box_fit_.Minimise(FurtherCosts(parameters), yaw_is_free, &parameters);
-      if (!IsPossible(cost, box_fit_.NearestDepth(parameters))) return std::nullopt;
+      LandmarkCosts costs = ObservationTerms(observation_, at.landmark);
+      std::ranges::move(FurtherCosts(at.landmark), std::back_inserter(costs));
+      const auto solution =
+          FitUpright(observation_.plane_in_camera, at.landmark, costs, yaw_is_free);
+      if (!solution || !IsInFront(solution->landmark)) return std::nullopt;
+      at = *solution;
     }
-    if (objective_.rounds == 1) return WithExtraCost({parameters, cost});
-    const double further_cost = TotalCost(FurtherCosts(parameters), LandmarkAt(parameters));
-    return WithExtraCost(
-        {parameters, box_fit_.CostAtOwnDepths(parameters) + further_cost, further_cost});
+    UprightFit fit{ground_.ParametersOf(at.landmark), at.cost};
+    if (objective_.rounds > 1) {
+      fit.further_cost = TotalCost(FurtherCosts(at.landmark), at.landmark);
+      fit.cost =
+          TotalCost(ObservationTerms(observation_, at.landmark), at.landmark) + fit.further_cost;
+    }
+    if (objective_.extra_cost) fit.cost += objective_.extra_cost(at.landmark);
+    return fit;
   }
 
   // Fits with the yaws of all starts fixed; none where there is no start or no landmark.
@@ -99,25 +105,17 @@ class Fitter {
   }
 
   Landmark LandmarkAt(const UprightVector& parameters) const {
-    return box_fit_.ground().LandmarkAt(parameters, shape_exponent_);
+    return ground_.LandmarkAt(parameters, observation_.prior.shape_exponent);
   }
 
  private:
-  // True for a finite cost and an object wholly in front of the camera.
-  static bool IsPossible(double cost, double nearest_depth_m) {
-    return std::isfinite(cost) && nearest_depth_m > 0.0;
-  }
-  UprightFit WithExtraCost(UprightFit fit) const {
-    if (objective_.extra_cost) fit.cost += objective_.extra_cost(LandmarkAt(fit.parameters));
-    return fit;
-  }
-  LandmarkCosts FurtherCosts(const UprightVector& start) const {
-    return objective_.further_costs ? objective_.further_costs(LandmarkAt(start)) : LandmarkCosts();
+  LandmarkCosts FurtherCosts(const Landmark& start) const {
+    return objective_.further_costs ? objective_.further_costs(start) : LandmarkCosts();
   }
 
+  const UprightObservation& observation_;
   const YawObjective& objective_;
-  BoxFit box_fit_;
-  double shape_exponent_;
+  UprightGround ground_;
 };
 
 }  // namespace

@@ -19,7 +19,7 @@
 #include "constraints/tangency.h"
 #include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
-#include "initialisation/landmark_term_residual.h"
+#include "initialisation/landmark_terms.h"
 #include "initialisation/view_weights.h"
 #include "mapping/image_residual.h"
 #include "orientation/symmetry_samples.h"

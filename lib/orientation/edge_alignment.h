@@ -6,9 +6,9 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
-#include "geometry/batch.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
+#include "geometry/mirror_mapping.h"
 #include "image/edge_maps.h"
 #include "initialisation/landmark_cost.h"
 #include "orientation/model_edges.h"
@@ -47,7 +47,7 @@ class EdgeTerm final : public LandmarkCost {
            const Landmark& start_in_camera, const EdgeOptions& options);
 
   // Number of points that are used.
-  int NumPoints() const { return num_points_; }
+  int NumPoints() const { return static_cast<int>(in_unit_body_.size()); }
   // Fraction of the largest possible cost that a landmark near the initial one avoids: 1 when all
   // its points lie on edges, 0 when none is near one.
   double Support(const Landmark& landmark_in_camera) const;
@@ -61,7 +61,9 @@ class EdgeTerm final : public LandmarkCost {
 
  private:
   bool Counts(const ModelPoint& point, const Landmark& start_in_camera) const;
-  void Keep(const std::vector<ModelPoint>& points);
+  // Residual (px) of a point of the body, and its derivative; the loss is included.
+  double Residual(const VisibleSurface& landmark, const Eigen::Vector3d& in_object,
+                  LandmarkJacobian1* jacobian) const;
   // Largest cost of one point.
   double LargestCost() const {
     return 0.5 * weight_ * options_.edge_truncation_px * options_.edge_truncation_px;
@@ -70,10 +72,8 @@ class EdgeTerm final : public LandmarkCost {
   std::shared_ptr<const EdgeImage> image_;
   Camera camera_;
   EdgeOptions options_;
-  double least_cosine_;  // cosine of edge_direction_tolerance_deg
-  std::vector<BatchOfVectors> in_unit_body_;
-  std::vector<Batch> is_point_;  // 1 for points, 0 for the padding of the last batch
-  int num_points_ = 0;
+  double least_cosine_;                        // cosine of edge_direction_tolerance_deg
+  std::vector<Eigen::Vector3d> in_unit_body_;  // points that are used
   double points_that_do_not_count_ = 0.0;
   double weight_;  // of a squared distance in px^2
 };

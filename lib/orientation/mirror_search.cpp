@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "base/wide_loops.h"
+#include "base/simd.h"
 #include "image/neighbours.h"
 #include "image/sample_bilinear.h"
 

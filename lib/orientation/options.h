@@ -5,7 +5,7 @@
 
 #include "base/options.h"
 #include "initialisation/semantic_table.h"
-#include "initialisation/upright_options.h"
+#include "initialisation/upright_observation.h"
 #include "orientation/symmetry_options.h"
 
 namespace soslam {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "constraints/loss.h"
 #include "image/brief.h"
-#include "initialisation/residual_batch.h"
 #include "orientation/symmetry_samples.h"
 
 namespace soslam {
@@ -154,50 +154,38 @@ AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const C
                    .value_or(MirroredTexture())),
       scale_(Scale(start_in_camera, descriptor_, options)),
       weight_(2.0 * weight * options.asymmetry_cost /
-              static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {
-  if (!IsInAMap(descriptor_)) return;
-  const bool is_grey = descriptor_ == Descriptor::kGrey;
-  by_map_.emplace(is_grey ? image_->maps.grey : image_->maps.distance, is_grey ? 1.0 / 255.0 : 1.0,
-                  camera, texture_.pixels, texture_.mirror_plane, scale_);
+              static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {}
+
+double AsymmetryTerm::Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
+                               LandmarkJacobian1* jacobian) const {
+  const bool with_jacobian = jacobian != nullptr;
+  if (with_jacobian) jacobian->setZero();
+  const auto pair = descriptor.Evaluate(pixel, std::nullopt, with_jacobian, texture_.mirror_plane);
+  if (!pair) return 1.0;  // the limit for large differences
+  const RobustResidual robust = RobustifyResidual(GemanMcClureLoss(scale_), pair->residual);
+  if (with_jacobian) *jacobian = robust.slope / scale_ * pair->jacobian;
+  return robust.value / scale_;
 }
 
 double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
-  if (by_map_) return weight_ * by_map_->Value(landmark_in_camera);
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
   double sum = 0.0;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {
-    const auto pair = descriptor.Evaluate(pixel, std::nullopt, false, texture_.mirror_plane);
-    const double squared = pair ? pair->residual * pair->residual : 0.0;
-    sum += pair ? squared / (squared + scale_ * scale_) : 1.0;
+    const double residual = Residual(descriptor, pixel, nullptr);
+    sum += residual * residual;
   }
   return 0.5 * weight_ * sum;
 }
 
 void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
-  if (by_map_) {
-    by_map_->AddTo(landmark_in_camera, weight_, sum);
-    return;
-  }
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
-  const std::vector<Eigen::Vector2d>& pixels = texture_.pixels;
-  for (size_t first = 0; first < pixels.size(); first += kBatchSize) {
-    ResidualBatch batch = ResidualBatch::Zero();
-    const size_t count = std::min<size_t>(kBatchSize, pixels.size() - first);
-    for (size_t i = 0; i < count; ++i) {
-      const auto pair =
-          descriptor.Evaluate(pixels[first + i], std::nullopt, true, texture_.mirror_plane);
-      // d / sqrt(d^2 + s^2)
-      const double norm = pair ? std::hypot(pair->residual, scale_) : 1.0;
-      const auto place = static_cast<Eigen::Index>(i);
-      batch.residual[place] = pair ? pair->residual / norm : 1.0;
-      if (!pair) continue;
-      const double slope = scale_ * scale_ / (norm * norm * norm);
-      for (size_t k = 0; k < kLandmarkDof; ++k) {
-        batch.by_landmark[k][place] = slope * pair->jacobian[static_cast<Eigen::Index>(k)];
-      }
-    }
-    batch.AddTo(weight_, sum);
+  LandmarkModel unweighted;
+  for (const Eigen::Vector2d& pixel : texture_.pixels) {
+    LandmarkJacobian1 jacobian;
+    const double residual = Residual(descriptor, pixel, &jacobian);
+    unweighted.Add(residual, jacobian.transpose());
   }
+  sum->Add(unweighted, weight_);
 }
 
 }  // namespace soslam

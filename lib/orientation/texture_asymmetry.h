@@ -9,7 +9,6 @@
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
 #include "initialisation/landmark_cost.h"
-#include "orientation/mirror_residuals.h"
 #include "orientation/mirror_search.h"
 #include "orientation/options.h"
 #include "orientation/symmetry_options.h"
@@ -75,13 +74,16 @@ class AsymmetryTerm final : public LandmarkCost {
   bool HasKinks() const override { return true; }
 
  private:
+  // Residual of a pair, and its derivative; the loss is included.
+  double Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
+                  LandmarkJacobian1* jacobian) const;
+
   std::shared_ptr<const SymmetryImage> image_;
   Camera camera_;
   Descriptor descriptor_;
   MirroredTexture texture_;
-  double scale_;                           // s
-  double weight_;                          // of one pair
-  std::optional<MirrorResiduals> by_map_;  // only if the descriptor is a map's value
+  double scale_;   // s
+  double weight_;  // of one pair
 };
 
 }  // namespace soslam

@@ -99,13 +99,12 @@ double CostAt(const PlaneEvidence& evidence, const Eigen::Vector2d& tilt) {
 }  // namespace
 
 PlaneEvidence WithHeightNoise(const PlaneEvidence& evidence, double height_sigma) {
-  const Eigen::Vector3d by_height = evidence.information.col(2);
+  const Eigen::Vector3d d_height = evidence.information.col(2);
   const double variance = height_sigma * height_sigma;
-  const double share = variance / (1.0 + variance * by_height.z());
+  const double share = variance / (1.0 + variance * d_height.z());
   const double slope = evidence.gradient.z();
-  return {evidence.cost - 0.5 * share * slope * slope,
-          evidence.gradient - share * slope * by_height,
-          evidence.information - share * by_height * by_height.transpose()};
+  return {evidence.cost - 0.5 * share * slope * slope, evidence.gradient - share * slope * d_height,
+          evidence.information - share * d_height * d_height.transpose()};
 }
 
 PlaneHeights ClusterPlaneHeights(const std::vector<PlaneEvidence>& evidence,

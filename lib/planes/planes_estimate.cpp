@@ -122,11 +122,11 @@ UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& flo
   const EstimatedPlane& floor = floors->planes.front();
   down.up_in_world = -floor.plane_in_world.normal;
   // Rotations about x move the normal by -y, those about y by x.
-  Eigen::Matrix<double, 3, 2> by_turns;
-  by_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
-  by_turns.col(1) = -floor.x_axis_in_world;
+  Eigen::Matrix<double, 3, 2> d_turns;
+  d_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
+  d_turns.col(1) = -floor.x_axis_in_world;
   down.information =
-      by_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * by_turns.transpose();
+      d_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * d_turns.transpose();
   return down;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "initialisation/levenberg_marquardt.h"
 #include "initialisation/upright.h"
 #include "planes/plane_heights.h"
 
@@ -24,15 +25,16 @@ Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMo
 }
 
 // d (nine parameters of kLandmarkDof) / d motion, at zero motion.
-Eigen::Matrix<double, kLandmarkDof, 3> ByMotion(const Plane& plane, const Eigen::Vector3d& pivot,
-                                                const Landmark& landmark) {
+Eigen::Matrix<double, kLandmarkDof, 3> MotionJacobian(const Plane& plane,
+                                                      const Eigen::Vector3d& pivot,
+                                                      const Landmark& landmark) {
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-  Eigen::Matrix<double, kLandmarkDof, 3> by_motion;
-  by_motion.setZero();
-  by_motion.topLeftCorner<3, 2>() = level.leftCols<2>();
-  by_motion.block<3, 2>(3, 0) = -Skew(landmark.Centre() - pivot) * level.leftCols<2>();
-  by_motion.block<3, 1>(3, 2) = plane.normal;
-  return by_motion;
+  Eigen::Matrix<double, kLandmarkDof, 3> d_motion;
+  d_motion.setZero();
+  d_motion.topLeftCorner<3, 2>() = level.leftCols<2>();
+  d_motion.block<3, 2>(3, 0) = -Skew(landmark.Centre() - pivot) * level.leftCols<2>();
+  d_motion.block<3, 1>(3, 2) = plane.normal;
+  return d_motion;
 }
 
 // Pseudo-inverse: zero on unobserved directions.
@@ -102,18 +104,18 @@ std::optional<StandingBody> FitOnPlane(StandingBody body) {
 
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot) {
   const Plane& plane = body.observation.plane_in_world;
-  const auto by_motion = ByMotion(plane, pivot, body.landmark);
-  const UprightJacobian by_upright = UprightGround(plane).ByParameters(body.landmark);
+  const auto d_motion = MotionJacobian(plane, pivot, body.landmark);
+  const UprightJacobian d_upright = UprightGround(plane).ParameterJacobian(body.landmark);
   LandmarkModel model;
   const LandmarkCosts outlines = OutlineTerms(body.observation);
   for (const auto& outline : outlines) outline->AddTo(body.landmark, &model);
-  const QuadraticModel<6> of_body = model.Chained(by_upright);
-  const Eigen::Matrix<double, 3, 6> mixed = by_motion.transpose() * model.information * by_upright;
+  const QuadraticModel<6> of_body = model.Chained(d_upright);
+  const Eigen::Matrix<double, 3, 6> mixed = d_motion.transpose() * model.information * d_upright;
   const Eigen::Matrix<double, 3, 6> follows = mixed * InverseOfKnown(of_body.information);
   PlaneEvidence evidence;
   evidence.cost = model.cost + ConstantCost(outlines);
-  evidence.gradient = by_motion.transpose() * model.gradient;
-  evidence.information = by_motion.transpose() * model.information * by_motion;
+  evidence.gradient = d_motion.transpose() * model.gradient;
+  evidence.information = d_motion.transpose() * model.information * d_motion;
   evidence.gradient -= follows * of_body.gradient;
   evidence.information -= follows * mixed.transpose();
   return evidence;
@@ -143,8 +145,7 @@ std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation
 namespace {
 
 constexpr int kMaxIterations = 60;
-constexpr double kSettledCost = 1e-9;  // relative
-constexpr double kMaxDamping = 1e8;
+constexpr double kNegligiblePlaneDecrease = 1e-9;
 
 // Quadratic approximation of the cost of all bodies and of the cameras' attitude, in the planes'
 // motions.
@@ -212,14 +213,13 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
 
 PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane) {
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-  Eigen::Matrix<double, 3, 2> normal_by_turns;  // t x n
-  normal_by_turns << -level.col(1), level.col(0);
-  const Eigen::Vector3d by_normal = attitude.information * plane.normal;
+  Eigen::Matrix<double, 3, 2> d_turns;  // t x n
+  d_turns << -level.col(1), level.col(0);
+  const Eigen::Vector3d d_normal = attitude.information * plane.normal;
   PlaneEvidence evidence;
-  evidence.cost = 0.5 * plane.normal.dot(by_normal);
-  evidence.gradient.head<2>() = normal_by_turns.transpose() * by_normal;
-  evidence.information.topLeftCorner<2, 2>() =
-      normal_by_turns.transpose() * attitude.information * normal_by_turns;
+  evidence.cost = 0.5 * plane.normal.dot(d_normal);
+  evidence.gradient.head<2>() = d_turns.transpose() * d_normal;
+  evidence.information.topLeftCorner<2, 2>() = d_turns.transpose() * attitude.information * d_turns;
   return evidence;
 }
 
@@ -243,24 +243,12 @@ std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads) {
   const auto start = Stepped(*standing, pivot, no_step, threads);
   if (!start) return std::nullopt;
   *standing = *start;
-  Quadratic quadratic = QuadraticOf(*standing, pivot);
-  double damping = 1e-4;
-  for (int i = 0; i < kMaxIterations && damping < kMaxDamping; ++i) {
-    Eigen::MatrixXd damped = quadratic.information;
-    damped.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd step = -damped.ldlt().solve(quadratic.gradient);
-    const auto stepped = step.allFinite() ? Stepped(*standing, pivot, step, threads) : std::nullopt;
-    const auto next = stepped ? std::optional(QuadraticOf(*stepped, pivot)) : std::nullopt;
-    if (!next || !(next->cost < quadratic.cost)) {
-      damping = 10.0 * std::max(damping, 1e-6);
-      continue;
-    }
-    const double gain = quadratic.cost - next->cost;
-    *standing = *stepped;
-    quadratic = *next;
-    damping *= 0.1;
-    if (gain < kSettledCost * quadratic.cost) break;
-  }
+  const auto linearise = [&](const StandingBodies& at) { return QuadraticOf(at, pivot); };
+  const auto plus = [&](const StandingBodies& at, const Eigen::VectorXd& step) {
+    return step.allFinite() ? Stepped(at, pivot, step, threads) : std::nullopt;
+  };
+  const Quadratic quadratic =
+      MinimiseSquares(linearise, plus, {kMaxIterations, kNegligiblePlaneDecrease}, standing);
   return RefinedPlanes{quadratic.cost, pivot, quadratic.information.inverse()};
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/direction_weights.h"
 #include "geometry/landmark.h"
@@ -84,13 +85,12 @@ std::vector<SegmentPlane> PlanesOf(const std::vector<SegmentView>& views, double
 class Verticals {
  public:
   Verticals(std::vector<SegmentPlane> planes, double sigma)
-      : planes_(std::move(planes)), bound_(kBound * kBound * sigma * sigma) {}
+      : planes_(std::move(planes)), loss_(kBound * sigma) {}
 
   double Cost(const Eigen::Vector3d& up) const {
     double cost = 0.0;
     for (const SegmentPlane& plane : planes_) {
-      const double square = std::pow(plane.normal_in_world.dot(up), 2);
-      cost += 0.5 * plane.weight * square * bound_ / (bound_ + square);
+      cost += plane.weight * EvaluateLoss(loss_, plane.normal_in_world.dot(up)).cost;
     }
     return cost;
   }
@@ -99,8 +99,7 @@ class Verticals {
   Eigen::Matrix3d Information(const Eigen::Vector3d& up) const {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (const SegmentPlane& plane : planes_) {
-      const double square = std::pow(plane.normal_in_world.dot(up), 2);
-      const double robust = std::pow(bound_ / (bound_ + square), 2);
+      const double robust = EvaluateLoss(loss_, plane.normal_in_world.dot(up)).weight;
       information +=
           robust * plane.weight * plane.normal_in_world * plane.normal_in_world.transpose();
     }
@@ -109,7 +108,7 @@ class Verticals {
 
  private:
   std::vector<SegmentPlane> planes_;
-  double bound_;
+  GemanMcClureLoss loss_;  // rad
 };
 
 }  // namespace

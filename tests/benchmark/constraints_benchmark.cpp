@@ -14,7 +14,7 @@
 #include "constraints/symmetry.h"
 #include "constraints/tangency.h"
 #include "constraints/upright_on_plane.h"
-#include "initialisation/landmark_term_residual.h"
+#include "initialisation/landmark_terms.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/texture_asymmetry.h"
 

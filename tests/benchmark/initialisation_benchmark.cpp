@@ -7,7 +7,6 @@
 
 #include "benchmark/inputs.h"
 #include "geometry/angles.h"
-#include "initialisation/box_fit.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/multi_view.h"
@@ -36,29 +35,18 @@ void SolveAtOneYaw(benchmark::State& state) {
 }
 BENCHMARK(SolveAtOneYaw)->Name("single_frame/closed_form");
 
-// Levenberg-Marquardt from there with the yaw fixed, as in the sweep.
-void FitAtOneYaw(benchmark::State& state) {
+// Levenberg-Marquardt from there with the yaw fixed, as in the sweep, or free, as at its optima.
+void Fit(benchmark::State& state, bool yaw_is_free) {
   const OneBox box;
-  const BoxFit fit(box.observation);
-  const UprightVector start = ClosedForm(box.observation).At(/*yaw=*/0.3)->parameters;
+  const Landmark start = *SolveAtYaw(box.observation, /*yaw=*/0.3);
+  const LandmarkCosts costs = ObservationTerms(box.observation, start);
   for (auto _ : state) {
-    UprightVector parameters = start;
-    benchmark::DoNotOptimize(fit.Minimise({}, /*yaw_is_free=*/false, &parameters));
+    benchmark::DoNotOptimize(
+        FitUpright(box.observation.plane_in_camera, start, costs, yaw_is_free));
   }
 }
-BENCHMARK(FitAtOneYaw)->Name("single_frame/fit_at_yaw");
-
-// The same with the yaw free, as at the sweep's optima.
-void Polish(benchmark::State& state) {
-  const OneBox box;
-  const BoxFit fit(box.observation);
-  const UprightVector start = fit.ground().ParametersOf(*SolveAtYaw(box.observation, /*yaw=*/0.3));
-  for (auto _ : state) {
-    UprightVector parameters = start;
-    benchmark::DoNotOptimize(fit.Minimise({}, /*yaw_is_free=*/true, &parameters));
-  }
-}
-BENCHMARK(Polish)->Name("single_frame/polish");
+BENCHMARK_CAPTURE(Fit, at_yaw, false)->Name("single_frame/fit_at_yaw");
+BENCHMARK_CAPTURE(Fit, polish, true)->Name("single_frame/polish");
 
 // Half a turn in steps of 3 degrees: both of the above, 60 times.
 void Sweep(benchmark::State& state) {

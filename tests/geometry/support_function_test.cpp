@@ -44,7 +44,7 @@ TEST(SupportFunction, DerivativesAgreeWithNumbers) {
           << p;
       const Eigen::Vector3d larger = half_axes.array() * step.array().exp();
       const Eigen::Vector3d smaller = half_axes.array() * (-step).array().exp();
-      EXPECT_NEAR(value.by_log_half_axes[k],
+      EXPECT_NEAR(value.d_log_half_axes[k],
                   (Extent(larger, p, direction) - Extent(smaller, p, direction)) / (2 * kStep),
                   1e-8)
           << p;
@@ -89,7 +89,7 @@ TEST(SupportFunction, TheContactReachesAsFarAsTheExtentInAnyDirection) {
     for (const Eigen::Vector3d& direction : {random.direction, Eigen::Vector3d(0, 0, -2)}) {
       const SupportValue value = SupportFunction(random.half_axes, random.p, direction);
       EXPECT_NEAR(value.contact.dot(direction), value.extent, 1e-12);
-      EXPECT_NEAR(value.by_log_half_axes.sum(), value.extent, 1e-12);  // homogeneous in the size
+      EXPECT_NEAR(value.d_log_half_axes.sum(), value.extent, 1e-12);  // homogeneous in the size
       // No point of the body reaches farther.
       const Eigen::Vector3d other = RandomDirection();
       EXPECT_LE(SupportFunction(random.half_axes, random.p, other).contact.dot(direction),

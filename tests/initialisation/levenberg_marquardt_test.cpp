@@ -5,40 +5,77 @@
 
 #include <limits>
 
+#include "initialisation/landmark_cost.h"
+
 namespace soslam {
 namespace {
 
-using Matrix = Eigen::Matrix<double, 6, 6>;
-using Vector = Eigen::Matrix<double, 6, 1>;
+using Model = QuadraticModel<2>;
 
-TEST(SolveForNegative, LeavesNothingOfTheRightHandSide) {
-  for (int i = 0; i < 100; ++i) {
-    const Matrix root = Matrix::Random();
-    const Matrix a = root * root.transpose() + 0.01 * Matrix::Identity();
-    const Vector b = Vector::Random();
-    Matrix lower = a;
-    lower.triangularView<Eigen::StrictlyUpper>().setConstant(
-        std::numeric_limits<double>::quiet_NaN());
-    Vector x;
-    ASSERT_TRUE(SolveForNegative(lower, b, &x));
-    EXPECT_LT((a * x + b).norm(), 1e-12 * (1.0 + a.norm() * x.norm()));
-  }
+std::optional<Eigen::Vector2d> Plus(const Eigen::Vector2d& at, const Eigen::Vector2d& step) {
+  return at + step;
 }
 
-TEST(SolveForNegative, RefusesWhatIsNotPositiveDefinite) {
-  const Vector b = Vector::Ones();
-  Vector x;
-  for (int i = 0; i < 6; ++i) {
-    const Matrix turn = Matrix::Random().householderQr().householderQ();
-    Vector values = Vector::LinSpaced(1.0, 2.0);
-    values[i] = -0.1;
-    EXPECT_FALSE(SolveForNegative(Matrix(turn * values.asDiagonal() * turn.transpose()), b, &x));
-    Matrix singular = Matrix::Identity();
-    singular(i, i) = 0.0;
-    EXPECT_FALSE(SolveForNegative(singular, b, &x));
-    singular(i, i) = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_FALSE(SolveForNegative(singular, b, &x));
-  }
+// Rosenbrock's valley as two residuals, 10 (y - x^2) and 1 - x.
+Model Rosenbrock(const Eigen::Vector2d& at) {
+  Model model;
+  model.Add(10.0 * (at.y() - at.x() * at.x()), {-20.0 * at.x(), 10.0});
+  model.Add(1.0 - at.x(), {-1.0, 0.0});
+  return model;
+}
+
+TEST(MinimiseSquares, FollowsACurvedValleyToItsMinimum) {
+  Eigen::Vector2d at(-1.2, 1.0);
+  const Model model = MinimiseSquares(Rosenbrock, Plus, {}, &at);
+  EXPECT_LT(model.cost, 1e-12);
+  EXPECT_LT((at - Eigen::Vector2d(1.0, 1.0)).norm(), 1e-4);
+}
+
+TEST(MinimiseSquares, StopsAfterItsIterations) {
+  Eigen::Vector2d at(-1.2, 1.0);
+  const double before = Rosenbrock(at).cost;
+  const Model one = MinimiseSquares(Rosenbrock, Plus, {.max_iterations = 1}, &at);
+  EXPECT_LE(one.cost, before);
+  EXPECT_GT(one.cost, 1e-3);
+}
+
+TEST(MinimiseSquares, LeavesUnknownsWithoutInfluenceAsTheyAre) {
+  const auto linearise = [](const Eigen::Vector2d& at) {
+    Model model;
+    model.Add(at.x() - 3.0, {1.0, 0.0});
+    return model;
+  };
+  Eigen::Vector2d at(0.0, 7.0);
+  MinimiseSquares(linearise, Plus, {}, &at);
+  EXPECT_NEAR(at.x(), 3.0, 1e-4);
+  EXPECT_EQ(at.y(), 7.0);
+}
+
+// x in place of x^2 where x < 0.5 has no step: the solver takes shorter ones.
+TEST(MinimiseSquares, ShortensStepsThatLeadNowhere) {
+  const auto linearise = [](const Eigen::Vector2d& at) {
+    Model model;
+    model.Add(at.x() * at.x(), {2.0 * at.x(), 0.0});
+    return model;
+  };
+  const auto plus = [](const Eigen::Vector2d& at, const Eigen::Vector2d& step) {
+    return at.x() + step.x() < 0.5 ? std::nullopt : Plus(at, step);
+  };
+  Eigen::Vector2d at(2.0, 0.0);
+  const Model model = MinimiseSquares(linearise, plus, {}, &at);
+  EXPECT_GE(at.x(), 0.5);
+  EXPECT_LT(model.cost, 0.5);
+}
+
+TEST(MinimiseSquares, StaysWhereItsCostIsNotDefined) {
+  const auto undefined = [](const Eigen::Vector2d& /*at*/) {
+    Model model;
+    model.cost = std::numeric_limits<double>::quiet_NaN();
+    return model;
+  };
+  Eigen::Vector2d at(1.0, 2.0);
+  EXPECT_FALSE(std::isfinite(MinimiseSquares(undefined, Plus, {}, &at).cost));
+  EXPECT_EQ(at, Eigen::Vector2d(1.0, 2.0));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
+#include "initialisation/upright_observation.h"
 #include "initialisation/yaw_sweep.h"
-#include "support/box_terms.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
@@ -84,9 +84,9 @@ TEST(LocalOptima, NoneOfManyRandomStartsIsBetter) {
         // Until the tangent points' depths are those of the solution.
         for (int round = 0; round < 5 && solution; ++round) {
           const Landmark& landmark = solution->landmark;
-          solution =
-              FitUpright(observation.plane_in_camera, landmark, BoxTerms(observation, landmark),
-                         /*yaw_is_free=*/true);
+          solution = FitUpright(observation.plane_in_camera, landmark,
+                                ObservationTerms(observation, landmark),
+                                /*yaw_is_free=*/true);
           if (solution && !IsInFront(solution->landmark)) solution.reset();
         }
         if (solution) {
@@ -126,7 +126,7 @@ TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
     objective.rounds = 5;
     const YawSweep sweep = SweepYaw(observation, objective, kStep);
     for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
-      const auto terms = BoxTerms(observation, optimum.landmark);
+      const auto terms = ObservationTerms(observation, optimum.landmark);
       for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
         const auto nearby =
             FitUpright(observation.plane_in_camera,

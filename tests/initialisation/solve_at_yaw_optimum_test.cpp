@@ -33,14 +33,14 @@ class TangencyCost final : public ceres::SizedCostFunction<4, 3> {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const double* foot_and_c = blocks[0];
     const Landmark landmark = BodyAt(observation_, yaw_, foot_and_c);
-    LandmarkTerm::Jacobian by_landmark(4, kLandmarkDof);
-    term_.Evaluate(landmark, Eigen::Map<Eigen::VectorXd>(residuals, 4), &by_landmark);
+    LandmarkTerm::Jacobian d_landmark(4, kLandmarkDof);
+    term_.Evaluate(landmark, Eigen::Map<Eigen::VectorXd>(residuals, 4), &d_landmark);
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    const Eigen::Matrix<double, 4, 6> by_parameters =
-        by_landmark * UprightGround(observation_.plane_in_camera).ByParameters(landmark);
+    const Eigen::Matrix<double, 4, 6> d_parameters =
+        d_landmark * UprightGround(observation_.plane_in_camera).ParameterJacobian(landmark);
     Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> jacobian(jacobians[0]);
-    jacobian.leftCols<2>() = by_parameters.middleCols<2>(1);
-    jacobian.col(2) = by_parameters.rightCols<3>().rowwise().sum() / foot_and_c[2];
+    jacobian.leftCols<2>() = d_parameters.middleCols<2>(1);
+    jacobian.col(2) = d_parameters.rightCols<3>().rowwise().sum() / foot_and_c[2];
     return true;
   }
 

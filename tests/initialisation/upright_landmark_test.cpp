@@ -93,7 +93,7 @@ TEST(UprightByParameters, AgreesWithNumbers) {
           (other.half_axes.array() / landmark.half_axes.array()).log().matrix();
       return tangent;
     };
-    const UprightJacobian jacobian = UprightGround(plane).ByParameters(landmark);
+    const UprightJacobian jacobian = UprightGround(plane).ParameterJacobian(landmark);
     for (int k = 0; k < 6; ++k) {
       const Eigen::Matrix<double, kLandmarkDof, 1> numeric =
           (8.0 * (moved(k, kStep) - moved(k, -kStep)) -

@@ -5,7 +5,7 @@
 
 #include "geometry/angles.h"
 #include "initialisation/initialise.h"
-#include "support/box_terms.h"
+#include "initialisation/upright_observation.h"
 #include "support/random.h"
 #include "support/upright_bodies.h"
 
@@ -142,8 +142,8 @@ TEST(YawTerm, HasItsDerivative) {
     term.Evaluate(body.truth, at, &jacobian);
     term.Evaluate(RotatedAboutZ(body.truth, kStep), plus, nullptr);
     term.Evaluate(RotatedAboutZ(body.truth, -kStep), minus, nullptr);
-    const double by_turn = jacobian.row(0).head<3>().dot(body.plane.normal);
-    EXPECT_NEAR(by_turn, (plus[0] - minus[0]) / (2.0 * kStep), 1e-6);
+    const double d_turn = jacobian.row(0).head<3>().dot(body.plane.normal);
+    EXPECT_NEAR(d_turn, (plus[0] - minus[0]) / (2.0 * kStep), 1e-6);
     EXPECT_EQ(jacobian.row(0).tail<6>().norm(), 0.0);
   }
 }

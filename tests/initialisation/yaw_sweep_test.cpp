@@ -9,7 +9,7 @@
 
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
-#include "support/box_terms.h"
+#include "initialisation/upright_observation.h"
 #include "support/landmark_terms.h"
 #include "support/level_sequence.h"
 #include "support/shape_exponents.h"
@@ -117,7 +117,8 @@ TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
     for (size_t round = 0; round < 3; ++round) {
       EXPECT_TRUE(IsSameBody(starts[4 * i + round], landmark, kFitted));
       landmark =
-          FitUpright(body.plane, landmark, BoxTerms(body.observation, landmark), false)->landmark;
+          FitUpright(body.plane, landmark, ObservationTerms(body.observation, landmark), false)
+              ->landmark;
     }
     EXPECT_TRUE(IsSameBody(starts[4 * i + 3], landmark, kFitted));
     const Landmark found = LandmarkOf(body.observation, *sweep.fits[i]);

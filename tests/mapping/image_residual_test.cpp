@@ -63,7 +63,7 @@ TEST(ImageResidual, HasCostGradientAndInformationOfAllItsSamples) {
     Eigen::Matrix<double, kLandmarkSize, kLandmarkDof, Eigen::RowMajor> plus;
     manifold->PlusJacobian(blocks.landmark.data(), plus.data());
     Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> d_tangent =
-        LandmarkInCameraBy(observation.camera_from_world());
+        LandmarkInCameraJacobian(observation.camera_from_world());
     d_tangent.leftCols<3>() *= 2.0;  // Ceres' rotation tangent is half the rotation vector
     const LandmarkModel expected = model.Chained(d_tangent);
     const Eigen::Matrix<double, kRows, kLandmarkDof> rows = d_landmark * plus;

@@ -20,9 +20,9 @@ constexpr double kNewLevel = 10.0;
 // height known to sigma and its tilt not at all. A motion of the plane raises it at the foot by
 // turn_x y - turn_y x + rise.
 PlaneEvidence FootAt(double x, double y, double sigma) {
-  const Eigen::Vector3d by_motion(y, -x, 1.0);
+  const Eigen::Vector3d d_motion(y, -x, 1.0);
   PlaneEvidence evidence;
-  evidence.information = by_motion * by_motion.transpose() / (sigma * sigma);
+  evidence.information = d_motion * d_motion.transpose() / (sigma * sigma);
   return evidence;
 }
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "support/box_terms.h"
+#include "initialisation/upright_observation.h"
 
 namespace soslam {
 
@@ -15,7 +15,7 @@ inline Eigen::VectorXd Residuals(const LandmarkTerm& term, const Landmark& landm
 
 // The sum of the observation's terms, tangent points at the depths of the landmark itself.
 inline double CostAtOwnDepths(const UprightObservation& observation, const Landmark& landmark) {
-  return TotalCost(BoxTerms(observation, landmark), landmark);
+  return TotalCost(ObservationTerms(observation, landmark), landmark);
 }
 
 }  // namespace soslam

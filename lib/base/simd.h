@@ -30,30 +30,11 @@
 // well.
 #define SOSLAM_FORCE_INLINE [[gnu::always_inline]] inline
 
-// Attribute of functions for AVX2 only; to be called only where HasAvx2().
-#if defined(__x86_64__)
-#define SOSLAM_FOR_AVX2 [[gnu::target("avx2")]]
-#else
-#define SOSLAM_FOR_AVX2
-#endif
-
 namespace soslam {
-
-// True if this processor has AVX2.
-inline bool HasAvx2() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
 
 // Four doubles in one SIMD vector.
 using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
 using ThreeFours = std::array<Four, 3>;
-// Alignment that AVX2 loads need. Without it compilers may align a Four, and structs with such
-// members, to half of its size. Data passed to SOSLAM_MULTIVERSION functions is aligned to this.
-inline constexpr size_t kFourAlignment = sizeof(Four);
 // Result of a comparison of two Fours: per element all bits set, or none.
 using FourMask = decltype(Four{} < Four{});
 
@@ -76,18 +57,6 @@ SOSLAM_FORCE_INLINE void SquareRoot(const Four& of, Four* root) {
 // Sum of the four elements.
 SOSLAM_FORCE_INLINE double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);
-}
-
-// Four sums at once: the i-th is that of fours[i], added in the order of Sum.
-SOSLAM_FORCE_INLINE void SumEach(const Four* fours, Four* sums) {
-  std::array<Four, 2> pairs;
-  for (size_t i = 0; i < 2; ++i) {
-    const Four &a = fours[2 * i], &b = fours[2 * i + 1];
-    pairs[i] =
-        __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  }
-  *sums = __builtin_shufflevector(pairs[0], pairs[1], 0, 1, 4, 5) +
-          __builtin_shufflevector(pairs[0], pairs[1], 2, 3, 6, 7);
 }
 
 // Eight floats in one SIMD vector, with the masks and integers to compare and convert them.

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/landmark_terms.h"
+
+#include <limits>
+
+#include "constraints/loss.h"
+#include "constraints/parameters.h"
+
+namespace soslam {
+namespace {
+
+using Residuals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, LandmarkTerm::kMaxResiduals>;
+
+}  // namespace
+
+double LandmarkTerm::Value(const Landmark& landmark) const {
+  Residuals residuals(NumResiduals());
+  Evaluate(landmark, residuals, nullptr);
+  return 0.5 * residuals.squaredNorm();
+}
+
+void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
+  Residuals residuals(NumResiduals());
+  Jacobian jacobian(NumResiduals(), kLandmarkDof);
+  Evaluate(landmark, residuals, &jacobian);
+  for (Eigen::Index row = 0; row < residuals.size(); ++row) {
+    sum->Add(residuals[row], jacobian.row(row).transpose());
+  }
+}
+
+BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera)
+    : edges_(edges) {
+  for (size_t i = 0; i < edges.size(); ++i)
+    depths_[i] = FindTangentDepth(edges[i], start_in_camera);
+}
+
+void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                       Jacobian* jacobian) const {
+  for (size_t i = 0; i < edges_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    LandmarkJacobian1 by_landmark;
+    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0, &by_landmark);
+    if (jacobian != nullptr) jacobian->row(row) = by_landmark;
+  }
+}
+
+void OutlineTerm::Evaluate(const Landmark& landmark_in_camera,
+                           Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+  if (!IsInFront(landmark_in_camera)) {
+    residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  for (size_t i = 0; i < edges_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    LandmarkJacobian1 by_landmark;
+    residuals[row] = OutlineExcess(edges_[i], landmark_in_camera, &by_landmark);
+    if (jacobian != nullptr) jacobian->row(row) = by_landmark;
+  }
+}
+
+RatioRows::RatioRows(const ShapePrior& prior) {
+  const double correlation = prior.log_correlation;
+  const double unexplained = std::sqrt(1.0 - correlation * correlation);
+  Eigen::Matrix2d whiten;
+  whiten << 1.0, 0.0, -correlation / unexplained, 1.0 / unexplained;
+  whiten *= prior.log_sigma.cwiseInverse().asDiagonal();
+  d_log_half_axes << whiten, -whiten.rowwise().sum();
+  at_prior = whiten * prior.ratio.array().log().matrix();
+}
+
+void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                         Jacobian* jacobian) const {
+  residuals = rows_.Residuals(landmark_in_camera.half_axes.array().log());
+  if (jacobian == nullptr) return;
+  jacobian->setZero();
+  jacobian->rightCols<3>() = rows_.d_log_half_axes;
+}
+
+void HeightTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                          Jacobian* jacobian) const {
+  residuals[0] =
+      std::log(2.0 * landmark_in_camera.half_axes.z() / height_m_.median) / height_m_.log_sigma;
+  if (jacobian == nullptr) return;
+  jacobian->setZero();
+  (*jacobian)(0, 8) = 1.0 / height_m_.log_sigma;
+}
+
+void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
+                              Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+  term_->Evaluate(Transform(camera_from_reference_, landmark_in_reference), residuals, jacobian);
+  if (jacobian != nullptr) {
+    const Eigen::Matrix3d rotation = camera_from_reference_.rotation.toRotationMatrix();
+    for (int block = 0; block < 2; ++block) {
+      jacobian->middleCols<3>(3 * block) = (jacobian->middleCols<3>(3 * block) * rotation).eval();
+    }
+  }
+  const ceres::HuberLoss loss(huber_delta_);
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    const RobustResidual robust = RobustifyResidual(loss, residuals[i]);
+    residuals[i] = robust.value;
+    if (jacobian != nullptr) jacobian->row(i) *= robust.slope;
+  }
+  residuals *= root_weight_;
+  if (jacobian != nullptr) *jacobian *= root_weight_;
+}
+
+Eigen::Vector3d WorldAxis(const Plane& plane_in_world) {
+  return UprightRotation(plane_in_world.normal, 0.0) * Eigen::Vector3d::UnitX();
+}
+
+AxisTerm::AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera,
+                   double weight)
+    : normal_(plane_in_camera.normal),
+      axis_yaw_(Yaw(normal_,
+                    Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis_in_camera))),
+      amplitude_(std::sqrt(2.0 * weight)) {}
+
+void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                        Jacobian* jacobian) const {
+  const double angle =
+      2.0 * (Yaw(normal_, landmark_in_camera.frame_from_object.rotation) - axis_yaw_);
+  residuals[0] = amplitude_ * std::sin(angle);
+  if (jacobian == nullptr) return;
+  jacobian->setZero();
+  jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * normal_.transpose();
+}
+
+void YawTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+                       Jacobian* jacobian) const {
+  const double yaw = Yaw(normal_, landmark_in_camera.frame_from_object.rotation);
+  residuals[0] = YawDifferenceModuloPi(yaw, prior_.yaw) / prior_.sigma;
+  if (jacobian == nullptr) return;
+  jacobian->setZero();
+  jacobian->leftCols<3>() = normal_.transpose() / prior_.sigma;
+}
+
+bool LandmarkTermResidual::Evaluate(double const* const* blocks, double* residuals,
+                                    double** jacobians) const {
+  const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+  LandmarkTerm::Jacobian by_landmark(num_residuals(), kLandmarkDof);
+  term_->Evaluate(UnpackLandmark(blocks[0]),
+                  Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()),
+                  with_jacobian ? &by_landmark : nullptr);
+  if (with_jacobian) {
+    WriteLandmarkJacobian<Eigen::Dynamic>(blocks[0], by_landmark, jacobians[0]);
+  }
+  return true;
+}
+
+}  // namespace soslam
