@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct TestOptions {
+struct RecordedOptions {
   double offset_m = 1.5;
   int count = 3;
   int seed = 4;
@@ -35,7 +35,7 @@ struct TestOptions {
 
 std::function<void()> before_writing;  // what else happens while the stage runs
 
-void RunTest(const TestOptions& options, const StageFiles& files, int /*threads*/) {
+void RunRecorded(const RecordedOptions& options, const StageFiles& files, int /*threads*/) {
   ParseJsonFile(files.at("sequence"));
   ParseJsonFile(files.at("dataset") / "lists/rgb.json");
   if (options.seed > 0) NoteSeed(options.seed);
@@ -81,7 +81,7 @@ class RunRecorderTest : public testing::Test {
         .example = "soslam-test"};
     testing::internal::CaptureStderr();
     const int exit_code =
-        StageMain<TestOptions>(static_cast<int>(argv.size()), argv.data(), info, &RunTest);
+        StageMain<RecordedOptions>(static_cast<int>(argv.size()), argv.data(), info, &RunRecorded);
     errors_ = testing::internal::GetCapturedStderr();
     return exit_code;
   }

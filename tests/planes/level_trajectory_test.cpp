@@ -12,7 +12,7 @@
 namespace soslam {
 namespace {
 
-constexpr int kFrames = 40;
+constexpr int kTurnFrames = 40;
 constexpr double kDrift = 0.15 * kRadPerDeg;  // between two frames, all of it to one side
 
 LevelOptions RoomOptions() {
@@ -28,8 +28,8 @@ LevelOptions RoomOptions() {
 std::vector<Rigid3d> TrueTrajectory() {
   std::vector<Rigid3d> poses;
   const Eigen::Quaterniond forward_x((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
-  for (int i = 0; i < kFrames; ++i) {
-    const double heading = 2.0 * std::numbers::pi * i / kFrames;
+  for (int i = 0; i < kTurnFrames; ++i) {
+    const double heading = 2.0 * std::numbers::pi * i / kTurnFrames;
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
     poses.push_back({turn * forward_x * ExpRotation({-0.2, 0.0, 0.0}),
                      {2.0 * std::cos(heading), 2.0 * std::sin(heading), 1.2}});
@@ -98,7 +98,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
   ASSERT_EQ(level.world_from_camera.size(), truth.size());
   EXPECT_GT(WorstUp(truth, drifted, Eigen::Vector3d::UnitZ()), 5.0 * kRadPerDeg);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world),
-            0.25 * kFrames * kDrift);
+            0.25 * kTurnFrames * kDrift);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.5 * WorstPosition(truth, drifted));
   EXPECT_EQ(level.world_from_camera.front().translation, truth.front().translation);
   EXPECT_TRUE(level.world_from_camera.front().rotation.isApprox(truth.front().rotation, 1e-9));

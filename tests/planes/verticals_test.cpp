@@ -11,8 +11,8 @@ namespace soslam {
 namespace {
 
 constexpr double kSigma = 1.0 * kRadPerDeg;
-constexpr double kCorrelation = 20.0 * kRadPerDeg;
-constexpr double kMaxTilt = 12.0 * kRadPerDeg;
+constexpr double kSegmentCorrelation = 20.0 * kRadPerDeg;
+constexpr double kMaxVerticalTilt = 12.0 * kRadPerDeg;
 
 // A camera anywhere in a room around the origin that looks somewhat downwards, not level.
 Rigid3d RandomCamera(double heading) {
@@ -57,7 +57,7 @@ std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc
 UpPrior HeldAttitude(const std::vector<SegmentView>& views) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  return UpPriorFromCameras(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, kCorrelation);
+  return UpPriorFromCameras(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, kSegmentCorrelation);
 }
 
 // Edges are exact, so only those of other directions and the cameras' attitude disturb: far less
@@ -67,7 +67,7 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
   for (int i = 0; i < 10; ++i) {
     const auto views = Room(Eigen::Vector3d::UnitZ(), 12, 6.0);
     const UpPrior held = HeldAttitude(views);
-    const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
+    const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
     EXPECT_LT(AngleBetween(found.up_in_world, Eigen::Vector3d::UnitZ()), 0.3 * kRadPerDeg);
     before += AngleBetween(held.up_in_world, Eigen::Vector3d::UnitZ()) / 10;
   }
@@ -78,7 +78,7 @@ TEST(WithVerticals, LeavesTheAttitudeWhereThereIsNoEdge) {
   auto views = Room(Eigen::Vector3d::UnitZ(), 6, 3.0);
   for (SegmentView& view : views) view.segments.clear();
   const UpPrior held = HeldAttitude(views);
-  const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
+  const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
   EXPECT_LT((found.up_in_world - held.up_in_world).norm(), 1e-9);
   EXPECT_EQ(found.information, held.information);
 }
@@ -88,8 +88,8 @@ TEST(WithVerticals, StaysNearTheAttitude) {
   const Eigen::Vector3d slanted(std::sin(0.7), 0.0, std::cos(0.7));
   const auto views = Room(slanted, 12, 6.0);
   const UpPrior held = HeldAttitude(views);
-  const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxTilt);
-  EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxTilt);
+  const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
+  EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxVerticalTilt);
 }
 
 // The same edges again say nothing new.
@@ -97,7 +97,7 @@ TEST(WithVerticals, CamerasInOnePlaceCountAsOne) {
   const std::vector<SegmentView> one = {Room(Eigen::Vector3d::UnitZ(), 1, 0.0)};
   const std::vector<SegmentView> ten(10, one.front());
   const auto found = [&](const std::vector<SegmentView>& views) {
-    return WithVerticals(HeldAttitude(views), views, kSigma, kCorrelation, kMaxTilt);
+    return WithVerticals(HeldAttitude(views), views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
   };
   EXPECT_LT((found(one).up_in_world - found(ten).up_in_world).norm(), 1e-6);
   EXPECT_LT((found(one).information - found(ten).information).norm(),
