@@ -254,17 +254,24 @@ $(BUILD)/build.ninja: | setup
 	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
 
 .PHONY: test
-test: $(BUILD)/build.ninja ## Build everything and run all tests
-	@pipelines/install-packages.sh pipelines/data-packages.txt || echo 'setup: tests of downloads are skipped'
+test: test-build ## Build everything and run the fast tests (3 minutes)
+	@ctest --test-dir $(BUILD) --output-on-failure --label-regex fast -j2
+
+.PHONY: test-slow
+test-slow: test-build ## Run the slow tests: faults, browsers, clusters, statistics
 	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
+	@ctest --test-dir $(BUILD) --output-on-failure --label-regex slow -j2
+
+.PHONY: test-build
+test-build: $(BUILD)/build.ninja
+	@pipelines/install-packages.sh pipelines/data-packages.txt || echo 'setup: tests of downloads are skipped'
 	@pipelines/build.sh $(BUILD)
-	@ctest --test-dir $(BUILD) --output-on-failure -j2
 
 .PHONY: test-slurm
 test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of two nodes on this machine
 	@pipelines/install-packages.sh pipelines/slurm-packages.txt
 	@pipelines/build.sh $(BUILD) slurm_test
-	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm\.'
+	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm'
 
 # Five repetitions, each of a tenth of a second or more: the table has their medians. The largest worlds take minutes
 # and are left out.

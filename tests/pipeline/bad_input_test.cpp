@@ -18,8 +18,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr int kFrames = StageChain::kFrames;
-
 // A semantic table that knows these labels only and has no default.
 Spoil TableOf(const std::vector<std::string>& labels) {
   return [=](const StageChain& chain) {
@@ -168,7 +166,7 @@ class GatedInputTest : public testing::TestWithParam<GatedInput> {};
 
 TEST_P(GatedInputTest, IsCountedWithItsReason) {
   const GatedInput& bad = GetParam();
-  const StageChain chain;
+  const StageChain& chain = StageChain::Finished();
   ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
   ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
   const CommandResult result = chain.Run(bad.stage);
@@ -190,9 +188,9 @@ INSTANTIATE_TEST_SUITE_P(
                                Line("odometry.txt", 3, "7.5 0 0 1 0 0 0 1"),
                                "/rejected_detections/frame_without_pose", 3},
                     GatedInput{"LabelNotInTheTable", "initialise", TableOf({"chest", "armchair"}),
-                               "/failures/no_ratio_for_label", kFrames},
+                               "/failures/no_ratio_for_label", SmallPipeline::kFrames},
                     GatedInput{"PlaneBehindTheCamera", "initialise", PutObject2OnACeiling,
-                               "/failures/support_plane_not_in_view", kFrames}),
+                               "/failures/support_plane_not_in_view", SmallPipeline::kFrames}),
     CaseName<GatedInput>);
 
 TEST(UnusableInputTest, NoLabelInTheTable) {
@@ -221,7 +219,7 @@ TEST(UnknownSettingTest, IsRefusedByEveryStage) {
 }
 
 TEST(UnknownSettingTest, OfThePipelineIsRefusedBeforeAnythingRuns) {
-  const SmallPipeline pipeline(kFrames);
+  const SmallPipeline pipeline;
   pipeline.WriteSettings({{"refine", {{"colour", "red"}}}});
   const CommandResult result = pipeline.Run("");
   EXPECT_EQ(result.exit_code, 2);

@@ -21,13 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr int kFrames = 3;
-
 // `make run` of the project itself on the small scene, through all stages that a run can have:
 // those of sequences without planes and ids, of bodies of any shape.
-class FaultsTest : public testing::Test {
+class SlowFaultsTest : public testing::Test {
  protected:
-  FaultsTest() {
+  static constexpr int kFrames = 3;
+
+  SlowFaultsTest() {
     const fs::path datasets = pipeline_.Pipelines() / "unannotated/datasets";
     fs::create_directory(datasets);
     // Coarse, for speed.
@@ -80,14 +80,15 @@ class FaultsTest : public testing::Test {
   std::chrono::duration<double> duration_{};  // of the undisturbed run
 };
 
-// How often a run is killed; `SOSLAM_KILLS=200 pipeline_test --gtest_filter=FaultsTest.*` for more.
+// How often a run is killed; `SOSLAM_KILLS=200 pipeline_test --gtest_filter=SlowFaultsTest.*` for
+// more.
 int Kills() {
   const char* const text = std::getenv("SOSLAM_KILLS");
   return text == nullptr ? 2 : std::atoi(text);
 }
 
 // Kills everything, or make alone, so that what it started goes on and meets the next run.
-TEST_F(FaultsTest, KilledAtAnyMoment) {
+TEST_F(SlowFaultsTest, KilledAtAnyMoment) {
   const auto undisturbed = Undisturbed();
   std::mt19937 random(1);
   for (int i = 0; i < Kills() && !HasFailure(); ++i) {
@@ -106,7 +107,7 @@ TEST_F(FaultsTest, KilledAtAnyMoment) {
   }
 }
 
-TEST_F(FaultsTest, TwoRunsAtOnce) {
+TEST_F(SlowFaultsTest, TwoRunsAtOnce) {
   const auto undisturbed = Undisturbed();
   BackgroundCommand one(Words());
   BackgroundCommand other(Words());
@@ -125,7 +126,7 @@ TEST_F(FaultsTest, TwoRunsAtOnce) {
 }
 
 // All files are an hour newer than the current time.
-TEST_F(FaultsTest, ClockSetBack) {
+TEST_F(SlowFaultsTest, ClockSetBack) {
   EXPECT_EQ(Run().exit_code, 0);
   for (const auto& entry : fs::recursive_directory_iterator(pipeline_.Folder())) {
     if (!entry.is_regular_file() || entry.is_symlink()) continue;
@@ -142,9 +143,9 @@ TEST_F(FaultsTest, ClockSetBack) {
 }
 
 // Results on a file system of their own.
-class FaultyDiskTest : public FaultsTest {
+class SlowFaultyDiskTest : public SlowFaultsTest {
  protected:
-  ~FaultyDiskTest() override { ::umount(Disk().c_str()); }
+  ~SlowFaultyDiskTest() override { ::umount(Disk().c_str()); }
 
   std::string Disk() const { return pipeline_.Results().parent_path().string(); }
   bool Mount(unsigned long flags, const std::string& options) const {
@@ -153,7 +154,7 @@ class FaultyDiskTest : public FaultsTest {
   }
 };
 
-TEST_F(FaultyDiskTest, FullDisk) {
+TEST_F(SlowFaultyDiskTest, FullDisk) {
   const auto undisturbed = Undisturbed();
   size_t bytes = 0;
   for (const auto& [path, content] : undisturbed) bytes += content.size();
@@ -171,7 +172,7 @@ TEST_F(FaultyDiskTest, FullDisk) {
   ExpectThatARunGives(undisturbed);
 }
 
-TEST_F(FaultyDiskTest, ReadOnlyDisk) {
+TEST_F(SlowFaultyDiskTest, ReadOnlyDisk) {
   if (!Mount(0, "size=100m")) GTEST_SKIP() << "needs root, to mount a disk";
   EXPECT_EQ(Run().exit_code, 0);
   const auto before = Artefacts();

@@ -154,7 +154,10 @@ TEST_P(HelpTest, SettingsThatTheSchemaTakesAreAccepted) {
   EXPECT_THAT(result.exit_code, testing::AnyOf(0, 2, 3, 4)) << result.errors;
 }
 
-TEST_P(HelpTest, SettingsThatTheSchemaRefusesAreRefused) {
+// The program runs once for each of its settings.
+class SlowHelpTest : public HelpTest {};
+
+TEST_P(SlowHelpTest, SettingsThatTheSchemaRefusesAreRefused) {
   json refused = {{"unheard_of", 1}};
   for (const auto& [name, property] : schema_["properties"].items()) {
     // Beyond the range, of another type, or none of the choices.
@@ -176,11 +179,14 @@ TEST_P(HelpTest, SettingsThatTheSchemaRefusesAreRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Stages, HelpTest, testing::ValuesIn(AllStages()), [](const auto& info) {
+std::string StageName(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
   std::erase(name, '-');
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Stages, HelpTest, testing::ValuesIn(AllStages()), StageName);
+INSTANTIATE_TEST_SUITE_P(Stages, SlowHelpTest, testing::ValuesIn(AllStages()), StageName);
 
 }  // namespace
 }  // namespace soslam

@@ -10,10 +10,10 @@
 namespace soslam {
 namespace {
 
-constexpr int kFrames = 6;
-
 class PagesTest : public testing::Test {
  protected:
+  static constexpr int kFrames = 6;
+
   static void SetUpTestSuite() {
     pipeline_ = new SmallPipeline(kFrames);
     const CommandResult run = pipeline_->Run("InitPT OursPT SVD");
@@ -29,7 +29,10 @@ class PagesTest : public testing::Test {
 };
 const SmallPipeline* PagesTest::pipeline_ = nullptr;
 
-TEST_F(PagesTest, ADatasetIsShownWithoutErrors) {
+// With a browser.
+using SlowPagesTest = PagesTest;
+
+TEST_F(SlowPagesTest, ADatasetIsShownWithoutErrors) {
   const std::filesystem::path page = Results() / "small/report.html";
   EXPECT_LT(std::filesystem::file_size(page), kMaxPageBytes);
   if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";
@@ -53,7 +56,7 @@ TEST_F(PagesTest, ADatasetIsShownWithoutErrors) {
                              testing::HasSubstr("sigma of yaw"), testing::HasSubstr("IoU")));
 }
 
-TEST_F(PagesTest, MapAndChartsAreUsedByKeyboard) {
+TEST_F(SlowPagesTest, MapAndChartsAreUsedByKeyboard) {
   if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";
   const nlohmann::json found = CheckPage(Results() / "small/report.html");
   ASSERT_FALSE(found.is_null());
@@ -75,7 +78,7 @@ TEST_F(PagesTest, TablesAreInTheMarkup) {
   }
 }
 
-TEST_F(PagesTest, TheOverviewLeadsToTheDataset) {
+TEST_F(SlowPagesTest, TheOverviewLeadsToTheDataset) {
   const std::string page = FileBytes(Results() / "report.html");
   EXPECT_THAT(page, testing::HasSubstr("\"dataset\":\"small\""));
   if (!HasBrowser()) GTEST_SKIP() << "there is no chromium";

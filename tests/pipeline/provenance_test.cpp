@@ -8,7 +8,7 @@
 #include "artefact/json_file.h"
 #include "artefact/run_file.h"
 #include "base/hash.h"
-#include "support/small_pipeline.h"
+#include "support/finished_run.h"
 
 namespace soslam {
 namespace {
@@ -19,14 +19,13 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kFrames = 4;
-constexpr const char* kVariants = "InitP InitPT";
-
 class ProvenanceTest : public testing::Test {
  protected:
-  ProvenanceTest() {
-    const CommandResult run = pipeline_.Run(kVariants);
-    EXPECT_EQ(run.exit_code, 0) << run.errors;
+  static constexpr const char* kVariants = "InitP InitPT";
+
+  static const SmallPipeline& Finished() {
+    static const FinishedRun run(kVariants);
+    return run.Restored();
   }
 
   fs::path Results() const { return pipeline_.Folder() / "results"; }
@@ -59,13 +58,13 @@ class ProvenanceTest : public testing::Test {
     return files;
   }
 
-  SmallPipeline pipeline_{kFrames};
+  const SmallPipeline& pipeline_ = Finished();
 };
 
 TEST_F(ProvenanceTest, RecordsNameEveryFileThatAStageRead) {
   std::set<fs::path> read;
   for (const RunFile& file : ReadRun(RunOf("edges") / "run.json").inputs) read.insert(file.path);
-  EXPECT_EQ(read.size(), kFrames + 2u);  // and the sequence, the settings
+  EXPECT_EQ(read.size(), SmallPipeline::kFrames + 2u);  // and the sequence, the settings
   EXPECT_TRUE(read.contains("rgb/000003.png"));
   EXPECT_TRUE(read.contains("../" + RunOf("import").filename().string() + "/sequence.json"));
   read.clear();
@@ -135,15 +134,8 @@ TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
 // A program that crashes cannot write a record; make writes down that it failed.
 TEST_F(ProvenanceTest, ACrashKeepsTheRecordOfTheRunBefore) {
   const std::string record = FileBytes(RunOf("refine") / "run.json");
-  const fs::path programs = pipeline_.Folder() / "programs";
-  fs::create_directory(programs);
-  for (const auto& program : fs::directory_iterator(SOSLAM_BINARY_DIR)) {
-    fs::create_symlink(program.path(), programs / program.path().filename());
-  }
-  fs::remove(programs / "soslam-refine");
-  WriteBytes(programs / "soslam-refine", "#!/bin/sh\nkill -SEGV $$\n");
-  fs::permissions(programs / "soslam-refine", fs::perms::owner_all);
-  EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + programs.string()}).exit_code, 0);
+  EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + pipeline_.ProgramsWithACrashIn("refine")}).exit_code,
+            0);
   EXPECT_EQ(FileBytes(RunOf("refine") / "run.json"), record);
   const CommandResult result = Verify(Results());
   EXPECT_EQ(result.exit_code, 1);

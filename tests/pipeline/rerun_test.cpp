@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <set>
 
-#include "support/small_pipeline.h"
+#include "support/finished_run.h"
 
 namespace soslam {
 namespace {
@@ -17,8 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr int kFrames = 4;
-constexpr const char* kVariants = "InitP InitPT OursPT";
+constexpr const char* kRerunVariants = "InitP InitPT OursPT";
 
 // The stages that a run names, sorted, from lines "[small] evaluate-34ae5c2b86 (InitP)".
 std::multiset<std::string> StagesIn(const std::string& output) {
@@ -37,12 +36,12 @@ void Touch(const fs::path& path) {
 
 class RerunTest : public testing::Test {
  protected:
-  RerunTest() {
-    EXPECT_THAT(RunStages(), ElementsAre("edges", "evaluate", "evaluate", "evaluate", "import",
-                                         "initialise", "optimise", "refine"));
+  static const SmallPipeline& Finished() {
+    static const FinishedRun run(kRerunVariants);
+    return run.Restored();
   }
   std::multiset<std::string> RunStages() const {
-    const CommandResult run = pipeline_.Run(kVariants);
+    const CommandResult run = pipeline_.Run(kRerunVariants);
     EXPECT_EQ(run.exit_code, 0) << run.errors;
     return StagesIn(run.output);
   }
@@ -50,11 +49,18 @@ class RerunTest : public testing::Test {
     return SmallPipeline::Artefacts(pipeline_.Results());
   }
 
-  SmallPipeline pipeline_{kFrames};
+  const SmallPipeline& pipeline_ = Finished();
 };
 
+TEST(FirstRunTest, RunsEachStageOnce) {
+  const SmallPipeline pipeline;
+  EXPECT_THAT(StagesIn(pipeline.Run(kRerunVariants).output),
+              ElementsAre("edges", "evaluate", "evaluate", "evaluate", "import", "initialise",
+                          "optimise", "refine"));
+}
+
 TEST_F(RerunTest, NothingToDo) {
-  const CommandResult dry_run = pipeline_.Run(kVariants, {"-n"});
+  const CommandResult dry_run = pipeline_.Run(kRerunVariants, {"-n"});
   EXPECT_EQ(dry_run.exit_code, 0) << dry_run.errors;
   EXPECT_THAT(StagesIn(dry_run.output), IsEmpty());
   const auto before = Artefacts();
@@ -100,12 +106,12 @@ TEST_F(RerunTest, FailingStageLeavesEarlierResults) {
   const fs::path image = pipeline_.Dataset() / "rgb/000002.png";
   const std::string whole_image = FileBytes(image);
   WriteBytes(image, whole_image.substr(0, whole_image.size() / 2));
-  const CommandResult failed = pipeline_.Run(kVariants);
+  const CommandResult failed = pipeline_.Run(kRerunVariants);
   EXPECT_NE(failed.exit_code, 0);
   EXPECT_THAT(failed.output + failed.errors, HasSubstr("000002.png"));
   EXPECT_TRUE(Artefacts() == before);
 
-  EXPECT_NE(pipeline_.Run(kVariants).exit_code, 0) << "a failure is not forgotten";
+  EXPECT_NE(pipeline_.Run(kRerunVariants).exit_code, 0) << "a failure is not forgotten";
   WriteBytes(image, whole_image);
   EXPECT_THAT(RunStages(), ElementsAre("edges"));
   EXPECT_TRUE(Artefacts() == before);
@@ -129,14 +135,14 @@ class LaunchTest : public testing::Test {
     return "";
   }
 
-  SmallPipeline pipeline_{kFrames};
+  SmallPipeline pipeline_;
   fs::path launcher_ = pipeline_.Folder() / "launch";
   fs::path log_ = pipeline_.Folder() / "log";
 };
 
 TEST_F(LaunchTest, StartsEveryStageAndItsFailuresAreToldFromThoseOfStages) {
   const std::string launch = "LAUNCH=" + launcher_.string() + " \"two words, \"";
-  const CommandResult first = pipeline_.Run(kVariants, {launch, "--keep-going"});
+  const CommandResult first = pipeline_.Run(kRerunVariants, {launch, "--keep-going"});
   EXPECT_NE(first.exit_code, 0);
   for (const std::string stage : {"import", "edges", "initialise", "evaluate"}) {
     EXPECT_THAT(FileBytes(log_), HasSubstr("two words, , " + StageProgram(stage) + "\n"));
@@ -144,7 +150,7 @@ TEST_F(LaunchTest, StartsEveryStageAndItsFailuresAreToldFromThoseOfStages) {
   EXPECT_EQ(FailureOf("edges"), "exit code 9 of LAUNCH or of a stage that was killed\n");
   EXPECT_TRUE(fs::exists(pipeline_.Results() / "InitP/metrics.json"));
 
-  EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
+  EXPECT_EQ(pipeline_.Run(kRerunVariants).exit_code, 0);
   const auto unlaunched = SmallPipeline::Artefacts(pipeline_.Results() / "InitP");
   WriteBytes(pipeline_.Dataset() / "objects.json", "[");
   EXPECT_NE(pipeline_.Run("InitP", {launch}).exit_code, 0);
@@ -155,7 +161,7 @@ TEST_F(LaunchTest, StartsEveryStageAndItsFailuresAreToldFromThoseOfStages) {
 
 // The project's Makefile, up to what would build the executables.
 TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
-  const SmallPipeline pipeline(kFrames);
+  const SmallPipeline pipeline;
   const fs::path results = pipeline.Folder() / "results";
   const std::vector<std::string> common = {
       "-C",

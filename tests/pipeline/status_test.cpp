@@ -6,7 +6,7 @@
 
 #include "support/background_command.h"
 #include "support/eventually.h"
-#include "support/small_pipeline.h"
+#include "support/finished_run.h"
 
 namespace soslam {
 namespace {
@@ -17,14 +17,13 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kFrames = 4;
-constexpr const char* kVariants = "InitP InitPT";
-
 class StatusTest : public testing::Test {
  protected:
-  StatusTest() {
-    const CommandResult run = pipeline_.Run(kVariants);
-    EXPECT_EQ(run.exit_code, 0) << run.errors;
+  static constexpr const char* kVariants = "InitP InitPT";
+
+  static const SmallPipeline& Finished() {
+    static const FinishedRun run(kVariants);
+    return run.Restored();
   }
   std::string Status(const std::vector<std::string>& arguments = {}) const {
     std::vector<std::string> words = {StageProgram("status"), "--results",
@@ -42,7 +41,7 @@ class StatusTest : public testing::Test {
     fs::last_write_time(path, fs::file_time_type::clock::now());
   }
 
-  SmallPipeline pipeline_{kFrames};
+  const SmallPipeline& pipeline_ = Finished();
 };
 
 TEST_F(StatusTest, AfterARunEverythingIsDone) {
@@ -106,15 +105,8 @@ TEST_F(StatusTest, FailureIsShownWithItsErrorUntilTheStageRuns) {
 
 // A program that dies cannot say why; its end is recorded all the same.
 TEST_F(StatusTest, CrashIsAFailure) {
-  const fs::path programs = pipeline_.Folder() / "bin";
-  fs::create_directory(programs);
-  for (const auto& entry : fs::directory_iterator(SOSLAM_BINARY_DIR)) {
-    if (entry.path().filename() == "soslam-evaluate") continue;
-    fs::create_symlink(entry.path(), programs / entry.path().filename());
-  }
-  WriteBytes(programs / "soslam-evaluate", "#!/bin/sh\nkill -SEGV $$\n");
-  fs::permissions(programs / "soslam-evaluate", fs::perms::owner_all);
-  EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + programs.string()}).exit_code, 0);
+  EXPECT_NE(
+      pipeline_.Run(kVariants, {"BIN=" + pipeline_.ProgramsWithACrashIn("evaluate")}).exit_code, 0);
   EXPECT_THAT(Status({"--variants", "InitP"}),
               ContainsRegex("evaluate-[0-9a-f]+: its last run failed: exit code 139"));
 }

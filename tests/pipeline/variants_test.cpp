@@ -17,13 +17,14 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr int kFrames = 10;
+constexpr int kVariantsFrames = 10;
 constexpr int kObjects = 3;
 
 // Pixels and the edges found in them are what keeps texture symmetry from being exact.
 constexpr double kMinIou = 0.99;
 
-json Metrics(const SmallPipeline& pipeline, const std::string& variant, int frames = kFrames) {
+json Metrics(const SmallPipeline& pipeline, const std::string& variant,
+             int frames = kVariantsFrames) {
   const json metrics = json::parse(FileBytes(pipeline.Results() / variant / "metrics.json"));
   EXPECT_EQ(metrics["summary"]["objects"], kObjects) << variant;
   EXPECT_EQ(metrics["summary"]["observations"], kObjects * frames) << variant;
@@ -31,7 +32,7 @@ json Metrics(const SmallPipeline& pipeline, const std::string& variant, int fram
 }
 
 TEST(VariantsTest, NoiseFreeEllipsoidsWithTheirTrueRatiosAreRecovered) {
-  const SmallPipeline pipeline(kFrames);
+  const SmallPipeline pipeline(kVariantsFrames);
   const CommandResult run = pipeline.Run("SVD Init1-1 InitP InitPT Quadric OursP OursPT");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
 
@@ -160,8 +161,8 @@ TEST_F(BodiesOfAnyShapeTest, ImagesKeepThem) {
 }
 
 TEST(VariantsTest, ResultsDoNotDependOnThreadsOrFolders) {
-  const SmallPipeline one_thread(kFrames, 1);
-  const SmallPipeline two_threads(kFrames, 2);
+  const SmallPipeline one_thread(SmallPipeline::kFrames, 1);
+  const SmallPipeline two_threads(SmallPipeline::kFrames, 2);
   for (const SmallPipeline* pipeline : {&one_thread, &two_threads}) {
     pipeline->WriteSettings({{"refine", {{"yaw_step_deg", 15}, {"yaw_grid_deg", 30}}},  // for speed
                              {"optimise", {{"max_iterations", 3}}}});

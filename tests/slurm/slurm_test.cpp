@@ -28,7 +28,7 @@ constexpr const char* kCluster = "results-of-the-cluster";
 constexpr const char* kLocal = "results-of-make";
 
 // A sweep of the small scene with two seeds of its noise through a trunk and two branches.
-class SlurmTest : public testing::Test {
+class SlowSlurmTest : public testing::Test {
  protected:
   void SetUp() override {
     if (cluster_.problem().empty()) return;
@@ -37,7 +37,7 @@ class SlurmTest : public testing::Test {
     GTEST_SKIP() << "needs Slurm: " << cluster_.problem();
   }
 
-  SlurmTest() {
+  SlowSlurmTest() {
     nlohmann::json scene = SmallScene(3);
     scene["noise"] = {{"box_edge_sigma", 0.01}, {"image_sigma", 1.0}};
     WriteBytes(Scene(), scene.dump());
@@ -149,12 +149,12 @@ class SlurmTest : public testing::Test {
   SlurmCluster cluster_;
 };
 
-TEST_F(SlurmTest, StagesThroughSrunGiveTheSameBytes) {
+TEST_F(SlowSlurmTest, StagesThroughSrunGiveTheSameBytes) {
   Do("sweep", kCluster, {"LAUNCH=srun --ntasks=1 --input=none --job-name=\"two words\""});
   ExpectTheBytesOfALocalRun();
 }
 
-TEST_F(SlurmTest, AFailingSrunIsToldFromAFailingStage) {
+TEST_F(SlowSlurmTest, AFailingSrunIsToldFromAFailingStage) {
   const CommandResult refused = Make("sweep", kCluster, {"LAUNCH=srun --constraint=nowhere"});
   EXPECT_NE(refused.exit_code, 0);
   EXPECT_FALSE(fs::exists(Data() / "small-seed1"));
@@ -168,7 +168,7 @@ TEST_F(SlurmTest, AFailingSrunIsToldFromAFailingStage) {
                                       "objects.json"));
 }
 
-TEST_F(SlurmTest, ASweepGivesTheBytesOfALocalOne) {
+TEST_F(SlowSlurmTest, ASweepGivesTheBytesOfALocalOne) {
   Submit();
   WaitForTheQueue();
   ExpectAllDone();
@@ -177,7 +177,7 @@ TEST_F(SlurmTest, ASweepGivesTheBytesOfALocalOne) {
   EXPECT_THAT(cluster_.Queue(), IsEmpty()) << "nothing is out of date";
 }
 
-TEST_F(SlurmTest, StatusFollowsTheQueue) {
+TEST_F(SlowSlurmTest, StatusFollowsTheQueue) {
   Replace("optimise", "sleep 5");
   const auto set_nodes = [&](const std::string& state) {
     const CommandResult set =
@@ -200,7 +200,7 @@ TEST_F(SlurmTest, StatusFollowsTheQueue) {
   ExpectAllDone();
 }
 
-TEST_F(SlurmTest, WhatWasCancelledOnTheWayIsResumed) {
+TEST_F(SlowSlurmTest, WhatWasCancelledOnTheWayIsResumed) {
   Replace("optimise", "sleep 3");
   Submit();
   ASSERT_TRUE(Eventually([&] { return SomeJobIs("small-seed1 [12] RUNNING"); }));
@@ -218,7 +218,7 @@ TEST_F(SlurmTest, WhatWasCancelledOnTheWayIsResumed) {
   ExpectTheBytesOfALocalRun();
 }
 
-TEST_F(SlurmTest, JobsOfANodeThatFailsRunOnAnother) {
+TEST_F(SlowSlurmTest, JobsOfANodeThatFailsRunOnAnother) {
   Replace("optimise", "sleep 3");
   Submit();
   ASSERT_TRUE(Eventually([&] { return SomeJobIs("small-seed1 [12] RUNNING"); }));
@@ -231,7 +231,7 @@ TEST_F(SlurmTest, JobsOfANodeThatFailsRunOnAnother) {
   ExpectTheBytesOfALocalRun();
 }
 
-TEST_F(SlurmTest, FailuresAreShownAndTheRestIsDone) {
+TEST_F(SlowSlurmTest, FailuresAreShownAndTheRestIsDone) {
   Do("scenes", kCluster);
   const fs::path image = Data() / "small-seed1/rgb/000002.png";
   const std::string whole_image = FileBytes(image);

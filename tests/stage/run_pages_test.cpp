@@ -15,6 +15,7 @@
 #include "support/expect_error.h"
 #include "support/page_data.h"
 #include "support/results_folder.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {
@@ -244,7 +245,10 @@ TEST_F(RunPagesTest, ObjectsThatWereNeverDetectedAreWhereAllAre) {
   EXPECT_EQ(PageDataIn(Page())["sequences"][0]["objects"].back()["segment"], 0);
 }
 
-TEST_F(RunPagesTest, LargeDatasetsStayBelowTheLimitAndSaySo) {
+// Thousands of objects.
+using SlowRunPagesTest = RunPagesTest;
+
+TEST_F(SlowRunPagesTest, LargeDatasetsStayBelowTheLimitAndSaySo) {
   const Camera& camera = sequence_.camera;
   cv::Mat noise(camera.height, camera.width, CV_8UC3);
   cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);

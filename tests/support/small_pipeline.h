@@ -55,7 +55,10 @@ inline CommandResult RunMake(const std::vector<std::string>& arguments) {
 // folder of the test's own.
 class SmallPipeline {
  public:
-  explicit SmallPipeline(int frames, int threads = 2) : threads_(std::to_string(threads)) {
+  static constexpr int kFrames = 4;
+
+  explicit SmallPipeline(int frames = kFrames, int threads = 2)
+      : threads_(std::to_string(threads)) {
     WriteBytes(folder_ / "scene.json", SmallScene(frames).dump());
     const CommandResult made =
         RunCommand({StageProgram("synthesise"), "--scene", (folder_ / "scene.json").string(),
@@ -114,6 +117,20 @@ class SmallPipeline {
             "DATA_ROOT=" + Dataset().parent_path().string(),
             "RESULTS=" + Results().parent_path().string(),
             "PIPELINES=" + Pipelines().string()};
+  }
+
+  // A folder with all programs, where that of a stage crashes.
+  std::string ProgramsWithACrashIn(const std::string& stage) const {
+    const std::filesystem::path programs = folder_ / "programs";
+    std::filesystem::create_directory(programs);
+    for (const auto& program : std::filesystem::directory_iterator(SOSLAM_BINARY_DIR)) {
+      std::filesystem::create_symlink(program.path(), programs / program.path().filename());
+    }
+    const std::filesystem::path crashing = programs / ("soslam-" + stage);
+    std::filesystem::remove(crashing);
+    WriteBytes(crashing, "#!/bin/sh\nkill -SEGV $$\n");
+    std::filesystem::permissions(crashing, std::filesystem::perms::owner_all);
+    return programs.string();
   }
 
   // The bytes of all artefacts (JSON, HDF5) below a folder, by path, links as well; without the

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/saved_folder.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
@@ -15,7 +16,6 @@ namespace soslam {
 // Runs stages one by one, each on what those before it wrote into folder "chain".
 class StageChain {
  public:
-  static constexpr int kFrames = 4;
   inline static const std::vector<std::string> kStages = {"import", "edges", "initialise", "refine",
                                                           "optimise"};
 
@@ -60,6 +60,21 @@ class StageChain {
     return RunCommand(words);
   }
 
+  // A chain of which all stages ran, once for all tests that ask for it. Each finds it as they left
+  // it.
+  static const StageChain& Finished() {
+    static const StageChain chain;
+    static const SavedFolder saved = [] {
+      for (const std::string& stage : kStages) {
+        const CommandResult result = chain.Run(stage);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+      }
+      return SavedFolder(chain.pipeline().Folder());
+    }();
+    saved.Restore();
+    return chain;
+  }
+
   // Runs all stages before this one; they have to succeed.
   void RunUpTo(const std::string& stage) const {
     for (auto earlier = kStages.begin(); *earlier != stage; ++earlier) {
@@ -69,7 +84,7 @@ class StageChain {
   }
 
  private:
-  SmallPipeline pipeline_{kFrames};
+  SmallPipeline pipeline_;
 };
 
 }  // namespace soslam

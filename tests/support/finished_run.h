@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+
+#include "support/saved_folder.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+
+// The small pipeline after a run of some variants, which takes place once. Each test that asks for
+// it finds all files, with their times, as that run left them.
+class FinishedRun {
+ public:
+  explicit FinishedRun(const std::string& variants) {
+    const CommandResult run = pipeline_.Run(variants);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    saved_.emplace(pipeline_.Folder());
+  }
+
+  const SmallPipeline& Restored() const {
+    saved_->Restore();
+    return pipeline_;
+  }
+
+ private:
+  SmallPipeline pipeline_;
+  std::optional<SavedFolder> saved_;
+};
+
+}  // namespace soslam
