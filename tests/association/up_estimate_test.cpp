@@ -8,9 +8,8 @@
 #include <random>
 
 #include "geometry/angles.h"
-#include "support/posts_and_mats.h"
 #include "support/random.h"
-#include "support/rolled.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

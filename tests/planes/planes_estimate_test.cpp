@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/random.h"
-#include "support/standing_scene.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

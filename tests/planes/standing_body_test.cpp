@@ -5,8 +5,8 @@
 
 #include "geometry/angles.h"
 #include "support/random.h"
+#include "support/scene.h"
 #include "support/shape_exponents.h"
-#include "support/standing_scene.h"
 
 namespace soslam {
 namespace {

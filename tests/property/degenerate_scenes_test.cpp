@@ -11,7 +11,7 @@
 #include "planes/estimate_planes.h"
 #include "planes/up_prior.h"
 #include "support/association_scenes.h"
-#include "support/standing_scene.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "report/page_geometry.h"
-#include "support/cuboid_sequence.h"
 #include "support/random.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

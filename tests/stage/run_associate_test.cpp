@@ -8,8 +8,7 @@
 #include "stage/structure_stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
-#include "support/posts_and_mats.h"
-#include "support/rolled.h"
+#include "support/scene.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

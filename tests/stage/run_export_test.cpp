@@ -12,9 +12,9 @@
 #include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
 #include "stage/map_stages.h"
-#include "support/cuboid_sequence.h"
 #include "support/expect_error.h"
 #include "support/gltf_document.h"
+#include "support/scene.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

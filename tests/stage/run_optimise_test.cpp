@@ -7,7 +7,6 @@
 #include "artefact/sequence_file.h"
 #include "evaluation/metrics.h"
 #include "stage/map_stages.h"
-#include "support/cuboid_sequence.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

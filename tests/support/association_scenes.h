@@ -8,32 +8,9 @@
 
 #include "association/association.h"
 #include "support/random.h"
-#include "synthesis/random_scene.h"
-#include "synthesis/simulate.h"
+#include "support/scene.h"
 
 namespace soslam {
-
-// Objects of all shapes, with these labels in turn, that a robot drives past.
-inline Scene LabelledScene(int seed, int objects, int frames,
-                           const std::vector<std::string>& labels) {
-  Scene scene =
-      RandomScene(seed, objects, frames, {Shape::kBox, Shape::kEllipsoid, Shape::kCylinder});
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    scene.objects[i].label = labels[i % labels.size()];
-  }
-  return scene;
-}
-
-// Noise of an ordinary detector, and of the odometry that AssociateOptions are meant for.
-inline SceneNoise OrdinaryNoise() {
-  SceneNoise noise;
-  noise.box_edge_sigma = 0.02;
-  noise.box_sigma_px = 1.0;
-  noise.miss_probability = 0.1;
-  noise.odometry_translation_sigma = 0.008;
-  noise.odometry_rotation_sigma_deg = 0.25;
-  return noise;
-}
 
 // A table that knows no label: cube proportions with a standard deviation of 0.5 in the log ratios.
 inline SemanticTable UnknowingTable() {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "mapping/back_end.h"
-#include "support/cuboid_sequence.h"
 #include "support/drawn_cuboids.h"
+#include "support/scene.h"
 
 namespace soslam {
 
