@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "support/dataset_fixture.h"
+#include "support/expect_error.h"
 
 namespace soslam {
 namespace {
@@ -127,13 +128,12 @@ TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {
 }
 
 TEST_F(JsonFileTest, NonFiniteSettingsAreRefusedToo) {
-  try {
-    WriteArtefact(file, "landmarks", {{{"weight", std::numeric_limits<double>::infinity()}}, {}},
-                  kEmptyLandmarks);
-    FAIL() << "written";
-  } catch (const NumericalError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("/artefact/settings/weight would be inf"));
-  }
+  ExpectError<NumericalError>(
+      [&] {
+        WriteArtefact(file, "landmarks",
+                      {{{"weight", std::numeric_limits<double>::infinity()}}, {}}, kEmptyLandmarks);
+      },
+      {"/artefact/settings/weight would be inf"});
 }
 
 // A misspelt keyword in a schema would silently check nothing. What has a default came after

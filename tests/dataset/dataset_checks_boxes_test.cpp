@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The usual mistakes in boxes, tracks, labels and true objects.
+#include "support/dataset_checks_fixture.h"
+
+namespace soslam {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Boxes.
+
+TEST_F(DatasetChecksTest, SizesWhereCornersBelong) {
+  dataset.box = [](const Box& b) {
+    return std::array<double, 4>{b.x_min, b.y_min, b.Width(), b.Height()};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("meant as upper left corner and size"));
+}
+
+TEST_F(DatasetChecksTest, CornersWhereSizesBelong) {
+  WriteCoco([](const Box& b) { return std::array{b.x_min, b.y_min, b.x_max, b.y_max}; });
+  EXPECT_THAT(Refusal(), HasSubstr("meant as two corners"));
+}
+
+// Boxes on the right of the image reach out of it.
+TEST_F(DatasetChecksTest, CentresWhereCornersBelong) {
+  WriteCoco([](const Box&) { return std::array{500.0, 300.0, 200.0, 150.0}; });
+  EXPECT_THAT(Refusal(), HasSubstr("meant as centre and size"));
+}
+
+TEST_F(DatasetChecksTest, AFewBoxesOutOfTheImage) {
+  dataset.box = [count = 0](const Box& b) mutable {
+    const double shift = ++count % 8 == 0 ? 600.0 : 0.0;
+    return std::array{b.x_min + shift, b.y_min, b.x_max + shift, b.y_max};
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("box_convention: 14 of 115 boxes")));
+}
+
+TEST_F(DatasetChecksTest, BoxesAsFractions) {
+  dataset.box = [](const Box& b) {
+    return std::array{b.x_min / 640, b.y_min / 480, b.x_max / 640, b.y_max / 480};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("fractions of the image"));
+}
+
+TEST_F(DatasetChecksTest, BoxesOfLargerImages) {
+  dataset.box = [](const Box& b) {
+    return std::array{3 * b.x_min, 3 * b.y_min, 3 * b.x_max, 3 * b.y_max};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("images of another size"));
+}
+
+// A box of the whole thing, also where the image cuts it.
+TEST_F(DatasetChecksTest, BoxesOfWholeThingsAreNoOtherConvention) {
+  dataset.box = [](const Box& b) {
+    const auto wide = [](double x, double size) { return 0.5 * size + 4.0 * (x - 0.5 * size); };
+    return std::array{wide(b.x_min, 640), wide(b.y_min, 480), wide(b.x_max, 640),
+                      wide(b.y_max, 480)};
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("whole objects that the image cuts")));
+}
+
+TEST_F(DatasetChecksTest, AnOrbitAroundThingsInTheMiddleIsNoSmallerImage) {
+  dataset.camera.fx = dataset.camera.fy = dataset.written_camera.fx = dataset.written_camera.fy =
+      200;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, ScoresInPerCent) {
+  dataset.score = "87";
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("115 of 115 scores"), HasSubstr("per cent"))));
+}
+
+TEST_F(DatasetChecksTest, BoxesThatTheBorderGateDrops) {
+  options.border_px = 200;
+  options.min_observations = 1;
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("rejected_near_border"), HasSubstr("border_px"))));
+}
+
+// Objects that boxes are of.
+
+TEST_F(DatasetChecksTest, NoBoxOfATrack) {
+  dataset.first_object_id = -5;
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("object_ids: detections.csv: all 115 boxes"),
+                                            HasSubstr("let association be estimated"))));
+}
+
+TEST_F(DatasetChecksTest, HalfOfTheBoxesOfNoTrack) {
+  dataset.first_object_id = -2;
+  dataset.label = [](size_t) { return "ball"; };
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("rejected_without_object_id: 46 of 115"),
+                                            HasSubstr("a tracker that finds few tracks"))));
+}
+
+// Labels.
+
+TEST_F(DatasetChecksTest, LabelsThatFlicker) {
+  const auto flicker = [](int of_seven) {
+    return [of_seven, count = 0](size_t ball) mutable {
+      return count++ % 7 < of_seven ? "thing" : PlausibleDataset::Labels()[ball];
+    };
+  };
+  dataset.label = flicker(1);
+  EXPECT_THAT(Warnings(), IsEmpty());
+  dataset.label = flicker(3);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("labels_of_objects: detections.csv: 51 of 115 boxes"),
+                                HasSubstr("ids that are of several things"))));
+}
+
+class ClassNamesTest : public DatasetChecksTest {
+ protected:
+  // YOLO's labels with these classes for the five balls, and these lines of names.
+  void WriteYolo(const std::array<int, 5>& classes, const std::string& names) {
+    std::filesystem::create_directories(folder / "labels");
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      std::string lines;
+      for (size_t ball = 0; ball < classes.size(); ++ball) {
+        const Box box = dataset.BoxOf(ball, frame);
+        lines += fmt::format("{} {} {} {} {}\n", classes[ball], (box.Centre().x() + 0.5) / 640,
+                             (box.Centre().y() + 0.5) / 480, box.Width() / 640, box.Height() / 480);
+      }
+      std::ofstream(folder / fmt::format("labels/{:06}.txt", frame)) << lines;
+    }
+    std::ofstream(folder / "names.txt") << names;
+    options.detections = "labels";
+    options.folder.detections_format = DetectionsFormat::kYolo;
+    options.folder.class_names = "names.txt";
+    dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  }
+};
+
+TEST_F(ClassNamesTest, AreRight) {
+  WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\nvase\nbowl\nbottle\ntable\n\n");
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// The left edge is by 2 % of the width out of the image. The boxes of no track count, too.
+TEST_F(ClassNamesTest, BoxesThatReachBeyondTheImage) {
+  WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\nvase\nbowl\nbottle\n");
+  dataset.objects = "";
+  for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+    std::ofstream(folder / fmt::format("labels/{:06}.txt", frame))
+        << "0 0.03 0.5 0.1 0.2 0.9 -1\n1 0.5 0.5 0.1 0.2 0.9 1\n";
+  }
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("boxes_cut: labels: 24 of 48 boxes")));
+}
+
+TEST_F(ClassNamesTest, AreCountedFromOne) {
+  WriteYolo({1, 3, 5, 7, 9}, "ball\na\ncup\nb\nvase\nc\nbowl\nd\nbottle\ne\n");
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("class_numbers: 0 of 120"),
+                                            HasSubstr("but 120 if"), HasSubstr("one lower"))));
+}
+
+TEST_F(ClassNamesTest, HaveABlankLineBetween) {
+  WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\n\nvase\nbowl\nbottle\n");
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("names.txt has 1 blank lines")));
+}
+
+// Objects.
+
+TEST_F(DatasetChecksTest, TrueObjectsWhereTheyAreSeen) {
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, IdsFromZeroInOneFile) {
+  dataset.label = [](size_t) { return "ball"; };
+  dataset.objects = dataset.TrueObjects(/*first_id=*/0, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("objects_against_boxes"),
+                                            HasSubstr("subtract 1 from the object_id"))));
+}
+
+TEST_F(DatasetChecksTest, FullSizesForHalfAxes) {
+  dataset.true_radius *= 2.0;
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("full sizes"))));
+}
+
+// Cameras are within such objects, which have no outline then.
+TEST_F(DatasetChecksTest, HalfAxesInCentimetres) {
+  dataset.true_radius *= 100.0;
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("centimetres"))));
+}
+
+TEST_F(DatasetChecksTest, HalfAxesInKilometres) {
+  dataset.true_radius *= 1e-3;
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("object_half_axes"), HasSubstr("another unit"))));
+}
+
+// The rotation by 40 degrees about z with qw first.
+TEST_F(DatasetChecksTest, TrueQuaternionsWithScalarFirst) {
+  dataset.true_quaternion = "0.94, 0, 0, 0.342";
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("object_axes"), HasSubstr("qw first"))));
+}
+
+TEST_F(DatasetChecksTest, TrueObjectsInMillimetres) {
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1e-3);
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("another world, unit or order of axes")));
+}
+
+}  // namespace
+}  // namespace soslam

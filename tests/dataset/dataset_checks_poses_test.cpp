@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The usual mistakes in poses and in the order of frames.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "support/dataset_checks_fixture.h"
+
+namespace soslam {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+// While a camera looks at the middle of all things, a half turn hardly shows.
+TEST_F(DatasetChecksTest, CamerasTurnedByHalfATurn) {
+  dataset.sway = 0.3;
+  EXPECT_THAT(Warnings(), IsEmpty());
+  dataset.odometry = [](const Rigid3d& pose) { return TurnedAboutOpticalAxis(pose, 180.0); };
+  EXPECT_THAT(Refusal(), HasSubstr("by half a turn about the camera's z axis"));
+}
+
+TEST_F(DatasetChecksTest, MirroredBoxes) {
+  dataset.box = [](const Box& b) {
+    return std::array{639 - b.x_max, b.y_min, 639 - b.x_min, b.y_max};
+  };
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("boxes are mirrored left to right"),
+                               HasSubstr("as selfie cameras do")));
+}
+
+TEST_F(DatasetChecksTest, BoxesWithYUp) {
+  dataset.box = [](const Box& b) {
+    return std::array{b.x_min, 479 - b.y_max, b.x_max, 479 - b.y_min};
+  };
+  EXPECT_THAT(Refusal(), HasSubstr("boxes with y up"));
+}
+
+TEST_F(DatasetChecksTest, PosesInReversedOrder) {
+  dataset.pose_of_frame = [](int frame) { return PlausibleDataset::kFrames - 1 - frame; };
+  EXPECT_THAT(Warnings(),
+              testing::Contains(AllOf(HasSubstr("frame_order: "), HasSubstr("reversed order"))));
+}
+
+class OrderOfStringsTest : public DatasetChecksTest {
+ protected:
+  // 0, 1, 10, 11, ..., 2, ...
+  static std::vector<int> Order() {
+    std::vector<int> order(PlausibleDataset::kFrames);
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, {}, [](int frame) { return std::to_string(frame); });
+    return order;
+  }
+};
+
+TEST_F(OrderOfStringsTest, OfPoses) {
+  dataset.pose_of_frame = [](int frame) { return Order()[static_cast<size_t>(frame)]; };
+  EXPECT_THAT(Warnings(),
+              testing::Contains(AllOf(HasSubstr("frame_order: "),
+                                      HasSubstr("the poses are in the order of strings"))));
+}
+
+TEST_F(OrderOfStringsTest, OfBoxes) {
+  dataset.pose_of_frame = [](int frame) {
+    const std::vector<int> order = Order();
+    return static_cast<int>(std::ranges::find(order, frame) - order.begin());
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(AllOf(HasSubstr("frame_order: "),
+                                                  HasSubstr("boxes are in the order of strings"))));
+}
+
+// Poses that were shuffled: no order or reading explains them.
+TEST_F(DatasetChecksTest, PosesThatContradictTheBoxes) {
+  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("boxes_against_poses: 5 things are"),
+                                HasSubstr("poses, the order of frames, or ids contradict"))));
+}
+
+TEST_F(DatasetChecksTest, PosesThatContradictTheBoxesAndTheTruth) {
+  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
+  dataset.has_truth = true;
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("trajectory_against_truth")));
+}
+
+// It turns about z while the camera goes around.
+TEST_F(DatasetChecksTest, PosesThatDrift) {
+  dataset.odometry = [](const Rigid3d& pose) {
+    const double turn_rad = 0.1 * std::atan2(pose.translation.y(), pose.translation.x());
+    const Eigen::AngleAxisd turn(turn_rad, Eigen::Vector3d::UnitZ());
+    return Rigid3d{Eigen::Quaterniond(turn), {0.0, 0.0, 5.0 * turn_rad}} * pose;
+  };
+  EXPECT_THAT(Warnings(), ElementsAre(HasSubstr("poses that drift far")));
+  dataset.has_truth = true;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, PlanesThroughPosesThatContradictTheBoxes) {
+  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
+  dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("from below"), HasSubstr("mend poses"),
+                               Not(HasSubstr("sign of the normal"))));
+}
+
+TEST_F(DatasetChecksTest, FramesFromOne) {
+  dataset.first_row = 1;
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("frame_numbers"), HasSubstr("counted from 1"),
+                                            HasSubstr("subtract 1"))));
+}
+
+TEST_F(DatasetChecksTest, FramesThatBeginOneImageLate) {
+  dataset.first_row = -1;
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("frame_numbers"), HasSubstr("begin one image late"),
+                                HasSubstr("add 1"))));
+}
+
+TEST_F(DatasetChecksTest, EurocsPosesOfTheCamera) {
+  WriteEuroc();
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+TEST_F(DatasetChecksTest, EurocsPosesThatNoBoxesTellOf) {
+  WriteEuroc();
+  dataset.has_object_ids = false;
+  dataset.label = [](size_t) { return "ball"; };
+  EXPECT_THAT(Warnings(),
+              ElementsAre(AllOf(HasSubstr("pose_convention: EuRoC's poses"),
+                                HasSubstr("nothing where the poses are those of the camera"))));
+}
+
+// Other mistakes than those of an IMU are told as in any format.
+TEST_F(DatasetChecksTest, EurocsPosesTheOtherWayRound) {
+  WriteEuroc([](const Rigid3d& pose) { return pose.Inverse(); });
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("if the poses are"), Not(HasSubstr("T_BS"))));
+}
+
+// An IMU that is turned by a quarter against the camera about its optical axis.
+TEST_F(DatasetChecksTest, EurocsPosesOfAnImu) {
+  const double half = std::sqrt(0.5);
+  const Rigid3d camera_from_imu(Eigen::Quaterniond(half, 0, 0, -half), {0.1, 0, 0});
+  WriteEuroc([&](const Rigid3d& pose) { return pose * camera_from_imu; });
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("pose_convention: EuRoC's poses"),
+                                            HasSubstr("sensor.yaml, with T_BS"))));
+  std::ofstream(folder / "sensor.yaml")
+      << "T_BS:\n  data: [0, -1, 0, 0, 1, 0, 0, -0.1, 0, 0, 1, 0, 0, 0, 0, 1]\n"
+         "resolution: [640, 480]\nintrinsics: [500, 500, 319.5, 239.5]\n";
+  options.folder.camera_file = "sensor.yaml";
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+// Things that all move like the camera, but faster, look as if poses were reversed.
+TEST_F(DatasetChecksTest, ThingsThatMoveAreNoOtherConvention) {
+  dataset.drive = true;
+  dataset.ball_moves = 2.0;
+  for (const std::string& warning : Warnings()) {
+    EXPECT_THAT(warning, testing::Not(HasSubstr("error")));
+  }
+}
+
+TEST_F(DatasetChecksTest, TrajectoriesOfAnotherScale) {
+  dataset.has_truth = true;
+  dataset.odometry = [](const Rigid3d& pose) {
+    return Rigid3d{pose.rotation, 0.4 * pose.translation};
+  };
+  EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("trajectory_against_truth")));
+}
+
+TEST_F(DatasetChecksTest, OdometryInItsOwnWorld) {
+  dataset.has_truth = true;
+  const Rigid3d own_from_world = dataset.WorldFromCamera(0).Inverse();
+  dataset.odometry = [=](const Rigid3d& pose) { return own_from_world * pose; };
+  EXPECT_THAT(Warnings(), ElementsAre(AllOf(HasSubstr("trajectory_against_truth"),
+                                            HasSubstr("align_odometry"))));
+  options.folder.align_odometry = true;
+  EXPECT_THAT(Warnings(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace soslam
