@@ -13,6 +13,15 @@ Eigen::Matrix<double, 3, 4> Camera::ProjectionMatrix(const Rigid3d& camera_from_
   return Intrinsics() * camera_from_world.Matrix().topRows<3>();
 }
 
+Eigen::Matrix<double, 2, 3> Camera::ProjectionJacobian(
+    const Eigen::Vector3d& point_in_camera) const {
+  const double inverse_depth = 1.0 / point_in_camera.z();
+  Eigen::Matrix<double, 2, 3> jacobian;
+  jacobian << fx, 0.0, -fx * point_in_camera.x() * inverse_depth,  //
+      0.0, fy, -fy * point_in_camera.y() * inverse_depth;
+  return inverse_depth * jacobian;
+}
+
 Plane Camera::BackProject(const Eigen::Vector3d& line) const {
   const Eigen::Vector3d normal = Intrinsics().transpose() * line;
   return {normal.normalized(), 0.0};

@@ -27,6 +27,8 @@ struct Camera {
     return Eigen::Vector2d(fx * point_in_camera.x() / point_in_camera.z() + cx,
                            fy * point_in_camera.y() / point_in_camera.z() + cy);
   }
+  // d pixel / d point of Project, for a point in front of the camera.
+  Eigen::Matrix<double, 2, 3> ProjectionJacobian(const Eigen::Vector3d& point_in_camera) const;
   // The viewing ray of a pixel, with z = 1: (point at depth z) = z * ray.
   Eigen::Vector3d Ray(const Eigen::Vector2d& pixel) const {
     return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, 1.0};

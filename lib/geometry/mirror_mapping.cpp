@@ -92,11 +92,7 @@ std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
     LandmarkJacobian3 motion = camera_from_object_rotation_ * point.jacobian;
     motion.leftCols<3>() -= Skew(offset_in_camera);
     motion.middleCols<3>(3) += Eigen::Matrix3d::Identity();
-    const double inverse_depth = 1.0 / in_camera.z();
-    Eigen::Matrix<double, 2, 3> projection;
-    projection << camera_.fx, 0, -camera_.fx * in_camera.x() * inverse_depth,  //
-        0, camera_.fy, -camera_.fy * in_camera.y() * inverse_depth;
-    pixel.jacobian = inverse_depth * projection * motion;
+    pixel.jacobian = camera_.ProjectionJacobian(in_camera) * motion;
   }
   return pixel;
 }

@@ -58,43 +58,47 @@ double EdgeTerm::Support(const Landmark& landmark_in_camera) const {
   return 1.0 - (Value(landmark_in_camera) + ConstantCost()) / largest;
 }
 
-double EdgeTerm::Residual(const VisibleSurface& landmark, const Eigen::Vector3d& in_object,
-                          LandmarkJacobian1* jacobian) const {
-  const bool with_jacobian = jacobian != nullptr;
-  if (with_jacobian) jacobian->setZero();
-  VisibleSurface::Point point{in_object};
-  point.jacobian.rightCols<3>() = in_object.asDiagonal();
-  const auto pixel = landmark.ToPixel(point, with_jacobian);
-  const auto distance =
-      pixel ? SampleBilinear(image_->frame->maps.distance, pixel->pixel) : std::nullopt;
+double EdgeTerm::Residual(const Landmark& landmark, const Eigen::Matrix3d& rotation,
+                          const Eigen::Vector3d& in_unit_body, LandmarkJacobian1* jacobian) const {
+  if (jacobian != nullptr) jacobian->setZero();
+  const Eigen::Vector3d in_object = landmark.half_axes.cwiseProduct(in_unit_body);
+  const Eigen::Vector3d from_centre = rotation * in_object;
+  const Eigen::Vector3d in_camera = from_centre + landmark.Centre();
+  const auto pixel = camera_.Project(in_camera);
+  const auto distance = pixel ? SampleBilinear(image_->frame->maps.distance, *pixel) : std::nullopt;
   if (!distance) return options_.edge_truncation_px;  // the limit for large distances
   const RobustResidual robust =
       RobustifyResidual(GemanMcClureLoss(options_.edge_truncation_px), distance->value);
-  if (with_jacobian) *jacobian = robust.slope * distance->gradient.transpose() * pixel->jacobian;
+  if (jacobian != nullptr) {
+    const Eigen::Vector3d d_point =
+        robust.slope * camera_.ProjectionJacobian(in_camera).transpose() * distance->gradient;
+    *jacobian << from_centre.cross(d_point).transpose(), d_point.transpose(),
+        (rotation.transpose() * d_point).cwiseProduct(in_object).transpose();
+  }
   return robust.value;
 }
 
 double EdgeTerm::Value(const Landmark& landmark_in_camera) const {
-  const VisibleSurface landmark(camera_, landmark_in_camera);
+  const Eigen::Matrix3d rotation = landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
   double sum = 0.0;
   for (const Eigen::Vector3d& point : in_unit_body_) {
-    const double residual =
-        Residual(landmark, landmark_in_camera.half_axes.cwiseProduct(point), nullptr);
+    const double residual = Residual(landmark_in_camera, rotation, point, nullptr);
     sum += residual * residual;
   }
   return 0.5 * weight_ * sum;
 }
 
 void EdgeTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
-  const VisibleSurface landmark(camera_, landmark_in_camera);
-  LandmarkModel unweighted;
-  for (const Eigen::Vector3d& point : in_unit_body_) {
-    LandmarkJacobian1 jacobian;
-    const double residual =
-        Residual(landmark, landmark_in_camera.half_axes.cwiseProduct(point), &jacobian);
-    unweighted.Add(residual, jacobian.transpose());
+  const Eigen::Matrix3d rotation = landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
+  Eigen::VectorXd residuals(NumPoints());
+  Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> jacobian(NumPoints(), kLandmarkDof);
+  for (int i = 0; i < NumPoints(); ++i) {
+    LandmarkJacobian1 row;
+    residuals[i] =
+        Residual(landmark_in_camera, rotation, in_unit_body_[static_cast<size_t>(i)], &row);
+    jacobian.row(i) = row;
   }
-  sum->Add(unweighted, weight_);
+  sum->Add(residuals, jacobian, weight_);
 }
 
 EdgeTerm SupportedEdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,

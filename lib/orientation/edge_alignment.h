@@ -62,8 +62,8 @@ class EdgeTerm final : public LandmarkCost {
  private:
   bool Counts(const ModelPoint& point, const Landmark& start_in_camera) const;
   // Residual (px) of a point of the body, and its derivative; the loss is included.
-  double Residual(const VisibleSurface& landmark, const Eigen::Vector3d& in_object,
-                  LandmarkJacobian1* jacobian) const;
+  double Residual(const Landmark& landmark, const Eigen::Matrix3d& rotation,
+                  const Eigen::Vector3d& in_unit_body, LandmarkJacobian1* jacobian) const;
   // Largest cost of one point.
   double LargestCost() const {
     return 0.5 * weight_ * options_.edge_truncation_px * options_.edge_truncation_px;

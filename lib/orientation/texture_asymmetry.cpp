@@ -179,13 +179,14 @@ double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
 
 void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
-  LandmarkModel unweighted;
-  for (const Eigen::Vector2d& pixel : texture_.pixels) {
-    LandmarkJacobian1 jacobian;
-    const double residual = Residual(descriptor, pixel, &jacobian);
-    unweighted.Add(residual, jacobian.transpose());
+  Eigen::VectorXd residuals(NumPairs());
+  Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> jacobian(NumPairs(), kLandmarkDof);
+  for (int i = 0; i < NumPairs(); ++i) {
+    LandmarkJacobian1 row;
+    residuals[i] = Residual(descriptor, texture_.pixels[static_cast<size_t>(i)], &row);
+    jacobian.row(i) = row;
   }
-  sum->Add(unweighted, weight_);
+  sum->Add(residuals, jacobian, weight_);
 }
 
 }  // namespace soslam

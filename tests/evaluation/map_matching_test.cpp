@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/map_matching.h"
+#include "evaluation/map_quality.h"
 
 #include <gtest/gtest.h>
 

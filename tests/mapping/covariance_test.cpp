@@ -10,7 +10,7 @@
 #include "mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
-#include "support/standing_scene.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,7 @@
 #include "mapping/choose_starts.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
-#include "support/standing_scene.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "report/page_html.h"
 #include "stage/result_pages.h"
-#include "support/cuboid_sequence.h"
 #include "support/expect_error.h"
 #include "support/page_data.h"
 #include "support/results_folder.h"
