@@ -117,12 +117,13 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   const bool is_near = !(centre_depth_m > min_centre_depth_m_);
   const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
                               is_near ? 0.0 : depth_ratio_};
-  Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
-  d_landmark.setZero();
   LandmarkJacobian1 d_tangency;
   const double tangency = Tangency(edge_, landmark, depth, *blocks[2], &d_tangency);
+  if (!std::isfinite(tangency)) return false;  // the step was too large: the solver shortens it
   Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
   if (jacobians == nullptr) return true;
+  Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
+  d_landmark.setZero();
   d_landmark.row(0) = d_tangency;
   if (*with_curvature_) {
     d_landmark.bottomLeftCorner<2, 3>() =

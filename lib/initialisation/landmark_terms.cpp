@@ -38,9 +38,9 @@ void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
                        Jacobian* jacobian) const {
   for (size_t i = 0; i < edges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    LandmarkJacobian1 by_landmark;
-    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0, &by_landmark);
-    if (jacobian != nullptr) jacobian->row(row) = by_landmark;
+    LandmarkJacobian1 d_landmark;
+    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0, &d_landmark);
+    if (jacobian != nullptr) jacobian->row(row) = d_landmark;
   }
 }
 
@@ -53,9 +53,9 @@ void OutlineTerm::Evaluate(const Landmark& landmark_in_camera,
   }
   for (size_t i = 0; i < edges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    LandmarkJacobian1 by_landmark;
-    residuals[row] = OutlineExcess(edges_[i], landmark_in_camera, &by_landmark);
-    if (jacobian != nullptr) jacobian->row(row) = by_landmark;
+    LandmarkJacobian1 d_landmark;
+    residuals[row] = OutlineExcess(edges_[i], landmark_in_camera, &d_landmark);
+    if (jacobian != nullptr) jacobian->row(row) = d_landmark;
   }
 }
 
@@ -138,12 +138,13 @@ void YawTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
 bool LandmarkTermResidual::Evaluate(double const* const* blocks, double* residuals,
                                     double** jacobians) const {
   const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
-  LandmarkTerm::Jacobian by_landmark(num_residuals(), kLandmarkDof);
+  LandmarkTerm::Jacobian d_landmark(num_residuals(), kLandmarkDof);
   term_->Evaluate(UnpackLandmark(blocks[0]),
                   Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()),
-                  with_jacobian ? &by_landmark : nullptr);
+                  with_jacobian ? &d_landmark : nullptr);
+  if (!Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()).allFinite()) return false;
   if (with_jacobian) {
-    WriteLandmarkJacobian<Eigen::Dynamic>(blocks[0], by_landmark, jacobians[0]);
+    WriteLandmarkJacobian<Eigen::Dynamic>(blocks[0], d_landmark, jacobians[0]);
   }
   return true;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/back_end_variables.h"
 
+#include <algorithm>
+
 namespace soslam {
 namespace {
 
@@ -18,35 +20,52 @@ size_t FirstParallelPlane(const std::vector<SupportPlane>& planes, size_t index)
 
 }  // namespace
 
-BackEndVariables::BackEndVariables(const BackEndInput& input) : input_(input) {
-  for (const Frame& frame : input.sequence.frames) {
-    poses_.push_back(ToParameterBlock(frame.world_from_camera));
+BackEndVariables::BackEndVariables(const BackEndInput& input)
+    : input_(input),
+      first_landmark_(kPoseSize * input.sequence.frames.size()),
+      first_normal_(first_landmark_ + kLandmarkSize * input.starts.size()),
+      first_offset_(first_normal_ + kNormalSize * input.sequence.planes.size()),
+      first_bias_(first_offset_ + kOffsetSize * input.sequence.planes.size()),
+      values_(first_bias_ + 4 * kBiasSize, 0.0) {
+  const Sequence& sequence = input.sequence;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    std::ranges::copy(ToParameterBlock(sequence.frames[i].world_from_camera), Pose(i));
   }
-  for (const auto& initial : input.starts) {
-    landmarks_.push_back(initial ? ToParameterBlock(*initial) : LandmarkBlock{});
+  for (size_t i = 0; i < input.starts.size(); ++i) {
+    if (input.starts[i]) std::ranges::copy(ToParameterBlock(*input.starts[i]), Landmark(i));
   }
-  const auto& planes = input.sequence.planes;
-  for (size_t i = 0; i < planes.size(); ++i) {
-    const Plane& plane = planes[i].plane_in_world;
-    const size_t shared = FirstParallelPlane(planes, i);
-    const bool is_opposite = planes[shared].plane_in_world.normal != plane.normal;
-    planes_.push_back({shared, plane.normal, is_opposite ? -1.0 : 1.0, plane.offset});
+  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+    const Plane& plane = sequence.planes[i].plane_in_world;
+    const size_t shared = FirstParallelPlane(sequence.planes, i);
+    const bool is_opposite = sequence.planes[shared].plane_in_world.normal != plane.normal;
+    planes_.push_back({shared, is_opposite ? -1.0 : 1.0});
+    if (shared == i) std::ranges::copy(plane.normal, Normal(i));
+    *Offset(i) = plane.offset;
   }
 }
 
 Plane BackEndVariables::PlaneValue(size_t plane_index) const {
-  const PlaneVariables& plane = planes_[plane_index];
-  return {plane.side * planes_[plane.shared].normal, plane.offset};
+  const PlaneNormal& plane = planes_[plane_index];
+  const Eigen::Map<const Eigen::Vector3d> normal(
+      &values_[first_normal_ + kNormalSize * plane.shared]);
+  return {plane.side * normal, values_[first_offset_ + plane_index]};
+}
+
+std::array<double, 4> BackEndVariables::BiasValues() const {
+  std::array<double, 4> biases;
+  std::copy_n(&values_[first_bias_], biases.size(), biases.begin());
+  return biases;
 }
 
 Landmark BackEndVariables::LandmarkValue(size_t object_index) const {
-  soslam::Landmark landmark = UnpackLandmark(landmarks_[object_index].data());
+  soslam::Landmark landmark =
+      UnpackLandmark(&values_[first_landmark_ + kLandmarkSize * object_index]);
   landmark.shape_exponent = input_.starts[object_index]->shape_exponent;
   return landmark;
 }
 
 std::vector<std::optional<Landmark>> BackEndVariables::LandmarkValues() const {
-  std::vector<std::optional<soslam::Landmark>> landmarks(landmarks_.size());
+  std::vector<std::optional<soslam::Landmark>> landmarks(input_.starts.size());
   for (size_t i = 0; i < landmarks.size(); ++i) {
     if (input_.starts[i]) landmarks[i] = LandmarkValue(i);
   }

@@ -13,42 +13,49 @@ namespace soslam {
 // The parameter blocks of the back end (see parameters.h): a pose for each frame, a landmark for
 // each object, normal and offset of each plane, and the detector's bias at each side of a box. They
 // begin at the input's values. Keeps a reference to the input.
+//
+// All are in one array, as Ceres sorts blocks by their address: the order of blocks, on which last
+// digits depend, is then the same in every run.
 class BackEndVariables {
  public:
   explicit BackEndVariables(const BackEndInput& input);
   BackEndVariables(const BackEndVariables&) = delete;
   BackEndVariables& operator=(const BackEndVariables&) = delete;
 
-  double* Pose(size_t frame_index) { return poses_[frame_index].data(); }
-  double* Landmark(size_t object_index) { return landmarks_[object_index].data(); }
+  double* Pose(size_t frame_index) { return &values_[kPoseSize * frame_index]; }
+  double* Landmark(size_t object_index) {
+    return &values_[first_landmark_ + kLandmarkSize * object_index];
+  }
   // Parallel planes that are estimated share the block of their normal; NormalSide is -1 for those
   // of which it is the opposite, else 1.
-  double* Normal(size_t plane_index) { return planes_[planes_[plane_index].shared].normal.data(); }
+  double* Normal(size_t plane_index) {
+    return &values_[first_normal_ + kNormalSize * planes_[plane_index].shared];
+  }
   double NormalSide(size_t plane_index) const { return planes_[plane_index].side; }
-  double* Offset(size_t plane_index) { return &planes_[plane_index].offset; }
-  double* Bias(size_t side) { return &bias_px_[side]; }
+  double* Offset(size_t plane_index) { return &values_[first_offset_ + plane_index]; }
+  double* Bias(size_t side) { return &values_[first_bias_ + side]; }
 
   // In the world.
-  Rigid3d PoseValue(size_t frame_index) const { return UnpackPose(poses_[frame_index].data()); }
+  Rigid3d PoseValue(size_t frame_index) const {
+    return UnpackPose(&values_[kPoseSize * frame_index]);
+  }
   // Of every object: none without an initial estimate.
   std::vector<std::optional<soslam::Landmark>> LandmarkValues() const;
   soslam::Landmark LandmarkValue(size_t object_index) const;  // needs an initial estimate
   Plane PlaneValue(size_t plane_index) const;
-  const std::array<double, 4>& BiasValues() const { return bias_px_; }
+  std::array<double, 4> BiasValues() const;
 
  private:
-  struct PlaneVariables {
-    size_t shared;           // index of the first parallel plane, whose normal is used
-    Eigen::Vector3d normal;  // used if it is the first itself
+  // Which normal a plane has: that of the first parallel plane, or its opposite.
+  struct PlaneNormal {
+    size_t shared;  // index of that plane
     double side;
-    double offset;
   };
 
   const BackEndInput& input_;
-  std::vector<PoseBlock> poses_;
-  std::vector<LandmarkBlock> landmarks_;
-  std::vector<PlaneVariables> planes_;
-  std::array<double, 4> bias_px_{};
+  std::vector<PlaneNormal> planes_;
+  size_t first_landmark_, first_normal_, first_offset_, first_bias_;
+  std::vector<double> values_;
 };
 
 }  // namespace soslam

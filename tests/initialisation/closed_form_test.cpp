@@ -21,7 +21,8 @@ TEST(ClosedForm, HasTheDepthsOfItsOwnTangentPoints) {
       const Landmark landmark = UprightGround(body.plane).LandmarkAt(start->parameters, p);
       for (size_t edge = 0; edge < 4; ++edge) {
         const double depth_m = start->depths_m[static_cast<Eigen::Index>(edge)];
-        EXPECT_NEAR(TangentDepth(observation.edges[edge], landmark), depth_m, 1e-8 * depth_m);
+        EXPECT_NEAR(FindTangentDepth(observation.edges[edge], landmark).depth_m, depth_m,
+                    1e-8 * depth_m);
       }
     }
   }

@@ -76,7 +76,8 @@ bool AreOffTheKinks(const std::array<BoxEdge, 4>& edges, const Landmark& landmar
   return std::all_of(edges.begin(), edges.end(), [&](const BoxEdge& edge) {
     BoxEdge measured = edge;
     measured.is_bound = false;
-    const double outside = Tangency(measured, landmark, TangentDepth(edge, landmark), 0.0, nullptr);
+    const double outside =
+        Tangency(measured, landmark, FindTangentDepth(edge, landmark), 0.0, nullptr);
     if (edge.is_bound && std::abs(outside) < 0.1) return false;
     const Eigen::Vector3d in_object =
         landmark.frame_from_object.rotation.conjugate() * edge.plane.normalized();

@@ -125,7 +125,7 @@ TEST(SolveAtYaw, IsTheOptimumWhereOneEdgeIsABound) {
     const auto landmark = SolveAtYaw(observation, yaw);
     ASSERT_TRUE(landmark);
     EXPECT_TRUE(IsSameBody(*landmark, Optimum(observation, yaw, *landmark), 1e-8)) << bound;
-    reached += Tangency(observation.edges[bound], *landmark, 1.0, 0.0, nullptr) == 0.0 ? 1 : 0;
+    reached += Tangency(observation.edges[bound], *landmark, {1.0}, 0.0, nullptr) == 0.0 ? 1 : 0;
   }
   EXPECT_GT(reached, kBodies / 5);
   EXPECT_LT(reached, kBodies * 4 / 5);

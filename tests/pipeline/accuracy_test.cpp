@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sequence that comes with the project through all variants, beside what they reached when
-// expected/room_a.json was written: cells of tables, and final costs of back ends. Init1-1 has no
-// yaw there: its bodies are as long as wide, and rounding decides it.
+// expected/room_a.json was written: cells of tables, and final costs of back ends. Init1-1 and
+// Quadric have no yaw there: where bodies are as long as wide, or collapse to discs, rounding
+// decides it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
