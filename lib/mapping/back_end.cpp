@@ -75,9 +75,10 @@ void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndProbl
   int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
-    if (covariances.AreDetermined()) {
-      object.covariance = covariances.OfLandmark(
-          problem->variables().Landmark(static_cast<size_t>(object.object_index)));
+    const double* landmark =
+        problem->variables().Landmark(static_cast<size_t>(object.object_index));
+    if (covariances.Has(landmark)) {
+      object.covariance = covariances.OfLandmark(landmark);
     } else {
       ++without;
     }

@@ -20,9 +20,11 @@ class MarginalCovariances {
 
   // Whether the residuals determine all blocks. If not, there are no covariances.
   bool AreDetermined() const { return are_determined_; }
+  // Whether a block has a covariance: residuals depend on it, and it is not constant.
+  bool Has(const double* block) const { return are_determined_ && first_column_.contains(block); }
 
-  // Covariance of a landmark over (rotation vector in the world frame, rad; centre, m; log half
-  // axes).
+  // Covariance of a landmark that has one over (rotation vector in the world frame, rad; centre, m;
+  // log half axes).
   Covariance9 OfLandmark(const double* landmark) const;
 
   // Covariance of a plane over (normal, offset): its rank is 3, as the normal has unit length; zero

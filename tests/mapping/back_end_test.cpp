@@ -107,6 +107,19 @@ TEST(BackEnd, GatesDetectionsOfLandmarksBehindTheCamera) {
   EXPECT_GT(map.solver.gated.at("landmark_behind_camera"), 0);
 }
 
+TEST(BackEnd, ALandmarkWithoutResidualsStaysAndHasNoCovariance) {
+  Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
+  std::erase_if(sequence.detections, [](const Detection& d) { return d.object_index == 0; });
+  const BackEndInput input = TruthInput(sequence);
+  OptimiseOptions options;
+  options.support = false;
+  options.ratio = false;
+  const MapEstimate map = OptimiseMap(input, options);
+  EXPECT_EQ(map.objects[0].landmark_in_world->Centre(), input.starts[0]->Centre());
+  EXPECT_FALSE(map.objects[0].covariance);
+  EXPECT_GT(map.solver.gated.at("covariance_of_undetermined_problem"), 0);
+}
+
 TEST(BackEnd, OneFrameIsEnough) {
   Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
   sequence.frames.resize(1);

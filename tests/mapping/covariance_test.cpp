@@ -148,6 +148,15 @@ TEST(MarginalCovariances, AreNoneWhereResidualsDoNotDetermineAllVariables) {
   EXPECT_FALSE(AreDetermined(std::numeric_limits<double>::quiet_NaN()));
 }
 
+TEST(MarginalCovariances, AreNoneOfBlocksWithoutResiduals) {
+  double numbers[] = {1.0, 2.0, 3.0};
+  ceres::Problem problem;
+  problem.AddResidualBlock(new TwoNumbers(1.0), nullptr, &numbers[0], &numbers[1]);
+  const MarginalCovariances covariances(&problem);
+  EXPECT_TRUE(covariances.Has(&numbers[0]));
+  EXPECT_FALSE(covariances.Has(&numbers[2]));
+}
+
 TEST(MarginalCovariances, AreNoneOfAProblemWithoutVariables) {
   ceres::Problem problem;
   EXPECT_FALSE(MarginalCovariances(&problem).AreDetermined());
