@@ -251,7 +251,7 @@ build: $(BUILD)/build.ninja ## Build the executables of the stages
 $(BUILD)/build.ninja: | setup
 	@mkdir -p $(BUILD) && test -w $(BUILD) || { \
 	  echo 'build: $(BUILD) cannot be written to; expected BUILD=<a folder of your own>' >&2; exit 2; }
-	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release $(CMAKE_ARGS)
+	@cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON $(CMAKE_ARGS)
 
 .PHONY: test
 test: test-build ## Build everything and run the fast tests (3 minutes)

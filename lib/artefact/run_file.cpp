@@ -67,7 +67,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kKind = "run";
+constexpr const char* kRunKind = "run";
 
 json FilesToJson(const std::vector<RunFile>& files) {
   json list = json::array();
@@ -140,7 +140,7 @@ RunRecord RunFromJson(const json& document) {
 void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
   json folders = json::object();
   for (const auto& [argument, folder] : record.folders) folders[argument] = folder.string();
-  const json document = {{"artefact", HeaderOfKind(kKind)},
+  const json document = {{"artefact", HeaderOfKind(kRunKind)},
                          {"stage", record.stage},
                          {"compiler", record.software.compiler},
                          {"libraries", record.software.libraries},
@@ -154,7 +154,7 @@ void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
                          {"exit_code", record.exit_code},
                          {"error", record.error.empty() ? json() : json(record.error)},
                          {"timing", record.timing}};
-  if (const auto violation = SchemaViolation(document, kKind)) {
+  if (const auto violation = SchemaViolation(document, kRunKind)) {
     throw std::logic_error(
         fmt::format("{}: would break its schema: {}", path.string(), *violation));
   }
@@ -163,7 +163,7 @@ void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
 }
 
 RunRecord ReadRun(const std::filesystem::path& path) {
-  return ReadArtefactAs(path, kKind, &RunFromJson);
+  return ReadArtefactAs(path, kRunKind, &RunFromJson);
 }
 
 }  // namespace soslam

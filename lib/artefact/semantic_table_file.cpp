@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kKind = "semantic_table";
+constexpr const char* kSemanticTableKind = "semantic_table";
 
 // Defaults of entries that have a ratio only; the schema documents the same values.
 constexpr double kDefaultLogSigma = 0.3;
@@ -69,9 +69,9 @@ SemanticRows ReadSemanticRows(const std::filesystem::path& path) {
   const json document = ParseJsonFile(path);
   // Tables written by people have no header.
   if (document.is_object() && document.contains("artefact")) {
-    CheckArtefactHeader(document.at("artefact"), kKind, path.string());
+    CheckArtefactHeader(document.at("artefact"), kSemanticTableKind, path.string());
   }
-  ValidateAgainstSchema(document, kKind, path.string());
+  ValidateAgainstSchema(document, kSemanticTableKind, path.string());
   SemanticRows rows;
   rows.description = document.value("description", "");
   if (document.contains("default")) rows.default_row = Row("default", document.at("default"));
@@ -95,7 +95,7 @@ void WriteSemanticRows(const std::filesystem::path& path, const SemanticRows& ro
   json body = {{"description", rows.description}, {"labels", json::object()}};
   if (rows.default_row) body["default"] = Entry(*rows.default_row);
   for (const SemanticRow& row : rows.rows) body["labels"][row.label] = Entry(row);
-  WriteArtefact(path, kKind, info, body);
+  WriteArtefact(path, kSemanticTableKind, info, body);
 }
 
 }  // namespace soslam

@@ -52,7 +52,7 @@ class Parameters {
   std::vector<double> values_;
 };
 
-LensCamera ParseCamera(const TextLine& line) {
+LensCamera ParseColmapCamera(const TextLine& line) {
   const auto words = SplitWords(line.text);
   if (words.size() < 4) {
     throw InputError(line.place + ": expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
@@ -122,7 +122,7 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path) {
   RefuseBinary(path);
   std::optional<LensCamera> read;
   for (const TextLine& line : ReadTextLines(path)) {
-    const LensCamera camera = ParseCamera(line);
+    const LensCamera camera = ParseColmapCamera(line);
     if (read && (camera.camera != read->camera || camera.distortion != read->distortion)) {
       throw InputError(line.place +
                        ": is another camera than the first; expected one for all images "

@@ -76,7 +76,7 @@ std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
 
 // Normalised folder name: lower case, numbers without leading zeros; image_02 and image_2 are one
 // folder.
-std::string PlainName(const std::string& name) {
+std::string PlainImageName(const std::string& name) {
   std::string plain;
   for (size_t i = 0; i < name.size(); ++i) {
     const auto is_digit = [&](size_t at) {
@@ -108,7 +108,7 @@ std::string RigOf(std::string folder) {
 
 bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
   const auto names = Difference(folder, other);
-  const std::string name = PlainName(names.first), other_name = PlainName(names.second);
+  const std::string name = PlainImageName(names.first), other_name = PlainImageName(names.second);
   return name != other_name && RigOf(name) == RigOf(other_name);
 }
 

@@ -95,23 +95,23 @@ namespace fs = std::filesystem;
 constexpr const char* kUnlabelledType = "DontCare";
 
 // Columns of both benchmarks, from the type on.
-constexpr std::array kColumns = {"type",   "truncated", "occluded", "alpha",  "left",
-                                 "top",    "right",     "bottom",   "height", "width",
-                                 "length", "x",         "y",        "z",      "rotation_y"};
+constexpr std::array kKittiColumns = {"type",   "truncated", "occluded", "alpha",  "left",
+                                      "top",    "right",     "bottom",   "height", "width",
+                                      "length", "x",         "y",        "z",      "rotation_y"};
 
-// `words`: the kColumns of one line, optionally followed by a score.
+// `words`: the kKittiColumns of one line, optionally followed by a score.
 KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string& place) {
-  const auto real = [&](size_t i) { return ParseReal(words[i], place, kColumns[i]); };
+  const auto real = [&](size_t i) { return ParseReal(words[i], place, kKittiColumns[i]); };
   KittiLabel label;
   label.place = place;
   label.type = words[0];
   label.truncated = real(1);
-  label.occluded = ParseInteger(words[2], place, kColumns[2]);
+  label.occluded = ParseInteger(words[2], place, kKittiColumns[2]);
   label.box = {real(4), real(5), real(6), real(7)};
   label.size = {real(8), real(9), real(10)};
   label.bottom_centre = {real(11), real(12), real(13)};
   label.rotation_y = real(14);
-  if (words.size() > kColumns.size()) label.score = ParseReal(words[15], place, "score");
+  if (words.size() > kKittiColumns.size()) label.score = ParseReal(words[15], place, "score");
   if (label.type != kUnlabelledType && !(label.size.minCoeff() > 0.0)) {
     throw InputError(fmt::format("{}: size is {} {} {}; expected height, width and length above 0",
                                  place, words[8], words[9], words[10]));
@@ -121,11 +121,11 @@ KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string
 
 std::vector<std::string_view> SplitColumns(const TextLine& line, size_t leading) {
   auto words = SplitWords(line.text);
-  const size_t columns = leading + kColumns.size();
+  const size_t columns = leading + kKittiColumns.size();
   if (words.size() != columns && words.size() != columns + 1) {
     throw InputError(fmt::format("{}: has {} values; expected {}{} [score]", line.place,
                                  words.size(), leading > 0 ? "frame track " : "",
-                                 fmt::join(kColumns, " ")));
+                                 fmt::join(kKittiColumns, " ")));
   }
   return words;
 }

@@ -23,7 +23,7 @@
 namespace soslam {
 namespace {
 
-constexpr std::array kColumns = {"frame", "label", "score", "x1", "y1", "x2", "y2"};
+constexpr std::array kBoxColumns = {"frame", "label", "score", "x1", "y1", "x2", "y2"};
 constexpr const char* kIdColumn = "object_id";
 
 // Normalised column name: lower case, underscores instead of blanks.
@@ -47,14 +47,14 @@ Header ParseHeader(const TextLine& line) {
   header.size = fields.size();
   const auto refuse = [&](const std::string& column, const char* how_often) {
     throw InputError(fmt::format("{}: column '{}' is {}; expected each of {} once", line.place,
-                                 column, how_often, fmt::join(kColumns, ",")));
+                                 column, how_often, fmt::join(kBoxColumns, ",")));
   };
   for (size_t i = 0; i < fields.size(); ++i) {
     const std::string name = ColumnName(fields[i]);
-    if (name != kIdColumn && std::ranges::find(kColumns, name) == kColumns.end()) continue;
+    if (name != kIdColumn && std::ranges::find(kBoxColumns, name) == kBoxColumns.end()) continue;
     if (!header.positions.emplace(name, i).second) refuse(name, "twice");
   }
-  for (const char* column : kColumns) {
+  for (const char* column : kBoxColumns) {
     if (!header.positions.contains(column)) refuse(column, "missing");
   }
   return header;
@@ -106,8 +106,8 @@ class Row {
 std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
   const std::vector<TextLine> lines = ReadTableLines(path);
   if (lines.empty()) {
-    throw InputError(
-        fmt::format("{}: is empty; expected a header {}", path.string(), fmt::join(kColumns, ",")));
+    throw InputError(fmt::format("{}: is empty; expected a header {}", path.string(),
+                                 fmt::join(kBoxColumns, ",")));
   }
   const Header header = ParseHeader(lines[0]);
   std::vector<LabelledBox> boxes;
@@ -116,7 +116,7 @@ std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
 }
 
 std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes) {
-  std::string text = fmt::format("{}\n", fmt::join(kColumns, ","));
+  std::string text = fmt::format("{}\n", fmt::join(kBoxColumns, ","));
   for (const LabelledBox& row : boxes) {
     text += fmt::format("{},{},{:.4f},{:.2f},{:.2f},{:.2f},{:.2f}\n", std::get<int>(row.frame),
                         CsvText(row.label), row.score, row.box.x_min, row.box.y_min, row.box.x_max,

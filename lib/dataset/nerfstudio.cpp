@@ -34,7 +34,7 @@ double RealOr(const JsonEntry& entry, const char* name, double value) {
   return entry.Has(name) ? entry.Real(name) : value;
 }
 
-Camera ParseCamera(const JsonEntry& entry) {
+Camera ParseNerfstudioCamera(const JsonEntry& entry) {
   Camera camera{Pixels(entry, "w"), Pixels(entry, "h"), 0.0, 0.0, 0.0, 0.0};
   if (!IsImageSize(camera.width, camera.height)) {
     entry.Refuse("h", fmt::format("at most {} pixels in all", kMaxPixels));
@@ -50,7 +50,7 @@ Camera ParseCamera(const JsonEntry& entry) {
   return camera;
 }
 
-std::optional<Distortion> LensOf(const JsonEntry& entry) {
+std::optional<Distortion> NerfstudioLens(const JsonEntry& entry) {
   std::vector<double> coefficients;
   for (const char* name : {"k1", "k2", "p1", "p2", "k3"}) {
     coefficients.push_back(RealOr(entry, name, 0.0));
@@ -113,7 +113,7 @@ std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path
     return std::nullopt;
   }
   if (entry.Has("frames")) RefuseOtherCameras(entry);
-  return LensCamera{ParseCamera(entry), LensOf(entry)};
+  return LensCamera{ParseNerfstudioCamera(entry), NerfstudioLens(entry)};
 }
 
 std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,

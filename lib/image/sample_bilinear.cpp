@@ -9,7 +9,7 @@
 namespace soslam {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Scalar>
 std::optional<Sample> SampleTyped(const cv::Mat& map, const Eigen::Vector2d& pixel) {
@@ -49,7 +49,7 @@ Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels, BatchOfPix
   Batch values;
   for (int i = 0; i < kBatchSize; ++i) {
     const auto sample = SampleBilinear(map, {pixels[0][i], pixels[1][i]});
-    values[i] = sample ? sample->value : kNone;
+    values[i] = sample ? sample->value : kNoValue;
     if (gradients == nullptr) continue;
     (*gradients)[0][i] = sample ? sample->gradient.x() : 0.0;
     (*gradients)[1][i] = sample ? sample->gradient.y() : 0.0;

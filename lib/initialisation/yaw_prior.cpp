@@ -13,7 +13,7 @@ namespace {
 
 // Standard deviation (rad) of a true yaw: the error of its annotation.
 constexpr double kTrueYawSigma = 0.1 * kRadPerDeg;
-constexpr size_t kMinViews = 2;
+constexpr size_t kMinPriorViews = 2;
 
 // Foot of an object in the world: where the ray through the centre of its box's lower edge meets
 // the support plane. None if the lower edge is a bound, or if its ray does not meet the plane in
@@ -43,7 +43,7 @@ std::optional<Eigen::Vector3d> Motion(const Sequence& sequence,
     times.push_back(sequence.FrameOf(detection).timestamp);
     mean_time += times.back();
   }
-  if (feet.size() < kMinViews) return std::nullopt;
+  if (feet.size() < kMinPriorViews) return std::nullopt;
   mean_time /= static_cast<double>(times.size());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double squares = 0.0;
@@ -78,7 +78,7 @@ class MotionPriors {
       return AlongDirection(sequence_, detection, *motion,
                             std::atan2(options_.motion_foot_sigma_m, motion->norm()));
     }
-    if (around.size() < kMinViews) return std::nullopt;
+    if (around.size() < kMinPriorViews) return std::nullopt;
     const MultiViewObservation views = MakeMultiViewObservation(
         sequence_, around, shapes_[static_cast<size_t>(detection.object_index)],
         standing_.detection_sigma_fraction, standing_.view_correlation_rad);

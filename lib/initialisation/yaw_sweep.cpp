@@ -16,7 +16,7 @@ namespace soslam {
 namespace {
 
 // Optima closer than this are the same.
-constexpr double kSameYaw = 0.5 * kRadPerDeg;
+constexpr double kSameOptimumYaw = 0.5 * kRadPerDeg;
 // At least so many of the lowest minima of a sweep are refined: any of them may become the best
 // one.
 constexpr size_t kRefinedMinima = 6;
@@ -221,7 +221,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
     const auto fit = fitter.RefineYaw(sweep.fits[i]->parameters, step);
     if (!fit) continue;
     const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {
-      return std::abs(YawDifferenceModuloPi(yaw_of(*fit), yaw_of(other))) < kSameYaw;
+      return std::abs(YawDifferenceModuloPi(yaw_of(*fit), yaw_of(other))) < kSameOptimumYaw;
     });
     if (!known) optima.push_back(*fit);
   }

@@ -141,7 +141,7 @@ std::string SummaryInWords(const json& summary) {
                      summary.at("objects").get<int>(), summary.at("observations").get<int>());
 }
 
-std::string TrajectoryInWords(const json& trajectory) {
+std::string TrajectoryErrorInWords(const json& trajectory) {
   return fmt::format("root mean square error {:.4f} m, of the odometry {:.4f} m",
                      trajectory.at("ate_rmse_m").get<double>(),
                      trajectory.at("odometry_ate_rmse_m").get<double>());
@@ -204,7 +204,7 @@ Inspection InspectMetrics(const std::filesystem::path& file) {
       if (!part.is_null()) inspection.facts.push_back({name, in_words(part)});
     };
     add("first views", "first_observation", SummaryInWords);
-    add("trajectory", "trajectory", TrajectoryInWords);
+    add("trajectory", "trajectory", TrajectoryErrorInWords);
     add("held out", "held_out", HeldOutInWords);
     inspection.table = ObjectTable(document);
     if (const json quality = document.value("map_quality", json()); !quality.is_null()) {

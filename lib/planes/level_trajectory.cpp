@@ -11,9 +11,9 @@
 namespace soslam {
 namespace {
 
-constexpr double kMaxTilt = 12.0 * kRadPerDeg;
-constexpr int kMaxRounds = 50;
-constexpr double kSettled = 1e-7;  // rad
+constexpr double kMaxLevelTilt = 12.0 * kRadPerDeg;
+constexpr int kMaxLevelRounds = 50;
+constexpr double kLevelTolerance = 1e-7;  // rad
 
 using Basis = Eigen::Matrix<double, 3, 2>;
 
@@ -79,7 +79,7 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions&
   const UpPrior held = UpPriorFromCameras(poses, options.roll_sigma, options.pitch_sigma,
                                           options.correlation_rad, options.holding);
   const UpPrior mean =
-      WithVerticals(held, views, options.vertical_sigma, options.correlation_rad, kMaxTilt);
+      WithVerticals(held, views, options.vertical_sigma, options.correlation_rad, kMaxLevelTilt);
   if (!(options.odometry_sigma > 0.0)) return {poses, mean};
 
   const std::vector<double> shares = CameraWeights(poses, options.correlation_rad);
@@ -87,7 +87,7 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions&
   const double stiffness = 1.0 / (options.odometry_sigma * options.odometry_sigma);
   std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
   Eigen::Matrix2d information_of_first;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxLevelRounds; ++round) {
     std::vector<Eigen::Matrix2d> information;
     std::vector<Eigen::Vector2d> right_side;
     for (size_t i = 0; i < views.size(); ++i) {
@@ -108,7 +108,7 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions&
       ups[i] = (mean.up_in_world + level * tilts[i]).normalized();
       largest = std::max(largest, (ups[i] - before).norm());
     }
-    if (largest < kSettled) break;
+    if (largest < kLevelTolerance) break;
   }
   const Basis about_first = LevelAxes(ups.front());
   const Eigen::Matrix2d turned = about_first.transpose() * level;

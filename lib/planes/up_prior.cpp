@@ -52,9 +52,9 @@ namespace {
 
 constexpr double kBound = 3.0;         // standard deviations
 constexpr double kUnitOfHeight = 0.1;  // length of weight 1, as a share of the image's height
-constexpr int kTiltSteps = 32;         // of the search, in either direction
-constexpr int kMaxRounds = 50;
-constexpr double kSettled = 1e-9;  // rad
+constexpr int kUpSteps = 32;           // of the search, in either direction
+constexpr int kMaxUpRounds = 50;
+constexpr double kUpTolerance = 1e-9;  // rad
 
 // Plane through a camera's centre and a segment.
 struct SegmentPlane {
@@ -127,20 +127,20 @@ UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& v
   UpPrior best = attitude;
   double lowest = cost(attitude.up_in_world);
   const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
-  for (int i = -kTiltSteps; i <= kTiltSteps; ++i) {
-    for (int k = -kTiltSteps; k <= kTiltSteps; ++k) {
-      const Eigen::Vector3d turn = Eigen::Vector3d(i, k, 0.0) * (max_tilt / kTiltSteps);
+  for (int i = -kUpSteps; i <= kUpSteps; ++i) {
+    for (int k = -kUpSteps; k <= kUpSteps; ++k) {
+      const Eigen::Vector3d turn = Eigen::Vector3d(i, k, 0.0) * (max_tilt / kUpSteps);
       const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
       if (cost(up) >= lowest) continue;
       lowest = cost(up);
       best.up_in_world = up;
     }
   }
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxUpRounds; ++round) {
     const Eigen::Vector3d before = best.up_in_world;
     best.information = attitude.information + verticals.Information(before);
     best.up_in_world = LowestCostUp(best.information, before);
-    if ((best.up_in_world - before).norm() < kSettled) break;
+    if ((best.up_in_world - before).norm() < kUpTolerance) break;
   }
   return best;
 }

@@ -15,7 +15,7 @@ namespace soslam {
 namespace {
 
 // The logarithms that are learned for a label.
-enum Quantity { kDepthRatio, kWidthRatio, kHeight, kNumQuantities };
+enum LearnedQuantity { kDepthRatio, kWidthRatio, kHeight, kNumQuantities };
 using Logs = std::array<std::vector<double>, kNumQuantities>;
 
 // All data for a row.

@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using Pointer = json::json_pointer;
 
-std::string Number(const json& value, int decimals) {
+std::string NumberOrDash(const json& value, int decimals) {
   return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "–";
 }
 
@@ -56,13 +56,13 @@ std::string Section(const std::string& id, const std::string& title, const std::
 }
 
 // A column of the numbers of all variants, with its JSON pointer into metrics.json.
-struct Column {
+struct PageColumn {
   const char* title;
   const char* pointer;
   int decimals;
   bool higher_is_better;
 };
-constexpr std::array<Column, 6> kColumns = {{
+constexpr std::array<PageColumn, 6> kPageColumns = {{
     {"IoU", "/summary/iou_mean", 3, true},
     {"Rot, °", "/summary/rotation_deg_mean", 2, false},
     {"yaw error, °", "/summary/yaw_error_deg_mean", 2, false},
@@ -72,7 +72,7 @@ constexpr std::array<Column, 6> kColumns = {{
 }};
 
 // Adds a column, unless no variant has a value. Values that look equal to the best are bold, too.
-void AddColumn(const Column& column, const std::vector<json>& variants, Table* table) {
+void AddColumn(const PageColumn& column, const std::vector<json>& variants, Table* table) {
   std::vector<json> values;
   std::optional<double> best;
   for (const json& variant : variants) {
@@ -86,8 +86,8 @@ void AddColumn(const Column& column, const std::vector<json>& variants, Table* t
   if (!best) return;
   table->header.emplace_back(column.title);
   for (size_t i = 0; i < values.size(); ++i) {
-    const std::string text = Number(values[i], column.decimals);
-    table->rows[i].emplace_back(text, text == Number(*best, column.decimals));
+    const std::string text = NumberOrDash(values[i], column.decimals);
+    table->rows[i].emplace_back(text, text == NumberOrDash(*best, column.decimals));
   }
 }
 
@@ -100,7 +100,7 @@ std::string MetricsTable(const std::vector<json>& variants) {
     table.rows.push_back({variant.at("name").get<std::string>(), summary.at("objects").dump(),
                           summary.at("observations").dump()});
   }
-  for (const Column& column : kColumns) AddColumn(column, variants, &table);
+  for (const PageColumn& column : kPageColumns) AddColumn(column, variants, &table);
   return HtmlTable(table);
 }
 
@@ -209,13 +209,13 @@ std::string ObjectsTable(const json& objects, const json& variant) {
     const json& object = objects[row.index];
     const json metrics = row.metrics.is_null() ? json::object() : row.metrics;
     const auto number = [&](const char* key, int decimals) {
-      return Number(metrics.value(key, json()), decimals);
+      return NumberOrDash(metrics.value(key, json()), decimals);
     };
     table.rows.push_back(
         {fmt::format("{} {}", object.at("label").get<std::string>(), object.at("id").dump()),
          metrics.value("observations", row.estimate.at("observations")).dump(), number("iou", 3),
          number("centre_m", 3), number("rotation_deg", 2), number("yaw_error_deg", 2),
-         Number(row.estimate.value("sigma_yaw_deg", json()), 2)});
+         NumberOrDash(row.estimate.value("sigma_yaw_deg", json()), 2)});
     if (has_failures) table.rows.back().emplace_back(failure(row));
     indices.push_back(row.index);
   }

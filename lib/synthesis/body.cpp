@@ -21,36 +21,36 @@ Eigen::Vector3d ToUnitBody(const Landmark& landmark, const Eigen::Vector3d& poin
 }
 
 // Depths at which a line enters and leaves a convex set; empty when enter > leave.
-struct Interval {
+struct DepthInterval {
   double enter = -std::numeric_limits<double>::infinity();
   double leave = std::numeric_limits<double>::infinity();
 
-  Interval Intersected(const Interval& other) const {
+  DepthInterval Intersected(const DepthInterval& other) const {
     return {std::max(enter, other.enter), std::min(leave, other.leave)};
   }
 };
 
-constexpr Interval kEmpty = {std::numeric_limits<double>::infinity(),
-                             -std::numeric_limits<double>::infinity()};
+constexpr DepthInterval kEmpty = {std::numeric_limits<double>::infinity(),
+                                  -std::numeric_limits<double>::infinity()};
 
 // The interval inside the slab |x_axis| <= 1.
-Interval InsideSlab(const UnitRay& ray, int axis) {
+DepthInterval InsideSlab(const UnitRay& ray, int axis) {
   const double origin = ray.origin[axis];
   const double direction = ray.direction[axis];
-  if (direction == 0.0) return std::abs(origin) <= 1.0 ? Interval{} : kEmpty;
+  if (direction == 0.0) return std::abs(origin) <= 1.0 ? DepthInterval{} : kEmpty;
   const double first = (-1.0 - origin) / direction;
   const double second = (1.0 - origin) / direction;
   return {std::min(first, second), std::max(first, second)};
 }
 
 // The interval inside the infinite cylinder x^2 + y^2 <= 1.
-Interval InsideTube(const UnitRay& ray) {
+DepthInterval InsideTube(const UnitRay& ray) {
   const Eigen::Vector2d origin = ray.origin.head<2>();
   const Eigen::Vector2d direction = ray.direction.head<2>();
   const double a = direction.squaredNorm();
   const double half_b = origin.dot(direction);
   const double c = origin.squaredNorm() - 1.0;
-  if (a == 0.0) return c <= 0.0 ? Interval{} : kEmpty;
+  if (a == 0.0) return c <= 0.0 ? DepthInterval{} : kEmpty;
   const double discriminant = half_b * half_b - a * c;
   if (discriminant < 0.0) return kEmpty;
   const double root = std::sqrt(discriminant);
@@ -105,7 +105,7 @@ std::optional<double> NearestIntersection(const Body& body, const Eigen::Vector3
   const Eigen::Quaterniond object_from_frame = body.landmark.frame_from_object.rotation.conjugate();
   const UnitRay ray = {ToUnitBody(body.landmark, origin),
                        (object_from_frame * direction).cwiseQuotient(body.landmark.half_axes)};
-  Interval inside = InsideSlab(ray, 2);
+  DepthInterval inside = InsideSlab(ray, 2);
   if (body.shape == Shape::kCylinder) {
     inside = inside.Intersected(InsideTube(ray));
   } else {

@@ -10,25 +10,26 @@ namespace soslam {
 namespace {
 
 // Variances of 4 rad^2 and 9 m^4.
-Eigen::Vector3d Residuals(const Plane& plane, const Landmark& landmark) {
+Eigen::Vector3d SupportResiduals(const Plane& plane, const Landmark& landmark) {
   return ResidualsOf(SupportResidual(plane, 4.0, 9.0), landmark);
 }
 
 TEST(SupportResidual, IsZeroForAnUprightLandmarkOnThePlane) {
-  ExpectZeroForStandingLandmarks(Residuals);
+  ExpectZeroForStandingLandmarks(SupportResiduals);
 }
 
 TEST(SupportResidual, WorkedByHand) {
   // x is along the normal; pi^T Q* pi is 1^2, the half axis that is up, less 5^2, the height.
   const Eigen::Vector3d expected(1.0 / 2.0, 0.0, (1.0 - 25.0) / 3.0);
-  EXPECT_LT((Residuals(Plane(), LyingLandmark()) - expected).norm(), 1e-12);
+  EXPECT_LT((SupportResiduals(Plane(), LyingLandmark()) - expected).norm(), 1e-12);
 }
 
 TEST(SupportResidual, TangencyEqualsTheDualQuadricForm) {
   const Plane plane = RandomPlane();
   const Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0)};
   const Eigen::Vector4d pi = plane.Homogeneous();
-  EXPECT_NEAR(3.0 * Residuals(plane, landmark).z(), pi.dot(DualQuadric(landmark) * pi), 1e-9);
+  EXPECT_NEAR(3.0 * SupportResiduals(plane, landmark).z(), pi.dot(DualQuadric(landmark) * pi),
+              1e-9);
 }
 
 TEST(SupportResidual, JacobiansAgreeWithNumbers) {
@@ -38,7 +39,7 @@ TEST(SupportResidual, JacobiansAgreeWithNumbers) {
   }
 }
 
-TEST(SupportResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(Residuals); }
+TEST(SupportResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(SupportResiduals); }
 
 }  // namespace
 }  // namespace soslam

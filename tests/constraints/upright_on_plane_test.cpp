@@ -10,7 +10,7 @@ namespace soslam {
 namespace {
 
 // Sigmas of half a radian and a centimetre.
-Eigen::Vector3d Residuals(const Plane& plane, const Landmark& landmark) {
+Eigen::Vector3d UprightResiduals(const Plane& plane, const Landmark& landmark) {
   const LandmarkBlock block = ToParameterBlock(landmark);
   const double* blocks[] = {block.data(), plane.normal.data(), &plane.offset};
   Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -19,7 +19,7 @@ Eigen::Vector3d Residuals(const Plane& plane, const Landmark& landmark) {
 }
 
 TEST(UprightOnPlaneResidual, IsZeroForAnUprightLandmarkOnThePlane) {
-  ExpectZeroForStandingLandmarks(Residuals);
+  ExpectZeroForStandingLandmarks(UprightResiduals);
 }
 
 // Unlike pi^T Q* pi, it also tells above the plane from below, and counts metres for any size.
@@ -29,13 +29,15 @@ TEST(UprightOnPlaneResidual, CountsTheHeightOverThePlane) {
     Landmark landmark = RandomStanding(plane);
     const double rise_m = RandomUniform(-3.0, 3.0);
     landmark.frame_from_object.translation += rise_m * plane.normal;
-    EXPECT_LT((Residuals(plane, landmark) - Eigen::Vector3d(0, 0, rise_m / 0.01)).norm(), 1e-9);
+    EXPECT_LT((UprightResiduals(plane, landmark) - Eigen::Vector3d(0, 0, rise_m / 0.01)).norm(),
+              1e-9);
   }
 }
 
 TEST(UprightOnPlaneResidual, WorkedByHand) {
   // x is along the normal: cosine 1 over half a radian. The foot is 5 - 3 = 2 m over the floor.
-  EXPECT_LT((Residuals(Plane(), LyingLandmark()) - Eigen::Vector3d(2.0, 0.0, 200.0)).norm(), 1e-9);
+  EXPECT_LT((UprightResiduals(Plane(), LyingLandmark()) - Eigen::Vector3d(2.0, 0.0, 200.0)).norm(),
+            1e-9);
 }
 
 TEST(UprightOnPlaneResidual, JacobiansAgreeWithNumbers) {
@@ -56,10 +58,12 @@ TEST(UprightOnPlaneResidual, OtherSideIsTheOppositeNormal) {
   const double* blocks[] = {block.data(), opposite.data(), &plane.offset};
   Eigen::Vector3d values;
   ASSERT_TRUE(UprightOnPlaneResidual(0.5, 0.01, -1.0).Evaluate(blocks, values.data(), nullptr));
-  EXPECT_EQ(values, Residuals(plane, UnpackLandmark(block.data())));
+  EXPECT_EQ(values, UprightResiduals(plane, UnpackLandmark(block.data())));
 }
 
-TEST(UprightOnPlaneResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(Residuals); }
+TEST(UprightOnPlaneResidual, DoesNotChangeWithTheWorld) {
+  ExpectNoChangeWithTheWorld(UprightResiduals);
+}
 
 }  // namespace
 }  // namespace soslam

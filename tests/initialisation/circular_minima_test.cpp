@@ -16,7 +16,6 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(CircularMinima, OfAWaveAreItsTroughsLowestFirst) {
@@ -28,7 +27,8 @@ TEST(CircularMinima, OfAWaveAreItsTroughsLowestFirst) {
     std::vector<double> values;
     for (int k = 0; k < kPoints; ++k) {
       const double turn = (k + phase) / kPoints;
-      values.push_back(-std::cos(2.0 * kPi * troughs * turn) + 0.1 * std::sin(2.0 * kPi * turn));
+      values.push_back(-std::cos(2.0 * std::numbers::pi * troughs * turn) +
+                       0.1 * std::sin(2.0 * std::numbers::pi * turn));
     }
     const auto minima = CircularMinima(values);
     ASSERT_EQ(minima.size(), static_cast<size_t>(troughs));

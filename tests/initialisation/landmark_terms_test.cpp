@@ -19,8 +19,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // A term as a residual of one landmark block, whose shape exponent is fixed.
 class TermResidual final : public ceres::CostFunction {
  public:
@@ -194,7 +192,7 @@ TEST(AxisTerm, CostsNothingAlongAndAcrossTheAxisAndItsWeightHalfWayBetween) {
     const Landmark landmark = RandomUprightLandmark(plane);
     const double weight = RandomUniform(0.1, 10.0);
     for (int eighth = 0; eighth < 8; ++eighth) {
-      const AxisTerm term(plane, AxisAt(plane, landmark, eighth * kPi / 4.0), weight);
+      const AxisTerm term(plane, AxisAt(plane, landmark, eighth * std::numbers::pi / 4.0), weight);
       EXPECT_NEAR(term.Value(landmark), eighth % 2 == 0 ? 0.0 : weight, 1e-9) << eighth;
     }
     const double angle = RandomUniform(-3.1, 3.1);

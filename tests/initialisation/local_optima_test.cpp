@@ -17,7 +17,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kStep = 3.0 * kRadPerDeg;
 constexpr size_t kAll = 1000;
 
@@ -39,7 +38,7 @@ TEST(LocalOptima, HaveTheTrueBodyAmongThem) {
       ASSERT_FALSE(optima.empty());
       EXPECT_LT(optima.front().cost, 1e-3) << "body " << i << ", p " << p;
       bool is_found = false;
-      double nearest = kPi;
+      double nearest = std::numbers::pi;
       for (const UprightSolution& optimum : optima) {
         if (optimum.cost > 0.02) continue;  // a tenth of a standard deviation of each edge
         const Landmark& landmark = optimum.landmark;

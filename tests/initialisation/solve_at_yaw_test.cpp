@@ -12,8 +12,6 @@
 namespace soslam {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(SolveAtYaw, RecoversTheBodyOfAnExactBoxAtItsYaw) {
   for (const double p : kShapeExponents) {
     for (int i = 0; i < 50; ++i) {
@@ -32,7 +30,7 @@ TEST(SolveAtYaw, StandsOnThePlaneAtTheYawWithThePriorsRatio) {
     const auto landmark = SolveAtYaw(body.Observe(Disturbed(body.box, 0.05)), yaw);
     ASSERT_TRUE(landmark);
     EXPECT_NEAR(std::remainder(Yaw(body.plane.normal, landmark->frame_from_object.rotation) - yaw,
-                               2.0 * kPi),
+                               2.0 * std::numbers::pi),
                 0.0, 1e-9);
     EXPECT_NEAR(body.plane.SignedDistance(landmark->Centre()), landmark->half_axes.z(), 1e-9);
     const Eigen::Vector2d ratio = landmark->half_axes.head<2>() / landmark->half_axes.z();
@@ -102,9 +100,9 @@ TEST(SolveAtYaw, IsTheSameBodyAfterAHalfTurnAndAfterAQuarterTurnWithTheAxesExcha
     UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
     const double yaw = RandomYaw();
     const auto landmark = SolveAtYaw(observation, yaw);
-    const auto half_turn = SolveAtYaw(observation, yaw + kPi);
+    const auto half_turn = SolveAtYaw(observation, yaw + std::numbers::pi);
     std::swap(observation.prior.ratio.x(), observation.prior.ratio.y());
-    const auto quarter_turn = SolveAtYaw(observation, yaw + 0.5 * kPi);
+    const auto quarter_turn = SolveAtYaw(observation, yaw + 0.5 * std::numbers::pi);
     ASSERT_TRUE(landmark && half_turn && quarter_turn);
     EXPECT_TRUE(IsSameBody(*half_turn, *landmark, 1e-9));
     EXPECT_TRUE(IsSameBody(*quarter_turn, WithAxesExchanged(*landmark), 1e-9));

@@ -12,14 +12,12 @@
 namespace soslam {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // A sweep whose costs are a function of the yaw.
 template <typename Cost>
 YawSweep SweepOf(Cost cost, int points) {
   YawSweep sweep;
   for (int i = 0; i < points; ++i) {
-    sweep.yaw.push_back(i * kPi / points);
+    sweep.yaw.push_back(i * std::numbers::pi / points);
     sweep.fits.push_back(UprightFit{UprightVector::Zero(), cost(sweep.yaw.back())});
   }
   return sweep;
@@ -35,7 +33,7 @@ TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
     };
     const YawSweep sweep = SweepOf(cost, 360);
     EXPECT_NEAR(sweep.StandardDeviation({{mean, offset}}), sigma, 0.02 * sigma);
-    EXPECT_NEAR(sweep.StandardDeviation({{mean + kPi, offset}}), sigma, 0.02 * sigma);
+    EXPECT_NEAR(sweep.StandardDeviation({{mean + std::numbers::pi, offset}}), sigma, 0.02 * sigma);
     // About another yaw, the way there counts too.
     const double away = mean + RandomUniform(-0.3, 0.3);
     EXPECT_NEAR(sweep.StandardDeviation({{away, cost(away)}}),
@@ -60,7 +58,7 @@ TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
   for (int i = 0; i < 50; ++i) {
     const double sigma = RandomUniform(0.3, 3.0) * kRadPerDeg;
     const double mean = RandomYaw();
-    const double other = mean + 0.5 * kPi;
+    const double other = mean + 0.5 * std::numbers::pi;
     const YawSweep sweep = SweepOf(
         [&](double yaw) {
           const auto squared = [&](double peak) {
@@ -69,7 +67,7 @@ TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
           return std::min(squared(mean), squared(other));
         },
         60);
-    const double expected = 0.5 * kPi / std::sqrt(2.0);
+    const double expected = 0.5 * std::numbers::pi / std::sqrt(2.0);
     EXPECT_NEAR(sweep.StandardDeviation({{mean, 0.0}, {other, 0.0}}), expected, 0.06 * expected);
   }
 }
@@ -77,7 +75,8 @@ TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
 TEST(YawSweep, StandardDeviationOfAnyYawIsThatOfAUniformDistribution) {
   const YawSweep sweep = SweepOf([](double) { return 3.0; }, 1800);
   for (int i = 0; i < 20; ++i) {
-    EXPECT_NEAR(sweep.StandardDeviation({{RandomYaw(), 3.0}}), kPi / std::sqrt(12.0), 2e-3);
+    EXPECT_NEAR(sweep.StandardDeviation({{RandomYaw(), 3.0}}), std::numbers::pi / std::sqrt(12.0),
+                2e-3);
   }
 }
 
@@ -104,7 +103,7 @@ TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {
     YawSweep sweep = SweepOf([&](double yaw) { return yaw == 0.0 ? 0.0 : others_cost; }, 60);
     sweep.fits[1].reset();
     sweep.fits[59].reset();
-    const double step = kPi / 60.0;
+    const double step = std::numbers::pi / 60.0;
     for (const double rounding : {0.0, 4e-16, -1e-12}) {
       EXPECT_NEAR(sweep.StandardDeviation({{rounding, 0.0}}), step / std::sqrt(12.0), 1e-6);
     }
@@ -117,8 +116,9 @@ TEST(YawSweep, StandardDeviationOfAYawAloneCountsTheOthersByTheirCosts) {
   YawSweep sweep = SweepOf([&](double yaw) { return yaw == 0.0 ? kMore : 0.0; }, 60);
   sweep.fits[1].reset();
   sweep.fits[59].reset();
-  const double step = kPi / 60.0;
-  const double squares = 2.0 / 3.0 * (std::pow(0.5 * kPi, 3) - std::pow(2.0 * step, 3));
+  const double step = std::numbers::pi / 60.0;
+  const double squares =
+      2.0 / 3.0 * (std::pow(0.5 * std::numbers::pi, 3) - std::pow(2.0 * step, 3));
   const double mass = 56.0 * step + std::exp(-kMore) * step;
   EXPECT_NEAR(sweep.StandardDeviation({{0.0, kMore}}), std::sqrt(squares / mass), 1e-3);
 }

@@ -20,7 +20,6 @@ namespace {
 
 using testing::IsEmpty;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kStep = 3.0 * kRadPerDeg;
 
 TEST(BoxTerms, AddsThePreferenceForTheWorldsAxes) {
@@ -62,7 +61,7 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
     ASSERT_EQ(sweep.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
     ASSERT_EQ(sweep.fits.size(), sweep.yaw.size());
     const std::vector<double> costs = sweep.Costs();
-    const double step = kPi / static_cast<double>(sweep.yaw.size());
+    const double step = std::numbers::pi / static_cast<double>(sweep.yaw.size());
     for (size_t i = 0; i < sweep.yaw.size(); ++i) {
       EXPECT_NEAR(sweep.yaw[i], step * static_cast<double>(i), 1e-12);
       ASSERT_TRUE(sweep.fits[i]);

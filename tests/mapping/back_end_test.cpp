@@ -14,7 +14,7 @@
 namespace soslam {
 namespace {
 
-BackEndInput TruthInput(const Sequence& sequence) {
+BackEndInput EllipsoidInput(const Sequence& sequence) {
   BackEndInput input{sequence, {}, {}, {}, {}};
   for (const Object& object : sequence.objects) {
     input.starts.push_back(object.ground_truth->landmark_in_world);
@@ -28,7 +28,7 @@ TEST(BackEnd, CostsNothingAtTheTruth) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   OptimiseOptions options;
   options.variances = {.detection_dm4 = 1e4, .support_angle_deg2 = 1, .support_tangency_dm4 = 1e4};
-  const MapEstimate map = OptimiseMap(TruthInput(sequence), options);
+  const MapEstimate map = OptimiseMap(EllipsoidInput(sequence), options);
   EXPECT_LT(map.solver.initial_cost, 1e-18 * 1000);  // residuals below 1e-9, a few hundred of them
   EXPECT_EQ(map.solver.residuals.at("odometry"), 19);
   EXPECT_EQ(map.solver.residuals.at("support"), 5);
@@ -38,7 +38,7 @@ TEST(BackEnd, CostsNothingAtTheTruth) {
 
 TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
-  BackEndInput input = TruthInput(sequence);
+  BackEndInput input = EllipsoidInput(sequence);
   const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
   input.starts =
       ChooseStarts(sequence, InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1));
@@ -49,7 +49,7 @@ TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
 
 TEST(BackEnd, ComesBackFromADisturbedStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
-  BackEndInput input = TruthInput(sequence);
+  BackEndInput input = EllipsoidInput(sequence);
   for (auto& start : input.starts) {
     *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
     start->frame_from_object.translation += RandomVector(-0.05, 0.05);
@@ -66,7 +66,7 @@ TEST(BackEnd, MovesWithTheWorld) {
     detection.box.x_min += RandomUniform(-5, 5);
     detection.box.y_max += RandomUniform(-5, 5);
   }
-  BackEndInput input = TruthInput(sequence);
+  BackEndInput input = EllipsoidInput(sequence);
   const OptimiseOptions options;
   const MapEstimate before = OptimiseMap(input, options);
 
@@ -89,7 +89,7 @@ TEST(BackEnd, MovesWithTheWorld) {
 
 TEST(BackEnd, SaysWhichObjectHasNoStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
-  BackEndInput input = TruthInput(sequence);
+  BackEndInput input = EllipsoidInput(sequence);
   input.starts[1].reset();
   const MapEstimate map = OptimiseMap(input, OptimiseOptions());
   EXPECT_EQ(map.objects[1].failure, "no_start");
@@ -100,7 +100,7 @@ TEST(BackEnd, SaysWhichObjectHasNoStart) {
 
 TEST(BackEnd, GatesDetectionsOfLandmarksBehindTheCamera) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
-  BackEndInput input = TruthInput(sequence);
+  BackEndInput input = EllipsoidInput(sequence);
   const Rigid3d& camera = sequence.frames.front().world_from_camera;
   input.starts[0]->frame_from_object.translation = camera * Eigen::Vector3d(0, 0, -3);
   const MapEstimate map = OptimiseMap(input, OptimiseOptions());
@@ -110,7 +110,7 @@ TEST(BackEnd, GatesDetectionsOfLandmarksBehindTheCamera) {
 TEST(BackEnd, ALandmarkWithoutResidualsStaysAndHasNoCovariance) {
   Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
   std::erase_if(sequence.detections, [](const Detection& d) { return d.object_index == 0; });
-  const BackEndInput input = TruthInput(sequence);
+  const BackEndInput input = EllipsoidInput(sequence);
   OptimiseOptions options;
   options.support = false;
   options.ratio = false;
@@ -124,7 +124,7 @@ TEST(BackEnd, OneFrameIsEnough) {
   Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
   sequence.frames.resize(1);
   std::erase_if(sequence.detections, [](const auto& d) { return d.frame_index > 0; });
-  const MapEstimate map = OptimiseMap(TruthInput(sequence), OptimiseOptions());
+  const MapEstimate map = OptimiseMap(EllipsoidInput(sequence), OptimiseOptions());
   EXPECT_EQ(map.world_from_camera.size(), 1u);
 }
 
@@ -133,14 +133,14 @@ TEST(BackEnd, OneFrameIsEnough) {
 TEST(BackEnd, CovariancesScaleWithTheVariances) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 15), false);
   OptimiseOptions options;
-  const MapEstimate one = OptimiseMap(TruthInput(sequence), options);
+  const MapEstimate one = OptimiseMap(EllipsoidInput(sequence), options);
   options.variances.detection_dm4 *= 4;
   options.variances.support_angle_deg2 *= 4;
   options.variances.support_tangency_dm4 *= 4;
   options.variances.ratio *= 4;
   options.odometry_rotation_sigma_deg *= 2;
   options.odometry_translation_sigma_m *= 2;
-  const MapEstimate four = OptimiseMap(TruthInput(sequence), options);
+  const MapEstimate four = OptimiseMap(EllipsoidInput(sequence), options);
   for (size_t i = 0; i < one.objects.size(); ++i) {
     ASSERT_TRUE(one.objects[i].covariance);
     EXPECT_TRUE(four.objects[i].covariance->isApprox(4.0 * *one.objects[i].covariance, 1e-3));

@@ -39,7 +39,7 @@ struct Blocks {
 
 constexpr int kRows = kLandmarkDof + 1;
 template <int kColumns>
-using Rows = Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>;
+using ImageRows = Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>;
 
 // A few samples leave the information singular.
 TEST(ImageResidual, HasCostGradientAndInformationOfAllItsSamples) {
@@ -48,8 +48,8 @@ TEST(ImageResidual, HasCostGradientAndInformationOfAllItsSamples) {
     const SampledCost cost(samples);
     const ImageResidual residual(std::make_unique<SampledCost>(cost), kCuboidExponent);
     Eigen::Matrix<double, kRows, 1> residuals;
-    Rows<kPoseSize> d_pose;
-    Rows<kLandmarkSize> d_landmark;
+    ImageRows<kPoseSize> d_pose;
+    ImageRows<kLandmarkSize> d_landmark;
     const double* at[] = {blocks.pose.data(), blocks.landmark.data()};
     double* jacobians[] = {d_pose.data(), d_landmark.data()};
     ASSERT_TRUE(residual.Evaluate(at, residuals.data(), jacobians));
@@ -95,7 +95,7 @@ TEST(ImageResidual, FailsWhereItsCostIsNotDefined) {
   const double* at[] = {blocks.pose.data(), blocks.landmark.data()};
   Eigen::Matrix<double, kRows, 1> residuals;
   EXPECT_FALSE(residual.Evaluate(at, residuals.data(), nullptr));
-  Rows<kLandmarkSize> d_landmark;
+  ImageRows<kLandmarkSize> d_landmark;
   double* jacobians[] = {nullptr, d_landmark.data()};
   EXPECT_FALSE(residual.Evaluate(at, residuals.data(), jacobians));
 }
