@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "artefact/landmarks_file.h"
-#include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "support/dataset_fixture.h"

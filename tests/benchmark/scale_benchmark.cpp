@@ -28,19 +28,19 @@ double PeakMemoryMb() {
   return 0.0;
 }
 
-void World(benchmark::State& state, int threads) {
+void World(benchmark::State& state) {
   const auto size = static_cast<int>(state.range(0));
   const Drive drive(size, size);
   const BackEndInput input{drive.sequence, drive.starts, drive.priors, {}, {}};
   ForgetPeakMemory();
   MapEstimate map;
-  for (auto _ : state) map = OptimiseMap(input, OptionsOfOursST(), threads);
+  for (auto _ : state) map = OptimiseMap(input, OptionsOfOursST());
   state.counters["peak_mb"] = PeakMemoryMb();
   state.counters["observations"] = static_cast<double>(drive.sequence.detections.size());
   state.counters["solver_iterations"] = map.solver.iterations;
   state.counters["converged"] = map.solver.converged;
 }
-BENCHMARK_CAPTURE(World, one_thread, 1)
+BENCHMARK(World)
     ->Name("scale/back_end")
     ->ArgName("frames_and_objects")
     ->Arg(125)
@@ -51,17 +51,6 @@ BENCHMARK_CAPTURE(World, one_thread, 1)
     ->Iterations(1)
     ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
-
-// Minutes, and gigabytes of memory.
-BENCHMARK_CAPTURE(World, all_threads, ThisMachine().cores)
-    ->Name("large/back_end")
-    ->ArgName("frames_and_objects")
-    ->Arg(32000)
-    ->Arg(100000)
-    ->Iterations(1)
-    ->Repetitions(1)
-    ->UseRealTime()
-    ->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace soslam

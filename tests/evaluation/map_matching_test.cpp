@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/map_quality.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "evaluation/map_quality.h"
 #include "support/random.h"
 
 namespace soslam {
