@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "artefact/semantic_table_file.h"
-#include "evaluation/iou.h"
+#include "soslam/artefact/semantic_table_file.h"
+#include "soslam/evaluation/iou.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
