@@ -55,14 +55,14 @@ struct AssociateOptions {
     visit.Group("Boxes");
     visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
                "standard deviation of a box edge about that of the object's body, as a fraction of "
-               "the box's width or height, at least 1 px: the detector's error, and what a body of "
-               "the label's shape cannot explain");
+               "the box's width or height, at least 1 px: the errors of the detector and of the "
+               "label's shape");
     visit.Real("cut_edge_probability", &cut_edge_probability, {0.0, 0.2},
                "how often an edge of a box is not the object's, because something unknown hides "
                "that side or adds to it; for each of the four edges");
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "boxes from viewpoints closer than this angle at the object share what the label's "
-               "shape cannot explain, so that they count as one; 0: all boxes are independent");
+               "boxes from viewpoints closer than this angle at the object share the error of the "
+               "label's shape, and together have the weight of one; 0: all boxes are independent");
     visit.Integer("max_views", &max_views, {1, 100000},
                   "how many of its detections, evenly over all, an object's landmark is fitted to");
     visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0},
@@ -76,13 +76,15 @@ struct AssociateOptions {
     visit.Flag("use_planes", &use_planes,
                "boxes are linked on the support planes of the dataset, where it has any; without "
                "planes objects stand at any height, and the result has no planes");
-    visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
-               "without planes: how level the cameras' x axes are held; large: anyhow");
+    visit.Real(
+        "camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
+        "without planes: standard deviation of the tilt of the cameras' x axes; large: unknown");
     visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
-               "without planes: how level the cameras' optical axes are held; large: anyhow");
+               "without planes: standard deviation of the tilt of the cameras' optical axes; "
+               "large: unknown");
     visit.Real("unknown_height_m", &unknown_height_m, {1e-6, 1e6},
-               "without planes: how high things are, give or take a factor of e, whose label has "
-               "no height in the semantic table");
+               "without planes: height of objects whose label has none in the semantic table; its "
+               "standard deviation is a factor of e");
     visit.Group("Merged and false objects");
     visit.Real("merge_share", &merge_share, {0.0, 1.0},
                "two tracks are one object when the larger one explains at least this share of the "

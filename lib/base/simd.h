@@ -46,14 +46,6 @@ SOSLAM_FORCE_INLINE void Load(const double* from, Four* four) {
   *four = *reinterpret_cast<const FourInMemory*>(from);
 }
 
-SOSLAM_FORCE_INLINE void Store(const Four& four, double* to) {
-  *reinterpret_cast<FourInMemory*>(to) = four;
-}
-
-SOSLAM_FORCE_INLINE void SquareRoot(const Four& of, Four* root) {
-  for (size_t k = 0; k < 4; ++k) (*root)[k] = std::sqrt(of[k]);
-}
-
 // Sum of the four elements.
 SOSLAM_FORCE_INLINE double Sum(const Four& four) {
   return (four[0] + four[1]) + (four[2] + four[3]);

@@ -75,9 +75,6 @@ class RelativeObservation {
 
   const Landmark& landmark_in_camera() const { return landmark_in_camera_; }
   const Eigen::Matrix3d& camera_from_world() const { return camera_from_world_; }  // rotation
-  const Eigen::Vector3d& offset_in_world() const {
-    return offset_in_world_;
-  }  // centre minus camera
 
   template <int kRows>
   void WriteJacobians(const Eigen::Matrix<double, kRows, kLandmarkDof>& d_landmark,

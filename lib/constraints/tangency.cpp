@@ -113,13 +113,15 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   const RelativeObservation observation(blocks, shape_exponent_);
   const Landmark& landmark = observation.landmark_in_camera();
+  if (!landmark.half_axes.allFinite())
+    return false;  // the step was too large: the solver shortens it
   const double centre_depth_m = landmark.Centre().z();
   const bool is_near = !(centre_depth_m > min_centre_depth_m_);
   const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
                               is_near ? 0.0 : depth_ratio_};
   LandmarkJacobian1 d_tangency;
   const double tangency = Tangency(edge_, landmark, depth, *blocks[2], &d_tangency);
-  if (!std::isfinite(tangency)) return false;  // the step was too large: the solver shortens it
+  if (!std::isfinite(tangency)) return false;
   Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
   if (jacobians == nullptr) return true;
   Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;

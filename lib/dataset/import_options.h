@@ -69,12 +69,12 @@ struct FolderOptions {
     visit.Text("odometry", &odometry, "the file with the pose estimates");
     visit.Text("groundtruth", &groundtruth, "the file with the true poses");
     visit.Choice("trajectory_format", &trajectory_format, kTrajectoryFormatNames,
-                 "how the odometry says poses: timestamp tx ty tz qx qy qz qw (tum, ORB-SLAM); 12 "
-                 "numbers, one line for each listed image (kitti); EuRoC's CSV, nanoseconds, qw "
-                 "first (euroc); by the names of the images COLMAP's images.txt (colmap) or "
-                 "nerfstudio's transforms.json (nerfstudio)");
+                 "format of the poses of the odometry: timestamp tx ty tz qx qy qz qw (tum, "
+                 "ORB-SLAM); 12 numbers, one line for each listed image (kitti); EuRoC's CSV, "
+                 "nanoseconds, qw first (euroc); by the names of the images COLMAP's images.txt "
+                 "(colmap) or nerfstudio's transforms.json (nerfstudio)");
     visit.Choice("groundtruth_format", &groundtruth_format, kGroundtruthFormatNames,
-                 "how the groundtruth says poses; same: as trajectory_format says");
+                 "format of the poses of the ground truth; same: as trajectory_format says");
     visit.Flag("align_odometry", &align_odometry,
                "the odometry has a world of its own: it is moved as a "
                "whole so that its first pose that has a true one is that");
@@ -88,16 +88,14 @@ struct FolderOptions {
                "(.yaml, .xml), COLMAP's cameras.txt, nerfstudio's transforms.json; empty: "
                "camera.json");
     visit.Text("distortion", &distortion,
-               "soslam, tum_rgbd: what the lens did to images and boxes: \"k1 k2 p1 p2 k3\" as "
-               "OpenCV has them, or 4, 8, 12 or 14 of its coefficients; empty: the camera "
-               "file says it, or nothing");
-    visit.Choice(
-        "detections_format", &detections_format, kDetectionsFormatNames,
-        "how `detections` says boxes: detections.csv with or "
-        "without object ids (csv); a folder or archive of text files with fractions of the "
-        "image (yolo) or pixels from the upper left corner (yolo_pixels); COCO's results "
-        "(coco); OA-SLAM's JSON (oa_slam); <class>/<name>.txt, or a folder of such class "
-        "folders (kitti)");
+               "soslam, tum_rgbd: distortion of images and boxes by the lens: \"k1 k2 p1 p2 k3\" "
+               "as OpenCV has them, or 4, 8, 12 or 14 of its coefficients; empty: the camera file "
+               "says it, or nothing");
+    visit.Choice("detections_format", &detections_format, kDetectionsFormatNames,
+                 "format of `detections`: detections.csv with or without object ids (csv); a "
+                 "folder or archive of text files with fractions of the image (yolo) or pixels "
+                 "from the upper left corner (yolo_pixels); COCO's results (coco); OA-SLAM's JSON "
+                 "(oa_slam); <class>/<name>.txt, or a folder of such class folders (kitti)");
     visit.Text("class_names", &class_names,
                "yolo, yolo_pixels, oa_slam: the file with the names of the classes, one a line; "
                "coco: the JSON file of the dataset; empty: COCO's");
@@ -171,7 +169,7 @@ struct ImportOptions {
                  "soslam, tum_rgbd, icl_nuim, slam_synthetic: which poses are the estimates; the "
                  "others when a folder does not have them");
     visit.Text("odometry_source", &odometry_source,
-               "whose the pose estimates are, as tables of maps say it: ORB-SLAM2, COLMAP, "
+               "source of the pose estimates, as tables of maps name it: ORB-SLAM2, COLMAP, "
                "simulated; empty: not said");
     visit.Choice("camera_planes", &camera_planes, kPlanePosesNames,
                  "the poses that carry annotated world planes into each frame; the trajectory when "

@@ -10,7 +10,6 @@ namespace soslam {
 // enough for the nearest cache.
 inline constexpr int kBatchSize = 32;
 using Batch = Eigen::Array<double, kBatchSize, 1>;
-using BatchOfPixels = std::array<Batch, 2>;
 using BatchOfVectors = std::array<Batch, 3>;
 
 }  // namespace soslam

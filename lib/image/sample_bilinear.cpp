@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace soslam {
 namespace {
-
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Scalar>
 std::optional<Sample> SampleTyped(const cv::Mat& map, const Eigen::Vector2d& pixel) {
@@ -43,18 +40,6 @@ std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& 
   if (!IsBetweenPixelCentres(map, pixel)) return std::nullopt;
   return map.type() == CV_8UC1 ? SampleTyped<std::uint8_t>(map, pixel)
                                : SampleTyped<float>(map, pixel);
-}
-
-Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels, BatchOfPixels* gradients) {
-  Batch values;
-  for (int i = 0; i < kBatchSize; ++i) {
-    const auto sample = SampleBilinear(map, {pixels[0][i], pixels[1][i]});
-    values[i] = sample ? sample->value : kNoValue;
-    if (gradients == nullptr) continue;
-    (*gradients)[0][i] = sample ? sample->gradient.x() : 0.0;
-    (*gradients)[1][i] = sample ? sample->gradient.y() : 0.0;
-  }
-  return values;
 }
 
 }  // namespace soslam

@@ -5,8 +5,6 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
-#include "geometry/batch.h"
-
 namespace soslam {
 
 struct Sample {
@@ -20,10 +18,5 @@ struct Sample {
 std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
 // True if a pixel is in that domain, whatever the map's values.
 bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel);
-
-// The values at many pixels: NaN or infinite where there is none. `gradients` may be null; they are
-// 0 where there is no value.
-Batch SampleBilinear(const cv::Mat& map, const BatchOfPixels& pixels,
-                     BatchOfPixels* gradients = nullptr);
 
 }  // namespace soslam

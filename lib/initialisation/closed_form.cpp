@@ -15,13 +15,10 @@ constexpr double kDepthTolerance = 1e-10;
 
 }  // namespace
 
-BoxOnGround::BoxOnGround(const std::array<BoxEdge, 4>& edges, const Rigid3d& camera_from_reference,
-                         const UprightGround& ground) {
-  Eigen::Matrix3d reference_from_ground;
-  reference_from_ground << ground.x, ground.y, ground.normal;
-  const Eigen::Matrix3d camera_from_ground =
-      camera_from_reference.rotation.toRotationMatrix() * reference_from_ground;
-  const Eigen::Vector3d origin = camera_from_reference * ground.origin;
+BoxOnGround::BoxOnGround(const std::array<BoxEdge, 4>& edges, const UprightGround& ground) {
+  Eigen::Matrix3d camera_from_ground;
+  camera_from_ground << ground.x, ground.y, ground.normal;
+  const Eigen::Vector3d& origin = ground.origin;
   for (int i = 0; i < 4; ++i) {
     const BoxEdge& edge = edges[static_cast<size_t>(i)];
     normals.row(i) = edge.plane.transpose() * camera_from_ground;
@@ -34,7 +31,7 @@ BoxOnGround::BoxOnGround(const std::array<BoxEdge, 4>& edges, const Rigid3d& cam
 }
 
 ClosedForm::ClosedForm(const UprightObservation& observation)
-    : box_(observation.edges, Rigid3d(), UprightGround(observation.plane_in_camera)),
+    : box_(observation.edges, UprightGround(observation.plane_in_camera)),
       proportions_(observation.prior.ratio.x(), observation.prior.ratio.y(), 1.0),
       shape_exponent_(observation.prior.shape_exponent) {
   const Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>> of_foot(box_.normals.leftCols<2>());

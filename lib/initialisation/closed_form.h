@@ -16,14 +16,8 @@ namespace soslam {
 // The box of a detection in the ground frame of its object's support plane, where a yaw is a
 // rotation about z.
 struct BoxOnGround {
-  // `edges` in the camera frame, `ground` in the reference frame.
-  BoxOnGround(const std::array<BoxEdge, 4>& edges, const Rigid3d& camera_from_reference,
-              const UprightGround& ground);
-
-  // Depth (m) in the camera of a point in the ground frame.
-  double DepthOf(const Eigen::Vector3d& point) const {
-    return origin_depth + optical_axis.dot(point);
-  }
+  // `edges` and `ground` in the camera frame.
+  BoxOnGround(const std::array<BoxEdge, 4>& edges, const UprightGround& ground);
 
   // The planes behind the edges (BoxEdge::plane) in the ground frame: normals as rows, and values
   // at the ground's origin (px m).
@@ -37,7 +31,6 @@ struct BoxOnGround {
 
 // Cosine and sine of an object's yaw.
 struct Heading {
-  Heading() = default;
   explicit Heading(double yaw) : cosine(std::cos(yaw)), sine(std::sin(yaw)) {}
 
   // Rotates a direction from the ground frame into the object frame.
@@ -46,8 +39,8 @@ struct Heading {
             cosine * direction.y() - sine * direction.x(), direction.z()};
   }
 
-  double cosine = 1.0;
-  double sine = 0.0;
+  double cosine;
+  double sine;
 };
 
 // An upright object and the depths (m) of its tangent points at the four edges.

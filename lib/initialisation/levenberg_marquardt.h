@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace soslam {
 

@@ -8,7 +8,6 @@
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "initialisation/landmark_terms.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright.h"
 #include "model/sequence.h"

@@ -58,19 +58,18 @@ struct InitialiseOptions {
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations per start");
     visit.Real("tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-               "solutions whose outline fits the box as well as the best one's, to this rms edge "
-               "distance, explain it equally well; tie_break chooses among them");
+               "solutions whose outline fits the box as well as that of the best one, to this rms "
+               "edge distance, count as equal; tie_break chooses among them");
     visit.Choice("tie_break", &tie_break, kTieBreakNames,
-                 "which yaw is chosen where several explain the box: nearest to the world's axes "
-                 "(modulo quarter turns), or with the front facing the camera most");
+                 "which yaw is chosen among equal solutions: nearest to the world's axes (modulo "
+                 "quarter turns), or with the front facing the camera most");
     variances.Describe(visit);
     upright.Describe(visit);  // the next two options belong to its group
     visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
-    visit.Real(
-        "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-        "multi_view, and yaw_prior = motion: boxes from viewpoints closer than this angle at "
-        "the object share what the label's shape cannot explain, so that they count as one; 0: all "
-        "boxes are independent");
+    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+               "multi_view, and yaw_prior = motion: boxes from viewpoints closer than this angle "
+               "at the object share the error of the label's shape, and together have the weight "
+               "of one; 0: all boxes are independent");
     yaw_prior.Describe(visit);
   }
 };

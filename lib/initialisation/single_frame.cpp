@@ -119,8 +119,9 @@ double SingleFrameCost(const SingleFrameObservation& observation,
   ceres::Problem problem;
   AddSingleFrameConstraints(observation, variances, &camera, &landmark, &problem);
   double cost = 0.0;
-  problem.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr, nullptr);
-  return cost;
+  return problem.Evaluate(ceres::Problem::EvaluateOptions(), &cost, nullptr, nullptr, nullptr)
+             ? cost
+             : std::numeric_limits<double>::infinity();
 }
 
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,

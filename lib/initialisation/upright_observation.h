@@ -28,7 +28,7 @@ struct UprightOptions {
                "height; at least 1 px");
     visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
                "cost (negative logarithm of a likelihood) of a yaw half-way between the world's "
-               "horizontal axes; 0 for objects that stand anyhow");
+               "horizontal axes; 0 if objects are not aligned with them");
     visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0}, "grid of the sweep over half a turn");
   }
 };

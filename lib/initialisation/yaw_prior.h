@@ -29,13 +29,13 @@ struct YawPriorOptions {
   void Describe(OptionVisitor& visit) {
     visit.Group("Prior of the yaw (method = yaw_sweep)");
     visit.Choice("yaw_prior", &source, kYawPriorSourceNames,
-                 "what is known of the yaw besides the box: nothing; what the object's "
-                 "boxes in the frames before and after say: along its motion, or, when it stands, "
-                 "what suits them all; or, for ablations, the truth");
+                 "prior of the yaw beside the box: none; from the object's boxes in the frames "
+                 "before and after, along its motion or, if it stands, the yaw that fits all of "
+                 "them (motion); or, for ablations, the truth");
     visit.Integer("motion_frames", &motion_frames, {1, 100000},
                   "motion: how many frames before and as many after");
     visit.Real("motion_min_m", &motion_min_m, {0.0, 1e6},
-               "motion: what moves less over these frames stands");
+               "motion: objects that move less over these frames count as standing");
     visit.Real("motion_foot_sigma_m", &motion_foot_sigma_m, {1e-6, 1e6},
                "motion: standard deviation, across the motion, of how far the middle of "
                "a box's lower edge seems to move on the support plane");

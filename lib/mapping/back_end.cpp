@@ -106,7 +106,7 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
   BackEndProblem problem(input, options, threads);
   MapEstimate map;
-  problem.Solve(options.max_iterations);
+  problem.Solve();
   bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (!input.symmetry_images.empty() || !input.edge_images.empty()) {

@@ -82,8 +82,8 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
       problem_(ProblemOptions()) {
   WeighViews();
   if (!options.hold_poses) AddOdometry();
-  for (size_t i = 0; i < input.starts.size(); ++i) {
-    if (input.starts[i]) AddLandmark(i);
+  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
+    if (input.initial_landmarks[i]) AddLandmark(i);
   }
   AddDetections();
   SetManifolds();
@@ -99,10 +99,11 @@ void BackEndProblem::WeighViews() {
   view_weights_.assign(input_.sequence.detections.size(), 1.0);
   const auto detections_by_object = DetectionsByObject(input_.sequence);
   for (size_t i = 0; i < detections_by_object.size(); ++i) {
-    if (!input_.starts[i]) continue;
+    if (!input_.initial_landmarks[i]) continue;
     const std::vector<int>& detections = detections_by_object[i];
-    const auto weights = ViewWeights(input_.sequence, detections, input_.starts[i]->Centre(),
-                                     options_.view_correlation_deg * kRadPerDeg);
+    const auto weights =
+        ViewWeights(input_.sequence, detections, input_.initial_landmarks[i]->Centre(),
+                    options_.view_correlation_deg * kRadPerDeg);
     for (size_t k = 0; k < weights.size(); ++k) {
       view_weights_[static_cast<size_t>(detections[k])] = weights[k];
     }
@@ -189,7 +190,7 @@ void BackEndProblem::AddDetections() {
   int added = 0;
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
-    if (!input_.starts[static_cast<size_t>(detection.object_index)]) {
+    if (!input_.initial_landmarks[static_cast<size_t>(detection.object_index)]) {
       ++summary_.gated[input_.sequence.ObjectOf(detection).is_static
                            ? "detection_of_object_without_start"
                            : "detection_of_moving_object"];
@@ -248,12 +249,14 @@ void BackEndProblem::AddBias() {
 
 void BackEndProblem::SetManifolds() {
   const auto set = [&](double* block, ceres::Manifold* (*make)()) {
-    if (problem_.HasParameterBlock(block)) problem_.SetManifold(block, make());
+    if (problem_.HasParameterBlock(block) && !problem_.HasManifold(block)) {
+      problem_.SetManifold(block, make());
+    }
   };
   for (size_t i = 0; i < input_.sequence.frames.size(); ++i) {
     set(variables_.Pose(i), NewPoseManifold);
   }
-  for (size_t i = 0; i < input_.starts.size(); ++i)
+  for (size_t i = 0; i < input_.initial_landmarks.size(); ++i)
     set(variables_.Landmark(i), NewLandmarkManifold);
   for (size_t i = 0; i < input_.sequence.planes.size(); ++i) {
     set(variables_.Normal(i), NewNormalManifold);
@@ -278,7 +281,7 @@ void BackEndProblem::RenewImageResiduals() {
   for (const char* reason : {kTooFewPairs, kNoEdgeCounts}) summary_.gated.erase(reason);
   const auto is_used = [&](int detection_index) {
     const auto& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
-    return input_.starts[static_cast<size_t>(detection.object_index)].has_value();
+    return input_.initial_landmarks[static_cast<size_t>(detection.object_index)].has_value();
   };
   std::vector<size_t> detections;
   std::vector<std::function<ImageBlocks()>> makers;
@@ -312,7 +315,7 @@ void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
   const Detection& detection = input_.sequence.detections[index];
   for (auto& function : blocks.functions) {
     image_blocks_.push_back(problem_.AddResidualBlock(function.release(),
-                                                      blocks.is_robust ? nullptr : &loss_,
+                                                      blocks.is_bounded ? nullptr : &loss_,
                                                       Pose(detection), LandmarkOf(detection)));
   }
 }
@@ -369,7 +372,7 @@ BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
 
 std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (size_t i = 0; i < input_.starts.size(); ++i) {
+  for (size_t i = 0; i < input_.initial_landmarks.size(); ++i) {
     double* landmark = variables_.Landmark(i);
     if (problem_.HasParameterBlock(landmark)) ordering->AddElementToGroup(landmark, 0);
   }
@@ -385,9 +388,9 @@ void BackEndProblem::Solve(int max_iterations) {
   } else {
     // A landmark that its boxes hardly determine would shorten the steps of all others: after each
     // step, each is optimised alone.
-    options.use_inner_iterations = true;
-    options.inner_iteration_tolerance = 1e-6;
     options.inner_iteration_ordering = LandmarkOrdering();
+    options.use_inner_iterations = options.inner_iteration_ordering->NumElements() > 0;
+    options.inner_iteration_tolerance = 1e-6;
   }
   IterationProgress progress;
   options.callbacks.push_back(&progress);

@@ -19,7 +19,7 @@ namespace soslam {
 // references to its arguments.
 class BackEndProblem {
  public:
-  // With odometry, detections, support and ratio constraints.
+  // With odometry, detections, support and ratio constraints, preferred axes and the bias prior.
   BackEndProblem(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
   BackEndProblem(const BackEndProblem&) = delete;
   BackEndProblem& operator=(const BackEndProblem&) = delete;
@@ -33,7 +33,7 @@ class BackEndProblem {
   // defined there.
   void Solve(int max_iterations = std::numeric_limits<int>::max());
 
-  // J^T W J of the variables that are not constant needs no curvature rows (TangencyResidual).
+  // Leaves the curvature rows of TangencyResidual out of all later Jacobians, as covariances need.
   void DropCurvatureRows() { with_curvature_ = false; }
 
   const SolverSummary& summary() const { return summary_; }
@@ -48,7 +48,7 @@ class BackEndProblem {
     const char* reason_for_none;
     int count;
     std::vector<std::unique_ptr<ceres::CostFunction>> functions;
-    bool is_robust = false;  // without a Huber loss: they are bounded themselves
+    bool is_bounded = false;  // if true, they need no Huber loss
   };
 
   bool IsTangency() const { return options_.detection_model == DetectionModel::kTangency; }

@@ -23,7 +23,7 @@ size_t FirstParallelPlane(const std::vector<SupportPlane>& planes, size_t index)
 BackEndVariables::BackEndVariables(const BackEndInput& input)
     : input_(input),
       first_landmark_(kPoseSize * input.sequence.frames.size()),
-      first_normal_(first_landmark_ + kLandmarkSize * input.starts.size()),
+      first_normal_(first_landmark_ + kLandmarkSize * input.initial_landmarks.size()),
       first_offset_(first_normal_ + kNormalSize * input.sequence.planes.size()),
       first_bias_(first_offset_ + kOffsetSize * input.sequence.planes.size()),
       values_(first_bias_ + 4 * kBiasSize, 0.0) {
@@ -31,8 +31,9 @@ BackEndVariables::BackEndVariables(const BackEndInput& input)
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     std::ranges::copy(ToParameterBlock(sequence.frames[i].world_from_camera), Pose(i));
   }
-  for (size_t i = 0; i < input.starts.size(); ++i) {
-    if (input.starts[i]) std::ranges::copy(ToParameterBlock(*input.starts[i]), Landmark(i));
+  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
+    if (input.initial_landmarks[i])
+      std::ranges::copy(ToParameterBlock(*input.initial_landmarks[i]), Landmark(i));
   }
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const Plane& plane = sequence.planes[i].plane_in_world;
@@ -60,14 +61,14 @@ std::array<double, 4> BackEndVariables::BiasValues() const {
 Landmark BackEndVariables::LandmarkValue(size_t object_index) const {
   soslam::Landmark landmark =
       UnpackLandmark(&values_[first_landmark_ + kLandmarkSize * object_index]);
-  landmark.shape_exponent = input_.starts[object_index]->shape_exponent;
+  landmark.shape_exponent = input_.initial_landmarks[object_index]->shape_exponent;
   return landmark;
 }
 
 std::vector<std::optional<Landmark>> BackEndVariables::LandmarkValues() const {
-  std::vector<std::optional<soslam::Landmark>> landmarks(input_.starts.size());
+  std::vector<std::optional<soslam::Landmark>> landmarks(input_.initial_landmarks.size());
   for (size_t i = 0; i < landmarks.size(); ++i) {
-    if (input_.starts[i]) landmarks[i] = LandmarkValue(i);
+    if (input_.initial_landmarks[i]) landmarks[i] = LandmarkValue(i);
   }
   return landmarks;
 }

@@ -26,7 +26,9 @@ bool ImageResidual::Evaluate(double const* const* blocks, double* residuals,
   }
   LandmarkModel model;
   in_camera_->AddTo(observation.landmark_in_camera(), &model);
-  if (!std::isfinite(model.cost)) return false;
+  if (!std::isfinite(model.cost) || !model.gradient.allFinite() || !model.information.allFinite()) {
+    return false;
+  }
   const Eigen::LDLT<LandmarkModel::Matrix> factor(model.information);
   const LandmarkModel::Vector pivots = factor.vectorD();
   LandmarkModel::Matrix rows = factor.transpositionsP() * LandmarkModel::Matrix::Identity();

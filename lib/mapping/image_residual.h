@@ -4,6 +4,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include <memory>
+#include <utility>
 
 #include "constraints/parameters.h"
 #include "initialisation/landmark_cost.h"

@@ -50,11 +50,10 @@ struct OptimiseOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Constraints");
-    visit.Choice(
-        "detection_model", &detection_model, kDetectionModelNames,
-        "what a box says about a landmark: the tangent planes of its ellipsoid (eq. 4), or "
-        "those of a body of its label's shape, in pixels, with the label's spread of "
-        "ratios");
+    visit.Choice("detection_model", &detection_model, kDetectionModelNames,
+                 "residual of a box: the tangent planes of the ellipsoid, eq. (4) (quadric), or "
+                 "the distance in pixels between its edges and the outline of a body of the "
+                 "label's shape, with the label's spread of ratios (tangency)");
     visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
     visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
@@ -71,8 +70,8 @@ struct OptimiseOptions {
                "tangency, those of odometry and boxes");
     visit.Group("Poses and odometry");
     visit.Flag("hold_poses", &hold_poses,
-               "the poses of the trajectory stay as they are, as those of motion capture or of "
-               "structure from motion should; otherwise they are odometry, which drifts");
+               "the poses of the trajectory are constant, as those of motion capture or structure "
+               "from motion should be; otherwise they are odometry, which drifts");
     visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
                "standard deviation of the odometry between two frames");
     visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
@@ -86,12 +85,11 @@ struct OptimiseOptions {
                "standard deviation of a bias that each of the four edges has in all boxes "
                "of the sequence, estimated along; 0: no bias");
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "what a body of the label's shape cannot explain in a box, boxes from "
-               "viewpoints closer than this angle at the object share, so that they count as one; "
-               "0: all boxes are independent");
+               "boxes from viewpoints closer than this angle at the object share the error of the "
+               "label's shape, and together have the weight of one; 0: all boxes are independent");
     visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
-               "cost (negative logarithm of a likelihood) of a yaw half-way between the "
-               "world's horizontal axes; 0 for objects that stand anyhow");
+               "cost (negative logarithm of a likelihood) of a yaw half-way between the world's "
+               "horizontal axes; 0 if objects are not aligned with them");
     visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
                "standard deviation of the tilt of a body on its support plane");
     visit.Real("standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},

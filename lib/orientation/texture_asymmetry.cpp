@@ -163,7 +163,10 @@ double AsymmetryTerm::Residual(const SymmetryDescriptor& descriptor, const Eigen
   const auto pair = descriptor.Evaluate(pixel, std::nullopt, with_jacobian, texture_.mirror_plane);
   if (!pair) return 1.0;  // the limit for large differences
   const RobustResidual robust = RobustifyResidual(GemanMcClureLoss(scale_), pair->residual);
-  if (with_jacobian) *jacobian = robust.slope / scale_ * pair->jacobian;
+  // A ray that grazes the surface has no derivative.
+  if (with_jacobian && pair->jacobian.allFinite()) {
+    *jacobian = robust.slope / scale_ * pair->jacobian;
+  }
   return robust.value / scale_;
 }
 

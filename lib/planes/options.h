@@ -56,9 +56,9 @@ struct PlanesOptions {
     visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
                "edges farther off than this many standard deviations count linearly");
     visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
-               "how level the cameras' x axes are held; large: anyhow");
+               "standard deviation of the tilt of the cameras' x axes; large: unknown");
     visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
-               "how level the cameras' optical axes are held; large: anyhow");
+               "standard deviation of the tilt of the cameras' optical axes; large: unknown");
     visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
                "standard deviation of the height of an object's lowest point over its "
                "plane, as a fraction of the object's height, for bodies that are not of their "
@@ -66,11 +66,11 @@ struct PlanesOptions {
     visit.Real("new_plane_cost", &new_plane_cost, {0.0, 1e6},
                "cost (negative logarithm of a likelihood) of one more plane");
     visit.Flag("size_prior", &size_prior,
-               "bodies are as high as the semantic table says (height_m), give or take "
-               "its spread; without it all metres come from the trajectory; not with refine_poses");
+               "heights have the prior of the semantic table (height_m); without it all "
+               "metres come from the trajectory; not with refine_poses");
     visit.Flag("refine_poses", &refine_poses,
-               "in the end the back end optimises planes, poses and bodies together, and "
-               "its poses carry the planes into the frames");
+               "finally the back end optimises planes, poses and bodies together, and its "
+               "poses carry the planes into the frames");
     visit.Real(
         "odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e3},
         "refine_poses: standard deviation of the odometry between two frames, per axis; where "

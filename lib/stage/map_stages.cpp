@@ -21,7 +21,7 @@
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
 #include "mapping/back_end.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
 
@@ -107,10 +107,10 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.symmetry || options.edge_alignment) {
     ReadImages(options, files.at("edges"), threads, &input);
   }
-  input.starts = options.detection_model == DetectionModel::kTangency
-                     ? ChooseUprightStarts(input, estimates, options, threads)
-                     : ChooseStarts(sequence, estimates);
-  if (std::none_of(input.starts.begin(), input.starts.end(),
+  input.initial_landmarks = options.detection_model == DetectionModel::kTangency
+                                ? ChooseInitialUprightLandmarks(input, estimates, options, threads)
+                                : ChooseInitialLandmarks(sequence, estimates);
+  if (std::none_of(input.initial_landmarks.begin(), input.initial_landmarks.end(),
                    [](const auto& start) { return start.has_value(); })) {
     throw NothingUsableError(files.at("landmarks").string() + ": no landmark to start from");
   }

@@ -17,7 +17,7 @@
 #include "evaluation/result_checks.h"
 #include "image/edge_maps.h"
 #include "mapping/back_end.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
 #include "stage/image_stages.h"
@@ -141,7 +141,7 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   }
   optimise.axes_weight = 0.0;  // the world's axes are arbitrary
   BackEndInput input{sequence, {}, priors, {}, {}};
-  input.starts = ChooseUprightStarts(input, {}, optimise, threads);
+  input.initial_landmarks = ChooseInitialUprightLandmarks(input, {}, optimise, threads);
   return OptimiseMap(input, optimise, threads);
 }
 

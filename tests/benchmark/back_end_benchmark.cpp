@@ -5,7 +5,7 @@
 #include "benchmark/back_end_input.h"
 #include "benchmark/inputs.h"
 #include "initialisation/initialise.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
@@ -57,7 +57,8 @@ void ChooseStart(benchmark::State& state) {
   const auto estimates = InitialiseUpright(object.sequence, object.input.priors, UprightOptions(),
                                            /*threads=*/1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(ChooseUprightStarts(object.input, estimates, OptionsOfOursST(), 1));
+    benchmark::DoNotOptimize(
+        ChooseInitialUprightLandmarks(object.input, estimates, OptionsOfOursST(), 1));
   }
 }
 BENCHMARK(ChooseStart)->Name("back_end/choose_start")->Unit(benchmark::kMillisecond);

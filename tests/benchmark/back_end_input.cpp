@@ -7,7 +7,7 @@ OneObject::OneObject(const Sequence& all, size_t object_index, size_t textures)
     : sequence(OnlyObject(all, object_index)), input{sequence, {}, TruePriors(sequence), {}, {}} {
   const Sequence first = FirstObservations(sequence);
   const auto estimates = InitialiseUpright(first, input.priors, UprightOptions(), /*threads=*/1);
-  input.starts = {FacingCamera(first, estimates.observations.front())};
+  input.initial_landmarks = {FacingCamera(first, estimates.observations.front())};
   for (const int index : SpreadOver(DetectionsByObject(sequence).front(), textures)) {
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const auto& edges = EdgesOfTwelveViews()[static_cast<size_t>(detection.frame_index)];

@@ -27,7 +27,7 @@ OptimiseOptions OptionsOfProblem() {
   options.odometry_translation_sigma_m = 0.01;
   options.view_correlation_deg = 0.0;
   options.axes_weight = 0.0;
-  options.huber_delta = 1e6;  // no outliers, but far starts
+  options.huber_delta = 1e6;  // no outliers, but far initial_landmarks
   options.covariances = false;
   return options;
 }
@@ -43,7 +43,7 @@ BackEndInput InputOf(const Sequence& sequence) {
     Landmark start = RotatedAboutZ(object.ground_truth->landmark_in_world, error(0.2));
     for (double& coordinate : start.frame_from_object.translation) coordinate += error(0.05);
     for (double& half_axis : start.half_axes) half_axis *= std::exp(error(0.2));
-    input.starts.push_back(start);
+    input.initial_landmarks.push_back(start);
   }
   return input;
 }

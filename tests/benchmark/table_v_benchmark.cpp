@@ -142,10 +142,10 @@ Landmarks PaperSingleFrameTexture() {
 template <size_t kTextures>
 Landmarks PaperAllFrames() {
   static const auto observations = PaperObservations(12, kTextures);
-  static const Landmarks starts = PaperSingleFrame();
+  static const Landmarks initial_landmarks = PaperSingleFrame();
   Landmarks landmarks;
-  for (size_t i = 0; i < starts.size(); ++i) {
-    landmarks.push_back(SolveAllFrames(observations[i], starts[i]).landmark_in_world);
+  for (size_t i = 0; i < initial_landmarks.size(); ++i) {
+    landmarks.push_back(SolveAllFrames(observations[i], initial_landmarks[i]).landmark_in_world);
   }
   return landmarks;
 }

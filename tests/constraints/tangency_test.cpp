@@ -277,15 +277,61 @@ TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
 }
 
 // A tenth of the initial depth is the least that counts.
-TEST(TangencyResidual, StaysDefinedBehindTheCamera) {
+TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
   const bool with_curvature = true;
-  View view;
+  const View view;
   const BoxEdge edge = RandomEdge();
   const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
   Landmark behind = view.initial_in_camera;
   behind.frame_from_object.translation.z() = -1.0;
   const LandmarkBlock landmark = ToParameterBlock(Transform(UnpackPose(view.pose.data()), behind));
-  ExpectCorrectJacobians(residual, {view.pose.data(), landmark.data(), &view.bias_px});
+  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+  Eigen::Vector3d values;
+  ASSERT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
+  const double depth_m = 0.1 * FindTangentDepth(edge, view.initial_in_camera).depth_m;
+  EXPECT_NEAR(values[0], Tangency(edge, behind, {depth_m}, view.bias_px, nullptr),
+              1e-9 * (1.0 + std::abs(values[0])));
+  const bool without_curvature = false;
+  ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &without_curvature),
+                         {view.pose.data(), landmark.data(), &view.bias_px});
+}
+
+// The depth of the tangent point shrinks with the world.
+TEST(TangencyResidual, IsTheSameInASmallerWorld) {
+  const bool with_curvature = true;
+  for (int i = 0; i < 20; ++i) {
+    const View view;
+    const TangencyResidual residual(RandomEdge(), view.initial_in_camera, &with_curvature);
+    const LandmarkBlock landmark = view.LandmarkInWorld();
+    PoseBlock smaller_pose = view.pose;
+    LandmarkBlock smaller = landmark;
+    for (size_t k = 4; k < 7; ++k) {
+      smaller_pose[k] *= 0.6;
+      smaller[k] *= 0.6;
+    }
+    for (size_t k = 7; k < 10; ++k) smaller[k] += std::log(0.6);
+    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+    const double* smaller_blocks[] = {smaller_pose.data(), smaller.data(), &view.bias_px};
+    Eigen::Vector3d values, smaller_values;
+    ASSERT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
+    ASSERT_TRUE(residual.Evaluate(smaller_blocks, smaller_values.data(), nullptr));
+    EXPECT_NEAR(smaller_values[0], values[0], 1e-9 * (1.0 + std::abs(values[0])));
+  }
+}
+
+TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {
+  const bool with_curvature = true;
+  const View view;
+  LandmarkBlock landmark = view.LandmarkInWorld();
+  landmark[8] = 1000.0;
+  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+  Eigen::Vector3d values;
+  for (const bool is_bound : {false, true}) {
+    BoxEdge edge = RandomEdge();
+    edge.is_bound = is_bound;
+    const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
+    EXPECT_FALSE(residual.Evaluate(blocks, values.data(), nullptr));
+  }
 }
 
 }  // namespace

@@ -73,44 +73,5 @@ TEST(SampleBilinearTest, NothingFromInfiniteOrOneColumnMaps) {
   EXPECT_FALSE(SampleBilinear(cv::Mat(1, 5, CV_8UC1, cv::Scalar(3)), {2, 0}));
 }
 
-// Values bit by bit, gradients up to rounding; also at and beyond the border and with infinities in
-// the map.
-TEST(SampleBilinearTest, ManyPixelsHaveTheValuesOfEach) {
-  for (const int type : {CV_8UC1, CV_32FC1}) {
-    cv::Mat map(20, 30, type);
-    cv::randu(map, 0, 255);
-    if (type == CV_32FC1) map.at<float>(7, 9) = std::numeric_limits<float>::infinity();
-    const cv::Mat part = map(cv::Rect(1, 1, 27, 17));  // rows do not follow each other
-    for (int repetition = 0; repetition < 100; ++repetition) {
-      BatchOfPixels pixels;
-      for (int i = 0; i < kBatchSize; ++i) {
-        pixels[0][i] = RandomUniform(-2, 28);
-        pixels[1][i] = RandomUniform(-2, 18);
-      }
-      pixels[0][0] = 26.0;
-      pixels[1][0] = 16.0;
-      pixels[0][1] = std::numeric_limits<double>::quiet_NaN();
-      BatchOfPixels gradients;
-      const Batch values = SampleBilinear(part, pixels, &gradients);
-      for (int i = 0; i < kBatchSize; ++i) {
-        const auto expected = SampleBilinear(part, Eigen::Vector2d(pixels[0][i], pixels[1][i]));
-        EXPECT_EQ(std::isfinite(values[i]), expected.has_value());
-        if (expected) {
-          EXPECT_EQ(values[i], expected->value);
-        }
-        const Eigen::Vector2d gradient(gradients[0][i], gradients[1][i]);
-        const Eigen::Vector2d expected_gradient =
-            expected ? expected->gradient : Eigen::Vector2d::Zero();
-        EXPECT_LE((gradient - expected_gradient).norm(), expected ? 1e-12 : 0.0);
-      }
-    }
-  }
-  BatchOfPixels gradients;
-  const Batch nothing = SampleBilinear(cv::Mat(5, 1, CV_8UC1, cv::Scalar(3)),
-                                       BatchOfPixels{Batch::Zero(), Batch::Zero()}, &gradients);
-  EXPECT_TRUE(nothing.isNaN().all());
-  for (const Batch& of_nothing : gradients) EXPECT_TRUE((of_nothing == 0.0).all());
-}
-
 }  // namespace
 }  // namespace soslam

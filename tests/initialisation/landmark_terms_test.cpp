@@ -265,5 +265,20 @@ TEST(RobustViewTerm, JacobianAgreesWithNumbers) {
   }
 }
 
+TEST(LandmarkTermResidual, IsTheTermForCeres) {
+  const LandmarkTermResidual residual(std::make_unique<RatioTerm>(ShapePrior()));
+  const LandmarkBlock landmark = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+  ExpectCorrectJacobians(residual, {landmark.data()});
+}
+
+TEST(LandmarkTermResidual, RefusesHalfAxesBeyondNumbers) {
+  const LandmarkTermResidual residual(std::make_unique<RatioTerm>(ShapePrior()));
+  LandmarkBlock landmark = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
+  landmark[8] = 1000.0;
+  const double* blocks[] = {landmark.data()};
+  Eigen::Vector2d values;
+  EXPECT_FALSE(residual.Evaluate(blocks, values.data(), nullptr));
+}
+
 }  // namespace
 }  // namespace soslam

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "base/error.h"
 #include "evaluation/iou.h"
 #include "evaluation/metrics.h"
 #include "initialisation/initialise.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "support/random.h"
 #include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
@@ -17,7 +20,7 @@ namespace {
 BackEndInput EllipsoidInput(const Sequence& sequence) {
   BackEndInput input{sequence, {}, {}, {}, {}};
   for (const Object& object : sequence.objects) {
-    input.starts.push_back(object.ground_truth->landmark_in_world);
+    input.initial_landmarks.push_back(object.ground_truth->landmark_in_world);
   }
   input.priors = ObjectPriors(sequence, SemanticTable(), RatioPrior::kGroundTruth);
   return input;
@@ -40,8 +43,8 @@ TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   BackEndInput input = EllipsoidInput(sequence);
   const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
-  input.starts =
-      ChooseStarts(sequence, InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1));
+  input.initial_landmarks = ChooseInitialLandmarks(
+      sequence, InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1));
   const Metrics metrics = EvaluateMap(sequence, OptimiseMap(input, OptimiseOptions()));
   for (const ObjectMetrics& object : metrics.objects) EXPECT_GT(object.iou, 0.99);
   EXPECT_LT(metrics.trajectory->ate_rmse_m, 1e-6);
@@ -50,7 +53,7 @@ TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
 TEST(BackEnd, ComesBackFromADisturbedStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   BackEndInput input = EllipsoidInput(sequence);
-  for (auto& start : input.starts) {
+  for (auto& start : input.initial_landmarks) {
     *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
     start->frame_from_object.translation += RandomVector(-0.05, 0.05);
     start->half_axes *= RandomUniform(0.9, 1.1);
@@ -74,8 +77,8 @@ TEST(BackEnd, MovesWithTheWorld) {
   Sequence moved = sequence;
   for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
   for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
-  BackEndInput moved_input{moved, input.starts, input.priors, {}, {}};
-  for (auto& start : moved_input.starts) *start = Transform(motion, *start);
+  BackEndInput moved_input{moved, input.initial_landmarks, input.priors, {}, {}};
+  for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);
 
   EXPECT_NEAR(after.solver.initial_cost, before.solver.initial_cost,
@@ -90,7 +93,7 @@ TEST(BackEnd, MovesWithTheWorld) {
 TEST(BackEnd, SaysWhichObjectHasNoStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
   BackEndInput input = EllipsoidInput(sequence);
-  input.starts[1].reset();
+  input.initial_landmarks[1].reset();
   const MapEstimate map = OptimiseMap(input, OptimiseOptions());
   EXPECT_EQ(map.objects[1].failure, "no_start");
   EXPECT_FALSE(map.objects[1].landmark_in_world);
@@ -102,7 +105,7 @@ TEST(BackEnd, GatesDetectionsOfLandmarksBehindTheCamera) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
   BackEndInput input = EllipsoidInput(sequence);
   const Rigid3d& camera = sequence.frames.front().world_from_camera;
-  input.starts[0]->frame_from_object.translation = camera * Eigen::Vector3d(0, 0, -3);
+  input.initial_landmarks[0]->frame_from_object.translation = camera * Eigen::Vector3d(0, 0, -3);
   const MapEstimate map = OptimiseMap(input, OptimiseOptions());
   EXPECT_GT(map.solver.gated.at("landmark_behind_camera"), 0);
 }
@@ -115,9 +118,16 @@ TEST(BackEnd, ALandmarkWithoutResidualsStaysAndHasNoCovariance) {
   options.support = false;
   options.ratio = false;
   const MapEstimate map = OptimiseMap(input, options);
-  EXPECT_EQ(map.objects[0].landmark_in_world->Centre(), input.starts[0]->Centre());
+  EXPECT_EQ(map.objects[0].landmark_in_world->Centre(), input.initial_landmarks[0]->Centre());
   EXPECT_FALSE(map.objects[0].covariance);
   EXPECT_GT(map.solver.gated.at("covariance_of_undetermined_problem"), 0);
+}
+
+TEST(BackEnd, RefusesAnInitialLandmarkWhoseCostIsNotDefined) {
+  const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
+  BackEndInput input = EllipsoidInput(sequence);
+  input.initial_landmarks[0]->half_axes.x() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(OptimiseMap(input, OptimiseOptions()), NumericalError);
 }
 
 TEST(BackEnd, OneFrameIsEnough) {
@@ -150,17 +160,18 @@ TEST(BackEnd, CovariancesScaleWithTheVariances) {
 }
 
 // Other views tell apart what explains one box equally well.
-TEST(ChooseStarts, TakesTheHypothesisThatFitsTheOtherViews) {
+TEST(ChooseInitialLandmarks, TakesTheHypothesisThatFitsTheOtherViews) {
   const Sequence sequence = SyntheticSequence(RandomScene(11, 5, 20), false);
   const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
   LandmarkEstimates estimates = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1);
   for (auto& observation : estimates.observations) {
     std::reverse(observation.hypotheses.begin(), observation.hypotheses.end());
   }
-  const auto starts = ChooseStarts(sequence, estimates);
-  for (size_t i = 0; i < starts.size(); ++i) {
-    ASSERT_TRUE(starts[i]);
-    EXPECT_GT(BoxIou(*starts[i], sequence.objects[i].ground_truth->landmark_in_world), 0.99);
+  const auto initial_landmarks = ChooseInitialLandmarks(sequence, estimates);
+  for (size_t i = 0; i < initial_landmarks.size(); ++i) {
+    ASSERT_TRUE(initial_landmarks[i]);
+    EXPECT_GT(BoxIou(*initial_landmarks[i], sequence.objects[i].ground_truth->landmark_in_world),
+              0.99);
   }
 }
 

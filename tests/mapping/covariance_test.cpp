@@ -36,7 +36,7 @@ class MarginalCovariancesTest : public testing::Test {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// d block / d tangent of the manifold, rotations by their whole rotation vector.
+// d block / d tangent of its manifold.
 Rows PlusJacobian(const ceres::Problem& problem, const double* block) {
   Rows plus = Rows::Identity(problem.ParameterBlockSize(block), problem.ParameterBlockSize(block));
   if (const ceres::Manifold* manifold = problem.GetManifold(block)) {

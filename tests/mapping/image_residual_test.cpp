@@ -11,7 +11,7 @@
 namespace soslam {
 namespace {
 
-// Robust residuals of linear functions of the nine parameters at one landmark.
+// Random residuals and derivatives, the same at any landmark.
 class SampledCost final : public LandmarkCost {
  public:
   explicit SampledCost(int samples)

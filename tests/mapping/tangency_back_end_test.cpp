@@ -4,7 +4,7 @@
 
 #include "evaluation/iou.h"
 #include "evaluation/metrics.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -13,7 +13,7 @@ namespace soslam {
 namespace {
 
 void Disturb(BackEndInput* input) {
-  for (auto& start : input->starts) {
+  for (auto& start : input->initial_landmarks) {
     *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
     start->frame_from_object.translation += RandomVector(-0.05, 0.05);
     start->half_axes *= RandomUniform(0.9, 1.1);
@@ -35,7 +35,7 @@ TEST(TangencyBackEnd, EstimatedPlanesSettleUnderTheirObjects) {
   const Sequence given = SyntheticSequence(scene, /*noise=*/false);
   const Sequence sequence = OnPlanesToEstimate(given);
   BackEndInput input = TruthInput(sequence);
-  input.starts = ChooseUprightStarts(input, {}, TangencyOptions(), 1);
+  input.initial_landmarks = ChooseInitialUprightLandmarks(input, {}, TangencyOptions(), 1);
   const MapEstimate map = OptimiseMap(input, TangencyOptions());
   ASSERT_EQ(map.planes_in_world.size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
@@ -166,9 +166,9 @@ TEST(TangencyBackEnd, WhatMovesIsNoLandmark) {
   sequence.objects[1].is_static = false;
   BackEndInput input = TruthInput(sequence);
   LandmarkEstimates estimates;
-  input.starts = ChooseUprightStarts(input, estimates, TangencyOptions(), 1);
-  EXPECT_TRUE(input.starts[0]);
-  EXPECT_FALSE(input.starts[1]);
+  input.initial_landmarks = ChooseInitialUprightLandmarks(input, estimates, TangencyOptions(), 1);
+  EXPECT_TRUE(input.initial_landmarks[0]);
+  EXPECT_FALSE(input.initial_landmarks[1]);
   const MapEstimate map = OptimiseMap(input, TangencyOptions());
   EXPECT_EQ(map.objects[1].failure, "moving");
   EXPECT_EQ(map.solver.gated.at("detection_of_moving_object"),
@@ -277,7 +277,7 @@ TEST(TangencyBackEnd, DoesNotDependOnThreads) {
   const MapEstimate three = OptimiseMap(input, TangencyOptions(), 3);
   EXPECT_GT(one.solver.cost_per_iteration.size(), 5u);
   EXPECT_EQ(one.solver.cost_per_iteration, three.solver.cost_per_iteration);
-  for (size_t i = 0; i < input.starts.size(); ++i) {
+  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
     const Landmark& of_one = *one.objects[i].landmark_in_world;
     const Landmark& of_three = *three.objects[i].landmark_in_world;
     EXPECT_EQ(of_one.frame_from_object.Matrix(), of_three.frame_from_object.Matrix());
@@ -296,8 +296,8 @@ TEST(TangencyBackEnd, SettlesWithEdges) {
   Disturb(&input);
   const MapEstimate first = OptimiseMap(input, TangencyOptions());
   EXPECT_TRUE(first.solver.converged);
-  for (size_t i = 0; i < input.starts.size(); ++i) {
-    input.starts[i] = first.objects[i].landmark_in_world;
+  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
+    input.initial_landmarks[i] = first.objects[i].landmark_in_world;
   }
   for (size_t i = 0; i < noisy.frames.size(); ++i) {
     noisy.frames[i].world_from_camera = first.world_from_camera[i];
@@ -306,7 +306,7 @@ TEST(TangencyBackEnd, SettlesWithEdges) {
   once_more.odometry_rotation_sigma_deg = 1e-6;  // the poses stay
   once_more.odometry_translation_sigma_m = 1e-9;
   const MapEstimate second = OptimiseMap(input, once_more);
-  for (size_t i = 0; i < input.starts.size(); ++i) {
+  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
     const Landmark& before = *first.objects[i].landmark_in_world;
     const Landmark& after = *second.objects[i].landmark_in_world;
     EXPECT_LT((after.Centre() - before.Centre()).norm(), 0.01 * before.half_axes.norm());
@@ -332,8 +332,8 @@ TEST(TangencyBackEnd, MovesWithTheWorld) {
   Sequence moved = sequence;
   for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
   for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
-  BackEndInput moved_input{moved, input.starts, input.priors, {}, edge_images};
-  for (auto& start : moved_input.starts) *start = Transform(motion, *start);
+  BackEndInput moved_input{moved, input.initial_landmarks, input.priors, {}, edge_images};
+  for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);
 
   EXPECT_NEAR(after.solver.initial_cost, before.solver.initial_cost,

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "initialisation/initialise.h"
 #include "mapping/back_end.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "planes/estimate_planes.h"
 #include "planes/up_prior.h"
 #include "support/association_scenes.h"
@@ -115,7 +115,7 @@ TEST_P(DegenerateTest, BackEndWithEllipsoids) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors& priors) {
     BackEndInput input{sequence, {}, priors, {}, {}};
     for (const Object& object : sequence.objects) {
-      input.starts.emplace_back(object.ground_truth->landmark_in_world);
+      input.initial_landmarks.emplace_back(object.ground_truth->landmark_in_world);
     }
     const OptimiseOptions options;
     ExpectDefined(OptimiseMap(input, options), options.max_iterations);
@@ -127,7 +127,7 @@ TEST_P(DegenerateTest, BackEndWithBodiesOfAnyShape) {
     OptimiseOptions options;
     options.detection_model = DetectionModel::kTangency;
     BackEndInput input{sequence, {}, priors, {}, {}};
-    input.starts = ChooseUprightStarts(
+    input.initial_landmarks = ChooseInitialUprightLandmarks(
         input, InitialiseUpright(sequence, priors, UprightOptions(), 1), options, 1);
     ExpectDefined(OptimiseMap(input, options), options.max_iterations);
   });

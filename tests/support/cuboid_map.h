@@ -15,7 +15,7 @@ inline BackEndInput TruthInput(const Sequence& sequence) {
   BackEndInput input{sequence, {}, {}, {}, {}};
   for (const Object& object : sequence.objects) {
     const Landmark& landmark = object.ground_truth->landmark_in_world;
-    input.starts.push_back(landmark);
+    input.initial_landmarks.push_back(landmark);
     input.priors.push_back(ShapePrior{
         landmark.half_axes.head<2>() / landmark.half_axes.z(), {0.02, 0.02}, kCuboidExponent});
   }

@@ -111,7 +111,7 @@ Drive::Drive(int frames, int objects, double turn_sigma_rad) {
         ShapePrior{(truth.half_axes.head<2>() / truth.half_axes.z())
                        .cwiseProduct(noise.NormalVector(0.2).head<2>().array().exp().matrix()),
                    Eigen::Vector2d::Constant(0.2), truth.shape_exponent});
-    starts.push_back(
+    initial_landmarks.push_back(
         Disturbed(truth, sequence.frames[static_cast<size_t>(first + kDriveViews / 2)], &noise));
   }
   std::stable_sort(sequence.detections.begin(), sequence.detections.end(),

@@ -22,7 +22,7 @@ struct Drive {
   Sequence sequence;
   std::vector<std::optional<ShapePrior>> priors;
   // In the world of the odometry, as estimates from the frames would be.
-  std::vector<std::optional<Landmark>> starts;
+  std::vector<std::optional<Landmark>> initial_landmarks;
 };
 
 }  // namespace soslam

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "evaluation/iou.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 
@@ -28,7 +28,7 @@ class UprightStarts : public testing::Test {
     BackEndInput input = TruthInput(sequence_);
     input.edge_images = edge_images_;
     input.symmetry_images = symmetry_images_;
-    return ChooseUprightStarts(input, estimates_, options_, threads);
+    return ChooseInitialUprightLandmarks(input, estimates_, options_, threads);
   }
 
   OptimiseOptions options_ = TangencyOptions();
@@ -41,11 +41,12 @@ class UprightStarts : public testing::Test {
 TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
   for (const bool edges : {false, true}) {
     if (edges) edge_images_ = DrawnEdges(sequence_);
-    const auto starts = Choose();
-    for (size_t i = 0; i < starts.size(); ++i) {
-      ASSERT_TRUE(starts[i]);
-      EXPECT_EQ(starts[i]->shape_exponent, kCuboidExponent);
-      EXPECT_GT(BoxIou(*starts[i], sequence_.objects[i].ground_truth->landmark_in_world), 0.98)
+    const auto initial_landmarks = Choose();
+    for (size_t i = 0; i < initial_landmarks.size(); ++i) {
+      ASSERT_TRUE(initial_landmarks[i]);
+      EXPECT_EQ(initial_landmarks[i]->shape_exponent, kCuboidExponent);
+      EXPECT_GT(BoxIou(*initial_landmarks[i], sequence_.objects[i].ground_truth->landmark_in_world),
+                0.98)
           << "object " << i << ", edges " << edges;
     }
   }
@@ -59,18 +60,18 @@ TEST_F(UprightStarts, DoNotDependOnThreadsOrTheOrderOfHypotheses) {
   }
   for (const Descriptor descriptor : {Descriptor::kDistanceTransform, Descriptor::kImprovedDt}) {
     options_.symmetry_options.descriptor = descriptor;
-    const auto starts = Choose(1), on_three_threads = Choose(3);
+    const auto initial_landmarks = Choose(1), on_three_threads = Choose(3);
     for (auto& observation : estimates_.observations) std::ranges::reverse(observation.hypotheses);
     std::ranges::reverse(estimates_.observations);
     const auto in_reverse = Choose(1);
-    for (size_t i = 0; i < starts.size(); ++i) {
-      ASSERT_TRUE(starts[i] && on_three_threads[i] && in_reverse[i]);
-      EXPECT_EQ(starts[i]->frame_from_object.Matrix(),
+    for (size_t i = 0; i < initial_landmarks.size(); ++i) {
+      ASSERT_TRUE(initial_landmarks[i] && on_three_threads[i] && in_reverse[i]);
+      EXPECT_EQ(initial_landmarks[i]->frame_from_object.Matrix(),
                 on_three_threads[i]->frame_from_object.Matrix());
-      EXPECT_EQ(starts[i]->half_axes, on_three_threads[i]->half_axes);
+      EXPECT_EQ(initial_landmarks[i]->half_axes, on_three_threads[i]->half_axes);
       EXPECT_TRUE(in_reverse[i]->frame_from_object.Matrix().isApprox(
-          starts[i]->frame_from_object.Matrix(), 1e-6));
-      EXPECT_TRUE(in_reverse[i]->half_axes.isApprox(starts[i]->half_axes, 1e-6));
+          initial_landmarks[i]->frame_from_object.Matrix(), 1e-6));
+      EXPECT_TRUE(in_reverse[i]->half_axes.isApprox(initial_landmarks[i]->half_axes, 1e-6));
     }
   }
 }
@@ -81,9 +82,10 @@ TEST_F(UprightStarts, ComeFromSeveralViewsWhereSingleFramesSayNothing) {
         sequence_.detections[static_cast<size_t>(observation.detection_index)];
     if (detection.object_index == 1) observation = {observation.detection_index, {}, "no_solution"};
   }
-  const auto starts = Choose();
-  ASSERT_TRUE(starts[1]);
-  EXPECT_GT(BoxIou(*starts[1], sequence_.objects[1].ground_truth->landmark_in_world), 0.98);
+  const auto initial_landmarks = Choose();
+  ASSERT_TRUE(initial_landmarks[1]);
+  EXPECT_GT(BoxIou(*initial_landmarks[1], sequence_.objects[1].ground_truth->landmark_in_world),
+            0.98);
 }
 
 TEST_F(UprightStarts, AreEmptyForObjectsThatNothingIsKnownOf) {
@@ -96,9 +98,10 @@ TEST_F(UprightStarts, AreEmptyForObjectsThatNothingIsKnownOf) {
     return detection.object_index == 1 && std::exchange(seen, true);
   });
   estimates_.observations.resize(sequence_.detections.size());
-  const auto starts = Choose();
-  ASSERT_EQ(starts.size(), 4u);
-  for (size_t i = 0; i < starts.size(); ++i) EXPECT_EQ(starts[i].has_value(), i != 1) << i;
+  const auto initial_landmarks = Choose();
+  ASSERT_EQ(initial_landmarks.size(), 4u);
+  for (size_t i = 0; i < initial_landmarks.size(); ++i)
+    EXPECT_EQ(initial_landmarks[i].has_value(), i != 1) << i;
 }
 
 // A body that reaches behind a camera is not what its box shows, however well others are explained.
@@ -112,10 +115,10 @@ TEST_F(UprightStarts, AreNotBehindTheCamerasThatSeeTheObject) {
   behind.frame_from_object.translation += 30.0 * Eigen::Vector3d(backwards.x(), backwards.y(), 0.0);
   estimates_.observations.front().hypotheses.front().landmark_in_camera =
       Transform(world_from_camera.Inverse(), RotatedAboutZ(behind, 0.3));
-  const auto starts = Choose();
+  const auto initial_landmarks = Choose();
   const auto object_index = static_cast<size_t>(detection.object_index);
-  ASSERT_TRUE(starts[object_index]);
-  EXPECT_GT(BoxIou(*starts[object_index],
+  ASSERT_TRUE(initial_landmarks[object_index]);
+  EXPECT_GT(BoxIou(*initial_landmarks[object_index],
                    sequence_.objects[object_index].ground_truth->landmark_in_world),
             0.97);
 }

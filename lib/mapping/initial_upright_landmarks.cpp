@@ -9,7 +9,7 @@
 #include "geometry/angles.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/texture_asymmetry.h"
 
@@ -26,8 +26,8 @@ constexpr size_t kMaxCandidates = 12;
 // Tangent depths and visible edges depend on the landmark: fitted twice.
 constexpr int kRounds = 2;
 
-// What its box shows is in front of a camera: of two landmarks, first the one that is in more
-// views.
+// An object is in front of all cameras with a box of it: landmarks that are in more views come
+// first.
 struct FitCost {
   size_t views_behind;
   double cost;
@@ -41,12 +41,12 @@ struct Candidate {
   FitCost cost;
 };
 
-// More than of any landmark.
+// Higher than that of any landmark.
 constexpr FitCost kCostOfNone = {std::numeric_limits<size_t>::max(),
                                  std::numeric_limits<double>::infinity()};
 
-// The cost of one object's landmark in the world over views of it, camera poses held. Not for
-// several threads at once.
+// The cost of one object's landmark in the world over views of it, with constant poses. Not
+// thread-safe.
 class ObjectFit {
  public:
   // `views` index Sequence::detections.
@@ -171,7 +171,7 @@ std::vector<std::vector<Landmark>> HypothesesOf(const Sequence& sequence,
   return hypotheses;
 }
 
-std::optional<Landmark> ChooseStart(std::vector<Landmark> hypotheses, ObjectFit* fit) {
+std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses, ObjectFit* fit) {
   if (fit->boxes().views.size() >= kMinViews) {
     for (const UprightSolution& solution : SweepViews(fit->boxes(), kYawStep)) {
       hypotheses.push_back(solution.landmark);
@@ -189,21 +189,20 @@ std::optional<Landmark> ChooseStart(std::vector<Landmark> hypotheses, ObjectFit*
 
 }  // namespace
 
-std::vector<std::optional<Landmark>> ChooseUprightStarts(const BackEndInput& input,
-                                                         const LandmarkEstimates& estimates,
-                                                         const OptimiseOptions& options,
-                                                         int threads) {
+std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
+    const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,
+    int threads) {
   const Sequence& sequence = input.sequence;
   const std::vector<std::vector<Landmark>> hypotheses = HypothesesOf(sequence, estimates);
   const auto detections = DetectionsByObject(sequence);
-  std::vector<std::optional<Landmark>> starts(sequence.objects.size());
-  ParallelFor("objects", static_cast<int>(starts.size()), threads, [&](int index) {
+  std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
+  ParallelFor("objects", static_cast<int>(initial_landmarks.size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
     if (detections[i].empty() || !sequence.objects[i].is_static) return;
     ObjectFit fit(input, i, SpreadOver(detections[i], kMaxViews), options);
-    starts[i] = ChooseStart(hypotheses[i], &fit);
+    initial_landmarks[i] = ChooseLandmark(hypotheses[i], &fit);
   });
-  return starts;
+  return initial_landmarks;
 }
 
 }  // namespace soslam

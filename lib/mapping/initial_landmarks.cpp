@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/choose_starts.h"
+#include "mapping/initial_landmarks.h"
 
 #include <algorithm>
 #include <limits>
@@ -26,10 +26,10 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
 
 }  // namespace
 
-std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
-                                                  const LandmarkEstimates& estimates) {
+std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequence,
+                                                            const LandmarkEstimates& estimates) {
   const auto detections = DetectionsByObject(sequence);
-  std::vector<std::optional<Landmark>> starts(sequence.objects.size());
+  std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
   std::vector<double> distances(sequence.objects.size(), std::numeric_limits<double>::infinity());
   for (const ObservationEstimate& observation : estimates.observations) {
     if (observation.hypotheses.empty()) continue;
@@ -41,21 +41,21 @@ std::vector<std::optional<Landmark>> ChooseStarts(const Sequence& sequence,
     for (const Hypothesis& hypothesis : observation.hypotheses) {
       const Landmark in_world = Transform(frame.world_from_camera, hypothesis.landmark_in_camera);
       const double distance = MedianEdgeRms(sequence, detections[object_index], in_world);
-      if (!starts[object_index] || distance < distances[object_index]) {
-        starts[object_index] = in_world;
+      if (!initial_landmarks[object_index] || distance < distances[object_index]) {
+        initial_landmarks[object_index] = in_world;
         distances[object_index] = distance;
       }
     }
   }
   for (const ObjectEstimate& object : estimates.objects) {
     if (object.landmark_in_world) {
-      starts[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
+      initial_landmarks[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
     }
   }
-  for (auto& start : starts) {
-    if (start) start->shape_exponent = kEllipsoidExponent;
+  for (auto& landmark : initial_landmarks) {
+    if (landmark) landmark->shape_exponent = kEllipsoidExponent;
   }
-  return starts;
+  return initial_landmarks;
 }
 
 }  // namespace soslam
