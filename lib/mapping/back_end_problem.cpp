@@ -407,10 +407,11 @@ void BackEndProblem::Record(const ceres::Solver::Summary& solution) {
   summary_.iterations += static_cast<int>(std::max<size_t>(1, solution.iterations.size())) - 1;
   summary_.converged = solution.termination_type == ceres::CONVERGENCE;
   summary_.detector_bias_px = variables_.BiasValues();
+  double lowest = solution.initial_cost;
   for (const ceres::IterationSummary& iteration : solution.iterations) {
     // Ceres gives a rejected step the cost where it would have led.
-    const bool is_rejected = iteration.iteration > 0 && !iteration.step_is_successful;
-    costs.push_back(is_rejected ? costs.back() : iteration.cost);
+    if (iteration.step_is_successful) lowest = std::min(lowest, iteration.cost);
+    costs.push_back(lowest);
   }
 }
 
