@@ -53,8 +53,8 @@ TEST(Calibration, IsOverconfidentOfTheYawOfARoundBody) {
   const Nees nees = MeanNees(c);
   ExpectWithin99Percent(nees.centre, 3 * c.scenes, "centre");
   ExpectWithin99Percent(nees.size, 3 * c.scenes, "size");
-  // Beyond 95 % of what honest covariances give; which scenes are drawn depends on the compiler.
-  EXPECT_GT(nees.yaw, ChiSquareQuantile(c.scenes, 1.6449));
+  c.scenes = 2000;  // so that the bound lies well below the mean, whichever scenes a compiler draws
+  EXPECT_GT(MeanNees(c).yaw, ChiSquareQuantile(c.scenes, 2.5758));
 }
 
 }  // namespace
