@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Residuals of texture and edges of BackEndProblem.
+#include <functional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "mapping/back_end_problem.h"
+#include "mapping/image_residual.h"
+#include "orientation/symmetry_samples.h"
+#include "orientation/texture_asymmetry.h"
+
+namespace soslam {
+namespace {
+
+// Kinds of residuals, and reasons for leaving something out.
+constexpr const char* kSymmetry = "symmetry";
+constexpr const char* kEdges = "edges";
+constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
+constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
+
+}  // namespace
+
+void BackEndProblem::RenewImageResiduals() {
+  for (const ceres::ResidualBlockId block : image_blocks_) problem_.RemoveResidualBlock(block);
+  image_blocks_.clear();
+  for (const char* kind : {kSymmetry, kEdges}) summary_.residuals.erase(kind);
+  for (const char* reason : {kTooFewPairs, kNoEdgeCounts}) summary_.gated.erase(reason);
+  const auto is_used = [&](int detection_index) {
+    const auto& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
+    return input_.initial_landmarks[static_cast<size_t>(detection.object_index)].has_value();
+  };
+  std::vector<size_t> detections;
+  std::vector<std::function<ImageBlocks()>> makers;
+  for (const auto& [index, image] : input_.symmetry_images) {
+    if (!is_used(index)) continue;
+    detections.push_back(static_cast<size_t>(index));
+    makers.push_back([this, index = detections.back(), &image = image] {
+      return IsTangency() ? TextureBlocks(index, image) : PairBlocks(index, image);
+    });
+  }
+  for (const auto& [index, image] : input_.edge_images) {
+    if (!is_used(index)) continue;
+    detections.push_back(static_cast<size_t>(index));
+    makers.push_back(
+        [this, index = detections.back(), &image = image] { return EdgeBlocks(index, image); });
+  }
+  std::vector<ImageBlocks> made(makers.size());
+  ParallelFor(static_cast<int>(makers.size()), threads_,
+              [&](int i) { made[static_cast<size_t>(i)] = makers[static_cast<size_t>(i)](); });
+  for (size_t i = 0; i < made.size(); ++i) AddImageBlocks(detections[i], std::move(made[i]));
+  SetManifolds();
+  FixPoses();
+}
+
+void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
+  if (blocks.functions.empty()) {
+    ++summary_.gated[blocks.reason_for_none];
+    return;
+  }
+  summary_.residuals[blocks.kind] += blocks.count;
+  const Detection& detection = input_.sequence.detections[index];
+  for (auto& function : blocks.functions) {
+    image_blocks_.push_back(problem_.AddResidualBlock(function.release(),
+                                                      blocks.is_bounded ? nullptr : &loss_,
+                                                      Pose(detection), LandmarkOf(detection)));
+  }
+}
+
+BackEndProblem::ImageBlocks BackEndProblem::TextureBlocks(
+    size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
+  const Detection& detection = input_.sequence.detections[index];
+  const Landmark in_camera = LandmarkInCamera(detection);
+  auto texture = std::make_unique<AsymmetryTerm>(image, input_.sequence.CameraOf(detection),
+                                                 in_camera, options_.texture,
+                                                 options_.symmetry_options, view_weights_[index]);
+  ImageBlocks blocks{kSymmetry, kTooFewPairs, texture->NumPairs(), {}, true};
+  if (blocks.count > 0) {
+    blocks.functions.push_back(
+        std::make_unique<ImageResidual>(std::move(texture), in_camera.shape_exponent));
+  }
+  return blocks;
+}
+
+BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
+    size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
+  const Detection& detection = input_.sequence.detections[index];
+  const Landmark in_camera = LandmarkInCamera(detection);
+  const Camera& camera = input_.sequence.CameraOf(detection);
+  const SymmetryOptions& symmetry = options_.symmetry_options;
+  const SymmetryDescriptor descriptor(symmetry.descriptor, *image, camera, in_camera);
+  std::vector<Eigen::Vector2d> visible;
+  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, in_camera, symmetry)) {
+    if (descriptor.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
+  }
+  ImageBlocks blocks{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}, false};
+  if (blocks.count < symmetry.min_pairs) return blocks;
+  for (const Eigen::Vector2d& pixel : visible) {
+    blocks.functions.push_back(
+        std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
+                                           in_camera.shape_exponent, options_.symmetry_sigma));
+  }
+  return blocks;
+}
+
+BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
+    size_t index, const std::shared_ptr<const EdgeImage>& image) const {
+  const Detection& detection = input_.sequence.detections[index];
+  const Landmark in_camera = LandmarkInCamera(detection);
+  auto edges = std::make_unique<EdgeTerm>(SupportedEdgeTerm(
+      image, input_.sequence.CameraOf(detection), in_camera, options_.edges, view_weights_[index]));
+  ImageBlocks blocks{kEdges, kNoEdgeCounts, 1, {}, true};
+  if (edges->NumPoints() > 0) {
+    blocks.functions.push_back(
+        std::make_unique<ImageResidual>(std::move(edges), in_camera.shape_exponent));
+  }
+  return blocks;
+}
+
+}  // namespace soslam
