@@ -67,7 +67,7 @@ json ObjectToJson(const Sequence& sequence, const Association& association,
   return {
       {"object", index + 1},
       {"track", track_index},
-      {"label", WinningLabel(track.votes)},
+      {"label", LabelOf(track)},
       {"label_votes", track.votes},
       {"detections", track.detections.size()},
       {"given_object", given ? json(sequence.objects[static_cast<size_t>(*given)].id) : json()}};

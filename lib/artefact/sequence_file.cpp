@@ -103,6 +103,10 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
   if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
+  for (const auto& row : json.value("labels", nlohmann::json::array())) {      // since version 1.7
+    object.labels.push_back(
+        {row.at("label").get<std::string>(), row.at("probability").get<double>()});
+  }
   return object;
 }
 
@@ -254,17 +258,21 @@ void CheckHeldOut(const Sequence& sequence) {
   }
 }
 
-// Checks that either all planes are known or none.
+// Checks that all detected objects have a support plane or none has, and their detections likewise.
 void CheckPlanes(const json& json) {
-  const bool is_known = !json.at("planes").empty();
+  const auto& detections = json.at("detections");
+  const bool has_planes = !json.at("planes").empty();
+  const bool is_known =
+      has_planes && (detections.empty() || !detections[0].at("plane_in_camera").is_null());
   for (const auto& [list, field] : {std::pair("objects", "plane"),  //
                                     std::pair("detections", "plane_in_camera")}) {
     for (size_t i = 0; i < json.at(list).size(); ++i) {
       const auto& value = json[list][i].at(field);
       if (value.is_null() != is_known) continue;
-      throw InputError(fmt::format("/{}/{}/{} is {}; expected {}, as there are {}planes", list, i,
-                                   field, value.is_null() ? "null" : "a plane",
-                                   is_known ? "a plane" : "null", is_known ? "" : "no "));
+      throw InputError(
+          fmt::format("/{}/{}/{} is {}; expected {}, as {}", list, i, field,
+                      value.is_null() ? "null" : "a plane", is_known ? "a plane" : "null",
+                      has_planes ? "that of the first detection is" : "there are no planes"));
     }
   }
 }
@@ -356,6 +364,13 @@ Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need) {
         "{}: has no support planes; expected those of planes.json in the dataset, or estimated "
         "ones: settings {{\"planes\": {{\"planes\": \"estimated\"}}}}",
         path.string()));
+  }
+  if (need == PlaneNeed::kNeeded && !sequence.HasSupports()) {
+    throw InputError(fmt::format(
+        "{}: it is not known on which of the {} support planes its objects stand; expected "
+        "support_plane of each object in objects.json, or association that finds it: settings "
+        "{{\"associate\": {{\"association\": \"estimated\"}}}}",
+        path.string(), sequence.planes.size()));
   }
   return sequence;
 }

@@ -38,14 +38,25 @@ json SupportPlaneToJson(const SupportPlane& plane) {
   return fields;
 }
 
+json LabelsToJson(const std::vector<LabelProbability>& labels) {
+  json rows = json::array();
+  for (const auto& [label, probability] : labels) {
+    rows.push_back({{"label", label}, {"probability", probability}});
+  }
+  return rows;
+}
+
 json ObjectToJson(const Object& object, const Sequence& sequence) {
-  return {{"object", object.id},
-          {"label", object.label},
-          {"plane", sequence.planes.empty()
-                        ? json()
-                        : json(sequence.planes.at(static_cast<size_t>(object.plane_index)).id)},
-          {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
-          {"is_static", object.is_static}};
+  json fields = {
+      {"object", object.id},
+      {"label", object.label},
+      {"plane", object.plane_index == kNoPlane
+                    ? json()
+                    : json(sequence.planes.at(static_cast<size_t>(object.plane_index)).id)},
+      {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
+      {"is_static", object.is_static}};
+  if (!object.labels.empty()) fields["labels"] = LabelsToJson(object.labels);
+  return fields;
 }
 
 json TrueObjectToJson(const TrueObject& object) {
@@ -85,14 +96,15 @@ json BoundsToJson(const std::array<bool, 4>& is_bound) {
 }
 
 json DetectionToJson(const Detection& detection, const Sequence& sequence) {
-  json fields = {
-      {"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
-      {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
-      {"score", detection.score},
-      {"box", detection.box},
-      {"plane_in_camera", sequence.planes.empty() ? json() : json(detection.plane_in_camera)},
-      {"bounds", BoundsToJson(detection.is_bound)},
-      {"nearer_in_view", detection.nearer_in_view}};
+  json fields = {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
+                 {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
+                 {"score", detection.score},
+                 {"box", detection.box},
+                 {"plane_in_camera", sequence.ObjectOf(detection).plane_index == kNoPlane
+                                         ? json()
+                                         : json(detection.plane_in_camera)},
+                 {"bounds", BoundsToJson(detection.is_bound)},
+                 {"nearer_in_view", detection.nearer_in_view}};
   if (detection.own_in_view) fields["own_in_view"] = *detection.own_in_view;
   if (!detection.nearer_boxes.empty()) fields["nearer_boxes"] = detection.nearer_boxes;
   if (detection.true_landmark_in_camera) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -13,6 +14,9 @@
 
 namespace soslam {
 namespace {
+
+// Labels that are less probable are not kept.
+constexpr double kNegligibleProbability = 0.01;
 
 // Fills Association::objects, ordered by the first detection in the sequence.
 void ListObjects(const Sequence& sequence, Association* association) {
@@ -71,16 +75,136 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
       up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, table, options)
                                               : std::map<int, UpEstimate>()),
       boxes_(sequence, options),
-      labels_(LabelsOf(sequence), options.label_confusion, options.interchangeable_labels) {}
+      labels_(LabelsOf(sequence), options),
+      moving_labels_(ListedLabels(options.moving_labels)) {}
+
+namespace {
+
+// Direction away from the most support planes, as floors, tables and shelves are parallel.
+Eigen::Vector3d UpOfPlanes(const Sequence& sequence) {
+  constexpr double kCosineOfParallel = 0.95;
+  const auto parallel_to = [&](const SupportPlane& plane) {
+    return std::ranges::count_if(sequence.planes, [&](const SupportPlane& other) {
+      return other.plane_in_world.normal.dot(plane.plane_in_world.normal) > kCosineOfParallel;
+    });
+  };
+  return std::ranges::max_element(sequence.planes, {}, parallel_to)->plane_in_world.normal;
+}
+
+// True if the foot of a body at a free height may be on a plane: nearer than half the body's
+// height, the errors of boxes or three standard deviations.
+bool MayStandOnSome(const Sequence& sequence, const FittedObject& free) {
+  constexpr double kErrorM = 0.2;
+  const Landmark& landmark = free.landmark_in_world;
+  const double half_height = landmark.half_axes.z();
+  return std::ranges::any_of(sequence.planes, [&](const SupportPlane& plane) {
+    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
+    const double above = plane.plane_in_world.SignedDistance(landmark.Centre()) - half_height;
+    Eigen::Matrix<double, kLandmarkDof, 1> d_above = Eigen::Matrix<double, kLandmarkDof, 1>::Zero();
+    d_above.segment<3>(3) = normal;
+    d_above(8) = -half_height;
+    const double sigma = std::sqrt(d_above.dot(free.covariance * d_above));
+    return std::abs(above) < std::max({kErrorM, half_height, 3.0 * sigma});
+  });
+}
+
+// True if objects of this mount can be on a plane with this cosine between its normal and up.
+bool Fits(Mount mount, double cosine) {
+  constexpr double kCosineLimit = 0.7;
+  if (mount == Mount::kOnWall) return std::abs(cosine) < kCosineLimit;
+  return (mount == Mount::kStanding ? cosine : -cosine) > kCosineLimit;
+}
+
+// -log of the prior probability that an object stands on a plane of the sequence: low things stand
+// on tables and shelves, high ones on the floor. Infinite where its mount does not fit.
+double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const ShapePrior& prior) {
+  constexpr double kTableHeightM = 0.2;  // over the floor, at least
+  constexpr double kUndecidedHeightM =
+      0.5;  // of things that are as often on the floor as on tables
+  const Eigen::Vector3d up = UpOfPlanes(sequence);
+  double floor = std::numeric_limits<double>::infinity();
+  for (const SupportPlane& plane : sequence.planes) {
+    if (!Fits(Mount::kStanding, plane.plane_in_world.normal.dot(up))) continue;
+    floor = std::min(floor, -plane.plane_in_world.offset);
+  }
+  const double cosine = plane_in_world.normal.dot(up);
+  if (!Fits(prior.mount, cosine)) return std::numeric_limits<double>::infinity();
+  const auto is_raised = [&](const Plane& plane) { return -plane.offset > floor + kTableHeightM; };
+  const auto alike = std::ranges::count_if(sequence.planes, [&](const SupportPlane& plane) {
+    return Fits(prior.mount, plane.plane_in_world.normal.dot(up)) &&
+           is_raised(plane.plane_in_world) == is_raised(plane_in_world);
+  });
+  if (prior.mount != Mount::kStanding) return std::log(static_cast<double>(alike));
+  const double odds = std::pow(prior.height_m->median / kUndecidedHeightM, 3.0);
+  const double probability = (is_raised(plane_in_world) ? 1.0 : odds) / (1.0 + odds);
+  return std::log(static_cast<double>(alike) / probability);
+}
+
+}  // namespace
+
+std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
+  if (sequence_.planes.empty()) return {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
+  std::vector<Support> supports;
+  for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
+    if (sequence_.HasSupports() && i != track.plane_index) continue;
+    supports.push_back({i, sequence_.planes[static_cast<size_t>(i)].plane_in_world});
+  }
+  return supports;
+}
+
+void AssociationModel::Try(const Track& track, const std::string& label,
+                           Hypotheses* hypotheses) const {
+  ShapePrior prior = PriorOfLabel(table_, label, options_);
+  if (!sequence_.planes.empty()) prior = TurnedToSupport(prior);
+  const double cost_of_votes = labels_.CostOfVotes(track.votes, label);
+  const auto cost_of = [&](const FittedObject& fit) {
+    return cost_of_votes + options_.label_evidence_weight * fit.cost;
+  };
+  for (const Support& support : SupportsOf(track)) {
+    const double cost_of_plane =
+        sequence_.planes.empty() || sequence_.HasSupports()
+            ? 0.0
+            : CostOfPlane(sequence_, std::get<Plane>(support.in_world), prior);
+    if (!std::isfinite(cost_of_plane)) continue;
+    const auto fit = FitObject(sequence_, track.detections, prior, options_, support.in_world);
+    if (!fit) continue;
+    const double cost = cost_of(*fit) + cost_of_plane;
+    const auto [of_label, is_first] = hypotheses->cost_of_label.emplace(label, cost);
+    of_label->second = std::min(of_label->second, cost);
+    if (cost >= hypotheses->cost) continue;
+    hypotheses->cost = cost;
+    hypotheses->fit = fit;
+    hypotheses->plane_index = support.plane_index;
+  }
+  if (sequence_.planes.empty() || prior.mount != Mount::kStanding) return;
+  const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
+  const auto free = FitObject(sequence_, track.detections, prior, options_, up);
+  if (!free || MayStandOnSome(sequence_, *free)) return;
+  hypotheses->cost_at_free_height = std::min(
+      hypotheses->cost_at_free_height, cost_of(*free) - std::log(options_.no_support_probability));
+}
 
 void AssociationModel::Fit(Track* track) const {
-  ShapePrior prior = PriorOfLabel(table_, WinningLabel(track->votes), options_);
-  if (track->plane_index != kNoPlane) prior = TurnedToSupport(prior);
-  const auto up = up_of_segments_.find(SegmentOf(*track));
-  const auto fit =
-      FitObject(sequence_, track->detections, prior, options_,
-                up == up_of_segments_.end() ? std::nullopt : std::optional(up->second));
-  if (fit) track->fit = fit;
+  Hypotheses hypotheses;
+  for (const std::string& label : labels_.Candidates(track->votes)) {
+    if (track->votes.contains(label) || table_.Contains(label)) Try(*track, label, &hypotheses);
+  }
+  if (hypotheses.fit) {
+    track->fit = hypotheses.fit;
+    track->plane_index = hypotheses.plane_index;
+    track->has_support = hypotheses.cost <= hypotheses.cost_at_free_height;
+  } else {
+    for (const auto& [label, score] : track->votes) {
+      hypotheses.cost_of_label[label] = labels_.CostOfVotes(track->votes, label);
+    }
+  }
+  track->labels = ProbabilitiesOfLabels(hypotheses.cost_of_label);
+}
+
+const std::string& LabelOf(const Track& track) {
+  const auto voted_for = std::ranges::find_if(
+      track.labels, [&](const auto& label) { return track.votes.contains(label.label); });
+  return voted_for == track.labels.end() ? track.labels.front().label : voted_for->label;
 }
 
 int AssociationModel::SegmentOf(const Track& track) const {
@@ -110,13 +234,23 @@ std::optional<Prediction> AssociationModel::Predict(const Track& track, int fram
 
 std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Prediction& prediction,
                                                 const Detection& detection) const {
-  if (PlaneOf(detection) != track.plane_index) return std::nullopt;
-  const double label_cost = labels_.Cost(WinningLabel(track.votes), LabelOf(detection));
+  if (sequence_.HasSupports() && PlaneOf(detection) != track.plane_index) return std::nullopt;
+  const double label_cost = -2.0 * std::log(labels_.Probability(LabelOf(detection), track.labels));
   if (!std::isfinite(label_cost)) return std::nullopt;
   auto match = boxes_.Match(prediction, detection);
   if (!match) return std::nullopt;
   match->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
   return match->cost < NewObjectCost(detection) ? match : std::nullopt;
+}
+
+bool AssociationModel::Moves(const Track& track) const {
+  double moving = 0.0;
+  double all = 0.0;
+  for (const auto& [label, score] : track.votes) {
+    all += score;
+    if (moving_labels_.contains(label)) moving += score;
+  }
+  return 2.0 * moving > all;
 }
 
 double AssociationModel::NewObjectCost(const Detection& detection) const {
@@ -205,7 +339,11 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
   associated.detections.clear();
   for (size_t i = 0; i < association.objects.size(); ++i) {
     const Track& track = association.tracks[static_cast<size_t>(association.objects[i])];
-    Object object{static_cast<int>(i) + 1, WinningLabel(track.votes), track.plane_index, {}};
+    Object object{static_cast<int>(i) + 1, LabelOf(track), track.plane_index, {}};
+    object.labels = track.labels;
+    std::erase_if(object.labels, [](const LabelProbability& label) {
+      return label.probability < kNegligibleProbability;
+    });
     if (const auto given = agreement.given_of_object[i]) {
       const Object& given_object = sequence.objects[static_cast<size_t>(*given)];
       if (given_object.is_static) object.ground_truth = given_object.ground_truth;
@@ -215,8 +353,15 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
   for (size_t i = 0; i < association.detections.size(); ++i) {
     const DetectionDecision& decision = association.detections[i];
     if (decision.object >= 0) {
-      associated.detections.push_back(sequence.detections[i]);
-      associated.detections.back().object_index = decision.object;
+      Detection detection = sequence.detections[i];
+      detection.object_index = decision.object;
+      const int plane = associated.ObjectOf(detection).plane_index;
+      if (plane != kNoPlane && !sequence.HasSupports()) {
+        detection.plane_in_camera =
+            Transform(sequence.FrameOf(detection).world_from_camera.Inverse(),
+                      sequence.planes[static_cast<size_t>(plane)].plane_in_world);
+      }
+      associated.detections.push_back(std::move(detection));
     } else {
       const char* reason = ReasonNotUsed(association, decision);
       ++associated.rejected_detections[reason];

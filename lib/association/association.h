@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,9 +48,12 @@ enum class TrackFate {
   kTooFewDetections,  // false: fewer than min_observations
   kRarelyDetected,    // false: in less than min_detection_share of the frames that should show it
   kNoLandmark,        // its boxes determine no landmark
+  kNoSupport,         // its boxes fit better at a free height than on any support plane
+  kMoves,             // its label is one of things that move
 };
-inline constexpr std::array kTrackFateNames = {"object", "merged", "too_few_detections",
-                                               "rarely_detected", "no_landmark"};
+inline constexpr std::array kTrackFateNames = {
+    "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
+    "no_support", "moves"};
 
 // Detections of one object, linked frame by frame.
 struct Track {
@@ -57,7 +62,9 @@ struct Track {
   int linked = 0;  // number of detections before merging
   int plane_index = 0;
   LabelVotes votes;
+  std::vector<LabelProbability> labels;  // most probable first
   std::optional<FittedObject> fit;
+  bool has_support = true;  // false: see TrackFate::kNoSupport
   TrackFate fate = TrackFate::kObject;
   // Set by merging: the track that this one was merged into, the number of boxes that track fits
   // (`explained`) of those tested (`tried`), and the number of frames in which both have a
@@ -69,6 +76,9 @@ struct Track {
   // Number of frames that should show the object; none when it was not needed to decide the fate.
   std::optional<int> frames_in_sight;
 };
+
+// The most probable label that the track has votes for, or else that it may have.
+const std::string& LabelOf(const Track& track);
 
 struct Association {
   std::vector<DetectionDecision> detections;  // one per Sequence::detections
@@ -106,8 +116,9 @@ class AssociationModel {
     return sequence_.ObjectOf(detection).plane_index;
   }
 
-  // Fits the track's landmark to its detections with the prior of its label. When they determine no
-  // landmark, the track keeps its previous one.
+  // Fits the track's landmark to its detections, once for each label that it may have and, where
+  // its support plane is unknown, each plane. Boxes, sizes and votes decide among them. When the
+  // boxes determine no landmark, the track keeps its previous one.
   void Fit(Track* track) const;
 
   // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
@@ -119,11 +130,24 @@ class AssociationModel {
   // likely, or the detection is on another plane.
   std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
                                 const Detection& detection) const;
+  // True if most votes of a track are for labels of things that move.
+  bool Moves(const Track& track) const;
   // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.
   double NewObjectCost(const Detection& detection) const;
 
  private:
   int SegmentOf(const Track& track) const;
+  // What the track may stand on.
+  std::vector<Support> SupportsOf(const Track& track) const;
+  // Costs of the labels and supports that a track may have; its best fit on a support.
+  struct Hypotheses {
+    std::map<std::string, double> cost_of_label;
+    double cost = std::numeric_limits<double>::infinity();
+    double cost_at_free_height = std::numeric_limits<double>::infinity();
+    std::optional<FittedObject> fit;
+    int plane_index = kNoPlane;
+  };
+  void Try(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
 
   const Sequence& sequence_;
   const SemanticTable& table_;
@@ -131,6 +155,7 @@ class AssociationModel {
   std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
   BoxLikelihood boxes_;
   LabelConfusion labels_;
+  std::set<std::string> moving_labels_;
 };
 
 // Agreement of the estimated objects with the objects given in the sequence.

@@ -46,10 +46,17 @@ ParameterJacobian LandmarkByParameters(const MultiViewObservation& observation,
   return d_parameters;
 }
 
-// Marginal covariance of the landmark including that of `up`: the landmark tilts with `up`, and its
-// other parameters adapt so that it still fits the boxes.
-Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark& landmark,
-                         const Eigen::Matrix3d& up_covariance) {
+// Sum of the logarithms of the prior's standard deviations: its normalisation.
+double LogNormalisation(const ShapePrior& prior) {
+  const double conditional = 1.0 - prior.log_correlation * prior.log_correlation;
+  return prior.log_sigma.array().log().sum() + 0.5 * std::log(conditional) +
+         (prior.height_m ? std::log(prior.height_m->log_sigma) : 0.0);
+}
+
+// The landmark with its marginal covariance, including that of `up`: the landmark tilts with `up`,
+// and its other parameters adapt so that it still fits the boxes.
+FittedObject FittedAt(const MultiViewObservation& observation, const Landmark& landmark,
+                      const Eigen::Matrix3d& up_covariance) {
   const ParameterJacobian d_parameters = LandmarkByParameters(observation, landmark);
   LandmarkModel model;
   for (const auto& term :
@@ -63,8 +70,12 @@ Covariance9 CovarianceOf(const MultiViewObservation& observation, const Landmark
   const Eigen::LDLT<Information> solver(information);
   Eigen::Matrix<double, kLandmarkDof, 3> d_turn = -d_parameters * solver.solve(mixed);
   d_turn.topRows<3>() += Eigen::Matrix3d::Identity();
-  return d_parameters * solver.solve(ParameterJacobian(d_parameters).transpose()) +
-         d_turn * up_covariance * d_turn.transpose();
+  const Covariance9 covariance =
+      d_parameters * solver.solve(ParameterJacobian(d_parameters).transpose()) +
+      d_turn * up_covariance * d_turn.transpose();
+  return {landmark, covariance,
+          model.cost + LogNormalisation(*observation.prior) +
+              0.5 * solver.vectorD().array().log().sum()};
 }
 
 // Landmark from one box: the best yaw of a sweep.
@@ -110,13 +121,15 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence,
 
 std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
                                       const ShapePrior& prior, const AssociateOptions& options,
-                                      const std::optional<UpEstimate>& up) {
+                                      const std::variant<Plane, UpEstimate>& support_in_world) {
   const std::vector<int> used = SpreadOver(detections, static_cast<size_t>(options.max_views));
+  const auto* up = std::get_if<UpEstimate>(&support_in_world);
   MultiViewObservation observation = MakeMultiViewObservation(
       sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadPerDeg,
-      /*height_is_free=*/up.has_value(), /*size_is_known=*/up.has_value());
+      /*height_is_free=*/up != nullptr, /*size_is_known=*/true,
+      up == nullptr ? std::optional(std::get<Plane>(support_in_world)) : std::nullopt);
   std::optional<Landmark> landmark;
-  if (up) {
+  if (up != nullptr) {
     const auto body =
         FitBodyAtFreeHeight(observation, up->up_in_world, options.yaw_grid_deg * kRadPerDeg);
     if (body) landmark = body->landmark;
@@ -125,10 +138,10 @@ std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vecto
     landmark = LandmarkOnPlane(sequence, used, observation, options);
   }
   if (!landmark) return std::nullopt;
-  const Covariance9 covariance =
-      CovarianceOf(observation, *landmark, up ? up->covariance : Eigen::Matrix3d::Zero());
-  if (!covariance.allFinite()) return std::nullopt;
-  return FittedObject{*landmark, covariance};
+  const FittedObject fitted =
+      FittedAt(observation, *landmark, up ? up->covariance : Eigen::Matrix3d::Zero());
+  if (!fitted.covariance.allFinite() || !std::isfinite(fitted.cost)) return std::nullopt;
+  return fitted;
 }
 
 Drift::Drift(const std::vector<Frame>& frames, double rotation_sigma_rad,

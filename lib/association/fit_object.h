@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "association/options.h"
@@ -18,19 +19,29 @@ namespace soslam {
 struct FittedObject {
   Landmark landmark_in_world;
   Covariance9 covariance;  // over the parameters of kLandmarkDof
+  // -log of the probability of the boxes given prior and support (Laplace's approximation), up to a
+  // constant that only depends on the boxes.
+  double cost = 0.0;
 };
 
-// Fits an object's landmark to its detections (indices in Sequence::detections, at least one, all
-// on one plane), of which at most max_views are used. The covariance is the inverse of the
-// information of boxes and prior; views from one side count as one. None when the boxes do not
-// determine a landmark in front of the cameras.
+// What an object stands on: a plane of the sequence or, where there is none, anything, with this
+// direction as up.
+struct Support {
+  int plane_index = kNoPlane;
+  std::variant<Plane, UpEstimate> in_world;
+};
+
+// Fits an object's landmark to its detections (indices in Sequence::detections, at least one), of
+// which at most max_views are used. The covariance is the inverse of the information of boxes and
+// prior; views from one side count as one. None when the boxes do not determine a landmark in front
+// of the cameras.
 //
-// In a sequence without planes, `up` (of the segment) replaces them: the object is upright at a
-// free height, and its prior's height_m, which is then required, fixes the scale and thus the
-// distance. The covariance includes the uncertainty of `up`, with the landmark adapting to it.
+// An object without a plane is upright at a free height, and its prior's height_m fixes the scale
+// and thus the distance. The covariance includes the uncertainty of up, with the landmark adapting
+// to it.
 std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
                                       const ShapePrior& prior, const AssociateOptions& options,
-                                      const std::optional<UpEstimate>& up = std::nullopt);
+                                      const std::variant<Plane, UpEstimate>& support_in_world);
 
 // Odometry drift as a random walk: every motion between consecutive frames has an independent
 // error, a small rotation and a translation, both isotropic.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "base/error.h"
 
@@ -28,34 +27,41 @@ std::vector<std::string> Split(const std::string& text, char separator) {
   return parts;
 }
 
-}  // namespace
-
-std::string WinningLabel(const LabelVotes& votes) {
-  return std::max_element(
-             votes.begin(), votes.end(),
-             [](const auto& one, const auto& other) { return one.second < other.second; })
-      ->first;
+// Groups of labels from 'a, b; c, d'. Throws SettingsError for an empty label.
+std::vector<std::vector<std::string>> GroupsOf(const char* option, const std::string& text) {
+  std::vector<std::vector<std::string>> groups;
+  if (text.empty()) return groups;
+  for (const std::string& group : Split(text, ';')) {
+    groups.push_back(Split(group, ','));
+    if (std::ranges::find(groups.back(), "") == groups.back().end()) continue;
+    throw SettingsError(fmt::format(
+        "{} '{}' has '' as a label; expected groups of labels, 'a, b; c, d'", option, text));
+  }
+  return groups;
 }
 
-LabelConfusion::LabelConfusion(const std::set<std::string>& labels, double probability,
-                               const std::string& interchangeable)
-    : probability_(probability) {
-  if (!interchangeable.empty()) {
-    for (const std::string& group : Split(interchangeable, ';')) {
-      const std::vector<std::string> members = Split(group, ',');
-      for (const std::string& label : members) {
-        if (label.empty() || !groups_.emplace(label, members.front()).second) {
-          throw SettingsError(fmt::format(
-              "interchangeable_labels '{}' has '{}' {}; expected groups of labels, 'a, b; c, d', "
-              "each label once",
-              interchangeable, label, label.empty() ? "as a label" : "twice"));
-        }
-      }
+}  // namespace
+
+std::set<std::string> ListedLabels(const std::string& text) {
+  const std::vector<std::string> parts = Split(text, ',');
+  return {parts.begin(), parts.end()};
+}
+
+LabelConfusion::LabelConfusion(const std::set<std::string>& labels, const AssociateOptions& options)
+    : similar_(GroupsOf("similar_labels", options.similar_labels)),
+      probability_(options.label_confusion),
+      similar_probability_(options.similar_label_confusion) {
+  const std::string& interchangeable = options.interchangeable_labels;
+  for (const auto& group : GroupsOf("interchangeable_labels", interchangeable)) {
+    for (const std::string& label : group) {
+      if (groups_.emplace(label, group.front()).second) continue;
+      throw SettingsError(fmt::format(
+          "interchangeable_labels '{}' has '{}' twice; expected groups of labels, 'a, b; c, d', "
+          "each label once",
+          interchangeable, label));
     }
   }
-  std::set<std::string> different;
-  for (const std::string& label : labels) different.insert(Group(label));
-  num_groups_ = std::max<double>(1.0, static_cast<double>(different.size()));
+  for (const std::string& label : labels) detected_groups_.insert(Group(label));
 }
 
 const std::string& LabelConfusion::Group(const std::string& label) const {
@@ -63,16 +69,78 @@ const std::string& LabelConfusion::Group(const std::string& label) const {
   return found == groups_.end() ? label : found->second;
 }
 
-bool LabelConfusion::AreCompatible(const std::string& one, const std::string& other) const {
-  return probability_ > 0.0 || Group(one) == Group(other);
+std::set<std::string> LabelConfusion::SimilarGroups(const std::string& label) const {
+  std::set<std::string> similar;
+  for (const auto& group : similar_) {
+    if (std::ranges::find(group, label) == group.end()) continue;
+    for (const std::string& other : group) similar.insert(Group(other));
+  }
+  similar.erase(Group(label));
+  return similar;
 }
 
-double LabelConfusion::Cost(const std::string& of_object, const std::string& of_detection) const {
-  if (!AreCompatible(of_object, of_detection)) return std::numeric_limits<double>::infinity();
-  const bool same = Group(of_object) == Group(of_detection);
-  return -2.0 * std::log(same ? 1.0 - probability_ : probability_ / (num_groups_ - 1.0));
+double LabelConfusion::Probability(const std::string& of_detection,
+                                   const std::string& of_object) const {
+  std::set<std::string> similar;
+  if (similar_probability_ > 0.0) similar = SimilarGroups(of_object);
+  std::erase_if(similar, [&](const auto& group) { return !detected_groups_.contains(group); });
+  const double of_similar = similar.empty() ? 0.0 : similar_probability_;
+  if (Group(of_detection) == Group(of_object)) return 1.0 - probability_ - of_similar;
+  if (similar.contains(Group(of_detection))) {
+    return of_similar / static_cast<double>(similar.size());
+  }
+  const auto others = static_cast<double>(detected_groups_.size() - similar.size());
+  return probability_ / std::max(1.0, others - 1.0);
 }
 
-double LabelConfusion::CostOfAnyLabel() const { return 2.0 * std::log(num_groups_); }
+double LabelConfusion::Probability(const std::string& of_detection,
+                                   const std::vector<LabelProbability>& of_object) const {
+  double sum = 0.0;
+  for (const auto& [label, probability] : of_object) {
+    sum += probability * Probability(of_detection, label);
+  }
+  return sum;
+}
+
+double LabelConfusion::CostOfAnyLabel() const {
+  return 2.0 * std::log(std::max<double>(1.0, static_cast<double>(detected_groups_.size())));
+}
+
+std::vector<std::string> LabelConfusion::Candidates(const LabelVotes& votes) const {
+  std::set<std::string> candidates;
+  for (const auto& [label, score] : votes) {
+    candidates.insert(label);
+    if (similar_probability_ == 0.0) continue;
+    for (const auto& group : similar_) {
+      if (std::ranges::find(group, label) == group.end()) continue;
+      candidates.insert(group.begin(), group.end());
+    }
+  }
+  return {candidates.begin(), candidates.end()};
+}
+
+double LabelConfusion::CostOfVotes(const LabelVotes& votes, const std::string& of_object) const {
+  double sum = 0.0;
+  double cost = 0.0;
+  for (const auto& [label, score] : votes) {
+    sum += score;
+    if (score > 0.0) cost -= score * std::log(Probability(label, of_object));
+  }
+  return sum > 0.0 ? cost / sum : 0.0;
+}
+
+std::vector<LabelProbability> ProbabilitiesOfLabels(const std::map<std::string, double>& costs) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& [label, cost] : costs) lowest = std::min(lowest, cost);
+  std::vector<LabelProbability> labels;
+  double sum = 0.0;
+  for (const auto& [label, cost] : costs) {
+    labels.push_back({label, std::exp(lowest - cost)});
+    sum += labels.back().probability;
+  }
+  for (LabelProbability& label : labels) label.probability /= sum;
+  std::ranges::stable_sort(labels, std::ranges::greater(), &LabelProbability::probability);
+  return labels;
+}
 
 }  // namespace soslam

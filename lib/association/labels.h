@@ -4,39 +4,56 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
+
+#include "association/options.h"
+#include "model/sequence.h"
 
 namespace soslam {
 
 // Sum of detection scores, keyed by label.
 using LabelVotes = std::map<std::string, double>;
 
-// Label with the most votes; the first alphabetically among equals. `votes` must not be empty.
-std::string WinningLabel(const LabelVotes& votes);
+// Labels of 'a, b, c'.
+std::set<std::string> ListedLabels(const std::string& text);
 
-// Label confusion model of the detector.
+// Label confusion model of the detector: the probability of each name that it gives to an object of
+// a label. All labels of a group of interchangeable_labels count as one.
 class LabelConfusion {
  public:
-  // `labels`: all labels of the detector. `probability`: that a detection has another label than
-  // its object, uniform over the other labels. `interchangeable`: see AssociateOptions; such labels
-  // count as one. Throws SettingsError when it is malformed or has a label twice.
-  LabelConfusion(const std::set<std::string>& labels, double probability,
-                 const std::string& interchangeable);
+  // `labels`: all labels of the detections. Throws SettingsError for malformed groups.
+  LabelConfusion(const std::set<std::string>& labels, const AssociateOptions& options);
 
-  // True if an object of one label may have detections of the other.
-  bool AreCompatible(const std::string& one, const std::string& other) const;
-  // -2 log of the probability that an object of one label is detected with the other. Infinite when
-  // they are not compatible.
-  double Cost(const std::string& of_object, const std::string& of_detection) const;
+  // Probability that an object is detected with a label, normalised over the labels of the
+  // detections.
+  double Probability(const std::string& of_detection, const std::string& of_object) const;
+  // The same for an object whose label is uncertain.
+  double Probability(const std::string& of_detection,
+                     const std::vector<LabelProbability>& of_object) const;
   // -2 log of the probability of any label for an unseen object (uniform).
   double CostOfAnyLabel() const;
+
+  // Labels that an object with these votes may have: those voted for, and those similar to them,
+  // sorted.
+  std::vector<std::string> Candidates(const LabelVotes& votes) const;
+  // -log of the probability of the votes for an object of this label. A detector repeats its errors
+  // from frame to frame, so all votes together have the weight of one.
+  double CostOfVotes(const LabelVotes& votes, const std::string& of_object) const;
 
  private:
   // Representative of all labels that are interchangeable with this one.
   const std::string& Group(const std::string& label) const;
+  // The other groups of labels that are similar to a label.
+  std::set<std::string> SimilarGroups(const std::string& label) const;
 
   std::map<std::string, std::string> groups_;
-  double probability_;
-  double num_groups_;
+  std::vector<std::vector<std::string>> similar_;
+  std::set<std::string> detected_groups_;
+  double probability_;          // of a label that is neither the object's nor similar to it, in sum
+  double similar_probability_;  // of a similar label, in sum
 };
+
+// Probabilities of alternatives whose costs are -log of their evidence, most probable first.
+std::vector<LabelProbability> ProbabilitiesOfLabels(const std::map<std::string, double>& costs);
 
 }  // namespace soslam

@@ -44,7 +44,7 @@ class FrameLinker {
     bool was_out_of_image = false;         // since its last detection
     bool has_changed = false;              // in the current frame
     size_t fitted_detections = 0;
-    std::string fitted_label;
+    size_t fitted_labels = 0;  // number of different labels
   };
 
   const Detection& At(int detection) const {
@@ -174,7 +174,7 @@ class FrameLinker {
     return state.has_changed &&
            (!track.fit || track.detections.size() <= kAlwaysFitted ||
             detections >= kFitGrowth * static_cast<double>(state.fitted_detections) ||
-            WinningLabel(track.votes) != state.fitted_label);
+            track.votes.size() != state.fitted_labels);
   }
 
   void Fit() {
@@ -188,7 +188,7 @@ class FrameLinker {
       Track& track = association_.tracks[track_index];
       model_.Fit(&track);
       states_[track_index].fitted_detections = track.detections.size();
-      states_[track_index].fitted_label = WinningLabel(track.votes);
+      states_[track_index].fitted_labels = track.votes.size();
     });
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "geometry/iou.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -60,10 +61,22 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
   return frames;
 }
 
+// Number of detections that show at least three edges of the object.
+int NumTelling(const AssociationModel& model, const Track& track) {
+  return static_cast<int>(std::ranges::count_if(track.detections, [&](int index) {
+    const auto& is_bound = model.sequence().detections[static_cast<size_t>(index)].is_bound;
+    return std::ranges::count(is_bound, true) <= 1;
+  }));
+}
+
 TrackFate FateOf(const AssociationModel& model, const Track& track) {
   const auto detections = static_cast<double>(track.detections.size());
-  if (detections < model.options().min_observations) return TrackFate::kTooFewDetections;
+  if (NumTelling(model, track) < model.options().min_observations) {
+    return TrackFate::kTooFewDetections;
+  }
   if (!track.fit) return TrackFate::kNoLandmark;
+  if (!track.has_support) return TrackFate::kNoSupport;
+  if (model.Moves(track)) return TrackFate::kMoves;
   return detections < model.options().min_detection_share * track.frames_in_sight.value()
              ? TrackFate::kRarelyDetected
              : TrackFate::kObject;
@@ -77,7 +90,7 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
     Track& track = association->tracks[static_cast<size_t>(i)];
     if (track.fate == TrackFate::kMerged) return;
     const bool is_candidate =
-        track.fit && static_cast<int>(track.detections.size()) >= model.options().min_observations;
+        track.fit && NumTelling(model, track) >= model.options().min_observations;
     if (is_candidate) track.frames_in_sight = FramesInSight(model, track, border_px);
     track.fate = FateOf(model, track);
   });
@@ -173,12 +186,18 @@ class TrackMerger {
   std::optional<Merge> TryMerge(int into, int smaller) const {
     const Track& large = TrackAt(into);
     const Track& small = TrackAt(smaller);
-    if (large.plane_index != small.plane_index || !large.fit) return std::nullopt;
+    if (!large.fit) return std::nullopt;
+    if (model_.sequence().HasSupports() && large.plane_index != small.plane_index) {
+      return std::nullopt;
+    }
     const std::vector<int> boxes =
         SpreadOver(small.detections, static_cast<size_t>(model_.options().max_views));
+    const bool are_at_one_place = AreAtOnePlace(large, small);
     Merge merge{into, 0, static_cast<int>(boxes.size()), 0, 0.0};
-    const int needed =
-        std::max(1, static_cast<int>(std::ceil(model_.options().merge_share * merge.tried - 1e-9)));
+    const int needed = are_at_one_place
+                           ? 0
+                           : std::max(1, static_cast<int>(std::ceil(
+                                             model_.options().merge_share * merge.tried - 1e-9)));
     for (int i = 0; i < merge.tried; ++i) {
       if (merge.explained + merge.tried - i < needed) return std::nullopt;
       const Detection& detection = At(boxes[static_cast<size_t>(i)]);
@@ -192,8 +211,21 @@ class TrackMerger {
     merge.shared_frames = SharedFrames(large, small);
     const double allowed =
         model_.options().max_shared_frames * static_cast<double>(small.detections.size());
-    if (merge.shared_frames > allowed) return std::nullopt;
+    if (merge.shared_frames > allowed && !are_at_one_place) return std::nullopt;
     return merge;
+  }
+
+  int SegmentOf(const Track& track) const {
+    return model_.sequence().FrameOf(At(track.detections.front())).segment;
+  }
+
+  // True if the bodies of two tracks take up the same place, which those of two objects cannot.
+  bool AreAtOnePlace(const Track& one, const Track& other) const {
+    if (!one.fit || !other.fit || SegmentOf(one) != SegmentOf(other)) return false;
+    const Landmark& a = one.fit->landmark_in_world;
+    const Landmark& b = other.fit->landmark_in_world;
+    const double smaller = 8.0 * std::min(a.half_axes.prod(), b.half_axes.prod());
+    return IntersectionVolume(a, b) >= model_.options().same_place_overlap * smaller;
   }
 
   int SharedFrames(const Track& one, const Track& other) const {

@@ -25,11 +25,31 @@ struct AssociateOptions {
   double new_object_probability = 0.05;
   double label_confusion = 0.05;
   std::string interchangeable_labels;
+  std::string similar_labels =
+      "chair, armchair, office chair, high chair, stool, bar stool, pouf, bench, coffee table, "
+      "side table; "
+      "sofa, couch, armchair, bench, bed; "
+      "dining table, table, coffee table, desk, side table, bench; "
+      "suitcase, trunk, box, crate, chest of drawers, nightstand; "
+      "refrigerator, oven, microwave, cabinet, chest of drawers, cupboard, wardrobe, dishwasher, "
+      "washing machine, tv stand; "
+      "tv, monitor, laptop, microwave; "
+      "cup, bowl, mug, glass, can, jar, vase, pot; "
+      "bottle, vase, can, jar, milk carton, wine bottle; "
+      "vase, potted plant; "
+      "cell phone, remote, phone, mouse, book; "
+      "book, box, laptop, notebook, cell phone; "
+      "car, van, truck, bus";
+  double similar_label_confusion = 0.02;
+  std::string moving_labels = "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
+  double label_evidence_weight = 0.5;
+  double no_support_probability = 0.1;
   double odometry_rotation_sigma_deg = 0.1;
   double odometry_translation_sigma_m = 0.003;
   double duplicate_overlap = 0.85;
   double merge_share = 0.5;
   double max_shared_frames = 0.1;
+  double same_place_overlap = 0.5;
   int min_observations = 3;
   double min_detection_share = 0.1;
   int max_views = 16;
@@ -47,6 +67,18 @@ struct AssociateOptions {
     visit.Text("interchangeable_labels", &interchangeable_labels,
                "labels that count as the same, groups of comma-separated labels, separated by "
                "semicolons: 'cup, bowl; tv, monitor'");
+    visit.Text("similar_labels", &similar_labels,
+               "labels that detectors confuse, groups as in interchangeable_labels; a label may be "
+               "in several groups. The boxes of an object decide among the labels that it is "
+               "detected with and those similar to them");
+    visit.Real("similar_label_confusion", &similar_label_confusion, {0.0, 0.5},
+               "the share of detections with a label that is similar to that of their object");
+    visit.Text("moving_labels", &moving_labels,
+               "labels of things that move, separated by commas; they get no place in the map");
+    visit.Real(
+        "label_evidence_weight", &label_evidence_weight, {0.0, 1.0},
+        "weight of boxes and sizes beside the votes of labels: errors of a label's shape are "
+        "the same in all views");
     visit.Real("new_object_probability", &new_object_probability, {1e-6, 0.5},
                "the share of detections that are of no object seen before");
     visit.Real("duplicate_overlap", &duplicate_overlap, {0.0, 1.0},
@@ -76,6 +108,9 @@ struct AssociateOptions {
     visit.Flag("use_planes", &use_planes,
                "boxes are linked on the support planes of the dataset, where it has any; without "
                "planes objects stand at any height, and the result has no planes");
+    visit.Real("no_support_probability", &no_support_probability, {1e-9, 1.0},
+               "the share of objects that stand on none of the planes, as pictures on a wall do; "
+               "they get no place in the map");
     visit.Real(
         "camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
         "without planes: standard deviation of the tilt of the cameras' x axes; large: unknown");
@@ -92,6 +127,9 @@ struct AssociateOptions {
     visit.Real("max_shared_frames", &max_shared_frames, {0.0, 1.0},
                "two tracks are not one object when both are detected together in more than this "
                "share of the smaller one's frames");
+    visit.Real("same_place_overlap", &same_place_overlap, {0.0, 1.0},
+               "two tracks are one object, also when both are detected together, when their bodies "
+               "share at least this fraction of the smaller one's volume");
     visit.Integer("min_observations", &min_observations, {1, 1000000},
                   "objects with fewer detections are false");
     visit.Real("min_detection_share", &min_detection_share, {0.0, 1.0},

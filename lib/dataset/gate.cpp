@@ -116,18 +116,21 @@ std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
 
 namespace {
 
-// Edges this close to the image border (px) count as cut by it. Tools differ by up to a pixel in
-// the position of the border (width - 1 or width), and detectors round.
-constexpr double kCutAtBorderPx = 1.5;
+// Edges this close to the image border, as a fraction of the image's width or height, count as cut
+// by it. Detectors end cut boxes a few pixels before the border.
+constexpr double kCutAtBorderFraction = 0.01;
+// Errors of a lower edge and of the upper edge of what hides it, as a fraction of the box's height.
+constexpr double kEdgeErrorFraction = 0.05;
 
 // Rounding tolerance: a covered share equal to the option's value counts as occluded.
 constexpr double kShareTolerance = 1e-9;
 
 // Share of a box's lower edge that lies inside the union of other boxes.
 double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
+  const double margin = kEdgeErrorFraction * box.Height();
   std::vector<std::pair<double, double>> intervals;
   for (const Box& other : others) {
-    if (box.y_max < other.y_min || box.y_max > other.y_max) continue;
+    if (box.y_max < other.y_min - margin || box.y_max > other.y_max) continue;
     intervals.emplace_back(std::max(box.x_min, other.x_min), std::min(box.x_max, other.x_max));
   }
   std::sort(intervals.begin(), intervals.end());
@@ -143,10 +146,12 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
 }  // namespace
 
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
-  return {box.x_min + 0.5 <= kCutAtBorderPx,                 //
-          box.y_min + 0.5 <= kCutAtBorderPx,                 //
-          camera.width - 0.5 - box.x_max <= kCutAtBorderPx,  //
-          camera.height - 0.5 - box.y_max <= kCutAtBorderPx};
+  const double side_px = kCutAtBorderFraction * camera.width;
+  const double end_px = kCutAtBorderFraction * camera.height;
+  return {box.x_min + 0.5 <= side_px,                 //
+          box.y_min + 0.5 <= end_px,                  //
+          camera.width - 0.5 - box.x_max <= side_px,  //
+          camera.height - 0.5 - box.y_max <= end_px};
 }
 
 // Nearer objects make only the lower edge a bound. They stand on the same support, so they occlude

@@ -164,9 +164,10 @@ class Importer {
       detection.object_index = object_ids_.IndexOf(row.object_id);
       detection.score = row.score;
       detection.box = row.box;
-      if (!sequence_->planes.empty()) {
-        detection.plane_in_camera =
-            row.plane_in_camera ? *row.plane_in_camera : WorldPlane(detection);
+      if (row.plane_in_camera) {
+        detection.plane_in_camera = *row.plane_in_camera;
+      } else if (sequence_->ObjectOf(detection).plane_index != kNoPlane) {
+        detection.plane_in_camera = WorldPlane(detection);
       }
       detection.is_bound =
           EdgesCutByBorder(row.box_in_image_file.value_or(row.box), sequence_->CameraOf(detection));

@@ -155,10 +155,11 @@ int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionR
 namespace {
 
 int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& planes,
-               const std::string& file) {
+               const std::string& file, bool may_be_unknown) {
   if (planes.empty()) return kNoPlane;
   if (!object.plane_id) {
     if (planes.size() == 1) return 0;
+    if (may_be_unknown) return kNoPlane;
     throw InputError(
         fmt::format("{}: object {} ('{}') has no support_plane; expected one, as there are {} "
                     "planes; or no planes.json, where they are to be estimated",
@@ -176,7 +177,7 @@ int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& plan
 
 std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<ListedObject>& given,
                                 const std::vector<DetectionRow>& rows,
-                                const std::vector<SupportPlane>& planes) {
+                                const std::vector<SupportPlane>& planes, bool has_object_ids) {
   std::map<int, std::pair<ListedObject, std::string>> listed;  // with the file that has it
   for (const ListedObject& object : given) {
     listed[object.id] = {object, files.objects.value_or(files.detections).string()};
@@ -188,7 +189,8 @@ std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<Lis
   std::vector<Object> objects;
   for (const auto& [id, object_and_file] : listed) {
     const auto& [object, file] = object_and_file;
-    objects.push_back({id, object.label, PlaneIndex(object, planes, file), object.ground_truth});
+    objects.push_back(
+        {id, object.label, PlaneIndex(object, planes, file, !has_object_ids), object.ground_truth});
   }
   return objects;
 }

@@ -39,11 +39,11 @@ int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionR
 
 // All objects of a dataset, sorted by id: those of objects.json, detected or not, and those that
 // only occur in detections, which have no ground truth. An object stands on its support_plane, or
-// else on the only plane; on none when no plane is known. Rows of one object have one label. Throws
-// InputError for a plane that does not exist, and when the plane is not given although there are
-// several.
+// else on the only plane. Where there are several, the plane of a row without object id is unknown;
+// an object with an id must say its plane. Rows of one object have one label. Throws InputError for
+// a plane that does not exist or is not given.
 std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<ListedObject>& given,
                                 const std::vector<DetectionRow>& rows,
-                                const std::vector<SupportPlane>& planes);
+                                const std::vector<SupportPlane>& planes, bool has_object_ids);
 
 }  // namespace soslam

@@ -201,7 +201,8 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   RejectBoxesOfNoTrack(of_no_track, images, camera, &content.rejected);
   content.true_objects = TrueObjects(listed);
   content.ignored = given.ignored;
-  content.objects = ListObjects(files, listed, content.rows, content.planes);
+  content.objects =
+      ListObjects(files, listed, content.rows, content.planes, content.has_object_ids);
   content.has_true_poses = files.groundtruth.has_value();
   content.may_have_poses_of_body =
       !calibration.body_from_camera && options.folder.trajectory_format == TrajectoryFormat::kEuroc;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "geometry/rigid3.h"

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "base/assignment.h"
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "evaluation/landmark_errors.h"
 #include "initialisation/semantic_table.h"
 

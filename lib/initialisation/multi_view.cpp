@@ -290,7 +290,8 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::optional<ShapePrior>& prior,
                                               double detection_sigma_fraction,
                                               double view_correlation_rad, bool height_is_free,
-                                              bool size_is_known) {
+                                              bool size_is_known,
+                                              const std::optional<Plane>& plane_in_world) {
   MultiViewObservation observation;
   observation.prior = prior;
   observation.height_is_free = height_is_free;
@@ -299,7 +300,9 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
     const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-    if (object.plane_index != kNoPlane) {
+    if (plane_in_world) {
+      observation.plane_in_world = *plane_in_world;
+    } else if (object.plane_index != kNoPlane) {
       observation.plane_in_world =
           sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
     }

@@ -35,12 +35,13 @@ struct MultiViewObservation {
   double ShapeExponent() const { return prior ? prior->shape_exponent : kCuboidExponent; }
 };
 // Observation of one object from its detections (indices into Sequence::detections, at least one),
-// with the frames' estimated poses. View weights are those of ViewWeights about the point nearest
-// to the rays through the boxes.
+// with the frames' estimated poses, on the given plane or else that of the object. View weights are
+// those of ViewWeights about the point nearest to the rays through the boxes.
 MultiViewObservation MakeMultiViewObservation(
     const Sequence& sequence, const std::vector<int>& detections,
     const std::optional<ShapePrior>& prior, double detection_sigma_fraction,
-    double view_correlation_rad, bool height_is_free = false, bool size_is_known = false);
+    double view_correlation_rad, bool height_is_free = false, bool size_is_known = false,
+    const std::optional<Plane>& plane_in_world = std::nullopt);
 
 // Costs of a landmark in the world: its boxes and priors. The tangent points are at their depths on
 // `start`. Views are left out if `start` is not wholly in front of their camera.

@@ -13,9 +13,16 @@
 namespace soslam {
 namespace {
 
+// Covariance of the logarithms of the two ratios.
+Eigen::Matrix2d RatioCovariance(const ShapePrior& prior) {
+  const double across = prior.log_correlation * prior.log_sigma.prod();
+  const Eigen::Vector2d variances = prior.log_sigma.cwiseAbs2();
+  return Eigen::Matrix2d{{variances.x(), across}, {across, variances.y()}};
+}
+
 std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable& table,
                                       RatioPrior prior) {
-  std::optional<ShapePrior> entry = table.Find(object.label);
+  std::optional<ShapePrior> entry = table.Find(object);
   if (entry) entry = TurnedToSupport(*entry);
   if (prior == RatioPrior::kTable) return entry;
   ShapePrior shape = entry.value_or(ShapePrior());
@@ -37,10 +44,7 @@ ShapePrior TurnedToSupport(const ShapePrior& prior) {
   if (prior.mount != Mount::kOnWall) return prior;
   // Maps (log(a / c), log(b / c)) to (log(c / a), log(b / a)).
   const Eigen::Matrix2d turn{{-1.0, 0.0}, {-1.0, 1.0}};
-  const double across = prior.log_correlation * prior.log_sigma.prod();
-  const Eigen::Vector2d variances = prior.log_sigma.cwiseAbs2();
-  const Eigen::Matrix2d covariance =
-      turn * Eigen::Matrix2d{{variances.x(), across}, {across, variances.y()}} * turn.transpose();
+  const Eigen::Matrix2d covariance = turn * RatioCovariance(prior) * turn.transpose();
   ShapePrior turned = prior;
   turned.ratio = (turn * prior.ratio.array().log().matrix()).array().exp();
   turned.log_sigma = covariance.diagonal().cwiseSqrt();
@@ -50,6 +54,49 @@ ShapePrior TurnedToSupport(const ShapePrior& prior) {
                        std::hypot(prior.height_m->log_sigma, prior.log_sigma.x())};
   }
   return turned;
+}
+
+namespace {
+
+// Log-normal with the moments of a mixture; none if no prior has a height.
+std::optional<LogNormal> HeightOfMixture(const std::vector<WeightedPrior>& priors) {
+  double weight = 0.0;
+  double mean = 0.0;
+  double square = 0.0;
+  for (const auto& [share, prior] : priors) {
+    if (!prior.height_m) continue;
+    const double log_height = std::log(prior.height_m->median);
+    weight += share;
+    mean += share * log_height;
+    square += share * (log_height * log_height + std::pow(prior.height_m->log_sigma, 2));
+  }
+  if (weight == 0.0) return std::nullopt;
+  mean /= weight;
+  return LogNormal{std::exp(mean), std::sqrt(square / weight - mean * mean)};
+}
+
+}  // namespace
+
+ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
+  ShapePrior mixture = priors.front().prior;
+  if (priors.size() == 1) return mixture;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  mixture.shape_exponent = 0.0;
+  for (const auto& [weight, prior] : priors) {
+    mean += weight * prior.ratio.array().log().matrix();
+    mixture.shape_exponent += weight * prior.shape_exponent;
+  }
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const auto& [weight, prior] : priors) {
+    const Eigen::Vector2d apart = prior.ratio.array().log().matrix() - mean;
+    covariance += weight * (RatioCovariance(prior) + apart * apart.transpose());
+  }
+  mixture.ratio = mean.array().exp();
+  mixture.log_sigma = covariance.diagonal().cwiseSqrt();
+  mixture.log_correlation = covariance(0, 1) / mixture.log_sigma.prod();
+  mixture.shape_exponent = std::clamp(mixture.shape_exponent, kCuboidExponent, kEllipsoidExponent);
+  mixture.height_m = HeightOfMixture(priors);
+  return mixture;
 }
 
 std::string NormalisedLabel(const std::string& label) {
@@ -73,6 +120,21 @@ bool SemanticTable::Contains(const std::string& label) const {
 std::optional<ShapePrior> SemanticTable::Find(const std::string& label) const {
   const auto found = priors.find(NormalisedLabel(label));
   return found == priors.end() ? default_prior : found->second;
+}
+
+std::optional<ShapePrior> SemanticTable::Find(const Object& object) const {
+  if (object.labels.empty()) return Find(object.label);
+  std::vector<WeightedPrior> priors;
+  double sum = 0.0;
+  for (const auto& [label, probability] : object.labels) {
+    const auto prior = Find(label);
+    if (!prior || (!priors.empty() && prior->mount != priors.front().prior.mount)) continue;
+    priors.push_back({probability, *prior});
+    sum += probability;
+  }
+  if (priors.empty()) return Find(object.label);
+  for (WeightedPrior& prior : priors) prior.weight /= sum;
+  return MomentsOfMixture(priors);
 }
 
 SemanticTable LookUpTable(const SemanticRows& rows) {

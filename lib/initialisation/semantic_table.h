@@ -44,6 +44,14 @@ struct ShapePrior {
 // heights, so the variance of the logarithm of a depth is the sum of those of height and ratio.
 ShapePrior TurnedToSupport(const ShapePrior& prior);
 
+// Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
+// priors that have one. Their weights have the sum 1.
+struct WeightedPrior {
+  double weight;
+  ShapePrior prior;
+};
+ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors);
+
 // Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the
 // same label.
 std::string NormalisedLabel(const std::string& label);
@@ -57,6 +65,9 @@ struct SemanticTable {
   bool Contains(const std::string& label) const;
   // None if the table has neither the label nor a default.
   std::optional<ShapePrior> Find(const std::string& label) const;
+  // Prior of an object whose label may be uncertain: of the mixture of its labels. Labels of
+  // another mount than the most probable one's are left out.
+  std::optional<ShapePrior> Find(const Object& object) const;
 };
 
 // Row of a semantic table as written in a file.

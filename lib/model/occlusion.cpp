@@ -10,10 +10,10 @@ namespace soslam {
 namespace {
 
 // Depth (m, along the optical axis) of a detection's ground contact point; infinite without one.
-// Without planes, a value with the same order for objects on one plane: a box that ends lower in
+// Where support planes are unknown, a value with the same order for objects on one plane: a box that ends lower in
 // the image is nearer.
 double GroundContactDepth(const Sequence& sequence, const Detection& detection) {
-  if (sequence.planes.empty()) return -detection.box.y_max;
+  if (!sequence.HasSupports()) return -detection.box.y_max;
   const auto foot =
       GroundContactInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
   return foot ? foot->z() : std::numeric_limits<double>::infinity();

@@ -49,21 +49,28 @@ struct SupportPlane {
   std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
 };
 
-// Object::plane_index while support planes are unknown.
+// Object::plane_index while the support plane is unknown.
 inline constexpr int kNoPlane = -1;
+
+struct LabelProbability {
+  std::string label;
+  double probability;
+};
 
 struct Object {
   int id = 0;
-  std::string label;
-  int plane_index = 0;  // index in Sequence::planes of its support plane; kNoPlane without planes
+  std::string label;  // the most probable one
+  int plane_index = 0;  // index in Sequence::planes of its support plane, or kNoPlane
   std::optional<GroundTruth> ground_truth;
   // False: it moves or is not known to be static; single frames can estimate it, but it has no
   // place in the map.
   bool is_static = true;
+  // Alternatives where the label is uncertain, most probable first; empty: it is certain.
+  std::vector<LabelProbability> labels = {};
 };
 
 // A 2D box of one object in one frame. `plane_in_camera` is the object's support plane in that
-// camera's frame; undefined in a sequence without planes.
+// camera's frame; undefined where that is unknown.
 struct Detection {
   int frame_index = 0;   // index in Sequence::frames
   int object_index = 0;  // index in Sequence::objects
@@ -109,8 +116,8 @@ struct Sequence {
   // Orientation that cameras and boxes refer to.
   ImageOrientation image_orientation = ImageOrientation::kUpright;
   std::vector<Frame> frames;
-  std::vector<SupportPlane> planes;  // empty: unknown, as are the planes of detections
-  std::vector<Object> objects;
+  std::vector<SupportPlane> planes;  // empty: unknown
+  std::vector<Object> objects;       // all detected ones have a support plane, or none has
   std::vector<Detection> detections;
   std::vector<HeldOutFrame> held_out;              // sorted by frame id; none of them in `frames`
   std::map<std::string, int> rejected_detections;  // reason -> number of detections
@@ -128,6 +135,11 @@ struct Sequence {
   }
   const Object& ObjectOf(const Detection& detection) const {
     return objects[static_cast<size_t>(detection.object_index)];
+  }
+  // True if it is known on which plane each object stands.
+  bool HasSupports() const {
+    return !planes.empty() &&
+           (detections.empty() || ObjectOf(detections.front()).plane_index != kNoPlane);
   }
   const Camera& CameraOf(const Frame& frame) const { return frame.camera ? *frame.camera : camera; }
   const Camera& CameraOf(const Detection& detection) const { return CameraOf(FrameOf(detection)); }

@@ -43,6 +43,7 @@ Association Found(const std::vector<int>& objects) {
     Track& track = association.tracks[static_cast<size_t>(decision.track)];
     track.detections.push_back(static_cast<int>(i));
     track.votes["x"] += 1.0;
+    track.labels = {{"x", 1.0}};
     association.detections.push_back(decision);
   }
   return association;

@@ -72,7 +72,7 @@ TEST(AssociateTest, FlickeringLabelsMakeNoObjects) {
       const auto given = static_cast<size_t>(agreement.given_of_object[i].value());
       // Votes of a few detections may go wrong, as may objects themselves.
       if (track.detections.size() < 6) continue;
-      EXPECT_EQ(WinningLabel(track.votes), sequence.objects[given].label) << seed;
+      EXPECT_EQ(LabelOf(track), sequence.objects[given].label) << seed;
     }
   }
   EXPECT_GE(sum / kScenes, 0.95);

@@ -13,47 +13,88 @@ namespace {
 
 const std::set<std::string> kLabels = {"bowl", "cup", "tv", "mouse"};
 
-TEST(WinningLabelTest, HasTheLargestSumOfScores) {
-  EXPECT_EQ(WinningLabel({{"bowl", 1.2}, {"cup", 1.5}, {"tv", 0.3}}), "cup");
-  EXPECT_EQ(WinningLabel({{"cup", 1.0}, {"bowl", 1.0}}), "bowl");
+AssociateOptions Confusing(double any, const std::string& interchangeable, double similar = 0.0,
+                           const std::string& similar_labels = "") {
+  AssociateOptions options;
+  options.label_confusion = any;
+  options.interchangeable_labels = interchangeable;
+  options.similar_label_confusion = similar;
+  options.similar_labels = similar_labels;
+  return options;
 }
 
-TEST(LabelConfusionTest, CostsAreThoseOfProbabilitiesThatSumToOne) {
-  const LabelConfusion confusion(kLabels, 0.06, "");
+double Sum(const LabelConfusion& confusion, const std::string& of_object) {
   double sum = 0.0;
-  for (const std::string& label : kLabels) {
-    sum += std::exp(-0.5 * confusion.Cost("cup", label));
+  for (const std::string& label : kLabels) sum += confusion.Probability(label, of_object);
+  return sum;
+}
+
+TEST(LabelConfusionTest, ProbabilitiesSumToOne) {
+  const LabelConfusion confusion(kLabels, Confusing(0.06, "", 0.1, "cup, bowl, mug; tv, laptop"));
+  for (const std::string label : {"cup", "mouse"}) {
+    EXPECT_NEAR(Sum(confusion, label), 1.0, 1e-12) << label;
   }
-  EXPECT_NEAR(sum, 1.0, 1e-12);
-  EXPECT_NEAR(std::exp(-0.5 * confusion.Cost("cup", "cup")), 0.94, 1e-12);
+  EXPECT_NEAR(confusion.Probability("cup", "cup"), 0.84, 1e-12);
+  EXPECT_NEAR(confusion.Probability("bowl", "cup"), 0.1, 1e-12);
+  EXPECT_NEAR(confusion.Probability("mouse", "cup"), 0.03, 1e-12);
   EXPECT_NEAR(std::exp(-0.5 * confusion.CostOfAnyLabel()), 0.25, 1e-12);
 }
 
 TEST(LabelConfusionTest, WithoutConfusionLabelsKeepApart) {
-  const LabelConfusion confusion(kLabels, 0.0, "");
-  EXPECT_EQ(confusion.Cost("cup", "cup"), 0.0);
-  EXPECT_TRUE(std::isinf(confusion.Cost("cup", "bowl")));
+  const LabelConfusion confusion(kLabels, Confusing(0.0, ""));
+  EXPECT_EQ(confusion.Probability("cup", "cup"), 1.0);
+  EXPECT_EQ(confusion.Probability("bowl", "cup"), 0.0);
+  EXPECT_EQ(confusion.Candidates({{"cup", 1.0}}), std::vector<std::string>({"cup"}));
 }
 
 TEST(LabelConfusionTest, InterchangeableLabelsCountAsOne) {
-  const LabelConfusion confusion(kLabels, 0.0, "cup, bowl;  tv,monitor ");
-  EXPECT_EQ(confusion.Cost("cup", "bowl"), 0.0);
-  EXPECT_EQ(confusion.Cost("monitor", "tv"), 0.0);
-  EXPECT_TRUE(std::isinf(confusion.Cost("cup", "tv")));
+  const LabelConfusion confusion(kLabels, Confusing(0.0, "cup, bowl;  tv,monitor "));
+  EXPECT_EQ(confusion.Probability("bowl", "cup"), 1.0);
+  EXPECT_EQ(confusion.Probability("tv", "monitor"), 1.0);
+  EXPECT_EQ(confusion.Probability("tv", "cup"), 0.0);
   EXPECT_NEAR(confusion.CostOfAnyLabel(), 2.0 * std::log(3.0), 1e-12);
 }
 
-TEST(LabelConfusionTest, ASingleLabelCostsNothing) {
-  const LabelConfusion confusion({"cup"}, 0.0, "");
-  EXPECT_EQ(confusion.Cost("cup", "cup"), 0.0);
+TEST(LabelConfusionTest, ASingleLabelIsCertain) {
+  const LabelConfusion confusion({"cup"}, Confusing(0.0, ""));
+  EXPECT_EQ(confusion.Probability("cup", "cup"), 1.0);
   EXPECT_EQ(confusion.CostOfAnyLabel(), 0.0);
+}
+
+TEST(LabelConfusionTest, SimilarLabelsAreCandidatesAndCostMoreThanTheVotes) {
+  const LabelConfusion confusion(kLabels, Confusing(0.05, "", 0.1, "cup, mug, bowl; tv, laptop"));
+  const LabelVotes votes = {{"cup", 3.0}, {"mouse", 0.5}};
+  EXPECT_EQ(confusion.Candidates(votes), std::vector<std::string>({"bowl", "cup", "mouse", "mug"}));
+  EXPECT_LT(confusion.CostOfVotes(votes, "cup"), confusion.CostOfVotes(votes, "mug"));
+  EXPECT_LT(confusion.CostOfVotes(votes, "mug"), confusion.CostOfVotes(votes, "tv"));
+}
+
+// Repeated votes are no more evidence than one.
+TEST(LabelConfusionTest, CostsOfVotesDependOnSharesOnly) {
+  const LabelConfusion confusion(kLabels, Confusing(0.05, ""));
+  EXPECT_NEAR(confusion.CostOfVotes({{"cup", 1.0}, {"bowl", 2.0}}, "cup"),
+              confusion.CostOfVotes({{"cup", 10.0}, {"bowl", 20.0}}, "cup"), 1e-12);
+}
+
+TEST(LabelConfusionTest, AnUncertainObjectHasTheMeanProbability) {
+  const LabelConfusion confusion(kLabels, Confusing(0.06, ""));
+  EXPECT_NEAR(confusion.Probability("cup", {{"cup", 0.5}, {"tv", 0.5}}), 0.5 * (0.94 + 0.02),
+              1e-12);
 }
 
 TEST(LabelConfusionTest, MalformedGroupsAreRefused) {
   for (const std::string groups : {"cup,", ";", "cup,bowl;cup,tv", "cup,,tv", " "}) {
-    ExpectError<SettingsError>([&] { LabelConfusion(kLabels, 0.1, groups); },
+    ExpectError<SettingsError>([&] { LabelConfusion(kLabels, Confusing(0.1, groups)); },
                                {"interchangeable_labels", groups});
   }
+}
+
+TEST(ProbabilitiesOfLabelsTest, AreThoseOfTheCosts) {
+  const auto labels = ProbabilitiesOfLabels({{"cup", 2.0}, {"bowl", 1.0}, {"tv", 30.0}});
+  ASSERT_EQ(labels.size(), 3U);
+  EXPECT_EQ(labels[0].label, "bowl");
+  EXPECT_NEAR(labels[0].probability / labels[1].probability, std::exp(1.0), 1e-12);
+  EXPECT_NEAR(labels[0].probability + labels[1].probability + labels[2].probability, 1.0, 1e-12);
 }
 
 }  // namespace

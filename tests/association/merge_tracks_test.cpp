@@ -74,8 +74,8 @@ TEST_F(TrackTest, TwoObjectsAreNotMerged) {
   EXPECT_EQ(TrackAt(other).fate, TrackFate::kObject);
 }
 
-// The same body twice in the same frames is two things, or two kinds of detections.
-TEST_F(TrackTest, WhatIsDetectedTogetherIsNotMerged) {
+// The same body twice in the same frames is two kinds of detections of one thing.
+TEST_F(TrackTest, WhatIsDetectedTogetherIsMergedOnlyIfItIsAtOnePlace) {
   const size_t count = sequence_.detections.size();
   for (size_t i = 0; i < count; ++i) {
     Detection detection = sequence_.detections[i];
@@ -87,11 +87,12 @@ TEST_F(TrackTest, WhatIsDetectedTogetherIsNotMerged) {
     copies.push_back(static_cast<int>(i));
   const int original = AddTrack(of_objects_[0]);
   const int copy = AddTrack(copies);
+  options_.same_place_overlap = 1.1;  // never
   MergeTracks(Model(), 1, &association_);
   EXPECT_EQ(TrackAt(original).fate, TrackFate::kObject);
   EXPECT_EQ(TrackAt(copy).fate, TrackFate::kObject);
 
-  options_.max_shared_frames = 1.0;
+  options_.same_place_overlap = 0.5;
   MergeTracks(Model(), 1, &association_);
   EXPECT_EQ(TrackAt(original).detections.size() + TrackAt(copy).detections.size(),
             2 * of_objects_[0].size());

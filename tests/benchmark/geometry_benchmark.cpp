@@ -2,7 +2,7 @@
 // What constraints and evaluation are made of: support function, mirror mapping, IoU.
 #include <benchmark/benchmark.h>
 
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "geometry/mirror_mapping.h"
 #include "geometry/support_function.h"
 

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/process.h"
 #include "dataset/import.h"
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "geometry/angles.h"
 #include "image/read_image.h"
 #include "synthesis/render.h"

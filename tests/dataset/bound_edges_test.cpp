@@ -37,12 +37,12 @@ TEST(BoundEdgesTest, ABoxAloneInsideTheImageHasNone) { EXPECT_EQ(BoundsOfFirst({
 
 // The image covers [-0.5, 639.5] x [-0.5, 479.5].
 TEST(BoundEdgesTest, EdgesAtTheImageBorderAreBounds) {
-  EXPECT_EQ(BoundsOfFirst({{1, 150, 300, 300}}), (Bounds{true, false, false, false}));
-  EXPECT_EQ(BoundsOfFirst({{200, 1, 300, 300}}), (Bounds{false, true, false, false}));
-  EXPECT_EQ(BoundsOfFirst({{200, 150, 638, 300}}), (Bounds{false, false, true, false}));
-  EXPECT_EQ(BoundsOfFirst({{200, 150, 300, 478}}), kBottom);
+  EXPECT_EQ(BoundsOfFirst({{5.9, 150, 300, 300}}), (Bounds{true, false, false, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 4.29, 300, 300}}), (Bounds{false, true, false, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 150, 633.1, 300}}), (Bounds{false, false, true, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 150, 300, 474.71}}), kBottom);
   EXPECT_EQ(BoundsOfFirst({{-20, 0, 700, 480}}), (Bounds{true, true, true, true}));
-  EXPECT_EQ(BoundsOfFirst({{1.01, 1.01, 637.99, 477.99}}), kNone);
+  EXPECT_EQ(BoundsOfFirst({{5.91, 4.31, 633.09, 474.69}}), kNone);
 }
 
 TEST(BoundEdgesTest, ALowerEdgeHiddenByExactlyTheFractionIsABound) {
@@ -66,8 +66,9 @@ TEST(BoundEdgesTest, SeveralBoxesHideTogetherAndOverlapsCountOnce) {
 }
 
 TEST(BoundEdgesTest, ANearerBoxHidesOnlyWhatIsInsideIt) {
-  EXPECT_EQ(BoundsOfFirst({kBox, {180, 300, 320, 400}}), kBottom);  // begins at the edge
-  EXPECT_EQ(BoundsOfFirst({kBox, {180, 301, 320, 400}}), kNone);    // below
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 300, 320, 400}}), kBottom);    // begins at the edge
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 307.5, 320, 400}}), kBottom);  // up to 5 % of the height
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 307.6, 320, 400}}), kNone);    // below
   EXPECT_EQ(BoundsOfFirst({kBox, {300, 200, 400, 400}}), kNone);    // beside
 }
 

@@ -24,7 +24,7 @@ TEST(ImportDemoTest, RoomA) {
               std::vector<bool>(3, false));
     hidden_lower_edges += detection.is_bound[3];
   }
-  EXPECT_EQ(hidden_lower_edges, 54);
+  EXPECT_EQ(hidden_lower_edges, 57);
   const Detection& first = sequence.detections[0];
   const Plane floor_in_camera = Transform(sequence.frames[0].true_world_from_camera->Inverse(),
                                           Plane{Eigen::Vector3d::UnitZ(), 0});

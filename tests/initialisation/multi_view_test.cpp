@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"

@@ -205,6 +205,7 @@ TEST_F(InspectionTest, AssociationsHaveARowPerObject) {
   track.detections = {0, 1};
   track.linked = 2;
   track.votes = {{"cup", 3}, {"mug", 1}};
+  track.labels = {{"cup", 0.8}, {"mug", 0.2}};
   association.tracks = {track};
   association.objects = {0};
   Agreement agreement;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "evaluation/metrics.h"
 #include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"

@@ -2,7 +2,7 @@
 // The back end for bodies of any shape.
 #include <gtest/gtest.h>
 
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "evaluation/metrics.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"

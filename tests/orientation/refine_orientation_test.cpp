@@ -8,7 +8,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 #include "geometry/angles.h"
 #include "support/drawn_cuboids.h"
 #include "synthesis/render.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "soslam/artefact/semantic_table_file.h"
-#include "soslam/evaluation/iou.h"
+#include "soslam/geometry/iou.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/iou.h"
+#include "geometry/iou.h"
 
 #include <algorithm>
 #include <array>
