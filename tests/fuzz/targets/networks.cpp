@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fuzz/fuzz_target.h"
 #include "image/onnx_check.h"
+#include "image/onnx_header.h"
 
 namespace soslam {
 namespace {
@@ -8,7 +9,11 @@ namespace {
 // Not OpenCV's reader, which is not for hostile input.
 const FuzzTarget kNetworks("networks", [](const HostileInput& input) {
   const auto file = input.AsFile("network.onnx");
-  IsAccepted(file, [&] { CheckOnnx(FileBytes(file), file.string()); });
+  const std::string bytes = FileBytes(file);
+  IsAccepted(file, [&] {
+    CheckOnnx(bytes, file.string());
+    ClassNames(ReadOnnxHeader(bytes, file.string()), file.string());
+  });
 });
 
 }  // namespace

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace soslam {
+
+// An input or output of a network, as its file declares it.
+struct OnnxValue {
+  static constexpr int kFloat = 1, kHalf = 10;  // of TensorProto.DataType
+
+  std::string name;
+  int type = 0;                     // TensorProto.DataType; 0 if the file does not state it
+  std::vector<std::int64_t> shape;  // 0 for a side that is fixed only when the network runs
+};
+
+// What an ONNX file states about its network.
+struct OnnxHeader {
+  std::vector<OnnxValue> inputs;  // without weights, which older files list among them
+  std::vector<OnnxValue> outputs;
+  int opset = 0;                                // version of ONNX's own operators
+  std::set<std::string> operators;              // those of the graph's nodes: "Conv", "Mul", ...
+  bool has_half_weights = false;                // 16-bit floating point
+  std::map<std::string, std::string> metadata;  // Ultralytics: "names", "task", "end2end", ...
+};
+
+// Reads the header of an ONNX file that CheckOnnx accepts. Throws InputError, naming the file
+// `name`, for a file without graph, and for one with absurdly many inputs or outputs.
+OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name);
+
+// The class names in the metadata of a network, from class 0 on: "names", as Ultralytics writes
+// them, a dictionary {0: 'person', 1: 'bicycle'} or a list ['person', 'bicycle'] in Python's
+// notation. Empty without them. Throws InputError, naming the file `name`, for anything else and
+// for a name with a comma.
+std::vector<std::string> ClassNames(const OnnxHeader& header, const std::string& name);
+
+// The shape as text, "[1, 3, ?, 640]".
+std::string ShapeText(const std::vector<std::int64_t>& shape);
+
+}  // namespace soslam
