@@ -84,6 +84,11 @@ std::vector<std::string> ParseLabels(const std::string& text, const std::string&
       name);
 }
 
+bool IsListed(const std::string& label, const std::string& list) {
+  const auto listed = SplitFields(list);
+  return Trimmed(list).empty() || std::ranges::find(listed, label) != listed.end();
+}
+
 bool IsLabelFile(const fs::path& name) {
   return std::ranges::find(kNames, name.filename().string()) != kNames.end();
 }

@@ -17,6 +17,9 @@ std::vector<std::string> ReadLabelFile(const std::filesystem::path& path);
 // and its extension determines the format.
 std::vector<std::string> ParseLabels(const std::string& text, const std::string& name);
 
+// True if the list, labels separated by commas, has the label or is empty.
+bool IsListed(const std::string& label, const std::string& list);
+
 // True if files of this name hold the class names in folders and archives of YOLO's labels.
 bool IsLabelFile(const std::filesystem::path& name);
 

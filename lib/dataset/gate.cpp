@@ -10,17 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "dataset/text_file.h"
+#include "dataset/class_names.h"
 #include "geometry/box.h"
 #include "model/occlusion.h"
 
 namespace soslam {
-
-bool IsWanted(const std::string& label, const ImportOptions& options) {
-  if (Trimmed(options.labels).empty()) return true;
-  const auto listed = SplitFields(options.labels);
-  return std::find(listed.begin(), listed.end(), label) != listed.end();
-}
 
 const char* RejectReasonName(RejectReason reason) {
   constexpr std::array kNames = {"frame_not_listed",   "frame_not_used",  "frame_without_image",
@@ -66,7 +60,7 @@ std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camer
   // A box exactly border_px from the border is kept regardless of rounding.
   constexpr double kTolerancePx = 1e-9;
   const Box box = row.box_in_image_file.value_or(row.box);
-  if (!IsWanted(row.label, options)) return RejectReason::kOtherLabel;
+  if (!IsListed(row.label, options.labels)) return RejectReason::kOtherLabel;
   if (row.score < options.min_score) return RejectReason::kLowScore;
   if (box.Width() <= 0.0 || box.Height() <= 0.0) return RejectReason::kEmptyBox;
   if (box.x_max <= -0.5 || box.y_max <= -0.5 || box.x_min >= camera.width - 0.5 ||

@@ -83,9 +83,6 @@ std::string DescribeRejections(const RejectionCounts& rejected);
 // True if the object of a rejected row is still in view and may occlude others.
 bool IsInView(RejectReason reason);
 
-// True if the label is in the option `labels`, or the option is empty.
-bool IsWanted(const std::string& label, const ImportOptions& options);
-
 // Reason to reject the row itself, independent of its frame; none when it is usable.
 std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camera,
                                     const ImportOptions& options);

@@ -13,6 +13,7 @@
 #include "artefact/model_json.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "dataset/class_names.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
@@ -255,7 +256,7 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.true_objects = content.true_objects;
   std::ranges::sort(sequence.true_objects, {}, &TrueObject::id);
   for (TrueObject& object : sequence.true_objects) {
-    object.is_ignored = !IsWanted(object.label, options);
+    object.is_ignored = !IsListed(object.label, options.labels);
   }
   sequence.ignored = content.ignored;
   sequence.odometry_world = WorldOfOdometry(options);

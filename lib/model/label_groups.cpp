@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/label_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace soslam {
+namespace {
+
+// Parts between separators, trimmed of spaces.
+std::vector<std::string> SplitAt(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(separator, begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const size_t first = part.find_first_not_of(' ');
+    parts.push_back(
+        first == part.npos ? "" : part.substr(first, part.find_last_not_of(' ') - first + 1));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> ParseLabelGroups(const char* option,
+                                                       const std::string& text) {
+  std::vector<std::vector<std::string>> groups;
+  if (text.empty()) return groups;
+  for (const std::string& group : SplitAt(text, ';')) {
+    groups.push_back(SplitAt(group, ','));
+    if (std::ranges::find(groups.back(), "") == groups.back().end()) continue;
+    throw SettingsError(fmt::format(
+        "{} '{}' has '' as a label; expected groups of labels, 'a, b; c, d'", option, text));
+  }
+  return groups;
+}
+
+LabelGroups::LabelGroups(const std::string& interchangeable) {
+  for (const auto& group : ParseLabelGroups("interchangeable_labels", interchangeable)) {
+    for (const std::string& label : group) {
+      if (groups_.emplace(label, group.front()).second) continue;
+      throw SettingsError(fmt::format(
+          "interchangeable_labels '{}' has '{}' twice; expected groups of labels, 'a, b; c, d', "
+          "each label once",
+          interchangeable, label));
+    }
+  }
+}
+
+const std::string& LabelGroups::Group(const std::string& label) const {
+  const auto found = groups_.find(label);
+  return found == groups_.end() ? label : found->second;
+}
+
+}  // namespace soslam

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/label_groups.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "support/expect_error.h"
+
+namespace soslam {
+namespace {
+
+TEST(LabelGroupsTest, LabelsOfAGroupHaveOneRepresentative) {
+  const LabelGroups groups("cup,bowl ; tv, laptop");
+  EXPECT_EQ(groups.Group("bowl"), groups.Group("cup"));
+  EXPECT_EQ(groups.Group("tv"), groups.Group("laptop"));
+  EXPECT_NE(groups.Group("tv"), groups.Group("cup"));
+  EXPECT_EQ(groups.Group("chair"), "chair");
+  EXPECT_EQ(LabelGroups("").Group("cup"), "cup");
+}
+
+TEST(LabelGroupsTest, MalformedGroupsAreRefused) {
+  ExpectError<SettingsError>([] { LabelGroups("cup, ; tv"); },
+                             {"interchangeable_labels", "'' as a label"});
+  ExpectError<SettingsError>([] { LabelGroups("cup, bowl; tv, cup"); }, {"'cup' twice"});
+}
+
+}  // namespace
+}  // namespace soslam
