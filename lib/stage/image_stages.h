@@ -9,7 +9,6 @@
 #include "cli/stage_files.h"
 #include "image/edge_maps.h"
 #include "image/read_image.h"
-#include "image/yolo_detector.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -45,12 +44,5 @@ class FrameImageReader {
 // InputError for an image that is missing, damaged, outside the dataset folder or not of the
 // camera's size; NothingUsableError when no frame has an image; SettingsError.
 void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads);
-
-// soslam-detect: runs a YOLO network on every image of a dataset. Files: "dataset", the folder with
-// rgb.txt; "network", ONNX; "labels" (optional; COCO's when absent), the names of its classes, one
-// per line; "output", a detections.csv without object ids, with its provenance as comments above
-// the header. Prints a one-line summary. Throws InputError for a bad list, image, network or label
-// file; NothingUsableError when nothing was detected.
-void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

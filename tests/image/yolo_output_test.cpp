@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "image/yolo_output.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "image/yolo_detector.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 
@@ -17,8 +18,12 @@ cv::Mat Output(const std::vector<int>& shape, const std::vector<float>& values) 
   return cv::Mat(shape, CV_32FC1, const_cast<float*>(values.data())).clone();
 }
 
+YoloFormat Format(YoloLayout layout, int extra_columns = 0) {
+  return {layout, PixelValues::kRgbUnit, {64, 32}, 2, extra_columns};
+}
+
 std::vector<YoloDetection> Read(const cv::Mat& output, YoloLayout layout, double min_score = 0.25) {
-  return ReadYoloOutput(output, layout, {64, 32}, 2, min_score, "net.onnx");
+  return ReadYoloOutput(output, Format(layout), min_score, "net.onnx");
 }
 
 void ExpectScored(const YoloDetection& box, int class_index, double score, const Box& expected) {
@@ -48,6 +53,46 @@ TEST(YoloOutputTest, V8HasAColumnPerCandidate) {
   ASSERT_EQ(boxes.size(), 2u);
   ExpectScored(boxes[0], 1, 0.5, {90, 45, 110, 55});
   ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
+}
+
+TEST(YoloOutputTest, EndToEndHasCornersScoreAndClass) {
+  const cv::Mat output = Output({1, 3, 6}, {90, 45, 110, 55, 0.4F, 1,  //
+                                            0, 0, 0, 0, 0, 0,          // padding
+                                            8, 7, 12, 13, 1, 0});
+  const auto boxes = Read(output, YoloLayout::kEndToEnd);
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectScored(boxes[0], 1, 0.4, {90, 45, 110, 55});
+  ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
+}
+
+TEST(YoloOutputTest, ColumnsAfterTheClassesAreIgnored) {
+  const cv::Mat v5 = Output({1, 1, 9}, {100, 50, 20, 10, 0.8F, 0.1F, 0.5F, 7, -9});
+  const auto boxes = ReadYoloOutput(v5, Format(YoloLayout::kV5, 2), 0.25, "net.onnx");
+  ASSERT_EQ(boxes.size(), 1u);
+  ExpectScored(boxes[0], 1, 0.4, {90, 45, 110, 55});
+  const cv::Mat v8 = Output({1, 8, 1}, {100, 50, 20, 10, 0.1F, 0.4F, 7, -9});
+  ExpectScored(ReadYoloOutput(v8, Format(YoloLayout::kV8, 2), 0.25, "net.onnx").at(0), 1, 0.4,
+               {90, 45, 110, 55});
+}
+
+// Each message says what the output was taken for.
+TEST(YoloOutputTest, ImpossibleCandidatesAreRefused) {
+  const auto expect_refused = [](YoloLayout layout, const std::vector<float>& row,
+                                 const std::string& word) {
+    const int fields = static_cast<int>(row.size());
+    ExpectError<InputError>(
+        [&] {
+          Read(Output({1, 1, fields}, row), layout);
+        },
+        {"net.onnx", "candidate 0", word, "rgb_0_1", "64 x 32", "layout"});
+  };
+  expect_refused(YoloLayout::kV5, {30, 20, -8, 10, 1, 1, 0}, "-8 x 10 pixels");
+  expect_refused(YoloLayout::kV5, {30, 20, 8, -10, 1, 1, 0}, "8 x -10 pixels");
+  expect_refused(YoloLayout::kV5, {30, 20, 8, 10, 4, 3, 0}, "score 12");
+  expect_refused(YoloLayout::kEndToEnd, {30, 20, 8, 10, 0.5F, 0}, "-22 x -10 pixels");
+  expect_refused(YoloLayout::kEndToEnd, {8, 10, 30, 20, 0.5F, 0.5F}, "no class");
+  expect_refused(YoloLayout::kEndToEnd, {8, 10, 30, 20, 0.5F, 2}, "no class");
+  expect_refused(YoloLayout::kEndToEnd, {8, 10, 30, 20, 0.5F, -1}, "no class");
 }
 
 // An input of 64 x 32 has grids of 8 x 4, 4 x 2 and 2 x 1 cells.
@@ -141,14 +186,23 @@ TEST(WithoutOverlapsTest, HighestScoreOfAClassWins) {
   const auto box = [](int class_index, double score, double x) {
     return YoloDetection{class_index, score, {x, 0, x + 10, 10}};
   };
-  const auto kept =
-      WithoutOverlaps({box(0, 0.5, 0), box(0, 0.9, 2), box(1, 0.6, 0), box(0, 0.7, 7)}, 2, 0.45);
+  const auto kept = WithoutOverlaps(
+      {box(0, 0.5, 0), box(0, 0.9, 2), box(1, 0.6, 0), box(0, 0.7, 7)}, {0, 1}, 0.45);
   ASSERT_EQ(kept.size(), 3u);
   ExpectScored(kept[0], 0, 0.9, {2, 0, 12, 10});
   ExpectScored(kept[1], 0, 0.7, {7, 0, 17, 10});
   ExpectScored(kept[2], 1, 0.6, {0, 0, 10, 10});
-  EXPECT_EQ(WithoutOverlaps({box(0, 0.5, 0), box(0, 0.9, 2)}, 2, 0.7).size(), 2u);
-  EXPECT_TRUE(WithoutOverlaps({}, 2, 0.45).empty());
+  EXPECT_EQ(WithoutOverlaps({box(0, 0.5, 0), box(0, 0.9, 2)}, {0, 1}, 0.7).size(), 2u);
+  EXPECT_TRUE(WithoutOverlaps({}, {0, 1}, 0.45).empty());
+}
+
+TEST(WithoutOverlapsTest, ClassesOfOneGroupCountAsOne) {
+  const std::vector<YoloDetection> boxes = {
+      {0, 0.5, {0, 0, 10, 10}}, {1, 0.9, {0, 0, 10, 10}}, {2, 0.6, {0, 0, 10, 10}}};
+  const auto kept = WithoutOverlaps(boxes, {0, 0, 1}, 0.45);
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].class_index, 1);
+  EXPECT_EQ(kept[1].class_index, 2);
 }
 
 }  // namespace

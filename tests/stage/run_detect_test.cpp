@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_detect.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 
 #include "base/error.h"
 #include "dataset/labelled_box.h"
-#include "stage/image_stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/labelled_boxes.h"
@@ -40,7 +41,6 @@ class RunDetectTest : public testing::Test {
     network.weights[5][0] = 1.0F;
     network.weights[13][0] = 0.5F;
     WriteBytes(folder_ / "net.onnx", network.Onnx());
-    options_.input_width = options_.input_height = 64;
   }
 
   StageFiles Files(const std::string& output = "detections.csv") {
@@ -84,6 +84,9 @@ TEST_F(RunDetectTest, CommentsSayWhatItWasMadeFrom) {
   const std::string text = FileBytes(folder_ / "detections.csv");
   const auto header = nlohmann::json::parse(text.substr(2, text.find('\n') - 2));
   EXPECT_EQ(header["kind"], "detections");
+  options_.output_layout = YoloLayout::kV5;
+  options_.pixel_values = PixelValues::kRgbUnit;
+  options_.input_width = options_.input_height = 64;
   EXPECT_EQ(header["settings"], OptionsToJson(options_));
   for (const char* input : {"0.png", "4.png", "rgb.txt", "net.onnx", "labels.txt"}) {
     EXPECT_THAT(text, HasSubstr(std::string("# input {\"file\":\"") + input + "\",\"sha256\":"));
@@ -133,6 +136,86 @@ TEST_F(RunDetectTest, ACrashOfOpenCvIsAnError) {
   network.weights_of_conv = "nothing";
   WriteBytes(folder_ / "net.onnx", network.Onnx());
   ExpectRefused(Files(), {"net.onnx", "OpenCV"});
+}
+
+TEST_F(RunDetectTest, NamesInTheNetworkAreItsLabels) {
+  MeanNetwork network = {{1, 1, 7}, {32, 32, 20, 30, 1, 0, 0.5F}, {}};
+  network.metadata["names"] = "{0: 'cup', 1: 'tea pot'}";
+  WriteBytes(folder_ / "net.onnx", network.Onnx());
+  StageFiles files = Files();
+  files.erase("labels");
+  Run(files);
+  EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "tea pot");
+  EXPECT_THAT(printed_, HasSubstr("net.onnx: layout v5, pixel values rgb_0_1, input of 64 x 64"));
+  Run(Files());  // the file of labels comes first
+  EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "milk carton");
+}
+
+// The same rows from boxes in cells, as YOLOX is published, and in pixels.
+TEST_F(RunDetectTest, YoloxRawAndDecoded) {
+  options_.input_width = options_.input_height = 64;
+  std::vector<std::string> tables;
+  for (const bool is_decoded : {false, true}) {
+    WriteBytes(folder_ / "net.onnx", GridNetwork{is_decoded}.Onnx());
+    Run(Files());
+    const std::string text = FileBytes(folder_ / "detections.csv");
+    tables.push_back(text.substr(text.find("\nframe,")));
+  }
+  EXPECT_EQ(tables[0], tables[1]);
+  EXPECT_GT(ReadDetectionsCsv(folder_ / "detections.csv").size(), 10u);
+}
+
+TEST_F(RunDetectTest, LabelsAreRenamedAndSelected) {
+  options_.rename_labels = "milk carton = carton";
+  options_.keep_labels = "carton";
+  Run(Files());
+  const auto boxes = ReadDetectionsCsv(folder_ / "detections.csv");
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes[0].label, "carton");
+  EXPECT_EQ(boxes[0].frame, FrameKey(3));
+  options_.min_score = 0.6;  // no carton is left, but cups
+  ExpectError<NothingUsableError>([&] { RunDetect(options_, Files(), 1); }, {"not kept"});
+}
+
+// Raw boxes in cells, a pixel or two large, that another layout would take for pixels.
+TEST_F(RunDetectTest, ImpossibleBoxesAreNotWritten) {
+  WriteBytes(
+      folder_ / "net.onnx",
+      MeanNetwork{{1, 2, 7}, {0.5F, 0.5F, 1.5F, 2, 0.9F, 1, 0, 1, 1, 3, 2, 0.9F, 0, 1}, {}}.Onnx());
+  ExpectRefused(Files(), {"net.onnx", "of 10 boxes 10 are smaller", "layout v5", "rgb_0_1"});
+}
+
+TEST(LabelsForDetectorTest, GroupsForOverlaps) {
+  const std::vector<std::string> classes = {"chair", "tv", "couch", "sofa"};
+  DetectorOptions options;
+  EXPECT_EQ(LabelsForDetector(classes, options).groups, (std::vector<int>{0, 1, 2, 3}));
+  options.rename_labels = "couch=sofa";
+  EXPECT_EQ(LabelsForDetector(classes, options).groups, (std::vector<int>{0, 1, 2, 2}));
+  options.interchangeable_labels = "chair, sofa";
+  EXPECT_EQ(LabelsForDetector(classes, options).groups, (std::vector<int>{0, 1, 0, 0}));
+  options.class_agnostic = true;
+  EXPECT_EQ(LabelsForDetector(classes, options).groups, (std::vector<int>{0, 0, 0, 0}));
+}
+
+TEST(LabelsForDetectorTest, BadOptionsAreRefused) {
+  const auto expect_refused = [](const DetectorOptions& options,
+                                 const std::vector<std::string>& words) {
+    ExpectError<SettingsError>([&] { LabelsForDetector({"chair", "tv"}, options); }, words);
+  };
+  for (const char* text : {"tv", "tv=", "=tv", "tv=a, tv=b", "tv=a,"}) {
+    DetectorOptions options;
+    options.rename_labels = text;
+    expect_refused(options, {"rename_labels"});
+  }
+  DetectorOptions options;
+  options.rename_labels = "sofa=couch";
+  expect_refused(options, {"rename_labels has 'sofa'", "chair, tv"});
+  options = {};
+  options.keep_labels = "chair, keybord";
+  expect_refused(options, {"keep_labels has 'keybord'", "chair, tv"});
+  options = {};
+  options.interchangeable_labels = "chair; chair";
+  expect_refused(options, {"interchangeable_labels"});
 }
 
 // Boxes are those of the image as viewers show it, or as it is stored.

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "base/options.h"
+#include "image/yolo_output.h"
+#include "model/image_orientation.h"
+
+namespace soslam {
+
+struct DetectorOptions {
+  YoloLayout output_layout = YoloLayout::kAuto;
+  PixelValues pixel_values = PixelValues::kAuto;
+  int input_width = 0;  // 0 for automatic, as the height
+  int input_height = 0;
+  ImageOrientation image_orientation = ImageOrientation::kUpright;
+  std::string rename_labels;
+  std::string keep_labels;
+  double min_score = 0.25;
+  double max_overlap = 0.45;
+  bool class_agnostic = false;
+  std::string interchangeable_labels;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Network");
+    visit.Choice(
+        "output_layout", &output_layout, kYoloLayoutNames,
+        "the network's output: v5 [1, N, 5 + classes], v8 [1, 4 + classes, N], yolox (v5 with "
+        "boxes in cells of its grids, as YOLOX is published), end_to_end [1, N, 6]; auto: as the "
+        "file and the output say");
+    visit.Choice("pixel_values", &pixel_values, kPixelValuesNames,
+                 "what the network takes: rgb_0_1 (Ultralytics) or bgr_0_255 (YOLOX); auto: as the "
+                 "file and the output say");
+    visit.Integer("input_width_px", &input_width, {0, 8192},
+                  "width of the network's input; 0: as it was exported, or the shape of the images "
+                  "if the network takes any");
+    visit.Integer("input_height_px", &input_height, {0, 8192},
+                  "height of the network's input, likewise");
+    visit.Group("Images");
+    visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
+                 "where EXIF turns images: what is detected, and what boxes refer to, is the image "
+                 "as viewers show it, or the pixels as the file stores them");
+    visit.Group("Detections that are kept");
+    visit.Text("rename_labels", &rename_labels,
+               "other names for the network's labels: 'tv=monitor, couch=sofa'");
+    visit.Text("keep_labels", &keep_labels,
+               "detections of other labels (after renaming) are dropped; commas between several, "
+               "empty: all are kept");
+    visit.Real("min_score", &min_score, {0, 1}, "detections with a lower score are dropped");
+    visit.Real("max_overlap", &max_overlap, {0, 1},
+               "of two boxes of one label with a larger IoU, the one with the lower score is "
+               "dropped");
+    visit.Text("interchangeable_labels", &interchangeable_labels,
+               "labels that count as one for max_overlap, groups of comma-separated labels, "
+               "separated by semicolons: 'chair, couch; tv, laptop'");
+    visit.Flag("class_agnostic", &class_agnostic, "all labels count as one for max_overlap");
+  }
+};
+
+}  // namespace soslam

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_detect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "artefact/atomic_file.h"
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "dataset/class_names.h"
+#include "dataset/image_path.h"
+#include "dataset/labelled_box.h"
+#include "dataset/text_file.h"
+#include "dataset/trajectories.h"
+#include "image/read_image.h"
+#include "image/yolo_detector.h"
+#include "image/yolo_format.h"
+#include "model/label_groups.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Throws SettingsError if no class has this label, which an option names.
+void CheckIsClass(const std::string& label, const std::vector<std::string>& classes,
+                  const char* option) {
+  if (std::ranges::find(classes, label) != classes.end()) return;
+  throw SettingsError(fmt::format("{} has '{}'; expected labels of the network: {}", option, label,
+                                  fmt::join(classes, ", ")));
+}
+
+// Pairs from 'tv=monitor, couch=sofa'.
+std::map<std::string, std::string> ParseRenames(const std::string& text) {
+  std::map<std::string, std::string> renames;
+  if (Trimmed(text).empty()) return renames;
+  for (const std::string_view field : SplitFields(text)) {
+    const size_t equals = std::min(field.find('='), field.size());
+    const std::string from{Trimmed(field.substr(0, equals))};
+    const std::string to{Trimmed(field.substr(std::min(equals + 1, field.size())))};
+    if (from.empty() || to.empty() || !renames.emplace(from, to).second) {
+      throw SettingsError(fmt::format(
+          "rename_labels has '{}'; expected 'tv=monitor, couch=sofa', each label once", field));
+    }
+  }
+  return renames;
+}
+
+}  // namespace
+
+DetectorLabels LabelsForDetector(std::vector<std::string> classes, const DetectorOptions& options) {
+  DetectorLabels labels;
+  const auto renames = ParseRenames(options.rename_labels);
+  for (const auto& [from, to] : renames) CheckIsClass(from, classes, "rename_labels");
+  for (std::string& label : classes) {
+    if (const auto found = renames.find(label); found != renames.end()) label = found->second;
+  }
+  if (!Trimmed(options.keep_labels).empty()) {
+    for (const std::string_view label : SplitFields(options.keep_labels)) {
+      CheckIsClass(std::string(label), classes, "keep_labels");
+    }
+  }
+  const LabelGroups groups(options.interchangeable_labels);
+  std::map<std::string, int> indices;
+  for (const std::string& label : classes) {
+    labels.are_kept.push_back(IsListed(label, options.keep_labels));
+    const std::string& group = options.class_agnostic ? "" : groups.Group(label);
+    labels.groups.push_back(indices.emplace(group, indices.size()).first->second);
+  }
+  labels.names = std::move(classes);
+  return labels;
+}
+
+namespace {
+
+std::vector<fs::path> ImagePaths(const fs::path& dataset) {
+  const fs::path list = dataset / "rgb.txt";
+  std::vector<fs::path> images;
+  for (const ListedImage& image : ReadImageList(list)) {
+    images.push_back(ImagePath(dataset, image.image, list.string()));
+  }
+  return images;
+}
+
+// The detections of each image, and the number of all boxes that were found. Each worker has its
+// own network, which OpenCV runs on one thread, so that the result does not depend on the number of
+// workers.
+struct AllDetections {
+  std::vector<std::vector<YoloDetection>> of_image;
+  BoxTally tally;
+};
+AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& network,
+                        const YoloFormat& format, const DetectorLabels& labels,
+                        const DetectorOptions& options, int threads) {
+  const int count = static_cast<int>(images.size());
+  const int workers = std::min(threads, count);
+  AllDetections all{std::vector<std::vector<YoloDetection>>(images.size()), {}};
+  std::vector<BoxTally> tallies(static_cast<size_t>(workers));
+  Progress progress("images", count);
+  ParallelFor(workers, workers, [&](int worker) {
+    YoloDetector detector(network, format, labels.groups, options);
+    for (int i = worker; i < count; i += workers) {
+      const auto frame = static_cast<size_t>(i);
+      all.of_image[frame] =
+          detector.Detect(ReadColourImage(images[frame], options.image_orientation));
+      progress.Step();
+    }
+    tallies[static_cast<size_t>(worker)] = detector.tally();
+  });
+  for (const BoxTally& tally : tallies) all.tally += tally;
+  return all;
+}
+
+std::vector<LabelledBox> KeptBoxes(const std::vector<std::vector<YoloDetection>>& detections,
+                                   const DetectorLabels& labels) {
+  std::vector<LabelledBox> boxes;
+  for (size_t frame = 0; frame < detections.size(); ++frame) {
+    for (const YoloDetection& detection : detections[frame]) {
+      const auto index = static_cast<size_t>(detection.class_index);
+      if (!labels.are_kept[index]) continue;
+      boxes.push_back(
+          {"", static_cast<int>(frame), labels.names[index], detection.score, detection.box});
+    }
+  }
+  return boxes;
+}
+
+// The artefact header as comments: one line, then one per input.
+std::string Comments(const ArtefactInfo& info) {
+  nlohmann::json header = ArtefactHeader("detections", info);
+  const nlohmann::json inputs = header["inputs"];
+  header.erase("inputs");
+  std::string text = fmt::format("# {}\n", header.dump());
+  for (const nlohmann::json& input : inputs) text += fmt::format("# input {}\n", input.dump());
+  return text;
+}
+
+std::vector<std::string> ClassesOf(const NetworkFile& network, const StageFiles& files) {
+  if (files.contains("labels")) return ReadLabelFile(files.at("labels"));
+  auto names = ClassNames(network.header, network.name);
+  return names.empty() ? CocoLabels() : names;
+}
+
+// The options with the format in place of "auto": with them the same comes out again.
+DetectorOptions WithFormat(DetectorOptions options, const YoloFormat& format) {
+  options.output_layout = format.layout;
+  options.pixel_values = format.pixel_values;
+  options.input_width = format.input.width;
+  options.input_height = format.input.height;
+  return options;
+}
+
+}  // namespace
+
+void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads) {
+  const fs::path& dataset = files.at("dataset");
+  const NetworkFile network = ReadNetworkFile(files.at("network"));
+  const DetectorLabels labels = LabelsForDetector(ClassesOf(network, files), options);
+  const std::vector<fs::path> images = ImagePaths(dataset);
+  const YoloFormat format =
+      FindFormat(network, static_cast<int>(labels.names.size()), options,
+                 ReadColourImage(images.front(), options.image_orientation).size());
+  const AllDetections all = DetectAll(images, network, format, labels, options, threads);
+  CheckBoxesArePossible(all.tally, format, network.name);
+  const auto boxes = KeptBoxes(all.of_image, labels);
+  if (boxes.empty()) {
+    throw NothingUsableError(fmt::format(
+        "{}: nothing was detected in {} images with a score of at least {}{}; taken for {}: do "
+        "these and the labels suit the network?",
+        network.name, images.size(), options.min_score,
+        all.tally.boxes > 0
+            ? fmt::format(" ({} boxes of labels that are not kept)", all.tally.boxes)
+            : "",
+        format.Text()));
+  }
+  std::vector<fs::path> inputs = images;
+  inputs.insert(inputs.end(), {dataset / "rgb.txt", files.at("network")});
+  if (files.contains("labels")) inputs.push_back(files.at("labels"));
+  WriteTextFile(files.at("output"), Comments({OptionsToJson(WithFormat(options, format)), inputs}) +
+                                        LabelledBoxesText(boxes));
+  fmt::print("{}: {}\n{}: {} images, {} detections\n", network.name, format.Text(),
+             dataset.string(), images.size(), boxes.size());
+}
+
+}  // namespace soslam
