@@ -9,7 +9,10 @@ int main(int argc, char** argv) {
        .purpose = "Runs a YOLO network on every image of a dataset.",
        .inputs = {{"dataset", "dataset folder with rgb.txt and the images"},
                   {"network", "ONNX file of a YOLO network"},
-                  {"labels", "names of its classes, one a line; those in the network's file, or COCO's 80, when absent", false}},
+                  {"labels",
+                   "names of its classes, one a line; those in the network's file, or COCO's 80, "
+                   "when absent",
+                   false}},
        .outputs = {{"output", "detections.csv to write, without object ids"}},
        .example = "soslam-detect --dataset data/room_a --network yolov5s.onnx --output "
                   "detections.csv"},

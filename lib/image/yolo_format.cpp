@@ -88,7 +88,7 @@ LayoutOfShape CheckedFit(const NetworkFile& file, const Shape& shape, int classe
           ? fmt::format("[1, N, {}] (v5, yolox), [1, {}, N] (v8) or [1, N, 6] (end_to_end)",
                         5 + classes, 4 + classes)
           : fmt::format("the layout {}", kYoloLayoutNames[static_cast<int>(wanted)]),
-      fields > 0 && fields <= kMostFields
+      fields > 0 && fields <= kMostFields && fields != classes
           ? fmt::format(". If it has {} classes, --labels FILE names them", fields)
           : ""));
 }

@@ -49,6 +49,9 @@ TEST_F(YoloFormatTest, NetworksOfUltralytics) {
   ExpectFormat(Find(Ultralytics({1, 252, 7}).Onnx()), YoloLayout::kV5, rgb, {64, 64});
   ExpectFormat(Find(Ultralytics({1, 6, 84}).Onnx()), YoloLayout::kV8, rgb, {64, 64});
   ExpectFormat(Find(Ultralytics({1, 30, 6}).Onnx()), YoloLayout::kEndToEnd, rgb, {64, 64});
+  MeanNetwork wide = Ultralytics({1, 378, 7});
+  wide.input_width = 96;
+  ExpectFormat(Find(wide.Onnx()), YoloLayout::kV5, rgb, {96, 64});
   // One candidate a cell, but not YOLOX: it has names.
   ExpectFormat(Find(Ultralytics({1, 84, 7}).Onnx()), YoloLayout::kV5, rgb, {64, 64});
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -57,9 +59,15 @@ class OnnxGraph {
 
   OnnxGraph& Node(const std::string& type, const std::vector<std::string>& inputs,
                   const std::string& output, const std::vector<ProtoMessage>& attributes = {}) {
+    return Node(type, inputs, std::vector{output}, attributes);
+  }
+  OnnxGraph& Node(const std::string& type, const std::vector<std::string>& inputs,
+                  const std::vector<std::string>& outputs,
+                  const std::vector<ProtoMessage>& attributes) {
     ProtoMessage node;
     for (const std::string& input : inputs) node.Text(1, input);
-    node.Text(2, output).Text(3, output).Text(4, type);
+    for (const std::string& output : outputs) node.Text(2, output);
+    node.Text(3, outputs.front()).Text(4, type);
     for (const ProtoMessage& attribute : attributes) node.Message(5, attribute);
     graph_.Message(1, node);
     return *this;
@@ -159,38 +167,106 @@ struct MeanNetwork {
   std::string Onnx() const { return Graph().Onnx(metadata, opset); }
 };
 
-// The end of YOLOv8's graph as Ultralytics exports it, for an input of 64 x 64: boxes in cells
-// [1, 4, 84] by the pixels of a cell [1, 84], beside the scores' Sigmoid and, if there are masks,
-// their three coefficients. Boxes and logits do not depend on the image.
+// The head of YOLOv8's graph as Ultralytics exports it, with two classes, for an input of 64 x 64:
+// distances to the four sides as the mean of 16 bins, boxes in cells [1, 4, 84] by the pixels of a
+// cell [1, 84], beside the scores' Sigmoid and, if there are masks, their three coefficients. What
+// it finds does not depend on the image.
 struct V8Network {
-  std::vector<float> boxes;   // cx cy w h of 84 candidates in cells: all cx, then all cy, ...
-  std::vector<float> logits;  // likewise, two classes
-  std::vector<float> strides;
+  struct Found {
+    int stride;
+    float x_min, y_min, x_max, y_max;  // px, around the centre of the cell that contains the centre
+    int label;
+    float score;
+  };
+  std::vector<Found> found;
   bool has_masks = false;
   std::map<std::string, std::string> metadata = {};
 
   std::string Onnx() const {
     OnnxGraph graph;
-    graph.Input("images", {1, 3, 64, 64}).Output("output0", {1, has_masks ? 9 : 6, 84});
-    AddMeans("boxes", boxes, {}, "boxes_weights", &graph);
-    AddMeans("logits", logits, {}, "logits_weights", &graph);
-    graph.Int64s("shape_of_boxes", {1, 4, 84}).Int64s("shape_of_logits", {1, 2, 84});
-    graph.Floats("strides", {1, 84}, strides);
-    graph.Node("Reshape", {"boxes", "shape_of_boxes"}, "in_cells")
-        .Node("Mul", {"in_cells", "strides"}, "in_pixels")
-        .Node("Reshape", {"logits", "shape_of_logits"}, "scores_before")
-        .Node("Sigmoid", {"scores_before"}, "scores");
+    graph.Input("images", {1, 3, 64, 64}).Output("output0", {1, has_masks ? 9 : 6, kCells});
+    AddMeans("numbers", Numbers(), {}, "numbers_weights", &graph);
     const auto axis = OnnxGraph::Integer("axis", 1);
-    if (!has_masks)
-      return graph.Node("Concat", {"in_pixels", "scores"}, "output0", {axis}).Onnx(metadata);
-    AddMeans("coefficients", std::vector<float>(3 * 84, 7.0F), {}, "coefficients_weights", &graph);
-    graph.Int64s("shape_of_coefficients", {1, 3, 84})
+    graph.Int64s("shape", {1, kFields, kCells}).Node("Reshape", {"numbers", "shape"}, "fields");
+    graph.Node("Split", {"fields"}, std::vector<std::string>{"bins", "logits"},
+               {axis, OnnxGraph::Integers("split", {4 * kBins, 2})});
+    AddBoxes(axis, &graph);
+    graph.Node("Sigmoid", {"logits"}, "scores");
+    graph.Node("Concat", {"in_pixels", "scores"}, has_masks ? "detections" : "output0", {axis});
+    if (!has_masks) return graph.Onnx(metadata);
+    AddMeans("coefficients", std::vector<float>(3 * kCells, 7.0F), {}, "coefficients_weights",
+             &graph);
+    graph.Int64s("shape_of_coefficients", {1, 3, kCells})
         .Node("Reshape", {"coefficients", "shape_of_coefficients"}, "reshaped_coefficients")
-        .Node("Concat", {"in_pixels", "scores"}, "detections", {axis})
         .Node("Concat", {"detections", "reshaped_coefficients"}, "output0", {axis})
         .Node("GlobalAveragePool", {"images"}, "output1")
         .Output("output1", {1, 3, 1, 1});
     return graph.Onnx(metadata);
+  }
+
+ private:
+  static constexpr int kCells = 84, kBins = 16, kFields = 4 * kBins + 2;
+
+  // The logits of bins and classes, all candidates of one after the other.
+  std::vector<float> Numbers() const {
+    std::vector<float> numbers(kFields * kCells, -30.0F);
+    for (const Found& object : found) {
+      const auto cells = static_cast<float>(object.stride);
+      const int column = static_cast<int>((object.x_min + object.x_max) / (2 * cells));
+      const int row = static_cast<int>((object.y_min + object.y_max) / (2 * cells));
+      const int first = object.stride == 8 ? 0 : object.stride == 16 ? 64 : 80;
+      const int cell = first + row * (64 / object.stride) + column;
+      const auto at = [&](int field) -> float& {
+        return numbers[static_cast<size_t>(field * kCells + cell)];
+      };
+      const float x = static_cast<float>(column) + 0.5F, y = static_cast<float>(row) + 0.5F;
+      const std::array<float, 4> sides = {x - object.x_min / cells, y - object.y_min / cells,
+                                          object.x_max / cells - x, object.y_max / cells - y};
+      for (int side = 0; side < 4; ++side) {
+        const float distance = sides[static_cast<size_t>(side)];
+        const int bin = static_cast<int>(distance);
+        const float rest = distance - static_cast<float>(bin);
+        at(side * kBins + bin) = std::log(1.0F - rest);
+        at(side * kBins + bin + 1) = std::log(std::max(rest, 1e-9F));
+      }
+      at(4 * kBins + object.label) = std::log(object.score / (1.0F - object.score));
+    }
+    return numbers;
+  }
+
+  static void AddBoxes(const ProtoMessage& axis, OnnxGraph* graph) {
+    std::vector<float> anchors_x, anchors_y, strides, bins;
+    for (const int stride : {8, 16, 32}) {
+      const int side = 64 / stride;
+      for (int cell = 0; cell < side * side; ++cell) {
+        anchors_x.push_back(static_cast<float>(cell % side) + 0.5F);
+        anchors_y.push_back(static_cast<float>(cell / side) + 0.5F);
+        strides.push_back(static_cast<float>(stride));
+      }
+    }
+    for (int bin = 0; bin < kBins; ++bin) bins.push_back(static_cast<float>(bin));
+    std::vector<float> anchors = anchors_x;
+    anchors.insert(anchors.end(), anchors_y.begin(), anchors_y.end());
+    graph->Floats("anchors", {1, 2, kCells}, anchors).Floats("strides", {1, kCells}, strides);
+    graph->Floats("bin_numbers", {1, kBins, 1, 1}, bins).Floats<float>("two", {}, {2.0F});
+    graph->Int64s("shape_of_bins", {1, 4, kBins, kCells}).Int64s("shape_of_sides", {1, 4, kCells});
+    graph->Int64s("axes", {1}).Int64s("at0", {0}).Int64s("at2", {2}).Int64s("at4", {4});
+    graph->Node("Reshape", {"bins", "shape_of_bins"}, "bins_of_sides")
+        .Node("Transpose", {"bins_of_sides"}, "sides_of_bins",
+              {OnnxGraph::Integers("perm", {0, 2, 1, 3})})
+        .Node("Softmax", {"sides_of_bins"}, "weights_of_bins", {axis})
+        .Node("Conv", {"weights_of_bins", "bin_numbers"}, "mean_bins",
+              {OnnxGraph::Integers("kernel_shape", {1, 1})})
+        .Node("Reshape", {"mean_bins", "shape_of_sides"}, "sides")
+        .Node("Slice", {"sides", "at0", "at2", "axes"}, "left_top")
+        .Node("Slice", {"sides", "at2", "at4", "axes"}, "right_bottom")
+        .Node("Sub", {"anchors", "left_top"}, "min")
+        .Node("Add", {"anchors", "right_bottom"}, "max")
+        .Node("Add", {"min", "max"}, "sum")
+        .Node("Div", {"sum", "two"}, "centres")
+        .Node("Sub", {"max", "min"}, "sizes")
+        .Node("Concat", {"centres", "sizes"}, "in_cells", {axis})
+        .Node("Mul", {"in_cells", "strides"}, "in_pixels");
   }
 };
 
