@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "base/error.h"
@@ -121,18 +122,27 @@ struct Probe {
   cv::Mat output;
 };
 
-Probe RunProbe(const NetworkFile& file, const std::vector<cv::Size>& sizes) {
-  for (const cv::Size& size : sizes) CheckDoesNotCrash(file, size);
-  for (size_t i = 0;; ++i) {
-    const bool is_last = i + 1 == sizes.size();
+// Tries the sizes in turn; throws InputError when OpenCV does not run the last one either.
+Probe RunProbe(const NetworkFile& file, std::vector<cv::Size> sizes) {
+  std::erase_if(sizes, [&, last = sizes.back()](const cv::Size& size) {
+    const auto crash = CrashOfNetwork(file, size);
+    if (!crash || size != last) return crash.has_value();
+    throw InputError(fmt::format(
+        "{}: OpenCV {} ends with {} when it loads or runs this network on an input of {} x {} "
+        "pixels; expected an intact ONNX file",
+        file.name, CV_VERSION, *crash, size.width, size.height));
+  });
+  for (const cv::Size& size : sizes) {
+    const bool is_last = size == sizes.back();
     try {
-      const cv::Mat blank(sizes[i], CV_8UC3, cv::Scalar::all(0));
+      const cv::Mat blank(size, CV_8UC3, cv::Scalar::all(0));
       const cv::Mat output = YoloNetwork(file).Forward(blank, PixelValues::kRgbUnit);
-      if (is_last || output.size[1] == YoloCells(sizes[i])) return {sizes[i], output};
+      if (is_last || output.size[1] == YoloCells(size)) return {size, output};
     } catch (const InputError&) {
       if (is_last) throw;
     }
   }
+  throw std::logic_error("there is no size of input to try");
 }
 
 // True for YOLOv6, whose output has an objectness that is always 1.

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/dnn/dnn.hpp>
+#include <optional>
 #include <string>
 
 #include "image/onnx_header.h"
@@ -45,9 +46,9 @@ class YoloNetwork {
   bool has_repeated_ = false;  // RepeatStrides was tried
 };
 
-// Runs a network on a uniform image of this size in a child process. Throws InputError when OpenCV
-// crashes: it trusts what network files state about their layers. Must not be called while other
-// threads are running.
-void CheckDoesNotCrash(const NetworkFile& file, const cv::Size& input);
+// Runs a network on a uniform image of this size in a child process, as OpenCV trusts what network
+// files state about their layers. Returns how it crashed; none if it ended by itself. Must not be
+// called while other threads are running.
+std::optional<std::string> CrashOfNetwork(const NetworkFile& file, const cv::Size& input);
 
 }  // namespace soslam

@@ -123,6 +123,9 @@ TEST_F(YoloFormatTest, OtherTasksAndInputsAreRefused) {
   }
   OnnxGraph graph = Ultralytics({1, 252, 7}).Graph();
   ExpectRefused(graph.Input("sizes", {1, 2}).Onnx(), {"net.onnx", "2 inputs"});
+  OnnxGraph bytes;
+  constexpr int kUint8 = 2;
+  ExpectRefused(bytes.Input("images", {1, 3, 64, 64}, kUint8).Onnx(), {"type 2"});
   OnnxGraph last_channel;
   ExpectRefused(last_channel.Input("images", {1, 64, 64, 3}).Onnx(), {"[1, 64, 64, 3]"});
 }
