@@ -76,7 +76,7 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
                                               : std::map<int, UpEstimate>()),
       boxes_(sequence, options),
       labels_(LabelsOf(sequence), options),
-      moving_labels_(ListedLabels(options.moving_labels)) {}
+      moving_labels_(ParseLabelGroups("moving_labels", options.moving_labels)) {}
 
 namespace {
 
@@ -248,7 +248,10 @@ bool AssociationModel::Moves(const Track& track) const {
   double all = 0.0;
   for (const auto& [label, score] : track.votes) {
     all += score;
-    if (moving_labels_.contains(label)) moving += score;
+    const auto lists = [&](const auto& group) {
+      return std::ranges::find(group, label) != group.end();
+    };
+    if (std::ranges::any_of(moving_labels_, lists)) moving += score;
   }
   return 2.0 * moving > all;
 }

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -155,7 +154,7 @@ class AssociationModel {
   std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
   BoxLikelihood boxes_;
   LabelConfusion labels_;
-  std::set<std::string> moving_labels_;
+  std::vector<std::vector<std::string>> moving_labels_;
 };
 
 // Agreement of the estimated objects with the objects given in the sequence.

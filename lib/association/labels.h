@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "association/options.h"
+#include "model/label_groups.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
 // Sum of detection scores, keyed by label.
 using LabelVotes = std::map<std::string, double>;
-
-// Labels of 'a, b, c'.
-std::set<std::string> ListedLabels(const std::string& text);
 
 // Label confusion model of the detector: the probability of each name that it gives to an object of
 // a label. All labels of a group of interchangeable_labels count as one.
@@ -41,12 +39,10 @@ class LabelConfusion {
   double CostOfVotes(const LabelVotes& votes, const std::string& of_object) const;
 
  private:
-  // Representative of all labels that are interchangeable with this one.
-  const std::string& Group(const std::string& label) const;
   // The other groups of labels that are similar to a label.
   std::set<std::string> SimilarGroups(const std::string& label) const;
 
-  std::map<std::string, std::string> groups_;
+  LabelGroups groups_;
   std::vector<std::vector<std::string>> similar_;
   std::set<std::string> detected_groups_;
   double probability_;          // of a label that is neither the object's nor similar to it, in sum
