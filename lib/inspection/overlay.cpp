@@ -28,30 +28,18 @@ std::string CaptionOf(const Object& object) {
   return fmt::format("{} {}", object.id, object.label);
 }
 
-// A point of a landmark, given in multiples of the half axes.
-Eigen::Vector3d PointOf(const Landmark& landmark, const Eigen::Vector3d& multiples) {
-  return landmark.frame_from_object * landmark.half_axes.cwiseProduct(multiples);
-}
-
 void DrawAxes(const Landmark& landmark_in_camera, const Stroke& front, const Stroke& others,
               Canvas* canvas) {
   const Eigen::Vector3d& centre = landmark_in_camera.Centre();
-  canvas->Segment(centre, PointOf(landmark_in_camera, Eigen::Vector3d::UnitY()), others);
-  canvas->Segment(centre, PointOf(landmark_in_camera, Eigen::Vector3d::UnitZ()), others);
-  canvas->Arrow(centre, PointOf(landmark_in_camera, Eigen::Vector3d::UnitX()), front);
+  canvas->Segment(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitY()), others);
+  canvas->Segment(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitZ()), others);
+  canvas->Arrow(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitX()), front);
 }
 
 void DrawCircumscribedBox(const Landmark& landmark_in_camera, const Stroke& stroke,
                           Canvas* canvas) {
-  // Corner i has the sign of axis k in bit k; edges join corners that differ in one bit.
-  const auto corner = [&](int i) {
-    return PointOf(landmark_in_camera,
-                   {i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
-  };
-  for (int i = 0; i < 8; ++i) {
-    for (const int bit : {1, 2, 4}) {
-      if ((i & bit) == 0) canvas->Segment(corner(i), corner(i | bit), stroke);
-    }
+  for (const auto& [start, end] : UnitCuboidEdges()) {
+    canvas->Segment(PointAt(landmark_in_camera, start), PointAt(landmark_in_camera, end), stroke);
   }
 }
 

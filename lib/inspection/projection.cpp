@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
 
 namespace soslam {
 namespace {
 
-constexpr int kOutlineDirections = 90;
 constexpr double kOutlineTolerancePx = 0.5;
 constexpr double kGridSpacingM = 0.5;
 constexpr double kGridMarginM = 0.5;  // around the contact points
@@ -18,27 +16,20 @@ constexpr double kGridMarginM = 0.5;  // around the contact points
 
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera) {
   if (!IsInFront(landmark_in_camera)) return {};
-  std::vector<cv::Point2f> touched;
-  const auto touch = [&](const Eigen::Vector3d& point_in_camera) {
-    const auto pixel = camera.Project(point_in_camera);
-    if (pixel) touched.emplace_back(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
-  };
+  std::vector<Eigen::Vector3d> points_in_camera;
   if (landmark_in_camera.shape_exponent == kCuboidExponent) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3d signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      touch(landmark_in_camera.frame_from_object *
-            Eigen::Vector3d(signs.cwiseProduct(landmark_in_camera.half_axes)));
+    for (const LineSegment3& edge : UnitCuboidEdges()) {
+      for (const Eigen::Vector3d& corner : edge) {
+        points_in_camera.push_back(PointAt(landmark_in_camera, corner));
+      }
     }
   } else {
-    Eigen::Vector3d last = landmark_in_camera.Centre();
-    for (int i = 0; i < kOutlineDirections; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-      const auto end =
-          FindSilhouettePoint(camera, landmark_in_camera, {std::cos(angle), std::sin(angle)}, last);
-      if (!end) continue;
-      last = end->point;
-      touch(last);
-    }
+    points_in_camera = SilhouettePoints(camera, landmark_in_camera);
+  }
+  std::vector<cv::Point2f> touched;
+  for (const Eigen::Vector3d& point : points_in_camera) {
+    const Eigen::Vector2f pixel = camera.Project(point)->cast<float>();
+    touched.emplace_back(pixel.x(), pixel.y());
   }
   std::vector<cv::Point2f> hull, simple;
   cv::convexHull(touched, hull);
@@ -54,9 +45,7 @@ std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
   if (!centre) return std::nullopt;
   std::array<LineSegment2, 3> axes;
   for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d end_in_object =
-        landmark_in_camera.half_axes[i] * Eigen::Vector3d::Unit(i);
-    const auto end = camera.Project(landmark_in_camera.frame_from_object * end_in_object);
+    const auto end = camera.Project(PointAt(landmark_in_camera, Eigen::Vector3d::Unit(i)));
     if (!end) return std::nullopt;
     axes[static_cast<size_t>(i)] = {*centre, *end};
   }

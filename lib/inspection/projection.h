@@ -8,12 +8,12 @@
 
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
+#include "geometry/wireframe.h"
 
 namespace soslam {
 
 using Polygon = std::vector<Eigen::Vector2d>;         // px, closed by its first point
 using LineSegment2 = std::array<Eigen::Vector2d, 2>;  // px
-using LineSegment3 = std::array<Eigen::Vector3d, 2>;  // m
 
 // The silhouette of the landmark in the image, from its corners or 90 directions; empty unless the
 // whole landmark is in front of the camera.

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation/model_edges.h"
 
-#include <cmath>
-#include <numbers>
+#include <optional>
+
+#include "geometry/wireframe.h"
 
 namespace soslam {
 namespace {
 
 // Up to this shape exponent an object has edges of its own, beyond it only a silhouette.
 constexpr double kMaxEdgyExponent = 1.3;
-constexpr int kOutlineDirections = 90;
 
 class PointSampler {
  public:
@@ -36,8 +36,7 @@ class PointSampler {
 
  private:
   std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& in_unit_body) const {
-    return camera_.Project(landmark_.frame_from_object *
-                           landmark_.half_axes.cwiseProduct(in_unit_body));
+    return camera_.Project(PointAt(landmark_, in_unit_body));
   }
 
   const Camera& camera_;
@@ -47,37 +46,20 @@ class PointSampler {
 };
 
 void AddCuboidEdges(const Eigen::Vector3d& camera_in_unit_body, PointSampler* sampler) {
-  for (int along = 0; along < 3; ++along) {
-    const int i = (along + 1) % 3;
-    const int j = (along + 2) % 3;
-    for (const double sign_i : {-1.0, 1.0}) {
-      for (const double sign_j : {-1.0, 1.0}) {
-        const bool visible =
-            sign_i * camera_in_unit_body[i] > 1.0 || sign_j * camera_in_unit_body[j] > 1.0;
-        if (!visible) continue;
-        Eigen::Vector3d start;
-        start[along] = -1.0;
-        start[i] = sign_i;
-        start[j] = sign_j;
-        Eigen::Vector3d end = start;
-        end[along] = 1.0;
-        sampler->AddSegment(start, end);
-      }
+  for (const auto& [start, end] : UnitCuboidEdges()) {
+    bool visible = false;
+    for (int i = 0; i < 3; ++i) {
+      visible |= start[i] == end[i] && start[i] * camera_in_unit_body[i] > 1.0;
     }
+    if (visible) sampler->AddSegment(start, end);
   }
 }
 
 void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sampler) {
   const Rigid3d object_from_camera = landmark.frame_from_object.Inverse();
-  std::vector<Eigen::Vector3d> contacts;
-  Eigen::Vector3d last = landmark.Centre();
-  for (int i = 0; i < kOutlineDirections; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kOutlineDirections;
-    const auto end =
-        FindSilhouettePoint(camera, landmark, {std::cos(angle), std::sin(angle)}, last);
-    if (!end) return;
-    last = end->point;
-    contacts.push_back((object_from_camera * last).cwiseQuotient(landmark.half_axes));
+  std::vector<Eigen::Vector3d> contacts = SilhouettePoints(camera, landmark);
+  for (Eigen::Vector3d& contact : contacts) {
+    contact = (object_from_camera * contact).cwiseQuotient(landmark.half_axes);
   }
   for (size_t i = 0; i < contacts.size(); ++i) {
     sampler->AddSegment(contacts[i], contacts[(i + 1) % contacts.size()]);

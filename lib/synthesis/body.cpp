@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/wireframe.h"
+
 namespace soslam {
 namespace {
 
@@ -65,12 +67,12 @@ Box Union(const Box& first, const Box& second) {
 std::optional<Box> CuboidOutline(const Camera& camera, const Landmark& landmark_in_camera) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Box box = {kInfinity, kInfinity, -kInfinity, -kInfinity};
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d signs(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    const auto pixel = camera.Project(landmark_in_camera.frame_from_object *
-                                      signs.cwiseProduct(landmark_in_camera.half_axes));
-    if (!pixel) return std::nullopt;
-    box = Union(box, {pixel->x(), pixel->y(), pixel->x(), pixel->y()});
+  for (const LineSegment3& edge : UnitCuboidEdges()) {
+    for (const Eigen::Vector3d& corner : edge) {
+      const auto pixel = camera.Project(PointAt(landmark_in_camera, corner));
+      if (!pixel) return std::nullopt;
+      box = Union(box, {pixel->x(), pixel->y(), pixel->x(), pixel->y()});
+    }
   }
   return box;
 }

@@ -148,45 +148,6 @@ TEST(BodySurface, MissesBesideBehindAndFromInside) {
   }
 }
 
-Eigen::Vector3d At(const BatchOfVectors& vectors, int i) {
-  return {vectors[0][i], vectors[1][i], vectors[2][i]};
-}
-
-// Rays of all kinds from one origin, also from between the body and the cuboid around it.
-TEST(BodySurface, ManyRaysMeetItWhereEachDoes) {
-  for (const double p :
-       {kCuboidExponent, 1.0051, 1.02, 1.1, 1.3, 1.4, 1.5, 2.0 - 1e-9, kEllipsoidExponent}) {
-    int seen = 0;
-    for (int repetition = 0; repetition < 50; ++repetition) {
-      const Eigen::Vector3d half_axes = RandomVector(0.2, 1.0);
-      const BodySurface surface(half_axes, p);
-      const Eigen::Vector3d corner(0.998, -0.999, 0.997);  // outside of all but the cuboid
-      const Eigen::Vector3d origin = repetition % 2 == 0
-                                         ? RandomUniform(2.0, 4.0) * RandomDirection()
-                                         : Eigen::Vector3d(half_axes.cwiseProduct(corner));
-      RayBatch rays;
-      for (int i = 0; i < kBatchSize; ++i) {
-        const Eigen::Vector3d towards = half_axes.cwiseProduct(RandomVector(-1.2, 1.2)) - origin;
-        for (size_t k = 0; k < 3; ++k) rays.direction[k][i] = towards[static_cast<int>(k)];
-      }
-      surface.Meet(origin, &rays);
-      for (int i = 0; i < kBatchSize; ++i) {
-        const Eigen::Vector3d direction = At(rays.direction, i);
-        const auto expected = surface.Entry(origin, direction);
-        ASSERT_EQ(rays.depth[i] > 0.0, expected.has_value()) << p;
-        if (!expected) continue;
-        ++seen;
-        EXPECT_NEAR(rays.depth[i], *expected, 1e-9 * *expected) << p;
-        const Eigen::Vector3d point = At(rays.point, i);
-        EXPECT_LT((point - (origin + rays.depth[i] * direction)).norm(), 1e-12) << p;
-        const Eigen::Vector3d gradient = surface.Gradient(point);
-        EXPECT_LT((At(rays.gradient, i) - gradient).norm(), 1e-7 * gradient.norm()) << p;
-      }
-    }
-    EXPECT_GT(seen, 500) << p;
-  }
-}
-
 TEST(BodySurface, IsSeenFromInsideTheCuboidAroundIt) {
   for (const double p : {1.02, 1.1, 1.5, 2.0}) {
     const BodySurface surface({0.5, 0.6, 0.7}, p);
