@@ -56,7 +56,7 @@ json TrackToJson(const Track& track, int index) {
           {"merge", merge},
           {"linked_detections", track.linked},
           {"detections", track.detections.size()},
-          {"frames_in_sight", OrNull(track.frames_in_sight)}};
+          {"frames_in_sight", track.frames_in_sight}};
 }
 
 json ObjectToJson(const Sequence& sequence, const Association& association,
@@ -77,9 +77,9 @@ json AgreementToJson(const Agreement& agreement) {
   return {{"objects", agreement.given_of_object.size()},
           {"given_objects", agreement.given_objects},
           {"matched", agreement.matched},
-          {"precision", OrNull(agreement.Precision())},
-          {"recall", OrNull(agreement.Recall())},
-          {"f1", OrNull(agreement.F1())}};
+          {"precision", agreement.Precision()},
+          {"recall", agreement.Recall()},
+          {"f1", agreement.F1()}};
 }
 
 }  // namespace

@@ -11,6 +11,12 @@
 #include "base/error.h"
 
 namespace soslam {
+
+// Before version 1.1 there was no bias of the detector.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SolverSummary, initial_cost, final_cost, iterations,
+                                                converged, cost_per_iteration, residuals, gated,
+                                                detector_bias_px)
+
 namespace {
 
 using nlohmann::json;
@@ -152,37 +158,13 @@ std::vector<Plane> PlanesFromJson(const json& map, const Sequence& sequence) {
   return planes;
 }
 
-json SolverToJson(const SolverSummary& solver) {
-  return {{"initial_cost", solver.initial_cost},
-          {"final_cost", solver.final_cost},
-          {"iterations", solver.iterations},
-          {"converged", solver.converged},
-          {"cost_per_iteration", solver.cost_per_iteration},
-          {"residuals", solver.residuals},
-          {"gated", solver.gated},
-          {"detector_bias_px", solver.detector_bias_px}};
-}
-
-SolverSummary SolverFromJson(const json& json) {
-  SolverSummary solver;
-  json.at("initial_cost").get_to(solver.initial_cost);
-  json.at("final_cost").get_to(solver.final_cost);
-  json.at("iterations").get_to(solver.iterations);
-  json.at("converged").get_to(solver.converged);
-  json.at("cost_per_iteration").get_to(solver.cost_per_iteration);
-  json.at("residuals").get_to(solver.residuals);
-  json.at("gated").get_to(solver.gated);
-  solver.detector_bias_px = json.value("detector_bias_px", solver.detector_bias_px);
-  return solver;
-}
-
 }  // namespace
 
 MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence) {
   return ReadArtefactAs(path, "map", [&](const json& json) {
     return MapEstimate{ObjectEstimatesFromJson(json.at("objects"), sequence),
                        TrajectoryFromJson(json.at("trajectory"), sequence),
-                       PlanesFromJson(json, sequence), SolverFromJson(json.at("solver"))};
+                       PlanesFromJson(json, sequence), json.at("solver").get<SolverSummary>()};
   });
 }
 
@@ -192,7 +174,7 @@ void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const S
                 {{"objects", ObjectEstimatesToJson(map.objects, sequence)},
                  {"trajectory", TrajectoryToJson(map.world_from_camera, sequence)},
                  {"planes", PlanesToJson(map.planes_in_world, sequence)},
-                 {"solver", SolverToJson(map.solver)}});
+                 {"solver", map.solver}});
 }
 
 }  // namespace soslam

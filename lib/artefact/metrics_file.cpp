@@ -5,6 +5,23 @@
 #include "artefact/model_json.h"
 
 namespace soslam {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MetricsSummary, objects, observations, iou_mean, iou_median,
+                                   rotation_deg_mean, rotation_deg_median, yaw_error_deg_mean,
+                                   yaw_error_deg_median)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrajectoryMetrics, ate_rmse_m, odometry_ate_rmse_m)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FoundSummary, iou_mean, centre_m_mean, centre_relative_mean,
+                                   log_size_mean, log_size_abs_mean, log_scale_mean,
+                                   log_scale_abs_mean, yaw_error_deg_mean, up_error_deg_mean,
+                                   plane_offset_m_abs_mean, plane_tilt_deg_mean, quarter_turned,
+                                   labels_agree, ids_known, ids_agree)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MapScore, min_iou, true_objects, detectable, landmarks, ignored,
+                                   found, found_detectable, precision, recall, f1,
+                                   recall_of_detectable, f1_of_detectable, of_found)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftSummary, landmarks, iou_mean, iou_mean_in_world,
+                                   centre_m_median, centre_m_median_in_world)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InFrames, observations, iou_mean, centre_m_mean)
+
 namespace {
 
 using nlohmann::json;
@@ -16,53 +33,7 @@ json AlignmentToJson(int segment, const Alignment& alignment) {
           {"scale", alignment.scale},
           {"truth_from_scaled", alignment.truth_from_scaled},
           {"frames", alignment.frames},
-          {"rmse_m", OrNull(alignment.rmse_m)}};
-}
-
-json PerAxis(const std::array<std::optional<double>, 3>& values) {
-  return {OrNull(values[0]), OrNull(values[1]), OrNull(values[2])};
-}
-
-json FoundToJson(const FoundSummary& found) {
-  return {{"iou_mean", OrNull(found.iou_mean)},
-          {"centre_m_mean", OrNull(found.centre_m_mean)},
-          {"centre_relative_mean", OrNull(found.centre_relative_mean)},
-          {"log_size_mean", PerAxis(found.log_size_mean)},
-          {"log_size_abs_mean", PerAxis(found.log_size_abs_mean)},
-          {"log_scale_mean", OrNull(found.log_scale_mean)},
-          {"log_scale_abs_mean", OrNull(found.log_scale_abs_mean)},
-          {"yaw_error_deg_mean", OrNull(found.yaw_deg_mean)},
-          {"up_error_deg_mean", OrNull(found.up_deg_mean)},
-          {"plane_offset_m_abs_mean", OrNull(found.plane_offset_m_abs_mean)},
-          {"plane_tilt_deg_mean", OrNull(found.plane_tilt_deg_mean)},
-          {"quarter_turned", found.quarter_turned},
-          {"labels_agree", found.labels_agree},
-          {"ids_known", found.ids_known},
-          {"ids_agree", found.ids_agree}};
-}
-
-json ScoreToJson(const MapScore& score) {
-  return {{"min_iou", score.min_iou},
-          {"true_objects", score.true_objects},
-          {"detectable", score.detectable},
-          {"landmarks", score.landmarks},
-          {"ignored", score.ignored},
-          {"found", score.found},
-          {"found_detectable", score.found_detectable},
-          {"precision", OrNull(score.precision)},
-          {"recall", OrNull(score.recall)},
-          {"f1", OrNull(score.f1)},
-          {"recall_of_detectable", OrNull(score.recall_of_detectable)},
-          {"f1_of_detectable", OrNull(score.f1_of_detectable)},
-          {"of_found", FoundToJson(score.of_found)}};
-}
-
-json InFramesToJson(const DriftSummary& summary) {
-  return {{"landmarks", summary.landmarks},
-          {"iou_mean", OrNull(summary.iou_in_frames)},
-          {"iou_mean_in_world", OrNull(summary.iou_in_world)},
-          {"centre_m_median", OrNull(summary.centre_m_in_frames)},
-          {"centre_m_median_in_world", OrNull(summary.centre_m_in_world)}};
+          {"rmse_m", alignment.rmse_m}};
 }
 
 // Adds the reason why a row is missed or false; null where it is neither.
@@ -93,7 +64,7 @@ json ErrorsToJson(const BodyErrors& errors) {
           {"centre_relative", errors.centre_relative},
           {"log_size", {errors.log_size.x(), errors.log_size.y(), errors.log_size.z()}},
           {"log_scale", errors.log_scale},
-          {"yaw_error_deg", OrNull(errors.yaw_deg)},
+          {"yaw_error_deg", errors.yaw_deg},
           {"up_error_deg", errors.up_deg},
           {"quarter_turned", errors.is_quarter_turned}};
 }
@@ -108,20 +79,15 @@ json LandmarkRowToJson(const LandmarkRow& row, const Sequence& sequence) {
                  {"plane_offset_m", row.plane ? json(row.plane->offset_m) : json()},
                  {"plane_tilt_deg", row.plane ? json(row.plane->tilt_deg) : json()},
                  {"label_agrees", row.errors ? json(row.label_agrees) : json()},
-                 {"id_agrees", OrNull(row.id_agrees)},
+                 {"id_agrees", row.id_agrees},
                  {"wrong_part", json()},
-                 {"in_frames", json()}};
+                 {"in_frames", row.in_frames}};
   if (row.true_index) {
     fields["true_object"] = sequence.true_objects[static_cast<size_t>(*row.true_index)].id;
   }
   if (row.wrong) {
     fields["wrong_part"] = {{"part", kBodyPartNames[static_cast<size_t>(row.wrong->part)]},
                             {"iou_corrected", row.wrong->iou}};
-  }
-  if (row.in_frames) {
-    fields["in_frames"] = {{"observations", row.in_frames->observations},
-                           {"iou_mean", row.in_frames->iou},
-                           {"centre_m_mean", row.in_frames->centre_m}};
   }
   AddExplanation(row.why_false, &fields);
   return fields;
@@ -138,8 +104,8 @@ json CountsToJson(const std::map<MapReason, int>& counts) {
 // The field "map_quality" of metrics.json.
 json MapQualityToJson(const MapQuality& quality, const Sequence& sequence) {
   json fields = {{"alignments", json::array()},
-                 {"scores", json::array()},
-                 {"in_frames", InFramesToJson(quality.in_frames)},
+                 {"scores", quality.scores},
+                 {"in_frames", quality.in_frames},
                  {"objects", json::array()},
                  {"landmarks", json::array()},
                  {"misses", CountsToJson(quality.misses)},
@@ -147,7 +113,6 @@ json MapQualityToJson(const MapQuality& quality, const Sequence& sequence) {
   for (const auto& [segment, alignment] : quality.alignments.of_segment) {
     fields["alignments"].push_back(AlignmentToJson(segment, alignment));
   }
-  for (const MapScore& score : quality.scores) fields["scores"].push_back(ScoreToJson(score));
   for (const TrueObjectRow& row : quality.objects) {
     fields["objects"].push_back(ObjectToJson(row, quality, sequence));
   }
@@ -157,68 +122,52 @@ json MapQualityToJson(const MapQuality& quality, const Sequence& sequence) {
   return fields;
 }
 
-nlohmann::json ToJson(const MetricsSummary& summary) {
-  return {{"objects", summary.objects},
-          {"observations", summary.observations},
-          {"iou_mean", OrNull(summary.iou_mean)},
-          {"iou_median", OrNull(summary.iou_median)},
-          {"rotation_deg_mean", OrNull(summary.rotation_deg_mean)},
-          {"rotation_deg_median", OrNull(summary.rotation_deg_median)},
-          {"yaw_error_deg_mean", OrNull(summary.yaw_error_deg_mean)},
-          {"yaw_error_deg_median", OrNull(summary.yaw_error_deg_median)}};
-}
-
-nlohmann::json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
+json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
   const Object& object = sequence.objects[static_cast<size_t>(metrics.object_index)];
   return {{"object", object.id},
           {"label", object.label},
           {"observations", metrics.observations},
           {"estimates", metrics.estimates},
-          {"iou", metrics.observations > 0 ? nlohmann::json(metrics.iou) : nlohmann::json()},
-          {"centre_m", OrNull(metrics.centre_m)},
-          {"rotation_deg", OrNull(metrics.rotation_deg)},
-          {"yaw_error_deg", OrNull(metrics.yaw_deg)}};
+          {"iou", metrics.observations > 0 ? json(metrics.iou) : json()},
+          {"centre_m", metrics.centre_m},
+          {"rotation_deg", metrics.rotation_deg},
+          {"yaw_error_deg", metrics.yaw_deg}};
 }
 
-nlohmann::json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
-  nlohmann::json json = {{"frames", metrics.frames},
-                         {"min_iou", kMinHeldOutIou},
-                         {"detections", metrics.detections},
-                         {"detections_matched", metrics.detections_matched},
-                         {"in_sight", metrics.in_sight},
-                         {"in_sight_matched", metrics.in_sight_matched},
-                         {"iou_mean", OrNull(metrics.iou_mean)},
-                         {"iou_median", OrNull(metrics.iou_median)},
-                         {"iou_mean_of_detections", OrNull(metrics.iou_mean_of_detections)},
-                         {"objects", nlohmann::json::array()}};
+json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
+  json fields = {{"frames", metrics.frames},
+                 {"min_iou", kMinHeldOutIou},
+                 {"detections", metrics.detections},
+                 {"detections_matched", metrics.detections_matched},
+                 {"in_sight", metrics.in_sight},
+                 {"in_sight_matched", metrics.in_sight_matched},
+                 {"iou_mean", metrics.iou_mean},
+                 {"iou_median", metrics.iou_median},
+                 {"iou_mean_of_detections", metrics.iou_mean_of_detections},
+                 {"objects", json::array()}};
   for (const HeldOutObject& one : metrics.objects) {
     const Object& object = sequence.objects[static_cast<size_t>(one.object_index)];
-    json["objects"].push_back({{"object", object.id},
-                               {"label", object.label},
-                               {"in_sight", one.in_sight},
-                               {"in_sight_matched", one.in_sight_matched},
-                               {"matched", one.matched},
-                               {"iou_mean", OrNull(one.iou_mean)}});
+    fields["objects"].push_back({{"object", object.id},
+                                 {"label", object.label},
+                                 {"in_sight", one.in_sight},
+                                 {"in_sight_matched", one.in_sight_matched},
+                                 {"matched", one.matched},
+                                 {"iou_mean", one.iou_mean}});
   }
-  return json;
+  return fields;
 }
 
 }  // namespace
 
 void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
                   const Sequence& sequence, const ArtefactInfo& info) {
-  nlohmann::json body = {{"dataset", sequence.name},
-                         {"summary", ToJson(metrics.summary)},
-                         {"first_observation", nlohmann::json()},
-                         {"objects", nlohmann::json::array()},
-                         {"trajectory", nlohmann::json()}};
-  if (metrics.first_observation) body["first_observation"] = ToJson(*metrics.first_observation);
+  json body = {{"dataset", sequence.name},
+               {"summary", metrics.summary},
+               {"first_observation", metrics.first_observation},
+               {"objects", json::array()},
+               {"trajectory", metrics.trajectory}};
   for (const ObjectMetrics& object : metrics.objects) {
     body["objects"].push_back(ToJson(object, sequence));
-  }
-  if (metrics.trajectory) {
-    body["trajectory"] = {{"ate_rmse_m", metrics.trajectory->ate_rmse_m},
-                          {"odometry_ate_rmse_m", metrics.trajectory->odometry_ate_rmse_m}};
   }
   if (metrics.held_out) body["held_out"] = ToJson(*metrics.held_out, sequence);
   if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;

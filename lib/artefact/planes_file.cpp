@@ -25,7 +25,7 @@ json HoldingToJson(const PlanesEstimate& estimate) {
                      {"verticals", one.verticals},
                      {"cost", one.cost},
                      {"probability", one.probability},
-                     {"planes", OrNull(one.planes)}});
+                     {"planes", one.planes}});
   }
   return {{"held", NameOf(estimate.holding)},
           {"verticals", estimate.verticals},
@@ -55,9 +55,9 @@ json SupportToJson(const ObjectSupport& support, const Object& object) {
           {"label", object.label},
           {"plane", support.reason == SupportReason::kNone ? json() : json(support.plane_index)},
           {"reason", kSupportReasonNames[static_cast<size_t>(support.reason)]},
-          {"height_m", OrNull(support.height)},
-          {"height_sigma_m", OrNull(support.height_sigma)},
-          {"cost", OrNull(support.cost)}};
+          {"height_m", support.height},
+          {"height_sigma_m", support.height_sigma},
+          {"cost", support.cost}};
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estima
                {"planes", json::array()},
                {"objects", json::array()},
                {"up_of_cameras_in_world", VectorToJson(estimate.up_of_cameras)},
-               {"cost", OrNull(estimate.cost)},
+               {"cost", estimate.cost},
                {"rounds", estimate.rounds},
                {"settled", estimate.settled}};
   if (!estimate.holdings.empty()) body["camera_holding"] = HoldingToJson(estimate);

@@ -146,7 +146,7 @@ void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
                          {"libraries", record.software.libraries},
                          {"settings", record.settings ? SettingsToJson(*record.settings) : json()},
                          {"allow_outside_paths", record.allow_outside_paths},
-                         {"seed", OrNull(record.seed)},
+                         {"seed", record.seed},
                          {"called_in", record.called_in.string()},
                          {"folders", folders},
                          {"inputs", FilesToJson(record.inputs)},

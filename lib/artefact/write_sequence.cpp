@@ -145,8 +145,8 @@ json RejectedToJson(const Sequence& sequence) {
     const Box& box = rejected.box;
     fields["rows"].push_back({sequence.frames.at(static_cast<size_t>(rejected.frame_index)).id,
                               reasons.at({rejected.stage, rejected.reason}),
-                              labels.at(rejected.label), OrNull(rejected.true_object_id),
-                              rejected.score, box.x_min, box.y_min, box.x_max, box.y_max});
+                              labels.at(rejected.label), rejected.true_object_id, rejected.score,
+                              box.x_min, box.y_min, box.x_max, box.y_max});
   }
   return fields;
 }

@@ -175,8 +175,8 @@ FoundSummary Summarise(const std::vector<LandmarkRow>& rows) {
   summary.log_scale_mean = mean([](const BodyErrors& errors) { return errors.log_scale; });
   summary.log_scale_abs_mean =
       mean([](const BodyErrors& errors) { return std::abs(errors.log_scale); });
-  summary.yaw_deg_mean = mean([](const BodyErrors& errors) { return errors.yaw_deg; });
-  summary.up_deg_mean = mean([](const BodyErrors& errors) { return errors.up_deg; });
+  summary.yaw_error_deg_mean = mean([](const BodyErrors& errors) { return errors.yaw_deg; });
+  summary.up_error_deg_mean = mean([](const BodyErrors& errors) { return errors.up_deg; });
   const auto plane_mean = [&](const auto& of_errors) {
     return MeanOver(rows, [&](const LandmarkRow& row) -> std::optional<double> {
       if (row.fate != Fate::kFound || !row.plane) return std::nullopt;
@@ -237,16 +237,16 @@ DriftSummary SummariseInFrames(const std::vector<LandmarkRow>& rows) {
   DriftSummary summary;
   summary.landmarks = static_cast<int>(std::ranges::count_if(
       rows, [](const LandmarkRow& row) { return row.in_frames.has_value(); }));
-  summary.iou_in_frames = mean([](const LandmarkRow& row) { return row.in_frames->iou; });
-  summary.iou_in_world = mean([](const LandmarkRow& row) { return row.errors->iou; });
+  summary.iou_mean = mean([](const LandmarkRow& row) { return row.in_frames->iou_mean; });
+  summary.iou_mean_in_world = mean([](const LandmarkRow& row) { return row.errors->iou; });
   std::vector<double> in_frames, in_world;
   for (const LandmarkRow& row : rows) {
     if (!row.in_frames) continue;
-    in_frames.push_back(row.in_frames->centre_m);
+    in_frames.push_back(row.in_frames->centre_m_mean);
     in_world.push_back(row.errors->centre_m);
   }
-  summary.centre_m_in_frames = MedianOf(in_frames);
-  summary.centre_m_in_world = MedianOf(in_world);
+  summary.centre_m_median = MedianOf(in_frames);
+  summary.centre_m_median_in_world = MedianOf(in_world);
   return summary;
 }
 

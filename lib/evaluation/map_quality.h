@@ -21,8 +21,8 @@ namespace soslam {
 // against the dataset's truth of that frame.
 struct InFrames {
   int observations = 0;
-  double iou = 0.0;
-  double centre_m = 0.0;
+  double iou_mean = 0.0;
+  double centre_m_mean = 0.0;
 };
 
 // A true object that the map should contain: it stands still, and its label is one of those asked
@@ -56,7 +56,7 @@ struct FoundSummary {
   std::optional<double> iou_mean, centre_m_mean, centre_relative_mean;
   std::array<std::optional<double>, 3> log_size_mean, log_size_abs_mean;
   std::optional<double> log_scale_mean, log_scale_abs_mean;
-  std::optional<double> yaw_deg_mean, up_deg_mean;
+  std::optional<double> yaw_error_deg_mean, up_error_deg_mean;
   std::optional<double> plane_offset_m_abs_mean, plane_tilt_deg_mean;
   int quarter_turned = 0;
   int labels_agree = 0;
@@ -82,8 +82,8 @@ struct MapScore {
 // of a true object but that are wrong in the world, as drift makes them.
 struct DriftSummary {
   int landmarks = 0;
-  std::optional<double> iou_in_frames, iou_in_world;
-  std::optional<double> centre_m_in_frames, centre_m_in_world;
+  std::optional<double> iou_mean, iou_mean_in_world;
+  std::optional<double> centre_m_median, centre_m_median_in_world;
 };
 
 struct MapQuality {

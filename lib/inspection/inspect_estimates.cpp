@@ -237,7 +237,7 @@ std::vector<Value> ObservationRow(const SymmetryRecord& record,
           record.yaw_sigma ? Degrees(*record.yaw_sigma) : Value(),
           true_yaw,
           error,
-          OrNull(record.mirror_planes)};
+          record.mirror_planes};
 }
 
 std::string CurvesInWords(const std::vector<SymmetryRecord>& records) {

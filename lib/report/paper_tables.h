@@ -14,13 +14,13 @@ namespace soslam {
 
 // Means over the objects of one dataset, as the paper prints them.
 struct PublishedRow {
-  std::string dataset;
+  std::string dataset = "average";
   int objects = 0;
   std::map<std::string, double> values;  // by method
 };
 
 struct PublishedTable {
-  std::string number;    // "I"
+  std::string table;     // its number, "I"
   std::string quantity;  // Quantity::key
   std::string source;
   std::vector<PublishedRow> rows;  // in the paper's order

@@ -13,6 +13,9 @@
 
 namespace soslam {
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Machine, cpu, cores)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StageTiming, wall_s, cpu_s, threads, machine)
+
 namespace fs = std::filesystem;
 
 std::vector<std::string> RunsIn(const fs::path& list) {
@@ -56,11 +59,7 @@ std::optional<StageTiming> ReadTiming(const fs::path& file) {
   if (!Exists(file)) return std::nullopt;
   const json document = ParseJsonFile(file);
   ValidateAgainstSchema(document, "timing", file.string());
-  StageTiming timing = {document["wall_s"], document["cpu_s"], document["threads"], std::nullopt};
-  if (document.contains("machine")) {
-    timing.machine = Machine{document["machine"]["cpu"], document["machine"]["cores"]};
-  }
-  return timing;
+  return document.get<StageTiming>();
 }
 
 std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& variant) {

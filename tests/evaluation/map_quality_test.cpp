@@ -19,7 +19,7 @@ using testing::Pair;
 TEST_F(MapQualityTest, DriftCountsInTheWorldAndNotInFrames) {
   AddFound();
   AddFound({0.3, 0.1, 0.2});
-  EXPECT_NEAR(Evaluate().in_frames.iou_in_frames.value(), 1.0, 1e-9);
+  EXPECT_NEAR(Evaluate().in_frames.iou_mean.value(), 1.0, 1e-9);
   const Rigid3d drift{ExpRotation({0, 0, 0.02}), {-0.03, 0, 0}};
   for (Frame& frame : sequence_.frames) frame.world_from_camera = drift * frame.world_from_camera;
   for (ObjectEstimate& estimate : estimates_) {
@@ -27,10 +27,10 @@ TEST_F(MapQualityTest, DriftCountsInTheWorldAndNotInFrames) {
   }
   const MapQuality quality = Evaluate(AlignmentChoice::kNone);
   EXPECT_EQ(quality.in_frames.landmarks, 2);
-  EXPECT_NEAR(quality.in_frames.iou_in_frames.value(), 1.0, 1e-9);
-  EXPECT_NEAR(quality.in_frames.centre_m_in_frames.value(), 0.0, 1e-9);
-  EXPECT_LT(quality.in_frames.iou_in_world.value(), 0.7);
-  EXPECT_GT(quality.in_frames.centre_m_in_world.value(), 0.05);
+  EXPECT_NEAR(quality.in_frames.iou_mean.value(), 1.0, 1e-9);
+  EXPECT_NEAR(quality.in_frames.centre_m_median.value(), 0.0, 1e-9);
+  EXPECT_LT(quality.in_frames.iou_mean_in_world.value(), 0.7);
+  EXPECT_GT(quality.in_frames.centre_m_median_in_world.value(), 0.05);
   EXPECT_EQ(quality.landmarks[0].in_frames->observations, kFrames);
 }
 
@@ -41,8 +41,8 @@ TEST_F(MapQualityTest, WhatDriftHasCarriedAwayIsComparedInFrames) {
   estimates_[0].landmark_in_world = Transform(drift, *estimates_[0].landmark_in_world);
   const MapQuality quality = Evaluate(AlignmentChoice::kNone);
   EXPECT_EQ(quality.scores[0].found, 0);
-  EXPECT_NEAR(quality.in_frames.iou_in_frames.value(), 1.0, 1e-9);
-  EXPECT_NEAR(quality.in_frames.iou_in_world.value(), 1.0 / 7.0, 1e-9);
+  EXPECT_NEAR(quality.in_frames.iou_mean.value(), 1.0, 1e-9);
+  EXPECT_NEAR(quality.in_frames.iou_mean_in_world.value(), 1.0 / 7.0, 1e-9);
 }
 
 // Without true poses, with the truth of each frame, as KITTI has it.
@@ -52,8 +52,8 @@ TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   EXPECT_EQ(Evaluate().in_frames.landmarks, 0);
   SayInFrames(truth, Shifted(truth, {0.2, 0, 0}));
   const MapQuality quality = Evaluate();
-  EXPECT_NEAR(quality.in_frames.iou_in_frames.value(), 1.0 / 3.0, 1e-9);
-  EXPECT_NEAR(quality.in_frames.iou_in_world.value(), 1.0, 1e-9);
+  EXPECT_NEAR(quality.in_frames.iou_mean.value(), 1.0 / 3.0, 1e-9);
+  EXPECT_NEAR(quality.in_frames.iou_mean_in_world.value(), 1.0, 1e-9);
 }
 
 // Boxes in frames of which the dataset does not say that the object is seen are not of it.
@@ -207,7 +207,7 @@ TEST_F(MapQualityTest, ALandmarkBeyondAllNumbersIsWrong) {
   Detect(truth, AddLandmark(landmark));
   const MapQuality quality = Evaluate();
   EXPECT_EQ(quality.scores[0].found, 0);
-  EXPECT_TRUE(std::isfinite(quality.in_frames.iou_in_frames.value_or(0.0)));
+  EXPECT_TRUE(std::isfinite(quality.in_frames.iou_mean.value_or(0.0)));
 }
 
 // A landmark of things that nobody measured, which touches an object that is missed.

@@ -104,8 +104,8 @@ void ExpectSameSummary(const MapQuality& one, const MapQuality& other) {
     EXPECT_NEAR(a.of_found.iou_mean.value(), b.of_found.iou_mean.value(), 1e-9);
     EXPECT_NEAR(a.of_found.centre_m_mean.value(), b.of_found.centre_m_mean.value(), 1e-9);
     EXPECT_NEAR(a.of_found.log_scale_mean.value(), b.of_found.log_scale_mean.value(), 1e-9);
-    EXPECT_NEAR(a.of_found.up_deg_mean.value(), b.of_found.up_deg_mean.value(), 1e-5);
-    EXPECT_NEAR(a.of_found.yaw_deg_mean.value(), b.of_found.yaw_deg_mean.value(), 1e-5);
+    EXPECT_NEAR(a.of_found.up_error_deg_mean.value(), b.of_found.up_error_deg_mean.value(), 1e-5);
+    EXPECT_NEAR(a.of_found.yaw_error_deg_mean.value(), b.of_found.yaw_error_deg_mean.value(), 1e-5);
     EXPECT_NEAR(a.precision.value(), b.precision.value(), 1e-12);
     EXPECT_NEAR(a.f1_of_detectable.value(), b.f1_of_detectable.value(), 1e-12);
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -113,7 +113,7 @@ void ExpectSameSummary(const MapQuality& one, const MapQuality& other) {
                   1e-9);
     }
   }
-  EXPECT_NEAR(one.in_frames.iou_in_frames.value(), other.in_frames.iou_in_frames.value(), 1e-9);
+  EXPECT_NEAR(one.in_frames.iou_mean.value(), other.in_frames.iou_mean.value(), 1e-9);
 }
 
 // The same, landmark by landmark.

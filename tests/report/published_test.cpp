@@ -21,14 +21,14 @@ TEST(Published, AveragesArePrintedAsWeightedByObjects) {
     const double last_place = table.quantity == "iou" ? 1e-3 : 1e-2;
     int objects = 0;
     for (const PublishedRow& row : table.rows) objects += row.objects;
-    EXPECT_EQ(objects, table.average.objects) << table.number;
+    EXPECT_EQ(objects, table.average.objects) << table.table;
     for (const auto& [variant, average] : table.average.values) {
       std::vector<ObjectMean> means;
       for (const PublishedRow& row : table.rows) {
         means.push_back({row.values.at(variant), row.objects, 0});
       }
       EXPECT_NEAR(WeightedMean(means).mean, average, last_place + 1e-9)
-          << table.number << " " << variant;
+          << table.table << " " << variant;
     }
   }
 }

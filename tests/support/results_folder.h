@@ -52,8 +52,8 @@ class ResultsFolder {
                                  {"estimates", 1},
                                  {"iou", object.iou},
                                  {"centre_m", 0.0},
-                                 {"rotation_deg", OrNull(object.rotation_deg)},
-                                 {"yaw_error_deg", OrNull(object.rotation_deg)}});
+                                 {"rotation_deg", object.rotation_deg},
+                                 {"yaw_error_deg", object.rotation_deg}});
     }
     WriteArtefact(VariantFolder(dataset, variant) / "metrics.json", "metrics", {}, body);
   }
