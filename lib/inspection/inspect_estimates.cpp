@@ -125,17 +125,15 @@ std::map<std::string, int> FailuresOf(const json& objects) {
   return failures;
 }
 
-// "20.1 at first, 27.0 at the end, 254 iterations".
 std::vector<Fact> SolverInWords(const json& solver) {
   const auto counts = [&](const char* field) {
     return CountsInWords(solver.at(field).get<std::map<std::string, int>>());
   };
   std::vector<Fact> facts = {
-      {"solver",
-       fmt::format("{} after {} iterations; cost {:.6g} at first, {:.6g} at the end",
-                   solver.at("converged").get<bool>() ? "converged" : "NOT converged",
-                   solver.at("iterations").get<int>(), solver.at("initial_cost").get<double>(),
-                   solver.at("final_cost").get<double>())},
+      {"solver", FillIn((solver.at("converged") ? "" : "NOT ") +
+                            std::string("converged after {iterations} iterations; cost "
+                                        "{initial_cost:.6g} at first, {final_cost:.6g} at the end"),
+                        solver)},
       {"residuals", counts("residuals")},
       {"left out", counts("gated")}};
   const auto bias = solver.value("detector_bias_px", std::array<double, 4>{});

@@ -15,54 +15,37 @@ namespace {
 
 using nlohmann::json;
 
-std::string OrDash(const json& number, int decimals) {
-  return number.is_null() ? "-" : fmt::format("{:.{}f}", number.get<double>(), decimals);
-}
-
-std::string InWords(const json& alignment) {
-  return fmt::format("{}, scale {:.4g}; cameras {} m from the true ones ({} frames, path: {})",
-                     alignment.at("kind").get<std::string>(), alignment.at("scale").get<double>(),
-                     OrDash(alignment.at("rmse_m"), 4), alignment.at("frames").get<int>(),
-                     alignment.at("camera_path").get<std::string>());
-}
-
-std::string ScoreInWords(const json& score) {
-  const auto count = [&](const char* name) { return score.at(name).get<int>(); };
-  return fmt::format(
-      "{} of {} objects found ({} of {} detectable), {} of {} landmarks right, {} ignored; "
-      "precision {}, recall {} (of detectable {}), F1 {} (of detectable {})",
-      count("found"), count("true_objects"), count("found_detectable"), count("detectable"),
-      count("found"), count("landmarks") - count("ignored"), count("ignored"),
-      OrDash(score.at("precision"), 3), OrDash(score.at("recall"), 3),
-      OrDash(score.at("recall_of_detectable"), 3), OrDash(score.at("f1"), 3),
-      OrDash(score.at("f1_of_detectable"), 3));
-}
-
+constexpr const char* kAlignment =
+    "{kind}, scale {scale:.4g}; cameras {rmse_m:.4f} m from the true ones ({frames} frames, path: "
+    "{camera_path})";
+constexpr const char* kScore =
+    "{found} of {true_objects} objects found ({found_detectable} of {detectable} detectable), "
+    "{found} of {judged} landmarks right, {ignored} ignored; precision {precision:.3f}, recall "
+    "{recall:.3f} (of detectable {recall_of_detectable:.3f}), F1 {f1:.3f} (of detectable "
+    "{f1_of_detectable:.3f})";
 // Means over the found landmarks, of absolute values.
-std::string FoundInWords(const json& score) {
-  const json& found = score.at("of_found");
-  const json& log_size = found.at("log_size_abs_mean");
-  return fmt::format(
-      "mean IoU {}, centre {} m ({} of the size), log scale {}, log size {}, {}, {}, yaw {} deg, "
-      "up {} deg, plane {} m and {} deg; {} of {} labels right, {} of {} ids agree, {} turned by a "
-      "quarter",
-      OrDash(found.at("iou_mean"), 3), OrDash(found.at("centre_m_mean"), 3),
-      OrDash(found.at("centre_relative_mean"), 2), OrDash(found.at("log_scale_abs_mean"), 3),
-      OrDash(log_size.at(0), 2), OrDash(log_size.at(1), 2), OrDash(log_size.at(2), 2),
-      OrDash(found.at("yaw_error_deg_mean"), 2), OrDash(found.at("up_error_deg_mean"), 2),
-      OrDash(found.at("plane_offset_m_abs_mean"), 3), OrDash(found.at("plane_tilt_deg_mean"), 1),
-      found.at("labels_agree").get<int>(), score.at("found").get<int>(),
-      found.at("ids_agree").get<int>(), found.at("ids_known").get<int>(),
-      found.at("quarter_turned").get<int>());
-}
-
-std::string InFramesInWords(const json& in_frames) {
-  return fmt::format(
-      "{} landmarks: mean IoU {}, in the world {}; median centre {} m, in the world {} m",
-      in_frames.at("landmarks").get<int>(), OrDash(in_frames.at("iou_mean"), 3),
-      OrDash(in_frames.at("iou_mean_in_world"), 3), OrDash(in_frames.at("centre_m_median"), 3),
-      OrDash(in_frames.at("centre_m_median_in_world"), 3));
-}
+constexpr const char* kOfFound =
+    "mean IoU {of_found/iou_mean:.3f}, centre {of_found/centre_m_mean:.3f} m "
+    "({of_found/centre_relative_mean:.2f} of the size), log scale "
+    "{of_found/log_scale_abs_mean:.3f}, log size {of_found/log_size_abs_mean/0:.2f}, "
+    "{of_found/log_size_abs_mean/1:.2f}, {of_found/log_size_abs_mean/2:.2f}, yaw "
+    "{of_found/yaw_error_deg_mean:.2f} deg, up {of_found/up_error_deg_mean:.2f} deg, plane "
+    "{of_found/plane_offset_m_abs_mean:.3f} m and {of_found/plane_tilt_deg_mean:.1f} deg; "
+    "{of_found/labels_agree} of {found} labels right, {of_found/ids_agree} of "
+    "{of_found/ids_known} ids agree, {of_found/quarter_turned} turned by a quarter";
+constexpr const char* kInFrames =
+    "{landmarks} landmarks: mean IoU {iou_mean:.3f}, in the world {iou_mean_in_world:.3f}; median "
+    "centre {centre_m_median:.3f} m, in the world {centre_m_median_in_world:.3f} m";
+constexpr const char* kSummary =
+    "IoU {iou_mean:.3f} (median {iou_median:.3f}), rotation error {rotation_deg_mean:.2f} (median "
+    "{rotation_deg_median:.2f}) deg, yaw error {yaw_error_deg_mean:.2f} (median "
+    "{yaw_error_deg_median:.2f}) deg; {objects} objects, {observations} observations";
+constexpr const char* kTrajectory =
+    "root mean square error {ate_rmse_m:.4f} m, of the odometry {odometry_ate_rmse_m:.4f} m";
+constexpr const char* kHeldOut =
+    "in {frames} frames: {detections_matched} of {detections} detections match a landmark, "
+    "{in_sight_matched} of {in_sight} landmarks in sight match a detection (IoU of at least "
+    "{min_iou:g}); mean IoU of matches {iou_mean:.3f}";
 
 // One line for each row that has a reason, if they are few.
 std::vector<Fact> Reasons(const json& rows, const char* id, const std::string& name) {
@@ -74,11 +57,11 @@ std::vector<Fact> Reasons(const json& rows, const char* id, const std::string& n
       facts.push_back({name, "... and more"});
       break;
     }
-    const auto detail = row.at("detail").get<std::string>();
     facts.push_back(
-        {name,
-         fmt::format("{} ({}): {}{}{}", row.at(id).get<int>(), row.at("label").get<std::string>(),
-                     row.at("reason").get<std::string>(), detail.empty() ? "" : "; ", detail)});
+        {name, fmt::format("{} {}", row.at(id).get<int>(),
+                           FillIn(row.at("detail") == "" ? "({label}): {reason}"
+                                                         : "({label}): {reason}; {detail}",
+                                  row))});
   }
   return facts;
 }
@@ -90,16 +73,18 @@ std::vector<Fact> MapQualityFacts(const json& quality) {
   for (const json& alignment : quality.at("alignments")) {
     const int segment = alignment.at("segment").get<int>();
     const bool is_only = quality["alignments"].size() == 1;
-    facts.push_back(
-        {is_only ? "alignment" : fmt::format("alignment {}", segment), InWords(alignment)});
+    facts.push_back({is_only ? "alignment" : fmt::format("alignment {}", segment),
+                     FillIn(kAlignment, alignment)});
   }
   for (const json& score : quality.at("scores")) {
     const std::string name = fmt::format("IoU >= {:g}", score.at("min_iou").get<double>());
-    facts.push_back({name, ScoreInWords(score)});
-    facts.push_back({"found", FoundInWords(score)});
+    json fields = score;
+    fields["judged"] = score.at("landmarks").get<int>() - score.at("ignored").get<int>();
+    facts.push_back({name, FillIn(kScore, fields)});
+    facts.push_back({"found", FillIn(kOfFound, fields)});
   }
   if (quality.at("in_frames").at("landmarks") != 0) {
-    facts.push_back({"in frames", InFramesInWords(quality.at("in_frames"))});
+    facts.push_back({"in frames", FillIn(kInFrames, quality.at("in_frames"))});
   }
   for (const auto& part : {Reasons(quality.at("objects"), "true_object", "missed"),
                            Reasons(quality.at("landmarks"), "object", "false")}) {
@@ -128,33 +113,6 @@ ValueTable MapQualityTable(const json& quality) {
                           wrong.value("part", json()), row.at("reason")});
   }
   return table;
-}
-
-// Means and medians of a summary.
-std::string SummaryInWords(const json& summary) {
-  const auto both = [&](const std::string& name, int decimals) {
-    return fmt::format("{} (median {})", OrDash(summary.at(name + "_mean"), decimals),
-                       OrDash(summary.at(name + "_median"), decimals));
-  };
-  return fmt::format("IoU {}, rotation error {} deg, yaw error {} deg; {} objects, {} observations",
-                     both("iou", 3), both("rotation_deg", 2), both("yaw_error_deg", 2),
-                     summary.at("objects").get<int>(), summary.at("observations").get<int>());
-}
-
-std::string TrajectoryErrorInWords(const json& trajectory) {
-  return fmt::format("root mean square error {:.4f} m, of the odometry {:.4f} m",
-                     trajectory.at("ate_rmse_m").get<double>(),
-                     trajectory.at("odometry_ate_rmse_m").get<double>());
-}
-
-std::string HeldOutInWords(const json& held_out) {
-  return fmt::format(
-      "in {} frames: {} of {} detections match a landmark, {} of {} landmarks in sight match a "
-      "detection (IoU of at least {:g}); mean IoU of matches {}",
-      held_out.at("frames").get<int>(), held_out.at("detections_matched").get<int>(),
-      held_out.at("detections").get<int>(), held_out.at("in_sight_matched").get<int>(),
-      held_out.at("in_sight").get<int>(), held_out.at("min_iou").get<double>(),
-      OrDash(held_out.at("iou_mean"), 3));
 }
 
 std::vector<Value> Cells(const json& object, const std::vector<const char*>& fields) {
@@ -198,14 +156,14 @@ Inspection InspectMetrics(const std::filesystem::path& file) {
   return ReadArtefactAs(file, "metrics", [](const json& document) {
     Inspection inspection;
     inspection.facts = {{"dataset", document.at("dataset")},
-                        {"all", SummaryInWords(document.at("summary"))}};
-    const auto add = [&](const std::string& name, const char* field, const auto& in_words) {
+                        {"all", FillIn(kSummary, document.at("summary"))}};
+    const auto add = [&](const std::string& name, const char* field, const char* text) {
       const json part = document.value(field, json());
-      if (!part.is_null()) inspection.facts.push_back({name, in_words(part)});
+      if (!part.is_null()) inspection.facts.push_back({name, FillIn(text, part)});
     };
-    add("first views", "first_observation", SummaryInWords);
-    add("trajectory", "trajectory", TrajectoryErrorInWords);
-    add("held out", "held_out", HeldOutInWords);
+    add("first views", "first_observation", kSummary);
+    add("trajectory", "trajectory", kTrajectory);
+    add("held out", "held_out", kHeldOut);
     inspection.table = ObjectTable(document);
     if (const json quality = document.value("map_quality", json()); !quality.is_null()) {
       std::ranges::move(MapQualityFacts(quality), std::back_inserter(inspection.facts));

@@ -125,23 +125,16 @@ std::string FrequenciesInWords(const json& rows, const char* field) {
   return fmt::format("{}: {}", rows.size(), CountsInWords(counts));
 }
 
-std::string AgreementInWords(const json& agreement) {
-  const auto share = [&](const char* name) {
-    const json& value = agreement.at(name);
-    return value.is_null() ? "-" : fmt::format("{:.3f}", value.get<double>());
-  };
-  return fmt::format(
-      "{} objects found, {} given, {} of them the same; precision {}, recall {}, F1 {}",
-      agreement.at("objects").get<int>(), agreement.at("given_objects").get<int>(),
-      agreement.at("matched").get<int>(), share("precision"), share("recall"), share("f1"));
-}
+constexpr const char* kAgreement =
+    "{objects} objects found, {given_objects} given, {matched} of them the same; precision "
+    "{precision:.3f}, recall {recall:.3f}, F1 {f1:.3f}";
 
 }  // namespace
 
 Inspection InspectAssociations(const std::filesystem::path& file) {
   return ReadArtefactAs(file, "associations", [](const json& document) {
     Inspection inspection;
-    inspection.facts = {{"agreement", AgreementInWords(document.at("agreement"))},
+    inspection.facts = {{"agreement", FillIn(kAgreement, document.at("agreement"))},
                         {"detections", FrequenciesInWords(document.at("detections"), "decision")},
                         {"tracks", FrequenciesInWords(document.at("tracks"), "fate")}};
     inspection.table.columns = {{"object", ""},     {"label", ""},        {"track", ""},
@@ -166,10 +159,8 @@ std::string ObjectsOn(const json& plane, const json& objects) {
   std::vector<std::string> words;
   for (const json& object : objects) {
     if (object.at("plane") != plane.at("plane")) continue;
-    const std::string reason = object.at("reason");
-    words.push_back(fmt::format("{} {}", object.at("object").get<int>(),
-                                object.at("label").get<std::string>()));
-    if (reason != "own_height") words.back() += " (" + reason + ")";
+    const bool is_own = object.at("reason") == "own_height";
+    words.push_back(FillIn(is_own ? "{object} {label}" : "{object} {label} ({reason})", object));
   }
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
@@ -205,8 +196,7 @@ Inspection InspectPlanes(const std::filesystem::path& file) {
                      document.at("rounds").get<int>())},
         {"decided by", CountsInWords(reasons)}};
     if (!document.at("cost").is_null()) {
-      inspection.facts.push_back(
-          {"cost", fmt::format("{:.6g}", document.at("cost").get<double>())});
+      inspection.facts.push_back({"cost", FillIn("{cost:.6g}", document)});
     }
     inspection.table.columns = {{"plane", ""},
                                 {"normal_x", "", 4},

@@ -230,6 +230,29 @@ std::string CountsInWords(const std::map<std::string, int>& counts) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
+std::string FillIn(std::string_view text, const json& fields) {
+  std::string filled;
+  for (size_t begin = text.find('{'); begin != text.npos; begin = text.find('{')) {
+    const size_t end = text.find('}', begin);
+    const std::string_view hole = text.substr(begin + 1, end - begin - 1);
+    const size_t colon = hole.find(':');
+    const json& value = fields.at(json::json_pointer(fmt::format("/{}", hole.substr(0, colon))));
+    filled += text.substr(0, begin);
+    if (value.is_null()) {
+      filled += kNoValue;
+    } else if (value.is_string()) {
+      filled += value.get<std::string>();
+    } else if (colon == hole.npos) {
+      filled += value.dump();
+    } else {
+      const std::string format = fmt::format("{{{}}}", hole.substr(colon));
+      filled += fmt::format(fmt::runtime(format), value.get<double>());
+    }
+    text.remove_prefix(end + 1);
+  }
+  return filled += text;
+}
+
 Value LabelOf(const std::optional<Sequence>& sequence, int object_id) {
   if (!sequence) return {};
   const auto found = std::ranges::lower_bound(sequence->objects, object_id, {}, &Object::id);

@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "inspection/value_table.h"
@@ -35,6 +37,11 @@ std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 
 // "3 near_border, 2 duplicate", the most frequent first; "none" when there are none.
 std::string CountsInWords(const std::map<std::string, int>& counts);
+
+// The text with each "{field}" replaced by that field of a JSON object, "-" if it is null. Fields
+// of parts are "part/field"; a number may have a format, "{field:.3f}". Throws json::exception for
+// a field that is missing.
+std::string FillIn(std::string_view text, const nlohmann::json& fields);
 
 // Contents of an artefact of each kind; Inspect adds title and provenance. Errors as there.
 Inspection InspectAssociations(const std::filesystem::path& file);

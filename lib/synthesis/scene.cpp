@@ -8,10 +8,17 @@
 #include <map>
 
 #include "artefact/json_file.h"
+#include "artefact/model_json.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 
 namespace soslam {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SceneNoise, box_edge_sigma, box_sigma_px,
+                                                miss_probability, odometry_translation_sigma,
+                                                odometry_scale_sigma, odometry_rotation_sigma_deg,
+                                                image_sigma)
+
 namespace {
 
 constexpr double kLegHalfWidth = 0.025;  // metres
@@ -144,12 +151,6 @@ Plane ParsePlane(const json& document, const std::string& where) {
   return {normal.normalized(), document.at("d").get<double>()};
 }
 
-Camera ParseCamera(const json& document) {
-  return {document.at("width").get<int>(), document.at("height").get<int>(),
-          document.at("fx").get<double>(), document.at("fy").get<double>(),
-          document.at("cx").get<double>(), document.at("cy").get<double>()};
-}
-
 TableTop ParseTable(const json& document) {
   TableTop table;
   table.position_on_plane = Vector2(document.at("position"));
@@ -235,18 +236,6 @@ Trajectory ParseTrajectory(const json& document) {
   return trajectory;
 }
 
-SceneNoise ParseNoise(const json& document) {
-  SceneNoise noise;
-  noise.box_edge_sigma = document.value("box_edge_sigma", 0.0);
-  noise.box_sigma_px = document.value("box_sigma_px", 0.0);
-  noise.miss_probability = document.value("miss_probability", 0.0);
-  noise.odometry_translation_sigma = document.value("odometry_translation_sigma", 0.0);
-  noise.odometry_scale_sigma = document.value("odometry_scale_sigma", 0.0);
-  noise.odometry_rotation_sigma_deg = document.value("odometry_rotation_sigma_deg", 0.0);
-  noise.image_sigma = document.value("image_sigma", 0.0);
-  return noise;
-}
-
 // Throws unless the camera at one pose has a free view.
 void CheckCameraPose(const Scene& scene, const Rigid3d& world_from_camera,
                      const std::vector<Body>& bodies, const std::string& where) {
@@ -287,7 +276,7 @@ Scene ParseScene(const json& document, const std::string& where) {
   ValidateAgainstSchema(document, "scene", where);
   Scene scene;
   scene.name = document.at("name").get<std::string>();
-  scene.camera = ParseCamera(document.at("camera"));
+  scene.camera = document.at("camera").get<Camera>();
   scene.planes = ParsePlanes(document.at("planes"), where + ": planes");
   const json walls = document.value("walls", json::array());
   for (size_t i = 0; i < walls.size(); ++i) {
@@ -295,7 +284,7 @@ Scene ParseScene(const json& document, const std::string& where) {
   }
   scene.objects = ParseObjects(document.at("objects"), scene.planes, where + ": objects");
   scene.trajectory = ParseTrajectory(document.at("trajectory"));
-  scene.noise = ParseNoise(document.value("noise", json::object()));
+  scene.noise = document.value("noise", scene.noise);
   scene.seed = document.value("seed", 0);
   CheckTrajectory(scene, where);
   return scene;
