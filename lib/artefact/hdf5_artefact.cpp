@@ -237,8 +237,7 @@ std::vector<SymmetryRecord> ReadSymmetry(const std::filesystem::path& path) {
     records.push_back(ReadRecord(file, fmt::format("{}/{}", kObservations, name)));
   }
   const auto key = [](const SymmetryRecord& r) { return std::pair(r.frame_id, r.object_id); };
-  std::sort(records.begin(), records.end(),
-            [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  std::ranges::sort(records, [&](const auto& a, const auto& b) { return key(a) < key(b); });
   return records;
 }
 

@@ -183,7 +183,7 @@ void Hdf5File::Close() {
 
 bool Hdf5File::Has(const std::string& name) const {
   const std::vector<std::string> prefixes = Prefixes(name);
-  return std::all_of(prefixes.begin(), prefixes.end(), [&](const std::string& prefix) {
+  return std::ranges::all_of(prefixes, [&](const std::string& prefix) {
     return H5Lexists(file_.id(), prefix.c_str(), H5P_DEFAULT) > 0;
   });
 }

@@ -52,7 +52,7 @@ Hdf5Handle Hdf5Timeless(hid_t list_class) {
 
 Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape) {
   Hdf5Handle creation = Hdf5Timeless(H5P_DATASET_CREATE);
-  const bool empty = std::find(shape.begin(), shape.end(), 0U) != shape.end();
+  const bool empty = std::ranges::find(shape, 0U) != shape.end();
   if (empty) return creation;  // a chunk cannot be empty
   const std::vector<hsize_t> chunk(shape.begin(), shape.end());
   H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());

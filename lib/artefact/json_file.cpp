@@ -188,8 +188,7 @@ void CheckArtefactHeader(const json& header, const std::string& kind, const std:
   }
   const json& version = header["schema_version"];
   const auto is_count = [](const json& number) { return number.is_number_unsigned(); };
-  if (!version.is_array() || version.size() != 2 ||
-      !std::all_of(version.begin(), version.end(), is_count)) {
+  if (!version.is_array() || version.size() != 2 || !std::ranges::all_of(version, is_count)) {
     throw InputError(
         fmt::format("{}: schema_version is {}; expected [major, minor]", file, version.dump()));
   }

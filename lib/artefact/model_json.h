@@ -40,7 +40,7 @@ class IdTable {
 
   // Throws InputError when there is no such id.
   int IndexOf(int id) const {
-    const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
+    const auto found = std::ranges::lower_bound(ids_, id);
     if (found == ids_.end() || *found != id) {
       throw InputError(fmt::format("{} {} is not in the sequence", name_, id));
     }

@@ -123,9 +123,8 @@ Distortion DistortionFromJson(const json& json) {
 
 std::array<bool, 4> BoundsFromJson(const json& names) {
   std::array<bool, 4> is_bound;
-  std::transform(kEdgeNames.begin(), kEdgeNames.end(), is_bound.begin(), [&](const char* name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  });
+  std::transform(kEdgeNames.begin(), kEdgeNames.end(), is_bound.begin(),
+                 [&](const char* name) { return std::ranges::find(names, name) != names.end(); });
   return is_bound;
 }
 

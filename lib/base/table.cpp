@@ -122,7 +122,7 @@ std::string CsvText(const std::string& text) {
 size_t WidthOf(const std::string& text) {
   // Continuation bytes of UTF-8 do not count.
   return static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 std::string ToMarkdown(const Table& table) {

@@ -148,7 +148,7 @@ const std::vector<std::string>& CocoLabels() {
 std::optional<int> CocoClassIndex(int category_id) {
   constexpr int kLastId = 90;
   if (category_id < 1 || category_id > kLastId) return std::nullopt;
-  const auto unused_from = std::lower_bound(kUnusedIds.begin(), kUnusedIds.end(), category_id);
+  const auto unused_from = std::ranges::lower_bound(kUnusedIds, category_id);
   if (unused_from != kUnusedIds.end() && *unused_from == category_id) return std::nullopt;
   return category_id - 1 - static_cast<int>(unused_from - kUnusedIds.begin());
 }

@@ -120,7 +120,7 @@ std::vector<fs::path> Sorted(const fs::path& folder) {
     throw InputError(fmt::format("{}: cannot be listed ({}); expected a folder that can be read",
                                  folder.string(), error.code().message()));
   }
-  std::sort(entries.begin(), entries.end());
+  std::ranges::sort(entries);
   return entries;
 }
 

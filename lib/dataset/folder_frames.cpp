@@ -37,8 +37,8 @@ void CheckFrameNumber(double number, const std::string& place) {
 double TimestampOf(const std::string& name, const std::string& place) {
   const fs::path file = fs::path(name).filename();
   const std::string extension = file.extension().string();
-  const bool is_decimals = std::all_of(extension.begin(), extension.end(),
-                                       [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+  const bool is_decimals =
+      std::ranges::all_of(extension, [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
   return ParseReal((is_decimals ? file : file.stem()).string(), place,
                    "timestamp as which the image is named");
 }

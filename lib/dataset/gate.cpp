@@ -84,7 +84,7 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Reje
   const auto same = [](const DetectionRow& a, const DetectionRow& b) {
     return a.frame_id == b.frame_id && a.object_id == b.object_id;
   };
-  std::stable_sort(rows.begin(), rows.end(), best_first);
+  std::ranges::stable_sort(rows, best_first);
   std::vector<DetectionRow> kept;
   for (DetectionRow& row : rows) {
     if (!kept.empty() && same(kept.back(), row)) {
@@ -127,7 +127,7 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
     if (box.y_max < other.y_min - margin || box.y_max > other.y_max) continue;
     intervals.emplace_back(std::max(box.x_min, other.x_min), std::min(box.x_max, other.x_max));
   }
-  std::sort(intervals.begin(), intervals.end());
+  std::ranges::sort(intervals);
   double covered = 0.0;
   double covered_until = -std::numeric_limits<double>::infinity();
   for (const auto& [begin, end] : intervals) {

@@ -121,7 +121,7 @@ void JsonEntry::Refuse(const char* name, const std::string& expected) const {
 void JsonEntry::RefuseUnknownKeys(const KnownKeys& known) const {
   for (const auto& field : fields_.items()) {
     const std::string& key = field.key();
-    if (std::find(known.keys.begin(), known.keys.end(), key) != known.keys.end()) continue;
+    if (std::ranges::find(known.keys, key) != known.keys.end()) continue;
     throw InputError(fmt::format("{}: unknown key {}; expected some of {}{}", place_, Quoted(key),
                                  fmt::join(known.keys, ", "), LikelyMeaning(key, known)));
   }

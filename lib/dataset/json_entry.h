@@ -47,8 +47,7 @@ class JsonEntry {
   Eigen::Matrix<double, kSize, 1> Vector(const char* name) const {
     const nlohmann::json& field = Field(name);
     const auto is_number = [](const nlohmann::json& element) { return element.is_number(); };
-    if (!field.is_array() || field.size() != kSize ||
-        !std::all_of(field.begin(), field.end(), is_number)) {
+    if (!field.is_array() || field.size() != kSize || !std::ranges::all_of(field, is_number)) {
       Refuse(name, fmt::format("{} numbers", kSize));
     }
     return Eigen::Matrix<double, kSize, 1>(field.get<std::vector<double>>().data());

@@ -26,8 +26,8 @@ namespace {
 
 int ParseRecording(const std::string& option, std::string_view text) {
   constexpr const char* kExpected = "the number of a recording, or two as in 0003-0005";
-  const bool is_number = !text.empty() && std::all_of(text.begin(), text.end(),
-                                                      [](char c) { return c >= '0' && c <= '9'; });
+  const bool is_number =
+      !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
   if (!is_number || text.size() > 9) Refuse(option, text, kExpected);
   return ParseInteger(text, option, "recording");
 }
@@ -66,9 +66,8 @@ RecordingValues::RecordingValues(const std::string& option, const std::string& t
 }
 
 const std::string& RecordingValues::Of(int recording) const {
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    return entry.range.Contains(recording);
-  });
+  const auto found = std::ranges::find_if(
+      entries_, [&](const Entry& entry) { return entry.range.Contains(recording); });
   if (found == entries_.end()) {
     throw SettingsError(fmt::format("{}: says nothing about recording {:04d}; expected a value",
                                     option_, recording));
@@ -204,8 +203,8 @@ std::vector<NumberedPath> NumberedFiles(const fs::path& folder, const std::strin
     throw InputError(
         fmt::format("{}: has no files; expected <number>{}", folder.string(), extension));
   }
-  std::sort(files.begin(), files.end(),
-            [](const NumberedPath& a, const NumberedPath& b) { return a.number < b.number; });
+  std::ranges::sort(
+      files, [](const NumberedPath& a, const NumberedPath& b) { return a.number < b.number; });
   return files;
 }
 

@@ -50,8 +50,8 @@ std::vector<std::optional<size_t>> MatchBoxes(const std::vector<ScoredBox>& foun
                                               const std::vector<Box>& given, double min_overlap) {
   std::vector<size_t> order(found.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return found[a].score > found[b].score; });
+  std::ranges::stable_sort(order,
+                           [&](size_t a, size_t b) { return found[a].score > found[b].score; });
   std::vector<std::optional<size_t>> matches(found.size());
   std::vector<bool> taken(given.size(), false);
   for (const size_t i : order) {

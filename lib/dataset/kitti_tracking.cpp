@@ -56,7 +56,7 @@ Landmark MedianLandmark(const std::vector<Landmark>& landmarks) {
 
 bool IsStatic(const std::vector<Landmark>& landmarks, const Eigen::Vector3d& median,
               const KittiOptions& options) {
-  const auto near = std::count_if(landmarks.begin(), landmarks.end(), [&](const Landmark& view) {
+  const auto near = std::ranges::count_if(landmarks, [&](const Landmark& view) {
     return (view.Centre() - median).norm() <= options.static_radius_m;
   });
   const auto views = static_cast<double>(landmarks.size());
@@ -200,9 +200,8 @@ class Recording {
     std::map<int, std::vector<const KittiLabel*>> tracks;
     for (const KittiLabel& label : labels_) tracks[label.track].push_back(&label);
     for (auto& [track, labels] : tracks) {
-      std::stable_sort(labels.begin(), labels.end(), [](const KittiLabel* a, const KittiLabel* b) {
-        return a->frame < b->frame;
-      });
+      std::ranges::stable_sort(
+          labels, [](const KittiLabel* a, const KittiLabel* b) { return a->frame < b->frame; });
       std::vector<LabelledView> views;
       for (const KittiLabel* label : labels) {
         if (label->type != labels.front()->type) {
@@ -245,7 +244,7 @@ class Recording {
       throw InputError(fmt::format("{}: has no folders; expected one for each type of object",
                                    (folder_ / detections_).string()));
     }
-    std::sort(types.begin(), types.end());
+    std::ranges::sort(types);
     for (const fs::path& type : types) AddFoundBoxes(type);
   }
 
@@ -312,15 +311,15 @@ std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::st
   std::vector<NumberedPath> chosen;
   for (const RecordingRange& range : ranges) {
     const auto before = chosen.size();
-    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
-                 [&](const NumberedPath& file) { return range.Contains(file.number); });
+    std::ranges::copy_if(all, std::back_inserter(chosen),
+                         [&](const NumberedPath& file) { return range.Contains(file.number); });
     if (chosen.size() == before) {
       throw SettingsError(fmt::format("sequences: {:04d} to {:04d}: no such recording in {}",
                                       range.first, range.last, labels.string()));
     }
   }
   const auto by_number = [](const auto& a, const auto& b) { return a.number < b.number; };
-  std::stable_sort(chosen.begin(), chosen.end(), by_number);
+  std::ranges::stable_sort(chosen, by_number);
   chosen.erase(std::unique(chosen.begin(), chosen.end(),
                            [](const auto& a, const auto& b) { return a.path == b.path; }),
                chosen.end());

@@ -27,9 +27,9 @@ Rigid3d ParsePose(const json& rows, const std::string& place) {
   Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix;
   const auto is_row = [](const json& row) {
     return row.is_array() && row.size() == 4 &&
-           std::all_of(row.begin(), row.end(), [](const json& x) { return x.is_number(); });
+           std::ranges::all_of(row, [](const json& x) { return x.is_number(); });
   };
-  if (!rows.is_array() || rows.size() != 4 || !std::all_of(rows.begin(), rows.end(), is_row)) {
+  if (!rows.is_array() || rows.size() != 4 || !std::ranges::all_of(rows, is_row)) {
     throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
   }
   for (size_t i = 0; i < 16; ++i) matrix.data()[i] = rows[i / 4][i % 4].get<double>();

@@ -138,14 +138,13 @@ std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
 std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
                                         const std::filesystem::path& path) {
   if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
-  std::stable_sort(
-      trajectory.begin(), trajectory.end(),
-      [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
+  std::ranges::stable_sort(
+      trajectory, [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
   const auto same_time = [](const TimedPose& a, const TimedPose& b) {
     return a.timestamp == b.timestamp;
   };
-  const auto twice = std::adjacent_find(
-      trajectory.begin(), trajectory.end(), [&](const TimedPose& a, const TimedPose& b) {
+  const auto twice =
+      std::ranges::adjacent_find(trajectory, [&](const TimedPose& a, const TimedPose& b) {
         return same_time(a, b) && !IsSamePose(a.world_from_camera, b.world_from_camera);
       });
   if (twice != trajectory.end()) {
@@ -161,9 +160,7 @@ std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, d
   const auto difference = [&](const TimedPose& pose) {
     return std::abs(pose.timestamp - timestamp);
   };
-  const auto after =
-      std::lower_bound(trajectory.begin(), trajectory.end(), timestamp,
-                       [](const TimedPose& pose, double time) { return pose.timestamp < time; });
+  const auto after = std::ranges::lower_bound(trajectory, timestamp, {}, &TimedPose::timestamp);
   auto nearest = after;
   if (after == trajectory.end() ||
       (after != trajectory.begin() && difference(*std::prev(after)) <= difference(*after))) {

@@ -30,7 +30,7 @@ bool IsExtra(const fs::path& path) {
   const std::string name = path.filename().string();
   const auto is_of_macos = [](const fs::path& part) { return part == "__MACOSX"; };
   return name.starts_with('.') || name.starts_with("README") || name.starts_with("readme") ||
-         std::any_of(path.begin(), path.end(), is_of_macos);
+         std::ranges::any_of(path, is_of_macos);
 }
 
 bool IsLabels(const fs::path& path) { return path.extension() == ".txt" && !IsExtra(path); }

@@ -14,7 +14,7 @@ std::optional<double> MeanOf(const std::vector<double>& values) {
 
 std::optional<double> MedianOf(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }

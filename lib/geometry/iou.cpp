@@ -41,16 +41,16 @@ void SortAround(int axis, Polygon* points) {
     const Eigen::Vector3d offset = point - centre;
     return std::atan2(offset((axis + 2) % 3), offset((axis + 1) % 3));
   };
-  std::sort(points->begin(), points->end(),
-            [&](const auto& one, const auto& other) { return angle(one) < angle(other); });
+  std::ranges::sort(*points,
+                    [&](const auto& one, const auto& other) { return angle(one) < angle(other); });
 }
 
 // Keeps the part with side * point[axis] <= 1.
 Polyhedron Clip(const Polyhedron& body, int axis, double side) {
   const auto excess = [&](const Eigen::Vector3d& point) { return side * point(axis) - 1.0; };
-  const bool cuts = std::any_of(body.begin(), body.end(), [&](const Polygon& face) {
-    return std::any_of(face.begin(), face.end(),
-                       [&](const Eigen::Vector3d& point) { return excess(point) > kOnPlane; });
+  const bool cuts = std::ranges::any_of(body, [&](const Polygon& face) {
+    return std::ranges::any_of(
+        face, [&](const Eigen::Vector3d& point) { return excess(point) > kOnPlane; });
   });
   if (!cuts) return body;
 

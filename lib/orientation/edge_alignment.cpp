@@ -45,8 +45,8 @@ bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) 
   const FrameEdges& frame = *image_->frame;
   if (!pixel || !IsBetweenPixelCentres(frame.maps.distance, *pixel)) return false;
   const auto nearest = NearestEdge(frame.maps, *pixel);
-  const bool is_hidden = std::any_of(image_->nearer_boxes.begin(), image_->nearer_boxes.end(),
-                                     [&](const Box& box) { return box.Contains(*pixel); });
+  const bool is_hidden = std::ranges::any_of(image_->nearer_boxes,
+                                             [&](const Box& box) { return box.Contains(*pixel); });
   if (!nearest || is_hidden) return false;
   const cv::Point at(static_cast<int>(nearest->x()), static_cast<int>(nearest->y()));
   const Eigen::Vector2d edge(-frame.slope_y.at<float>(at), frame.slope_x.at<float>(at));

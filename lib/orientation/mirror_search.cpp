@@ -283,7 +283,7 @@ std::vector<Eigen::Vector2d> MirrorSearch::PixelsOfPairs(double place) {
       if (is_pair[i]) found.push_back(order_[points_.ray[batch * kBatchSize + i]]);
     }
   }
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
   return Ordered(pixels_, found);
 }
 

@@ -52,8 +52,7 @@ Table DatasetTable(const DatasetResult& dataset) {
   }
   std::set<std::string> odometry;
   for (const VariantResult& variant : dataset.variants) {
-    const bool has_row = std::find(kPaperVariants.begin(), kPaperVariants.end(), variant.name) !=
-                         kPaperVariants.end();
+    const bool has_row = std::ranges::find(kPaperVariants, variant.name) != kPaperVariants.end();
     if (!has_row && !variant.metrics.is_null()) table.rows.push_back(RowOf(variant));
     const auto ate = MetricsNumber(variant, kOdometryAte);
     if (ate) odometry.insert(fmt::format("{:.4f} m", *ate));

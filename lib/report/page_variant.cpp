@@ -198,7 +198,7 @@ std::vector<size_t> DetailedVariants(const json& page) {
   std::ranges::reverse(names);
   const std::array<std::string, 3> kinds = {"map", "views", "frames"};
   const auto place = [](const auto& in, const json& name) {
-    return std::find(in.begin(), in.end(), name.get<std::string>()) - in.begin();
+    return std::ranges::find(in, name.get<std::string>()) - in.begin();
   };
   const auto rank = [&](size_t index) {
     const json& variant = variants[index];

@@ -16,7 +16,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTimes, source, dataset, machine, val
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Published, tables, times)
 
 const PublishedTable* Published::Find(const std::string& number, const Quantity& quantity) const {
-  const auto found = std::find_if(tables.begin(), tables.end(), [&](const PublishedTable& table) {
+  const auto found = std::ranges::find_if(tables, [&](const PublishedTable& table) {
     return table.table == number && table.quantity == quantity.key;
   });
   return found == tables.end() ? nullptr : &*found;
@@ -84,7 +84,7 @@ std::vector<Layout> Layouts() {
 using Means = std::vector<std::optional<ObjectMean>>;
 
 bool HasAny(const Means& means) {
-  return std::any_of(means.begin(), means.end(), [](const auto& mean) { return mean.has_value(); });
+  return std::ranges::any_of(means, [](const auto& mean) { return mean.has_value(); });
 }
 
 Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
@@ -209,9 +209,8 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
     table->rows.push_back(PublishedRowOf(row, layout));
   }
   for (const DatasetResult& dataset : datasets) {
-    const bool is_published =
-        std::any_of(published_rows.begin(), published_rows.end(),
-                    [&](const PublishedRow& row) { return row.dataset == dataset.name; });
+    const bool is_published = std::ranges::any_of(
+        published_rows, [&](const PublishedRow& row) { return row.dataset == dataset.name; });
     if (!is_published) add_measured(dataset);
   }
 }
@@ -261,10 +260,9 @@ std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
                                const Published& published) {
   std::vector<Table> tables;
   for (const Layout& layout : Layouts()) {
-    const bool is_measured =
-        std::any_of(datasets.begin(), datasets.end(), [&](const DatasetResult& dataset) {
-          return HasAny(MeansOf(dataset, layout, layout.row_kinds.front()));
-        });
+    const bool is_measured = std::ranges::any_of(datasets, [&](const DatasetResult& dataset) {
+      return HasAny(MeansOf(dataset, layout, layout.row_kinds.front()));
+    });
     if (!is_measured) continue;
     Table table = {layout.name,
                    fmt::format("{} (Table {})", layout.title, layout.number),

@@ -49,9 +49,9 @@ using nlohmann::json;
 
 // Rank in the order of variants; equal for all that are neither the paper's nor ours.
 size_t VariantRank(const std::string& name) {
-  const auto paper = std::find(kPaperVariants.begin(), kPaperVariants.end(), name);
+  const auto paper = std::ranges::find(kPaperVariants, name);
   if (paper != kPaperVariants.end()) return static_cast<size_t>(paper - kPaperVariants.begin());
-  const auto shape = std::find(kShapeVariants.begin(), kShapeVariants.end(), name);
+  const auto shape = std::ranges::find(kShapeVariants, name);
   return kPaperVariants.size() + static_cast<size_t>(shape - kShapeVariants.begin());
 }
 
@@ -94,7 +94,7 @@ std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles da
     if (!Exists(folder / "metrics.json") && !Exists(folder / "stages.txt")) continue;
     variants.push_back(ReadVariant(dataset, folder, damaged));
   }
-  std::stable_sort(variants.begin(), variants.end(), [](const auto& a, const auto& b) {
+  std::ranges::stable_sort(variants, [](const auto& a, const auto& b) {
     return VariantRank(a.name) < VariantRank(b.name);
   });
   return variants;
@@ -103,10 +103,9 @@ std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles da
 }  // namespace
 
 const VariantResult* DatasetResult::Evaluated(const std::string& variant) const {
-  const auto found =
-      std::find_if(variants.begin(), variants.end(), [&](const VariantResult& candidate) {
-        return candidate.name == variant && !candidate.metrics.is_null();
-      });
+  const auto found = std::ranges::find_if(variants, [&](const VariantResult& candidate) {
+    return candidate.name == variant && !candidate.metrics.is_null();
+  });
   return found == variants.end() ? nullptr : &*found;
 }
 
@@ -116,7 +115,7 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (IsFolder(entry.path())) names.push_back(entry.path().filename().string());
   }
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   return names;
 }
 

@@ -48,9 +48,9 @@ std::optional<double> TotalSeconds(const std::vector<StageRun>& runs, const Cloc
 std::vector<StageRun> LandmarkRuns(const VariantResult& variant, bool is_map) {
   std::vector<StageRun> runs;
   for (const StageRun& run : variant.stages) {
-    const bool counts = is_map ? run.stage == kMapStage
-                               : std::find(kLandmarkStages.begin(), kLandmarkStages.end(),
-                                           run.stage) != kLandmarkStages.end();
+    const bool counts =
+        is_map ? run.stage == kMapStage
+               : std::ranges::find(kLandmarkStages, run.stage) != kLandmarkStages.end();
     if (counts) runs.push_back(run);
   }
   return runs;
@@ -106,8 +106,7 @@ std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
 
 void AddMeasuredTimes(const DatasetResult& dataset, Table* table) {
   const std::vector<std::optional<LandmarkTime>> times = TimesOf(dataset);
-  const bool any =
-      std::any_of(times.begin(), times.end(), [](const auto& time) { return time.has_value(); });
+  const bool any = std::ranges::any_of(times, [](const auto& time) { return time.has_value(); });
   if (!any) return;
   for (const TimeRow& time_row : kTimeRows) {
     std::vector<Cell> row = {dataset.name, time_row.title};
@@ -123,9 +122,8 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
   std::vector<Cell> times = {published.dataset, "published ms"};
   std::vector<Cell> observations = {published.dataset, "published observations"};
   for (const std::string& name : TimedVariants()) {
-    const auto time =
-        std::find_if(published.values.begin(), published.values.end(),
-                     [&](const PublishedTime& value) { return value.variant == name; });
+    const auto time = std::ranges::find_if(
+        published.values, [&](const PublishedTime& value) { return value.variant == name; });
     const bool is_published = time != published.values.end();
     times.emplace_back(is_published ? fmt::format("{:.1f} ± {:.1f}", time->ms_mean, time->ms_sigma)
                                     : kNoValue);
@@ -141,12 +139,11 @@ std::vector<std::string> StagesOf(const std::vector<DatasetResult>& datasets) {
   std::vector<std::string> stages;
   for (const char* stage :
        {"import", "associate", "planes", "edges", "initialise", "refine", "optimise", "evaluate"}) {
-    const bool occurs = std::any_of(datasets.begin(), datasets.end(), [&](const auto& dataset) {
-      return std::any_of(
-          dataset.variants.begin(), dataset.variants.end(), [&](const auto& variant) {
-            return std::any_of(variant.stages.begin(), variant.stages.end(),
-                               [&](const StageRun& run) { return run.stage == stage; });
-          });
+    const bool occurs = std::ranges::any_of(datasets, [&](const auto& dataset) {
+      return std::ranges::any_of(dataset.variants, [&](const auto& variant) {
+        return std::ranges::any_of(variant.stages,
+                                   [&](const StageRun& run) { return run.stage == stage; });
+      });
     });
     if (occurs) stages.emplace_back(stage);
   }
@@ -160,9 +157,8 @@ std::vector<Cell> StageTimeRow(const std::string& dataset, const VariantResult& 
   };
   std::vector<Cell> row = {dataset, variant.name, clock.title};
   for (const std::string& stage : stages) {
-    const auto run =
-        std::find_if(variant.stages.begin(), variant.stages.end(),
-                     [&](const StageRun& candidate) { return candidate.stage == stage; });
+    const auto run = std::ranges::find_if(
+        variant.stages, [&](const StageRun& candidate) { return candidate.stage == stage; });
     row.push_back(cell(run == variant.stages.end() ? std::nullopt : Seconds(*run, clock)));
   }
   row.push_back(cell(TotalSeconds(variant.stages, clock)));
@@ -186,8 +182,8 @@ SequenceCounts CountObservations(const std::filesystem::path& sequence_file) {
 std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
                                             const SequenceCounts& counts) {
   if (variant.metrics.is_null()) return std::nullopt;
-  const bool is_map = std::any_of(variant.stages.begin(), variant.stages.end(),
-                                  [](const StageRun& run) { return run.stage == kMapStage; });
+  const bool is_map = std::ranges::any_of(
+      variant.stages, [](const StageRun& run) { return run.stage == kMapStage; });
   const std::vector<StageRun> runs = LandmarkRuns(variant, is_map);
   const auto wall_s = TotalSeconds(runs, kWallClock);
   const auto cpu_s = TotalSeconds(runs, kCpuClock);
@@ -221,8 +217,8 @@ Table StageTimeTable(const std::vector<DatasetResult>& datasets) {
   table.header.emplace_back("all");
   for (const DatasetResult& dataset : datasets) {
     for (const VariantResult& variant : dataset.variants) {
-      const bool is_timed = std::any_of(variant.stages.begin(), variant.stages.end(),
-                                        [](const StageRun& run) { return run.timing.has_value(); });
+      const bool is_timed = std::ranges::any_of(
+          variant.stages, [](const StageRun& run) { return run.timing.has_value(); });
       if (!is_timed) continue;
       table.rows.push_back(StageTimeRow(dataset.name, variant, stages, kWallClock));
       table.rows.push_back(StageTimeRow(dataset.name, variant, stages, kCpuClock));

@@ -110,8 +110,8 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   input.initial_landmarks = options.detection_model == DetectionModel::kTangency
                                 ? ChooseInitialUprightLandmarks(input, estimates, options, threads)
                                 : ChooseInitialLandmarks(sequence, estimates);
-  if (std::none_of(input.initial_landmarks.begin(), input.initial_landmarks.end(),
-                   [](const auto& start) { return start.has_value(); })) {
+  if (std::ranges::none_of(input.initial_landmarks,
+                           [](const auto& start) { return start.has_value(); })) {
     throw NothingUsableError(files.at("landmarks").string() + ": no landmark to start from");
   }
   ArtefactInfo info = {OptionsToJson(options),

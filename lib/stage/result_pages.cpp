@@ -32,8 +32,8 @@ namespace fs = std::filesystem;
 std::vector<DatasetResult> ReadEvaluated(const fs::path& results) {
   std::vector<DatasetResult> datasets = ReadResults(results);
   std::erase_if(datasets, [](const DatasetResult& dataset) {
-    return std::all_of(dataset.variants.begin(), dataset.variants.end(),
-                       [](const VariantResult& variant) { return variant.metrics.is_null(); });
+    return std::ranges::all_of(
+        dataset.variants, [](const VariantResult& variant) { return variant.metrics.is_null(); });
   });
   if (datasets.empty()) {
     throw NothingUsableError(results.string() +

@@ -25,11 +25,11 @@ namespace fs = std::filesystem;
 // Refuses names that make cannot handle: it splits lists at spaces and interprets several
 // characters, which cannot all be quoted.
 void RefuseIfUnfitForMake(const std::string& text, const std::string& what) {
-  const bool fit = !text.empty() && text.front() != '-' &&
-                   std::all_of(text.begin(), text.end(), [](unsigned char c) {
-                     return std::isalnum(c) || c >= 0x80 ||
-                            std::string("_-./+@").find(static_cast<char>(c)) != std::string::npos;
-                   });
+  const bool fit =
+      !text.empty() && text.front() != '-' && std::ranges::all_of(text, [](unsigned char c) {
+        return std::isalnum(c) || c >= 0x80 ||
+               std::string("_-./+@").find(static_cast<char>(c)) != std::string::npos;
+      });
   if (!fit) {
     throw SettingsError(fmt::format(
         "{} '{}': expected a name of letters, digits and _ - . / + @ only (no spaces, no - first)",
@@ -153,7 +153,7 @@ std::vector<std::string> SplitAtSpaces(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) {
-    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+    if (std::ranges::find(words, word) == words.end()) words.push_back(word);
   }
   return words;
 }

@@ -82,12 +82,11 @@ class Placement {
     constexpr double kGap = 0.1;    // metres
     constexpr double kRobot = 0.4;  // metres, half its width
     const auto radius = [](const SceneObject& o) { return o.half_axes.head<2>().norm(); };
-    const bool others =
-        std::all_of(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& other) {
-          return (object.position_on_plane - other.position_on_plane).norm() >
-                 radius(object) + radius(other) + kGap;
-        });
-    return others && std::all_of(poses_.begin(), poses_.end(), [&](const Rigid3d& pose) {
+    const bool others = std::ranges::all_of(scene_.objects, [&](const SceneObject& other) {
+      return (object.position_on_plane - other.position_on_plane).norm() >
+             radius(object) + radius(other) + kGap;
+    });
+    return others && std::ranges::all_of(poses_, [&](const Rigid3d& pose) {
              return (object.position_on_plane - pose.translation.head<2>()).norm() >
                     radius(object) + kRobot;
            });
@@ -111,8 +110,8 @@ class Placement {
         return !CentreIsVisible({bodies_[other], bodies_[index]}, 0, poses_[frame].translation);
       });
     }
-    if (std::any_of(views.begin(), views.end(),
-                    [&](const auto& frames) { return frames.size() < min_views_; })) {
+    if (std::ranges::any_of(views,
+                            [&](const auto& frames) { return frames.size() < min_views_; })) {
       bodies_.pop_back();
       return false;
     }

@@ -73,7 +73,7 @@ bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
   const Eigen::Vector3d direction = body.landmark.Centre() - camera_in_world;
   const auto own_depth = NearestIntersection(body, camera_in_world, direction);
   if (!own_depth) return false;
-  return std::none_of(bodies_in_world.begin(), bodies_in_world.end(), [&](const Body& other) {
+  return std::ranges::none_of(bodies_in_world, [&](const Body& other) {
     const auto depth = NearestIntersection(other, camera_in_world, direction);
     return depth && *depth < *own_depth;
   });

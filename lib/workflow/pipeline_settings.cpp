@@ -66,8 +66,8 @@ const std::array<PipelineStage, 8>& Stages() {
 }
 
 const PipelineStage* FindStage(const std::string& name) {
-  const auto found = std::find_if(Stages().begin(), Stages().end(),
-                                  [&](const PipelineStage& stage) { return stage.name == name; });
+  const auto found = std::ranges::find_if(
+      Stages(), [&](const PipelineStage& stage) { return stage.name == name; });
   return found == Stages().end() ? nullptr : &*found;
 }
 
@@ -193,7 +193,7 @@ std::vector<std::string> VariantNames(const fs::path& pipelines) {
   if (names.empty()) {
     throw SettingsError((pipelines / "variants").string() + ": no variants; expected <name>.json");
   }
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   return names;
 }
 

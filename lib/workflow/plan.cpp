@@ -69,9 +69,8 @@ class ChainBuilder {
 
   // The output of the first of these stages that is in the variant.
   ArtefactSource Latest(const std::vector<std::string>& stages) const {
-    const auto found = std::find_if(stages.begin(), stages.end(), [&](const std::string& stage) {
-      return ids_.count(stage) > 0;
-    });
+    const auto found = std::ranges::find_if(
+        stages, [&](const std::string& stage) { return ids_.count(stage) > 0; });
     if (found == stages.end()) throw std::logic_error("no stage that gives this input");
     return Output(*found);
   }
@@ -93,9 +92,8 @@ class ChainBuilder {
 }  // namespace
 
 const StageInstance& Plan::Instance(const std::string& id) const {
-  const auto found =
-      std::find_if(instances.begin(), instances.end(),
-                   [&](const StageInstance& instance) { return instance.Id() == id; });
+  const auto found = std::ranges::find_if(
+      instances, [&](const StageInstance& instance) { return instance.Id() == id; });
   if (found == instances.end()) throw std::out_of_range("no instance " + id);
   return *found;
 }
@@ -146,8 +144,8 @@ Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset
     for (StageInstance& instance : ChainBuilder(settings).Build()) {
       const std::string id = instance.Id();
       chain.instances.push_back(id);
-      auto known = std::find_if(plan.instances.begin(), plan.instances.end(),
-                                [&](const StageInstance& other) { return other.Id() == id; });
+      auto known = std::ranges::find_if(
+          plan.instances, [&](const StageInstance& other) { return other.Id() == id; });
       if (known == plan.instances.end()) {
         known = plan.instances.insert(known, std::move(instance));
       }

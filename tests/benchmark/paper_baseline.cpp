@@ -38,8 +38,8 @@ class Optimiser {
         problem_(BorrowLoss()),
         poses_(observations.views.size()) {
     // The paper counts one texture; that of several weighs as much together.
-    const auto textures = std::count_if(observations.views.begin(), observations.views.end(),
-                                        [](const View& view) { return view.edge_maps != nullptr; });
+    const auto textures = std::ranges::count_if(
+        observations.views, [](const View& view) { return view.edge_maps != nullptr; });
     symmetry_weight_ = 1.0 / (kSymmetrySigma * std::sqrt(static_cast<double>(textures)));
     problem_.AddResidualBlock(
         new ceres::NumericDiffCostFunction<PriorResiduals, ceres::CENTRAL, 5, kLandmarkSize>(

@@ -95,7 +95,7 @@ class CommandLineTest : public testing::Test {
   void ExpectOneLineOfError(const std::string& part) {
     EXPECT_THAT(stderr_, StartsWith("soslam-test: error: "));
     EXPECT_THAT(stderr_, HasSubstr(part));
-    EXPECT_EQ(std::count(stderr_.begin(), stderr_.end(), '\n'), 1) << stderr_;
+    EXPECT_EQ(std::ranges::count(stderr_, '\n'), 1) << stderr_;
   }
 
   TemporaryFolder folder_;

@@ -241,9 +241,9 @@ TEST(KittiTrackingDataTest, ReadsTheRealFolder) {
   EXPECT_EQ(sequence.frames.size(), 4937u);
   EXPECT_EQ(sequence.objects.size(), 574u);
   EXPECT_EQ(sequence.detections.size(), 7459u);
-  const auto parked =
-      std::count_if(sequence.objects.begin(), sequence.objects.end(),
-                    [](const Object& object) { return object.label == "car" && object.is_static; });
+  const auto parked = std::ranges::count_if(sequence.objects, [](const Object& object) {
+    return object.label == "car" && object.is_static;
+  });
   EXPECT_NEAR(static_cast<double>(parked), 263, 5);
 }
 

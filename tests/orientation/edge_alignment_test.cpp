@@ -136,7 +136,7 @@ TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
     truth.frame_from_object.translation.x() += right;
     const auto image = ImageOf(truth, {half});
     const auto points = VisibleModelPoints(camera, truth, options.edge_spacing_px);
-    const auto visible = std::count_if(points.begin(), points.end(), [&](const ModelPoint& point) {
+    const auto visible = std::ranges::count_if(points, [&](const ModelPoint& point) {
       const Eigen::Vector2d pixel = *camera.Project(
           truth.frame_from_object * truth.half_axes.cwiseProduct(point.in_unit_body));
       return pixel.x() > 310.0 && pixel.x() <= camera.width - 1.0;
@@ -223,9 +223,8 @@ TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
   const Landmark landmark{{{1, 0, 0, 0}, {0, 0, 3}}, {0.5, 0.4, 0.3}, kCuboidExponent};
   const EdgeTerm term(image, TestCamera(), landmark, EdgeOptions());
   const auto points = VisibleModelPoints(TestCamera(), landmark, EdgeOptions().edge_spacing_px);
-  const auto vertical = std::count_if(points.begin(), points.end(), [](const ModelPoint& point) {
-    return std::abs(point.along.y()) > 0.5;
-  });
+  const auto vertical = std::ranges::count_if(
+      points, [](const ModelPoint& point) { return std::abs(point.along.y()) > 0.5; });
   EXPECT_EQ(term.NumPoints(), vertical);
   EXPECT_NEAR(term.Value(landmark), 0.0, 1e-12);
   const double share = 1.0 - static_cast<double>(vertical) / static_cast<double>(points.size());

@@ -58,7 +58,7 @@ TEST(VisibleModelPoints, CuboidsShowTheEdgesOfTheFacesThatTheCameraSees) {
     }
     EXPECT_EQ(edges.size(), edge_count);
     for (const auto& edge : edges) {
-      EXPECT_EQ(std::count(edge.begin(), edge.end(), 0), 1);
+      EXPECT_EQ(std::ranges::count(edge, 0), 1);
       bool visible = false;
       for (size_t i = 0; i < 3; ++i) {
         const auto axis = static_cast<Eigen::Index>(i);

@@ -77,7 +77,7 @@ class RefineBoxes : public testing::Test {
     }
     Frames maps;
     for (std::vector<Landmark>& of_frame : boxes) {
-      std::sort(of_frame.begin(), of_frame.end(), [](const Landmark& one, const Landmark& other) {
+      std::ranges::sort(of_frame, [](const Landmark& one, const Landmark& other) {
         return one.Centre().z() > other.Centre().z();  // nearer ones in front
       });
       maps.push_back(std::make_shared<const FrameEdges>(

@@ -171,7 +171,7 @@ TEST_P(GatedInputTest, IsCountedWithItsReason) {
   ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
   const CommandResult result = chain.Run(bad.stage);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_LE(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  EXPECT_LE(std::ranges::count(result.errors, '\n'), 1) << result.errors;
   const json artefact = json::parse(FileBytes(chain.Artefact(StageChain::OutputOf(bad.stage))));
   EXPECT_EQ(artefact.value(json::json_pointer(bad.counter), 0), bad.count);
 }
@@ -212,7 +212,7 @@ TEST(UnknownSettingTest, IsRefusedByEveryStage) {
     EXPECT_EQ(refused.exit_code, 2) << stage;
     EXPECT_THAT(refused.errors, HasSubstr("settings.json"));
     EXPECT_THAT(refused.errors, HasSubstr("colour"));
-    EXPECT_EQ(std::count(refused.errors.begin(), refused.errors.end(), '\n'), 1) << refused.errors;
+    EXPECT_EQ(std::ranges::count(refused.errors, '\n'), 1) << refused.errors;
     fs::remove(settings);
     EXPECT_EQ(chain.Run(stage).exit_code, 0) << stage;
   }

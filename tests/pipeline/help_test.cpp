@@ -27,7 +27,7 @@ std::vector<std::string> AllStages() {
     const std::string stage = entry.path().stem().string();
     if (stage != "inspect") stages.push_back(stage);
   }
-  std::sort(stages.begin(), stages.end());
+  std::ranges::sort(stages);
   return stages;
 }
 

@@ -114,8 +114,9 @@ Drive::Drive(int frames, int objects, double turn_sigma_rad) {
     initial_landmarks.push_back(
         Disturbed(truth, sequence.frames[static_cast<size_t>(first + kDriveViews / 2)], &noise));
   }
-  std::stable_sort(sequence.detections.begin(), sequence.detections.end(),
-                   [](const auto& a, const auto& b) { return a.frame_index < b.frame_index; });
+  std::ranges::stable_sort(sequence.detections, [](const auto& a, const auto& b) {
+    return a.frame_index < b.frame_index;
+  });
 }
 
 }  // namespace soslam

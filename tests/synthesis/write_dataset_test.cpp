@@ -39,7 +39,7 @@ std::map<std::string, std::string> Contents(const fs::path& folder) {
 
 // The numbers of a line, comma or blank between them, from the given column on.
 std::vector<double> Numbers(std::string line, int skip) {
-  std::replace(line.begin(), line.end(), ',', ' ');
+  std::ranges::replace(line, ',', ' ');
   std::istringstream stream(line);
   std::string word;
   std::vector<double> numbers;
