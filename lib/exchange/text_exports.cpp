@@ -13,106 +13,64 @@
 namespace soslam {
 namespace {
 
-constexpr std::array kHeader = {"id",
-                                "label",
-                                "segment",
-                                "observations",
-                                "centre_x",
-                                "centre_y",
-                                "centre_z",
-                                "qx",
-                                "qy",
-                                "qz",
-                                "qw",
-                                "half_axis_a",
-                                "half_axis_b",
-                                "half_axis_c",
-                                "yaw_deg",
-                                "shape_exponent",
-                                "sigma_centre_x",
-                                "sigma_centre_y",
-                                "sigma_centre_z",
-                                "sigma_half_axis_a",
-                                "sigma_half_axis_b",
-                                "sigma_half_axis_c",
-                                "sigma_yaw_deg",
-                                "failure",
-                                "fate",
-                                "true_object",
-                                "iou",
-                                "reason"};
-// Number of columns of the verdict, at the end.
-constexpr size_t kVerdictColumns = 4;
+constexpr const char* kHeader =
+    "id,label,segment,observations,centre_x,centre_y,centre_z,qx,qy,qz,qw,"
+    "half_axis_a,half_axis_b,half_axis_c,yaw_deg,shape_exponent,"
+    "sigma_centre_x,sigma_centre_y,sigma_centre_z,"
+    "sigma_half_axis_a,sigma_half_axis_b,sigma_half_axis_c,sigma_yaw_deg,"
+    "failure,fate,true_object,iou,reason";
+constexpr size_t kFailureColumn = 23;
+constexpr size_t kColumns = kFailureColumn + 5;
 
-// The values from centre to shape exponent.
-std::vector<double> LandmarkValues(const WorldObject& object) {
-  const Landmark& landmark = *object.estimate.landmark_in_world;
-  const Eigen::Vector3d& centre = landmark.Centre();
-  const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
-  const Eigen::Vector3d& half_axes = landmark.half_axes;
-  return {centre.x(),
-          centre.y(),
-          centre.z(),
-          rotation.x(),
-          rotation.y(),
-          rotation.z(),
-          rotation.w(),
-          half_axes.x(),
-          half_axes.y(),
-          half_axes.z(),
-          YawOf(object) * kDegPerRad,
-          landmark.shape_exponent};
+template <typename Numbers>
+void Append(const Numbers& numbers, std::vector<std::string>* row) {
+  for (const double number : numbers) row->push_back(fmt::format("{}", number));
 }
 
-// Standard deviations of centre, half axes and yaw.
-std::vector<double> Sigmas(const WorldObject& object) {
+void AppendLandmark(const WorldObject& object, std::vector<std::string>* row) {
+  const Landmark& landmark = *object.estimate.landmark_in_world;
+  Append(landmark.Centre(), row);
+  Append(landmark.frame_from_object.rotation.coeffs(), row);
+  Append(landmark.half_axes, row);
+  Append(std::array{YawOf(object) * kDegPerRad, landmark.shape_exponent}, row);
+  if (!object.estimate.covariance) return;
   const Covariance9& covariance = *object.estimate.covariance;
   const Eigen::Matrix<double, 9, 1> sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::Vector3d& half_axes = object.estimate.landmark_in_world->half_axes;
   const Eigen::Vector3d& up = object.support_normal;
   const double yaw_variance = up.dot(covariance.topLeftCorner<3, 3>() * up);
-  return {sigmas[3],
-          sigmas[4],
-          sigmas[5],
-          half_axes.x() * sigmas[6],
-          half_axes.y() * sigmas[7],
-          half_axes.z() * sigmas[8],
-          std::sqrt(std::max(yaw_variance, 0.0)) * kDegPerRad};
+  Append(sigmas.segment<3>(3), row);
+  Append(Eigen::Vector3d(landmark.half_axes.cwiseProduct(sigmas.tail<3>())), row);
+  Append(std::array{std::sqrt(std::max(yaw_variance, 0.0)) * kDegPerRad}, row);
 }
 
-std::vector<Cell> RowOf(const WorldObject& object) {
-  std::vector<Cell> row = {std::to_string(object.id), object.label,
-                           object.segment ? std::to_string(*object.segment) : "",
-                           std::to_string(object.estimate.observations)};
-  const auto add = [&](const std::vector<double>& values) {
-    for (const double value : values) row.push_back(fmt::format("{}", value));
-  };
-  if (object.estimate.landmark_in_world) {
-    add(LandmarkValues(object));
-    if (object.estimate.covariance) add(Sigmas(object));
-  }
-  row.resize(kHeader.size() - kVerdictColumns - 1, "");
-  row.push_back(object.estimate.failure);
+std::vector<std::string> RowOf(const WorldObject& object) {
+  std::vector<std::string> row = {std::to_string(object.id), CsvText(object.label),
+                                  object.segment ? std::to_string(*object.segment) : "",
+                                  std::to_string(object.estimate.observations)};
+  if (object.estimate.landmark_in_world) AppendLandmark(object, &row);
+  row.resize(kFailureColumn);
+  row.push_back(CsvText(object.estimate.failure));
   if (object.verdict) {
     const LandmarkVerdict& verdict = *object.verdict;
-    row.push_back(verdict.fate);
+    row.push_back(CsvText(verdict.fate));
     row.push_back(verdict.true_object ? std::to_string(*verdict.true_object) : "");
     row.push_back(verdict.iou ? fmt::format("{}", *verdict.iou) : "");
-    row.push_back(verdict.reason);
+    row.push_back(CsvText(verdict.reason));
   }
-  row.resize(kHeader.size(), "");
+  row.resize(kColumns);
   return row;
 }
 
 }  // namespace
 
 std::string LandmarksCsvText(const std::vector<World>& worlds) {
-  Table table;
-  table.header.assign(kHeader.begin(), kHeader.end());
+  std::string text = fmt::format("{}\n", kHeader);
   for (const World& world : worlds) {
-    for (const WorldObject& object : world.objects) table.rows.push_back(RowOf(object));
+    for (const WorldObject& object : world.objects) {
+      text += fmt::format("{}\n", fmt::join(RowOf(object), ","));
+    }
   }
-  return ToCsv(table);
+  return text;
 }
 
 std::string TumTrajectoryText(const World& world) {

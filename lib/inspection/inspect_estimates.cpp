@@ -48,17 +48,12 @@ std::vector<ValueColumn> EstimateColumns() {
 // no landmark.
 std::vector<Value> CellsOf(const std::optional<Landmark>& landmark) {
   if (!landmark) return std::vector<Value>(8);
-  const Eigen::Vector3d& centre = landmark->Centre();
-  const Eigen::Vector3d& half_axes = landmark->half_axes;
   const Eigen::Quaterniond& rotation = landmark->frame_from_object.rotation;
-  return {centre.x(),
-          centre.y(),
-          centre.z(),
-          half_axes.x(),
-          half_axes.y(),
-          half_axes.z(),
-          landmark->shape_exponent,
-          kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)};
+  std::vector<Value> cells(landmark->Centre().begin(), landmark->Centre().end());
+  cells.insert(cells.end(), landmark->half_axes.begin(), landmark->half_axes.end());
+  cells.insert(cells.end(), {landmark->shape_exponent,
+                             kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)});
+  return cells;
 }
 
 // Standard deviations: of the centre over all directions, of the yaw, and the root mean square over

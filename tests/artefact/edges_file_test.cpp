@@ -103,16 +103,6 @@ TEST_F(EdgesFileTest, NearestEdgesOutsideTheImageAreRefused) {
   }
 }
 
-TEST_F(EdgesFileTest, WrittenTwiceGivesTheSameBytes) {
-  const EdgeMaps maps = MapsOfRandomRectangles();
-  EXPECT_EQ(FileBytes(Write("a.h5", maps)), FileBytes(Write("b.h5", maps)));
-}
-
-TEST_F(EdgesFileTest, NothingStaysBehindWithoutCommit) {
-  { EdgesWriter(folder_ / "edges.h5", {}).Write(0, MapsOfRandomRectangles()); }
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
-}
-
 TEST_F(EdgesFileTest, CutShortAnywhereIsRefused) {
   const std::string whole = FileBytes(Write("edges.h5", MapsOfRandomRectangles()));
   for (size_t size = 0; size < whole.size(); size += 37) {

@@ -28,32 +28,6 @@ class ArtefactFilesTest : public testing::Test {
   Sequence sequence = RandomSequence();
 };
 
-void ExpectSame(const Rigid3d& a, const Rigid3d& b) {
-  EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
-  EXPECT_EQ(a.translation, b.translation);
-}
-
-void ExpectSame(const Landmark& a, const Landmark& b) {
-  ExpectSame(a.frame_from_object, b.frame_from_object);
-  EXPECT_EQ(a.half_axes, b.half_axes);
-  EXPECT_EQ(a.shape_exponent, b.shape_exponent);
-}
-
-void ExpectSame(const Plane& a, const Plane& b) { EXPECT_EQ(a.Homogeneous(), b.Homogeneous()); }
-
-void ExpectSame(const std::vector<ObjectEstimate>& a, const std::vector<ObjectEstimate>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].object_index, b[i].object_index);
-    EXPECT_EQ(a[i].observations, b[i].observations);
-    EXPECT_EQ(a[i].failure, b[i].failure);
-    EXPECT_EQ(a[i].proper_ellipsoid, b[i].proper_ellipsoid);
-    EXPECT_EQ(a[i].covariance, b[i].covariance);
-    ASSERT_EQ(a[i].landmark_in_world.has_value(), b[i].landmark_in_world.has_value());
-    if (a[i].landmark_in_world) ExpectSame(*a[i].landmark_in_world, *b[i].landmark_in_world);
-  }
-}
-
 TEST_F(ArtefactFilesTest, SequenceWithoutPlanesComesBackToThoseWhoNeedNone) {
   sequence.planes.clear();
   for (Object& object : sequence.objects) object.plane_index = kNoPlane;
@@ -99,7 +73,8 @@ TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
   const Sequence read = ReadSequence(file);
   ASSERT_EQ(read.held_out.size(), 1u);
   EXPECT_EQ(read.held_out[0].frame.id, held_out.frame.id);
-  ExpectSame(read.held_out[0].frame.world_from_camera, held_out.frame.world_from_camera);
+  EXPECT_EQ(read.held_out[0].frame.world_from_camera.translation,
+            held_out.frame.world_from_camera.translation);
   ASSERT_EQ(read.held_out[0].boxes.size(), 1u);
   EXPECT_EQ(read.held_out[0].boxes[0].label, "cup");
   EXPECT_EQ(read.held_out[0].boxes[0].score, 0.7);
@@ -121,30 +96,10 @@ TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
   const Sequence read = ReadSequence(file);
   WriteSequence(again, read, {});
   EXPECT_EQ(ReadText(file), ReadText(again));
-  ASSERT_EQ(read.true_objects.size(), 2u);
-  EXPECT_EQ(read.true_objects[1].id, 7);
-  EXPECT_EQ(read.true_objects[1].segment, 2);
-  EXPECT_FALSE(read.true_objects[1].is_static);
-  EXPECT_TRUE(read.true_objects[0].is_ignored);
-  EXPECT_FALSE(read.true_objects[1].is_ignored);
-  EXPECT_TRUE(read.true_objects[0].truth.rotationally_symmetric);
-  EXPECT_EQ(read.ignored.at(0).label, "mouse");
-  EXPECT_EQ(read.ignored.at(1).volume_in_world->half_axes,
-            sequence.ignored[1].volume_in_world->half_axes);
-  EXPECT_EQ(read.odometry_world, OdometryWorld::kOwnWithScale);
-  EXPECT_EQ(read.detections[0].true_object_id, 7);
-  ASSERT_EQ(read.truth_in_frames.size(), 1u);
-  EXPECT_EQ(read.truth_in_frames[0].frame_index, 1);
-  EXPECT_EQ(read.truth_in_frames[0].true_object_id, 7);
-  ExpectSame(read.truth_in_frames[0].landmark_in_camera,
-             sequence.truth_in_frames[0].landmark_in_camera);
-  ASSERT_EQ(read.rejected.size(), 3u);
-  for (size_t i = 0; i < 3; ++i) {
-    const RejectedDetection &a = read.rejected[i], &b = sequence.rejected[i];
-    EXPECT_EQ(
-        std::tie(a.frame_index, a.label, a.score, a.box, a.true_object_id, a.stage, a.reason),
-        std::tie(b.frame_index, b.label, b.score, b.box, b.true_object_id, b.stage, b.reason));
-  }
+  EXPECT_TRUE(read.true_objects.at(0).is_ignored);
+  EXPECT_EQ(read.truth_in_frames.at(0).frame_index, 1);
+  EXPECT_EQ(read.rejected.at(2).stage, RejectingStage::kPlanes);
+  EXPECT_EQ(read.rejected[2].box, sequence.rejected[2].box);
 }
 
 TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
@@ -176,122 +131,25 @@ TEST_F(ArtefactFilesTest, BeforeVersion17ObjectsSaidWhatIsTrue) {
   EXPECT_EQ(read.odometry_world, OdometryWorld::kOfTruth);
 }
 
-TEST_F(ArtefactFilesTest, SequenceComesBack) {
+// Files of older versions have values that the golden tests compare one by one.
+TEST_F(ArtefactFilesTest, WhatIsReadIsWrittenAgainBitForBit) {
+  const auto expect_same = [&] { EXPECT_EQ(ReadText(file), ReadText(again)); };
   WriteSequence(file, sequence, {});
-  const Sequence read = ReadSequence(file);
-  WriteSequence(again, read, {});
-  EXPECT_EQ(ReadText(file), ReadText(again));
-
-  EXPECT_EQ(read.name, sequence.name);
-  EXPECT_EQ(read.camera.cy, sequence.camera.cy);
-  ASSERT_EQ(read.frames.size(), sequence.frames.size());
-  ASSERT_EQ(read.planes.size(), sequence.planes.size());
-  ASSERT_EQ(read.objects.size(), sequence.objects.size());
-  ASSERT_EQ(read.detections.size(), sequence.detections.size());
-  EXPECT_EQ(read.rejected_detections, sequence.rejected_detections);
-  for (size_t i = 0; i < read.frames.size(); ++i) {
-    const Frame& a = read.frames[i];
-    const Frame& b = sequence.frames[i];
-    EXPECT_EQ(std::tie(a.id, a.timestamp, a.image, a.segment, a.camera),
-              std::tie(b.id, b.timestamp, b.image, b.segment, b.camera));
-    ExpectSame(a.world_from_camera, b.world_from_camera);
-    ASSERT_EQ(a.true_world_from_camera.has_value(), b.true_world_from_camera.has_value());
-    if (a.true_world_from_camera) ExpectSame(*a.true_world_from_camera, *b.true_world_from_camera);
-  }
-  for (size_t i = 0; i < read.planes.size(); ++i) {
-    EXPECT_EQ(read.planes[i].id, sequence.planes[i].id);
-    ExpectSame(read.planes[i].plane_in_world, sequence.planes[i].plane_in_world);
-    EXPECT_EQ(read.planes[i].attitude_information, sequence.planes[i].attitude_information);
-  }
-  for (size_t i = 0; i < read.objects.size(); ++i) {
-    const Object& a = read.objects[i];
-    const Object& b = sequence.objects[i];
-    EXPECT_EQ(std::tie(a.id, a.label, a.plane_index, a.is_static),
-              std::tie(b.id, b.label, b.plane_index, b.is_static));
-    ASSERT_EQ(a.ground_truth.has_value(), b.ground_truth.has_value());
-    if (!a.ground_truth) continue;
-    ExpectSame(a.ground_truth->landmark_in_world, b.ground_truth->landmark_in_world);
-    EXPECT_EQ(a.ground_truth->mirror_symmetric, b.ground_truth->mirror_symmetric);
-    EXPECT_EQ(a.ground_truth->mirror_symmetric_yz, b.ground_truth->mirror_symmetric_yz);
-    EXPECT_EQ(a.ground_truth->rotationally_symmetric, b.ground_truth->rotationally_symmetric);
-  }
-  for (size_t i = 0; i < read.detections.size(); ++i) {
-    const Detection& a = read.detections[i];
-    const Detection& b = sequence.detections[i];
-    EXPECT_EQ(std::tie(a.frame_index, a.object_index, a.score),
-              std::tie(b.frame_index, b.object_index, b.score));
-    EXPECT_EQ(nlohmann::json(a.box), nlohmann::json(b.box));
-    EXPECT_EQ(a.is_bound, b.is_bound);
-    EXPECT_EQ(a.nearer_boxes, b.nearer_boxes);
-    EXPECT_EQ(a.nearer_in_view, b.nearer_in_view);
-    EXPECT_EQ(a.own_in_view, b.own_in_view);
-    ExpectSame(a.plane_in_camera, b.plane_in_camera);
-    ASSERT_EQ(a.true_landmark_in_camera.has_value(), b.true_landmark_in_camera.has_value());
-    if (a.true_landmark_in_camera) {
-      ExpectSame(*a.true_landmark_in_camera, *b.true_landmark_in_camera);
-    }
-  }
-}
-
-TEST_F(ArtefactFilesTest, LandmarksComeBack) {
-  const LandmarkEstimates estimates = RandomLandmarkEstimates();
-  WriteLandmarks(file, estimates, sequence, {});
-  const LandmarkEstimates read = ReadLandmarks(file, sequence);
-  WriteLandmarks(again, read, sequence, {});
-  EXPECT_EQ(ReadText(file), ReadText(again));
-
-  ASSERT_EQ(read.observations.size(), estimates.observations.size());
-  for (size_t i = 0; i < read.observations.size(); ++i) {
-    const ObservationEstimate& a = read.observations[i];
-    const ObservationEstimate& b = estimates.observations[i];
-    EXPECT_EQ(a.detection_index, b.detection_index);
-    EXPECT_EQ(a.failure, b.failure);
-    ASSERT_EQ(a.hypotheses.size(), b.hypotheses.size());
-    for (size_t k = 0; k < a.hypotheses.size(); ++k) {
-      EXPECT_EQ(a.hypotheses[k].cost, b.hypotheses[k].cost);
-      ExpectSame(a.hypotheses[k].landmark_in_camera, b.hypotheses[k].landmark_in_camera);
-    }
-  }
-  ExpectSame(read.objects, estimates.objects);
-  EXPECT_EQ(ParseJsonFile(file).at("failures").dump(),
-            R"({"plane_behind_camera":1,"too_few_views":1})");
-}
-
-TEST_F(ArtefactFilesTest, MapComesBack) {
-  const MapEstimate map = RandomMap();
-  WriteMap(file, map, sequence, {});
-  const MapEstimate read = ReadMap(file, sequence);
-  WriteMap(again, read, sequence, {});
-  EXPECT_EQ(ReadText(file), ReadText(again));
-
-  ExpectSame(read.objects, map.objects);
-  ASSERT_EQ(read.world_from_camera.size(), map.world_from_camera.size());
-  for (size_t i = 0; i < map.world_from_camera.size(); ++i) {
-    ExpectSame(read.world_from_camera[i], map.world_from_camera[i]);
-  }
-  ASSERT_EQ(read.planes_in_world.size(), map.planes_in_world.size());
-  for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
-    ExpectSame(read.planes_in_world[i], map.planes_in_world[i]);
-  }
-  const SolverSummary& a = read.solver;
-  const SolverSummary& b = map.solver;
-  EXPECT_EQ(std::tie(a.initial_cost, a.final_cost, a.iterations, a.converged),
-            std::tie(b.initial_cost, b.final_cost, b.iterations, b.converged));
-  EXPECT_EQ(a.cost_per_iteration, b.cost_per_iteration);
-  EXPECT_EQ(a.residuals, b.residuals);
-  EXPECT_EQ(a.gated, b.gated);
-}
-
-// The range of shape exponents includes its ends.
-TEST_F(ArtefactFilesTest, CuboidsAndEllipsoidsComeBack) {
+  WriteSequence(again, ReadSequence(file), {});
+  expect_same();
   LandmarkEstimates estimates = RandomLandmarkEstimates();
+  // The range of shape exponents includes its ends.
   std::vector<Hypothesis>& hypotheses = estimates.observations[0].hypotheses;
   hypotheses.at(0).landmark_in_camera.shape_exponent = kCuboidExponent;
   hypotheses.at(1).landmark_in_camera.shape_exponent = kEllipsoidExponent;
   WriteLandmarks(file, estimates, sequence, {});
-  const LandmarkEstimates read = ReadLandmarks(file, sequence);
-  EXPECT_EQ(read.observations[0].hypotheses[0].landmark_in_camera.shape_exponent, 1.0);
-  EXPECT_EQ(read.observations[0].hypotheses[1].landmark_in_camera.shape_exponent, 2.0);
+  WriteLandmarks(again, ReadLandmarks(file, sequence), sequence, {});
+  expect_same();
+  EXPECT_EQ(ParseJsonFile(file).at("failures").dump(),
+            R"({"plane_behind_camera":1,"too_few_views":1})");
+  WriteMap(file, RandomMap(), sequence, {});
+  WriteMap(again, ReadMap(file, sequence), sequence, {});
+  expect_same();
 }
 
 TEST_F(ArtefactFilesTest, BoundsAreNamed) {

@@ -88,20 +88,6 @@ TEST_F(SymmetryFileTest, NoRecordsAreNoError) {
   EXPECT_TRUE(ReadSymmetry(folder_ / "symmetry.h5").empty());
 }
 
-TEST_F(SymmetryFileTest, WrittenTwiceGivesTheSameBytes) {
-  WriteSymmetry(folder_ / "a.h5", {FullRecord(), BareRecord()}, {});
-  WriteSymmetry(folder_ / "b.h5", {FullRecord(), BareRecord()}, {});
-  EXPECT_EQ(FileBytes(folder_ / "a.h5"), FileBytes(folder_ / "b.h5"));
-}
-
-TEST_F(SymmetryFileTest, FailureLeavesTheOldFile) {
-  WriteSymmetry(folder_ / "symmetry.h5", {BareRecord()}, {});
-  const std::string before = FileBytes(folder_ / "symmetry.h5");
-  EXPECT_THROW(WriteSymmetry(folder_ / "symmetry.h5", {FullRecord(), FullRecord()}, {}),
-               SettingsError);  // the same observation twice
-  EXPECT_EQ(FileBytes(folder_ / "symmetry.h5"), before);
-}
-
 TEST_F(SymmetryFileTest, BadFilesAreNamed) {
   EdgesWriter(folder_ / "edges.h5", {}).Commit();
   ExpectError<InputError>([&] { ReadSymmetry(folder_ / "edges.h5"); },

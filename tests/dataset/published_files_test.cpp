@@ -80,25 +80,5 @@ TEST(PublishedFilesTest, FolderOfFreiburg3LongOffice) {
   EXPECT_GT(sequence.detections.size(), 16000u);
 }
 
-TEST(PublishedFilesTest, KittiBoxes) {
-  const fs::path folder = RealDataset("kitti_tracking") / "det_02_rrc";
-  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
-  size_t boxes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) boxes += ReadKittiBoxes(entry.path()).size();
-  }
-  EXPECT_EQ(boxes, 20630u);
-}
-
-TEST(PublishedFilesTest, KittiTrajectories) {
-  const fs::path folder = RealDataset("kitti_tracking") / "poses_orbslam3_stereo";
-  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
-  size_t poses = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    poses += ReadKittiTrajectory(entry.path()).size();
-  }
-  EXPECT_EQ(poses, 4937u);
-}
-
 }  // namespace
 }  // namespace soslam

@@ -169,31 +169,6 @@ TEST(OutlineBox, NeedsTheWholeLandmarkInFront) {
   }
 }
 
-TEST(NearestIntersection, IsOnTheSurfaceAndNearest) {
-  for (const double p : kShapeExponents) {
-    for (int i = 0; i < 200; ++i) {
-      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
-      // A little inside, as rays to the outline only graze the surface.
-      const Eigen::Vector3d target =
-          landmark.Centre() + 0.99 * (RandomSurfacePoint(landmark) - landmark.Centre());
-      const auto depth = NearestIntersection(landmark, Eigen::Vector3d::Zero(), target);
-      ASSERT_TRUE(depth);
-      const Eigen::Vector3d in_object = landmark.frame_from_object.Inverse() * (*depth * target);
-      EXPECT_NEAR(SurfaceNorm(landmark.half_axes, p, in_object), 1.0, 1e-9);
-      EXPECT_LT(*depth, 1.0);
-    }
-  }
-}
-
-TEST(NearestIntersection, MissesBehindInsideAndBeside) {
-  const Landmark landmark{{Eigen::Quaterniond::Identity(), {0, 0, 3}}, {1, 1, 1}};
-  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  EXPECT_NEAR(*NearestIntersection(landmark, origin, {0, 0, 1}), 2.0, 1e-12);
-  EXPECT_FALSE(NearestIntersection(landmark, origin, {0, 0, -1}));
-  EXPECT_FALSE(NearestIntersection(landmark, {0, 0, 3.5}, {0, 0, 1}));
-  EXPECT_FALSE(NearestIntersection(landmark, origin, {0, 0.5, 1}));
-}
-
 TEST(Mirror, IsAnIsometryThatFixesTheXzPlaneAndUndoesItself) {
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark{RandomRigid(), RandomVector(0.1, 2.0)};

@@ -308,17 +308,5 @@ TEST_F(InspectionTest, ADamagedHeaderIsRefused) {
   ExpectError<InputError>([&] { Read(); }, {File().string(), "header"});
 }
 
-TEST_F(InspectionTest, HdfCutShortAnywhereIsRefused) {
-  SymmetryRecord record;
-  record.yaw = {0.0, 1.0};
-  record.cost["total"] = {1.0, 2.0};
-  WriteSymmetry(File(), {record}, {});
-  const std::string whole = FileBytes(File());
-  for (size_t size = 0; size < whole.size(); size += 97) {
-    WriteBytes(File(), whole.substr(0, size));
-    ExpectError<InputError>([&] { Read(); }, {File().string()});
-  }
-}
-
 }  // namespace
 }  // namespace soslam

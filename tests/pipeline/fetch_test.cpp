@@ -320,15 +320,6 @@ TEST_F(FetchTest, NoNetwork) {
   ExpectFailed(Fetch(closed), 4, {closed + "/desk.tgz: no answer; expected a network"});
 }
 
-TEST_F(FetchTest, APartCanBeLeftOut) {
-  HttpServer server(HttpServer::Contents{{"/poses.csv", "0,1,2\n"}});
-  const CommandResult fetched = Fetch(server.Address(), "rgb");
-  EXPECT_EQ(fetched.exit_code, 0) << fetched.errors;
-  EXPECT_THAT(server.Requests(), ElementsAre("/poses.csv"));
-  EXPECT_TRUE(fs::exists(Target() / "poses.txt"));
-  EXPECT_FALSE(fs::exists(Target() / "rgb"));
-}
-
 TEST_F(FetchTest, AFolderOfSomebodyElseStaysAsItIs) {
   fs::create_directory(Target());
   WriteBytes(Target() / "objects.json", "mine");

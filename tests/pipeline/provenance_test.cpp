@@ -95,24 +95,6 @@ TEST_F(ProvenanceTest, VerifyFindsWhatChangedAndWhomItConcerns) {
               ContainsRegex("run.json: is missing.*\\(InitP, InitPT\\)\n"));
 }
 
-TEST_F(ProvenanceTest, MovedResultsVerify) {
-  const fs::path moved = pipeline_.Folder() / "elsewhere/of_mine";
-  fs::create_directories(moved.parent_path());
-  fs::rename(Results(), moved);
-  const CommandResult result = Verify(moved);
-  EXPECT_EQ(result.exit_code, 0) << result.output;
-}
-
-TEST_F(ProvenanceTest, EarlierRunsAreUnusedNotWrong) {
-  nlohmann::json settings = SmallPipeline::TrueRatios();
-  settings["refine"]["yaw_step_deg"] = 5.0;
-  pipeline_.WriteSettings(settings);
-  ASSERT_EQ(pipeline_.Run(kVariants).exit_code, 0);
-  const CommandResult result = Verify(Results());
-  EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_THAT(result.output, ContainsRegex("shared/refine-[0-9a-f]+: no variant uses it any more"));
-}
-
 TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
   const auto before = SmallPipeline::Artefacts(pipeline_.Results());
   const fs::path image = pipeline_.Dataset() / "rgb/000002.png";

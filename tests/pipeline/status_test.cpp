@@ -55,17 +55,6 @@ TEST_F(StatusTest, AfterARunEverythingIsDone) {
                     HasSubstr("nothing that it is made from has changed")));
 }
 
-TEST_F(StatusTest, ChangedDatasetFileIsNamed) {
-  Touch(pipeline_.Dataset() / "planes.json");
-  EXPECT_THAT(Status({"--variants", "InitPT"}),
-              ContainsRegex("InitPT +stale +stale +stale +stale +stale"));
-  EXPECT_THAT(Explain("initialise", "InitP"),
-              AllOf(ContainsRegex("initialise-[0-9a-f]+ .* is stale\n"
-                                  "  sequence.json comes from import-[0-9a-f]+, which is stale\n"),
-                    ContainsRegex("import-[0-9a-f]+ .* is stale\n"
-                                  "  files of the dataset have changed since: planes.json\n")));
-}
-
 TEST_F(StatusTest, ChangedSettingIsNamedWithBothValues) {
   nlohmann::json settings = SmallPipeline::TrueRatios();
   settings["refine"]["yaw_step_deg"] = 5.0;
@@ -77,15 +66,6 @@ TEST_F(StatusTest, ChangedSettingIsNamedWithBothValues) {
                     ContainsRegex("refined.json: refine-[0-9a-f]+ -> refine-[0-9a-f]+"),
                     HasSubstr("since the last complete run of InitPT: yaw_step_deg: 2.0 -> 5.0"),
                     Not(HasSubstr("yaw_range_deg"))));
-}
-
-TEST_F(StatusTest, ChangedTableAndMissingArtefactAreNamed) {
-  Touch(pipeline_.SemanticTable());
-  EXPECT_THAT(Explain("initialise", "InitP"), HasSubstr("semantic_table.json has changed since"));
-  EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
-  EXPECT_THAT(Explain("initialise", "InitP"), HasSubstr("is done"));
-  fs::remove(fs::canonical(pipeline_.Results() / "InitP/initial.json"));
-  EXPECT_THAT(Explain("initialise", "InitP"), HasSubstr("initial.json, which it writes, is gone"));
 }
 
 TEST_F(StatusTest, FailureIsShownWithItsErrorUntilTheStageRuns) {
@@ -101,14 +81,6 @@ TEST_F(StatusTest, FailureIsShownWithItsErrorUntilTheStageRuns) {
   EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
   EXPECT_THAT(Status({"--variants", kVariants}),
               ContainsRegex("InitPT +done +done +done +done +done"));
-}
-
-// A program that dies cannot say why; its end is recorded all the same.
-TEST_F(StatusTest, CrashIsAFailure) {
-  EXPECT_NE(
-      pipeline_.Run(kVariants, {"BIN=" + pipeline_.ProgramsWithACrashIn("evaluate")}).exit_code, 0);
-  EXPECT_THAT(Status({"--variants", "InitP"}),
-              ContainsRegex("evaluate-[0-9a-f]+: its last run failed: exit code 139"));
 }
 
 // State during a run: the process that runs stages has the lock, and a stage has begun but not

@@ -118,16 +118,6 @@ TEST_F(RunEdgesTest, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(FileBytes(folder_ / "one.h5"), FileBytes(folder_ / "many.h5"));
 }
 
-TEST_F(RunEdgesTest, HeaderNamesSettingsAndInputs) {
-  EdgesOptions options;
-  options.canny_high = 123.0;
-  RunEdges(options, Files(), 1);
-  const auto header =
-      nlohmann::json::parse(OpenArtefact(folder_ / "edges.h5", "edges").ReadText("/", "artefact"));
-  EXPECT_EQ(header["settings"], OptionsToJson(options));
-  EXPECT_EQ(header["inputs"].size(), kFrames + 1U);
-}
-
 TEST_F(RunEdgesTest, BadImagesAreNamedAndNothingIsWritten) {
   const auto image = folder_ / "rgb/7.png";
   const std::string whole = FileBytes(image);
@@ -163,13 +153,6 @@ TEST_F(RunEdgesTest, AnImageHasTheSizeOfItsFramesCamera) {
   sequence_.frames[3].camera = Camera{60, 40, 60.0, 60.0, 29.5, 19.5};
   RunEdges({}, Files(), 2);
   EXPECT_EQ(EdgesReader(folder_ / "edges.h5").Read(15).grey.cols, 60);
-}
-
-TEST_F(RunEdgesTest, FailureLeavesTheOldResult) {
-  WriteBytes(folder_ / "edges.h5", "old");
-  std::filesystem::remove(folder_ / "rgb/10.png");
-  EXPECT_THROW(RunEdges({}, Files(), 1), InputError);
-  EXPECT_EQ(FileBytes(folder_ / "edges.h5"), "old");
 }
 
 TEST_F(RunEdgesTest, ImagesOutsideTheDatasetAreRefused) {

@@ -129,14 +129,6 @@ TEST_F(RunExportTest, CocoBoxesAreThoseOfTheDetections) {
             }));
 }
 
-TEST_F(RunExportTest, SameBytesEachTime) {
-  Run({"map"}, kAll);
-  std::vector<std::string> bytes;
-  for (const auto& [argument, name] : kAll) bytes.push_back(FileBytes(File(name)));
-  Run({"map"}, kAll);
-  for (size_t i = 0; i < kAll.size(); ++i) EXPECT_TRUE(FileBytes(File(kAll[i].second)) == bytes[i]);
-}
-
 TEST_F(RunExportTest, WithoutAMapThereAreThePosesOfTheSequence) {
   Run({}, {{"trajectory", "t.txt"}});
   EXPECT_EQ(ReadTrajectory(File("t.txt"))[2].world_from_camera.translation,

@@ -120,32 +120,6 @@ TEST_F(RunReportTest, PaperVariantsComeFirstThenOursThenOthersByName) {
               ElementsAre("Quadric", "-", "-", "-", "-", "-", "-", "-", "-"));
 }
 
-TEST_F(RunReportTest, OnlyPaperVariantsHaveRowsWithoutMetrics) {
-  Write("room", "InitSTE", kMap);
-  fs::create_directories(results_.path() / "room" / "InitS");
-  EXPECT_THAT(Variants(Report()), ElementsAre("SVD", "Init1-1", "InitP", "InitPT", "Quadric",
-                                              "OursP", "OursPT", "InitSTE"));
-}
-
-TEST_F(RunReportTest, LinesOfATableAreEquallyLong) {
-  Write("room", "a_variant_with_a_rather_long_name", kMap);
-  std::istringstream lines(DatasetTables(Report()));
-  std::set<size_t> lengths;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.rfind('|', 0) == 0) lengths.insert(line.size());
-  }
-  EXPECT_EQ(lengths.size(), 1u);
-}
-
-TEST_F(RunReportTest, OneTablePerDatasetWithMetrics) {
-  Write("room", "SVD", kMap);
-  Write("desk", "SVD", kMap);
-  fs::create_directories(results_.path() / "nothing_yet" / "SVD");
-  const std::string report = Report();
-  EXPECT_LT(report.find("## desk"), report.find("## room"));
-  EXPECT_THAT(report, Not(HasSubstr("nothing_yet")));
-}
-
 TEST_F(RunReportTest, DanglingLinkCountsAsMissing) {
   Write("room", "SVD", kMap);
   fs::create_directories(results_.path() / "room" / "InitP");

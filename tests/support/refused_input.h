@@ -55,6 +55,14 @@ inline void Truncate(const std::filesystem::path& path) {
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
 }
 
+// Does something to a file of the dataset, or to an artefact.
+inline Spoil ToDataset(const std::string& file, void (*act)(const std::filesystem::path&)) {
+  return [=](const StageChain& chain) { act(chain.Dataset(file)); };
+}
+inline Spoil ToArtefact(const std::string& file, void (*act)(const std::filesystem::path&)) {
+  return [=](const StageChain& chain) { act(chain.Artefact(file)); };
+}
+
 // A row of the tables of bad inputs.
 struct RefusedInput {
   std::string name;
@@ -63,6 +71,11 @@ struct RefusedInput {
   int exit_code;
   std::vector<std::string> words;  // of the error: the file, what was found
 };
+
+inline RefusedInput Refused(std::string name, std::string stage, Spoil spoil,
+                            std::vector<std::string> words, int exit_code = 3) {
+  return {std::move(name), std::move(stage), std::move(spoil), exit_code, std::move(words)};
+}
 
 inline void PrintTo(const RefusedInput& input, std::ostream* stream) { *stream << input.name; }
 

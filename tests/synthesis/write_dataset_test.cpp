@@ -6,7 +6,6 @@
 
 #include <map>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 
 #include "base/error.h"
 #include "dataset/import.h"
@@ -37,25 +36,6 @@ std::map<std::string, std::string> Contents(const fs::path& folder) {
   return contents;
 }
 
-// The numbers of a line, comma or blank between them, from the given column on.
-std::vector<double> Numbers(std::string line, int skip) {
-  std::ranges::replace(line, ',', ' ');
-  std::istringstream stream(line);
-  std::string word;
-  std::vector<double> numbers;
-  for (int column = 0; stream >> word; ++column) {
-    if (column >= skip) numbers.push_back(std::stod(word));
-  }
-  return numbers;
-}
-
-std::vector<std::string> Lines(const fs::path& path) {
-  std::istringstream stream(FileBytes(path));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 class WriteDatasetTest : public testing::Test {
  protected:
   TemporaryFolder temporary_;
@@ -75,33 +55,6 @@ TEST_F(WriteDatasetTest, WritesEveryFileAndNothingElse) {
   const cv::Mat image = cv::imread((folder_ / "rgb/000002.png").string(), cv::IMREAD_UNCHANGED);
   EXPECT_EQ(image.size(), cv::Size(160, 120));
   EXPECT_EQ(image.type(), CV_8UC3);
-}
-
-TEST_F(WriteDatasetTest, NumbersReadBackExactly) {
-  const Scene scene = SmallScene();
-  WriteDataset(scene, true, folder_, 1);
-  const Simulation simulation = Simulate(scene, true);
-
-  const std::vector<std::string> poses = Lines(folder_ / "odometry.txt");
-  ASSERT_EQ(poses.size(), 5u);
-  for (int i = 0; i < 4; ++i) {
-    const Rigid3d& pose = simulation.odometry_world_from_camera[i];
-    EXPECT_THAT(Numbers(poses[i + 1], 1),
-                testing::ElementsAre(pose.translation.x(), pose.translation.y(),
-                                     pose.translation.z(), pose.rotation.x(), pose.rotation.y(),
-                                     pose.rotation.z(), pose.rotation.w()));
-  }
-  const std::vector<std::string> boxes = Lines(folder_ / "boxes_exact.csv");
-  EXPECT_EQ(boxes[0], "frame,object_id,label,x1,y1,x2,y2");
-  ASSERT_EQ(boxes.size(), simulation.exact_boxes.size() + 1);
-  for (size_t i = 0; i < simulation.exact_boxes.size(); ++i) {
-    const Box& box = simulation.exact_boxes[i].box;
-    // The labels are two words: "object 1".
-    EXPECT_THAT(Numbers(boxes[i + 1], 4),
-                testing::ElementsAre(box.x_min, box.y_min, box.x_max, box.y_max));
-  }
-  EXPECT_EQ(Lines(folder_ / "detections.csv")[0], "frame,object_id,label,score,x1,y1,x2,y2");
-  EXPECT_EQ(Lines(folder_ / "rgb.txt")[2], "0.1 rgb/000001.png");
 }
 
 TEST_F(WriteDatasetTest, JsonFilesDescribeTheScene) {
