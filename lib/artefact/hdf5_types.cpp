@@ -82,15 +82,18 @@ std::uint64_t BytesOf(const Hdf5Handle& data_set, const ArrayShape& shape) {
   return bytes;
 }
 
+H5Z_filter_t Filter(const Hdf5Handle& creation, unsigned int index) {
+  unsigned int flags = 0;
+  size_t parameters = 0;
+  return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
+}
+
 // Rejects repeated deflate: with it a few bytes would decompress to more than the memory.
 bool IsPackedAtMostOnce(const Hdf5Handle& creation) {
   const int filters = H5Pget_nfilters(creation.id());
   int deflates = 0;
   for (int i = 0; i < filters; ++i) {
-    unsigned int flags = 0;
-    size_t parameters = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(creation.id(), static_cast<unsigned int>(i), &flags,
-                                               &parameters, nullptr, 0, nullptr, nullptr);
+    const H5Z_filter_t filter = Filter(creation, static_cast<unsigned int>(i));
     if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE) return false;
     deflates += filter == H5Z_FILTER_DEFLATE ? 1 : 0;
   }
@@ -133,12 +136,6 @@ std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const Arra
 }
 
 namespace {
-
-H5Z_filter_t Filter(const Hdf5Handle& creation, unsigned int index) {
-  unsigned int flags = 0;
-  size_t parameters = 0;
-  return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
-}
 
 // True for what Hdf5DataSetCreation asks for.
 bool IsOneChunk(const Hdf5Handle& creation, const ArrayShape& shape) {

@@ -8,6 +8,8 @@
 #include <cctype>
 #include <string_view>
 
+#include "base/text.h"
+
 namespace soslam {
 namespace {
 
@@ -117,12 +119,6 @@ std::string CsvText(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
-}
-
-size_t WidthOf(const std::string& text) {
-  // Continuation bytes of UTF-8 do not count.
-  return static_cast<size_t>(
-      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 std::string ToMarkdown(const Table& table) {

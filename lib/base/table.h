@@ -28,9 +28,6 @@ struct Table {
   std::vector<std::string> notes;  // one line each, shown below the table
 };
 
-// The width of a text in UTF-8, in characters.
-size_t WidthOf(const std::string& text);
-
 // A second-level heading, the table with padded columns, and its notes.
 std::string ToMarkdown(const Table& table);
 

@@ -2,6 +2,11 @@
 #include "base/text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
 
 namespace soslam {
 namespace {
@@ -34,6 +39,39 @@ std::string OneLine(const std::string& message) {
     }
   }
   return WithoutMiddle(line);
+}
+
+size_t WidthOf(const std::string& text) {
+  // Continuation bytes do not count.
+  return static_cast<size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string Wrapped(const std::string& text, size_t width, size_t indent) {
+  std::string wrapped;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!wrapped.empty()) wrapped += '\n' + std::string(indent, ' ');
+    std::istringstream words(line);
+    size_t length = 0;
+    for (std::string word; words >> word; length += WidthOf(word)) {
+      if (length > 0 && length + 1 + WidthOf(word) > width) {
+        wrapped += '\n' + std::string(indent, ' ');
+        length = 0;
+      } else if (length > 0) {
+        wrapped += ' ';
+        ++length;
+      }
+      wrapped += word;
+    }
+  }
+  return wrapped;
+}
+
+std::string CountsText(const std::map<std::string, int>& counts) {
+  std::vector<std::string> words;
+  for (const auto& [name, count] : counts) words.push_back(fmt::format("{} {}", name, count));
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace soslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "base/error.h"
@@ -11,6 +12,16 @@ namespace soslam {
 // control characters are escaped. A long message keeps its begin and its end, which hold the place
 // of the error and what was expected.
 std::string OneLine(const std::string& message);
+
+// Number of characters of a text in UTF-8.
+size_t WidthOf(const std::string& text);
+
+// The text with each of its lines broken at spaces to at most `width` characters, except for longer
+// words; lines after the first are indented.
+std::string Wrapped(const std::string& text, size_t width, size_t indent = 0);
+
+// "near_border 7, duplicate 2", in the order of names.
+std::string CountsText(const std::map<std::string, int>& counts);
 
 // Throws InputError, naming the file, if a text's first byte belongs to a byte order mark of UTF-16
 // or UTF-32, as some editors write it. No text in UTF-8 begins with these bytes.

@@ -4,32 +4,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sstream>
 #include <utility>
+
+#include "base/text.h"
 
 namespace soslam::internal {
 namespace {
 
 constexpr size_t kTextColumn = 34;
 constexpr size_t kWidth = 100;
-
-// Wraps lines at spaces to at most `width` characters, except for longer words.
-std::string Wrap(const std::string& text, size_t width) {
-  std::string wrapped;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (!wrapped.empty()) wrapped += '\n';
-    std::istringstream words(line);
-    size_t length = 0;
-    for (std::string word; words >> word;) {
-      const bool fits = length + 1 + word.size() <= width;
-      if (length > 0) wrapped += fits ? ' ' : '\n';
-      length = length > 0 && fits ? length + 1 + word.size() : word.size();
-      wrapped += word;
-    }
-  }
-  return wrapped;
-}
 
 std::string ReplaceAll(std::string text, const std::string& from, const std::string& to) {
   for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
@@ -53,7 +36,7 @@ std::string Domain(const OptionRow& row) {
 HelpFormatter::HelpFormatter() { column_width(kTextColumn); }
 
 std::string HelpFormatter::make_description(const CLI::App* app) const {
-  return Wrap(app->get_description(), kWidth) + "\n";
+  return Wrapped(app->get_description(), kWidth) + "\n";
 }
 
 // Replaces CLI11's two empty lines between groups by one.
@@ -64,7 +47,7 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
 }
 
 std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
-  return Wrap(option->get_description(), kWidth - kTextColumn);
+  return Wrapped(option->get_description(), kWidth - kTextColumn);
 }
 
 std::string OptionHelp(const OptionRow& row) {
@@ -75,7 +58,7 @@ std::string OptionHelp(const OptionRow& row) {
 }
 
 std::string ExampleHelp(const std::string& command) {
-  return ReplaceAll(Wrap(command, kWidth - 8), "\n", " \\\n      ");
+  return ReplaceAll(Wrapped(command, kWidth - 8), "\n", " \\\n      ");
 }
 
 }  // namespace soslam::internal

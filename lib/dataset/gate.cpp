@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "dataset/class_names.h"
 #include "geometry/box.h"
 #include "model/occlusion.h"
@@ -33,13 +34,9 @@ void Rejections::Add(const DetectionRow& row, RejectReason reason) {
 
 std::string DescribeRejections(const RejectionCounts& rejected) {
   int total = 0;
-  std::vector<std::string> parts;
-  for (const auto& [reason, count] : rejected) {
-    total += count;
-    parts.push_back(fmt::format("{} {}", reason, count));
-  }
-  return fmt::format("{} detections rejected{}{}", total, parts.empty() ? "" : ": ",
-                     fmt::join(parts, ", "));
+  for (const auto& [reason, count] : rejected) total += count;
+  return fmt::format("{} detections rejected{}{}", total, rejected.empty() ? "" : ": ",
+                     CountsText(rejected));
 }
 
 bool IsInView(RejectReason reason) {

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <sstream>
 #include <string_view>
 
 #include "artefact/hdf5_artefact.h"
@@ -168,24 +167,6 @@ std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
   return facts;
 }
 
-// Breaks a text between words where it is too wide; lines after the first are indented.
-std::string Wrapped(const std::string& text, size_t indent) {
-  std::istringstream words(text);
-  std::string wrapped;
-  size_t column = indent;
-  for (std::string word; words >> word; column += WidthOf(word)) {
-    if (column > indent && column + 1 + WidthOf(word) > kLineWidth) {
-      wrapped += "\n" + std::string(indent, ' ');
-      column = indent;
-    } else if (column > indent) {
-      wrapped += ' ';
-      ++column;
-    }
-    wrapped += word;
-  }
-  return wrapped;
-}
-
 }  // namespace
 
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence) {
@@ -214,9 +195,9 @@ std::string FormatInspection(const Inspection& inspection, bool is_coloured) {
   std::string text = styled(fmt::emphasis::bold, inspection.title) + "\n";
   for (const Fact& fact : inspection.facts) {
     const std::string name = fact.name + std::string(width - WidthOf(fact.name), ' ');
-    constexpr size_t kMargin = 2;
+    const size_t indent = 2 + width + 2;
     text += fmt::format("  {}  {}\n", styled(fmt::emphasis::faint, name),
-                        Wrapped(fact.text, kMargin + width + kMargin));
+                        Wrapped(fact.text, kLineWidth - indent, indent));
   }
   if (inspection.table.rows.empty()) return text;
   return text + "\n" + FormatTable(inspection.table, is_coloured);

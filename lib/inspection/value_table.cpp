@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/table.h"
+#include "base/text.h"
 
 namespace soslam {
 namespace {

@@ -19,6 +19,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
@@ -80,15 +81,12 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
 
   const auto failures = CountFailures(estimates);
   int failed = 0;
-  std::string reasons;
-  for (const auto& [reason, count] : failures) {
-    failed += count;
-    reasons += fmt::format(" {} {}", reason, count);
-  }
+  for (const auto& [reason, count] : failures) failed += count;
   const auto tried = static_cast<int>(estimates.observations.size() + estimates.objects.size());
   if (failed == tried) {
-    throw NothingUsableError(fmt::format("{}: no landmark from {} tries:{}",
-                                         files.at("sequence").string(), tried, reasons));
+    throw NothingUsableError(fmt::format("{}: no landmark from {} tries: {}",
+                                         files.at("sequence").string(), tried,
+                                         CountsText(failures)));
   }
   std::vector<Finding> findings = CheckFailures(estimates);
   std::ranges::move(options.method == InitialisationMethod::kSvd
@@ -99,7 +97,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   ReportFindings("initialise", findings);
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), {files.at("sequence"), files.at("table")}, findings});
-  fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one:" : "", reasons);
+  fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
+             CountsText(failures));
 }
 
 namespace {

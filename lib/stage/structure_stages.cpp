@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <map>
 
 #include "artefact/associations_file.h"
 #include "artefact/planes_file.h"
@@ -13,6 +13,7 @@
 #include "association/association.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
 #include "image/edge_maps.h"
@@ -25,16 +26,13 @@
 namespace soslam {
 namespace {
 
-// Summary of the tracks' fates: "12 object, 3 merged".
+// Summary of the tracks' fates: "merged 3, object 12".
 std::string DescribeTracks(const Association& association) {
-  std::array<int, kTrackFateNames.size()> counts{};
-  for (const Track& track : association.tracks) ++counts.at(static_cast<size_t>(track.fate));
-  std::string text;
-  for (size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kTrackFateNames[i], counts[i]);
+  std::map<std::string, int> counts;
+  for (const Track& track : association.tracks) {
+    ++counts[kTrackFateNames.at(static_cast<size_t>(track.fate))];
   }
-  return text.empty() ? "none" : text;
+  return counts.empty() ? "none" : CountsText(counts);
 }
 
 // Finding of the first segment whose up direction is ambiguous.

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "base/error.h"
@@ -57,9 +56,11 @@ TEST(ParseScene, ReadsEveryField) {
   EXPECT_EQ(scene.seed, 5);
 }
 
+// A value of the scene that makes it bad, in place of the one at a JSON pointer.
 struct BadScene {
   const char* name;
-  std::function<void(json*)> spoil;
+  const char* place;
+  json value;
   const char* expected;  // part of the message
 };
 
@@ -69,70 +70,45 @@ class BadSceneTest : public testing::TestWithParam<BadScene> {};
 
 TEST_P(BadSceneTest, IsRefusedWithItsField) {
   json document = ValidScene();
-  GetParam().spoil(&document);
+  document[json::json_pointer(GetParam().place)] = GetParam().value;
   ExpectError<InputError>([&] { ParseScene(document, "scene.json"); },
                           {"scene", GetParam().expected});
 }
 
+BadScene Bad(const char* name, const char* place, const json& value, const char* expected) {
+  return {name, place, value, expected};
+}
+
+json Parsed(const char* text) { return json::parse(text); }
+
 INSTANTIATE_TEST_SUITE_P(
     All, BadSceneTest,
     testing::Values(
-        BadScene{"Shape", [](json* d) { (*d)["objects"][1]["shape"] = "torus"; },
-                 "objects/1/shape"},
-        BadScene{"NegativeAxes", [](json* d) { (*d)["objects"][0]["half_axes"][1] = -0.1; },
-                 "objects/0/half_axes/1"},
-        BadScene{"TwoAxes",
-                 [](json* d) {
-                   (*d)["objects"][0]["half_axes"] = {1, 1};
-                 },
-                 "objects/0/half_axes"},
-        BadScene{"UnknownPlane", [](json* d) { (*d)["objects"][1]["plane"] = 5; },
-                 "objects/1/plane: there is no plane with id 5"},
-        BadScene{"ObjectTwice", [](json* d) { (*d)["objects"][1]["id"] = 2; }, "objects/1/id: 2"},
-        BadScene{"PlaneTwice", [](json* d) { (*d)["planes"][1]["id"] = 4; }, "planes/1/id: 4"},
-        BadScene{"LongNormal",
-                 [](json* d) {
-                   (*d)["planes"][0]["normal"] = {0, 0, 2};
-                 },
-                 "planes/0/normal: has length 2"},
-        BadScene{"ZeroNormal",
-                 [](json* d) {
-                   (*d)["walls"][0]["normal"] = {0, 0, 0};
-                 },
-                 "walls/0/normal"},
-        BadScene{"NoObjects", [](json* d) { (*d)["objects"] = json::array(); }, "objects"},
-        BadScene{"NoFrames", [](json* d) { (*d)["trajectory"]["frames"] = 0; },
-                 "trajectory/frames"},
-        BadScene{"NoWaypoints", [](json* d) { (*d)["trajectory"]["waypoints"] = json::array(); },
-                 "trajectory/waypoints"},
-        BadScene{"UnknownField", [](json* d) { (*d)["noise"]["blur"] = 1; }, "blur"},
-        BadScene{"CommaInLabel", [](json* d) { (*d)["objects"][0]["label"] = "a,b"; },
-                 "objects/0/label"},
-        BadScene{"InsideObject",
-                 [](json* d) {
-                   (*d)["objects"][1]["half_axes"] = {5, 5, 5};
-                 },
-                 "frame 0 is inside the object with id 1"},
-        BadScene{"InsideTable",
-                 [](json* d) {
-                   (*d)["planes"][1]["table"] = {
-                       {"position", {0, 0}}, {"half_size", {1, 1}}, {"thickness", 0.1}};
-                   (*d)["planes"][1]["d"] = -1.05;
-                 },
-                 "frame 0 is inside a table"},
-        BadScene{"BelowFloor", [](json* d) { (*d)["planes"][0]["d"] = -2; },
-                 "frame 0 is behind the plane with id 4"},
-        BadScene{"OutsideRoom", [](json* d) { (*d)["walls"][0]["d"] = -1; }, "behind walls/0"},
-        BadScene{"LooksDown",
-                 [](json* d) {
-                   (*d)["trajectory"]["waypoints"][0]["look_at"] = {0, 0, 0};
-                 },
-                 "frame 0 looks straight up or down"},
-        BadScene{"LooksAtItself",
-                 [](json* d) {
-                   (*d)["trajectory"]["waypoints"][0]["look_at"] = {0, 0, 1};
-                 },
-                 "frame 0 looks straight up or down, or at its own position"}),
+        Bad("Shape", "/objects/1/shape", "torus", "objects/1/shape"),
+        Bad("NegativeAxes", "/objects/0/half_axes/1", -0.1, "objects/0/half_axes/1"),
+        Bad("TwoAxes", "/objects/0/half_axes", Parsed("[1, 1]"), "objects/0/half_axes"),
+        Bad("UnknownPlane", "/objects/1/plane", 5, "objects/1/plane: there is no plane with id 5"),
+        Bad("ObjectTwice", "/objects/1/id", 2, "objects/1/id: 2"),
+        Bad("PlaneTwice", "/planes/1/id", 4, "planes/1/id: 4"),
+        Bad("LongNormal", "/planes/0/normal/2", 2, "planes/0/normal: has length 2"),
+        Bad("ZeroNormal", "/walls/0/normal/0", 0, "walls/0/normal"),
+        Bad("NoObjects", "/objects", json::array(), "objects"),
+        Bad("NoFrames", "/trajectory/frames", 0, "trajectory/frames"),
+        Bad("NoWaypoints", "/trajectory/waypoints", json::array(), "trajectory/waypoints"),
+        Bad("UnknownField", "/noise/blur", 1, "blur"),
+        Bad("CommaInLabel", "/objects/0/label", "a,b", "objects/0/label"),
+        Bad("InsideObject", "/objects/1/half_axes", Parsed("[5, 5, 5]"),
+            "frame 0 is inside the object with id 1"),
+        Bad("InsideTable", "/planes/1", Parsed(R"({
+              "id": 7, "label": "table", "normal": [0, 0, 1], "d": -1.05,
+              "table": {"position": [0, 0], "half_size": [1, 1], "thickness": 0.1}})"),
+            "frame 0 is inside a table"),
+        Bad("BelowFloor", "/planes/0/d", -2, "frame 0 is behind the plane with id 4"),
+        Bad("OutsideRoom", "/walls/0/d", -1, "behind walls/0"),
+        Bad("LooksDown", "/trajectory/waypoints/0/look_at", Parsed("[0, 0, 0]"),
+            "frame 0 looks straight up or down"),
+        Bad("LooksAtItself", "/trajectory/waypoints/0/look_at", Parsed("[0, 0, 1]"),
+            "frame 0 looks straight up or down, or at its own position")),
     [](const auto& info) { return info.param.name; });
 
 TEST(ReadScene, MissingFileIsAnInputError) {
