@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "dataset/text_file.h"
+#include "dataset/trajectories.h"
 #include "geometry/image_size.h"
 #include "image/read_image.h"
 
@@ -129,20 +130,6 @@ std::vector<std::string_view> SplitColumns(const TextLine& line, size_t leading)
   return words;
 }
 
-Eigen::Matrix<double, 3, 4> ParseMatrix(std::span<const std::string_view> words,
-                                        const std::string& place) {
-  if (words.size() != 12) {
-    throw InputError(fmt::format("{}: has {} numbers; expected 12, a 3 x 4 matrix by rows", place,
-                                 words.size()));
-  }
-  Eigen::Matrix<double, 3, 4> matrix;
-  for (size_t i = 0; i < words.size(); ++i) {
-    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) =
-        ParseReal(words[i], place, fmt::format("number {}", i + 1));
-  }
-  return matrix;
-}
-
 KittiCalibration FromProjection(const Eigen::Matrix<double, 3, 4>& p, const std::string& place) {
   const bool is_rectified = p(0, 1) == 0.0 && p(1, 0) == 0.0 &&
                             p.row(2).head<3>() == Eigen::RowVector3d(0.0, 0.0, 1.0) &&
@@ -163,7 +150,7 @@ KittiCalibration ReadKittiCalibration(const fs::path& path) {
   for (const TextLine& line : ReadTextLines(path)) {
     const auto words = SplitWords(line.text);
     if (words.front() != "P2:") continue;
-    return FromProjection(ParseMatrix(std::span(words).subspan(1), line.place), line.place);
+    return FromProjection(ParseMatrix34(std::span(words).subspan(1), line.place), line.place);
   }
   throw InputError(path.string() + ": has no line P2:; expected the projection of camera 2");
 }

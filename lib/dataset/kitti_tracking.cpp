@@ -88,32 +88,6 @@ namespace fs = std::filesystem;
 constexpr int kIdsPerRecording = 10000;
 constexpr double kFrameInterval = 0.1;  // seconds
 
-// A box of a detector, in one frame of a recording.
-struct FoundBox {
-  std::string place;
-  int frame;
-  ScoredBox box;
-};
-
-std::vector<FoundBox> ReadFoundBoxes(const fs::path& path) {
-  std::vector<FoundBox> boxes;
-  for (const TextLine& line : ReadTextLines(path)) {
-    const auto fields = SplitFields(line.text);
-    if (fields.size() != 6) {
-      throw InputError(fmt::format("{}: has {} fields; expected frame,x1,y1,x2,y2,score",
-                                   line.place, fields.size()));
-    }
-    const auto real = [&](size_t i, const char* name) {
-      return ParseReal(fields[i], line.place, name);
-    };
-    boxes.push_back(
-        {line.place,
-         ParseInteger(fields[0], line.place, "frame"),
-         {{real(1, "x1"), real(2, "y1"), real(3, "x2"), real(4, "y2")}, real(5, "score")}});
-  }
-  return boxes;
-}
-
 // Reads one recording into the content.
 class Recording {
  public:
@@ -250,9 +224,9 @@ class Recording {
 
   void AddFoundBoxes(const fs::path& folder_of_type) {
     const std::string type = folder_of_type.filename().string();
-    std::map<int, std::vector<FoundBox>> found_by_frame;
-    for (FoundBox& found : ReadFoundBoxes(Read(folder_of_type / file_))) {
-      found_by_frame[found.frame].push_back(std::move(found));
+    std::map<int, std::vector<LabelledBox>> found_by_frame;
+    for (LabelledBox& found : ReadKittiBoxes(Read(folder_of_type / file_))) {
+      found_by_frame[std::get<int>(found.frame)].push_back(std::move(found));
     }
     std::map<int, std::vector<const KittiLabel*>> labels_by_frame;
     for (const KittiLabel& label : labels_) {
@@ -263,10 +237,10 @@ class Recording {
     }
   }
 
-  void AddMatches(const std::string& label_of_type, const std::vector<FoundBox>& found,
+  void AddMatches(const std::string& label_of_type, const std::vector<LabelledBox>& found,
                   const std::vector<const KittiLabel*>& labels) {
     std::vector<ScoredBox> boxes;
-    for (const FoundBox& box : found) boxes.push_back(box.box);
+    for (const LabelledBox& box : found) boxes.push_back({box.box, box.score});
     std::vector<Box> given;
     for (const KittiLabel* label : labels) given.push_back(label->box);
     const auto matches = MatchBoxes(boxes, given, options_.match_min_iou);
@@ -279,12 +253,11 @@ class Recording {
     }
   }
 
-  void Reject(const std::string& label, const FoundBox& found) {
-    const bool has_frame = found.frame >= 0 && found.frame < static_cast<int>(poses_.size());
-    if (has_frame) {
-      content_->rejected.Add(
-          {found.place, Id(found.frame), kNoObject, label, found.box.score, found.box.box},
-          RejectReason::kMatchesNoLabel);
+  void Reject(const std::string& label, const LabelledBox& found) {
+    const int frame = std::get<int>(found.frame);
+    if (frame < static_cast<int>(poses_.size())) {
+      content_->rejected.Add({found.place, Id(frame), kNoObject, label, found.score, found.box},
+                             RejectReason::kMatchesNoLabel);
     } else {
       ++content_->rejected.counts[RejectReasonName(RejectReason::kMatchesNoLabel)];
     }

@@ -199,27 +199,26 @@ std::vector<TimedPose> ReadEurocTrajectory(const std::filesystem::path& path) {
   return SortedTrajectory(std::move(trajectory), path);
 }
 
-namespace {
-
-Rigid3d ParseKittiPose(const TextLine& line) {
-  constexpr size_t kNumbers = 12;
-  const auto words = SplitWords(line.text);
-  if (words.size() != kNumbers) {
-    throw InputError(fmt::format("{}: has {} numbers; expected {}, the upper 3 x 4 of a pose",
-                                 line.place, words.size(), kNumbers));
+Eigen::Matrix<double, 3, 4> ParseMatrix34(std::span<const std::string_view> words,
+                                          const std::string& place) {
+  if (words.size() != 12) {
+    throw InputError(fmt::format("{}: has {} numbers; expected 12, a 3 x 4 matrix by rows", place,
+                                 words.size()));
   }
-  Eigen::Matrix<double, 3, 4, Eigen::RowMajor> pose;
-  for (size_t i = 0; i < kNumbers; ++i) {
-    pose.data()[i] = ParseReal(words[i], line.place, fmt::format("number {}", i + 1));
+  Eigen::Matrix<double, 3, 4> matrix;
+  for (size_t i = 0; i < words.size(); ++i) {
+    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) =
+        ParseReal(words[i], place, fmt::format("number {}", i + 1));
   }
-  return {NearestRotation(pose.leftCols<3>(), line.place), pose.col(3)};
+  return matrix;
 }
-
-}  // namespace
 
 std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path) {
   std::vector<Rigid3d> poses;
-  for (const TextLine& line : ReadTextLines(path)) poses.push_back(ParseKittiPose(line));
+  for (const TextLine& line : ReadTextLines(path)) {
+    const Eigen::Matrix<double, 3, 4> pose = ParseMatrix34(SplitWords(line.text), line.place);
+    poses.push_back({NearestRotation(pose.leftCols<3>(), line.place), pose.col(3)});
+  }
   if (poses.empty()) throw InputError(path.string() + ": has no pose");
   return poses;
 }

@@ -4,7 +4,9 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -75,6 +77,10 @@ std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, d
 // Calibration::body_from_camera. Sorted by time, see ReadTrajectory. Throws InputError naming the
 // line.
 std::vector<TimedPose> ReadEurocTrajectory(const std::filesystem::path& path);
+
+// The 12 numbers of a 3 x 4 matrix by rows. Throws InputError, naming the place, for anything else.
+Eigen::Matrix<double, 3, 4> ParseMatrix34(std::span<const std::string_view> words,
+                                          const std::string& place);
 
 // Reads a trajectory in the format of KITTI's odometry benchmark: one line per frame, the upper 3 x
 // 4 of world_from_camera row by row, metres. The k-th pose is that of frame k, from 0. Files round
