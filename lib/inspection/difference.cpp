@@ -134,29 +134,21 @@ class Hdf5Comparison {
     return all;
   }
 
-  // Compares all attributes except the artefact's header.
-  void CompareAttributes(const std::string& owner) {
-    for (const std::string& name : Union(one_.Attributes(owner), two_.Attributes(owner))) {
+  // All attributes except the artefact's header.
+  static json Attributes(const Hdf5File& file, const std::string& owner) {
+    json attributes = json::object();
+    for (const std::string& name : file.Attributes(owner)) {
       if (owner == "/" && name == kHeaderAttribute) continue;
-      const std::string one = AttributeText(one_, owner, name);
-      const std::string two = AttributeText(two_, owner, name);
-      const bool are_numbers = IsNumber(one_, owner, name) && IsNumber(two_, owner, name);
-      if (are_numbers) {
-        AddNumbers(owner + name, {one_.ReadNumber(owner, name)}, {two_.ReadNumber(owner, name)});
-      } else if (one != two) {
-        Report(owner + name, one, two);
-      }
+      attributes[name] = file.IsText(owner, name) ? json(file.ReadText(owner, name))
+                                                  : json(file.ReadNumber(owner, name));
     }
+    return attributes;
   }
 
-  static bool IsNumber(const Hdf5File& file, const std::string& owner, const std::string& name) {
-    return file.HasAttribute(owner, name) && !file.IsText(owner, name);
-  }
-  static std::string AttributeText(const Hdf5File& file, const std::string& owner,
-                                   const std::string& name) {
-    if (!file.HasAttribute(owner, name)) return "";
-    return file.IsText(owner, name) ? file.ReadText(owner, name)
-                                    : fmt::format("{}", file.ReadNumber(owner, name));
+  void CompareAttributes(const std::string& owner) {
+    const json::json_pointer place(owner == "/" ? "" : owner.substr(0, owner.size() - 1));
+    JsonComparison(tolerance_, differences_)
+        .Compare(Attributes(one_, owner), Attributes(two_, owner), place);
   }
 
   void CompareDataSet(const std::string& place) {

@@ -52,6 +52,17 @@ class DatasetChecksTest : public testing::Test {
     return "";
   }
 
+  // Expects one warning, or a refusal, with these words.
+  void ExpectWarning(const std::vector<std::string>& words) {
+    const std::vector<std::string> warnings = Warnings();
+    ASSERT_EQ(warnings.size(), 1u) << testing::PrintToString(warnings);
+    for (const std::string& word : words) EXPECT_THAT(warnings[0], testing::HasSubstr(word));
+  }
+  void ExpectRefusal(const std::vector<std::string>& words) {
+    const std::string refusal = Refusal();
+    for (const std::string& word : words) EXPECT_THAT(refusal, testing::HasSubstr(word));
+  }
+
   // Images that store width x height pixels.
   void WriteImages(int width, int height, int exif_orientation = 1) {
     std::filesystem::create_directories(folder / "rgb");
