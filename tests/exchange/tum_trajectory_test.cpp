@@ -31,14 +31,6 @@ TEST(TumTrajectoryTest, ReadsBackBitForBit) {
   }
 }
 
-TEST(TumTrajectoryTest, OneLinePerFrameBelowAComment) {
-  World world;
-  world.frames = {{3, 0.25, "", {}, {Eigen::Quaterniond(0.8, 0.6, 0.0, 0.0), {1.5, -2.0, 1e-9}}}};
-  EXPECT_EQ(TumTrajectoryText(world),
-            "# world_from_camera: timestamp tx ty tz qx qy qz qw\n"
-            "0.25 1.5 -2 1e-09 0.6 0 0 0.8\n");
-}
-
 // What evo's file_interface.read_tum_trajectory_file and PoseTrajectory3D.check ask for: rows of
 // eight numbers with one blank between them, comments by "#" only, ascending times, unit
 // quaternions.

@@ -41,10 +41,5 @@ TEST(ValueTableTest, CsvHasAllColumnsAndAllDigits) {
             "c,-10,,3,false\n");
 }
 
-TEST(ValueTableTest, CsvQuotesWhatNeedsIt) {
-  const ValueTable table = {{{"text", ""}}, {{"a, b"}, {"say \"hi\""}, {"two\nlines"}, {"plain"}}};
-  EXPECT_EQ(FormatCsv(table), "text\n\"a, b\"\n\"say \"\"hi\"\"\"\n\"two\nlines\"\nplain\n");
-}
-
 }  // namespace
 }  // namespace soslam

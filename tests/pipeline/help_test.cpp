@@ -154,31 +154,6 @@ TEST_P(HelpTest, SettingsThatTheSchemaTakesAreAccepted) {
   EXPECT_THAT(result.exit_code, testing::AnyOf(0, 2, 3, 4)) << result.errors;
 }
 
-// The program runs once for each of its settings.
-class SlowHelpTest : public HelpTest {};
-
-TEST_P(SlowHelpTest, SettingsThatTheSchemaRefusesAreRefused) {
-  json refused = {{"unheard_of", 1}};
-  for (const auto& [name, property] : schema_["properties"].items()) {
-    // Beyond the range, of another type, or none of the choices.
-    if (property.contains("maximum")) {
-      refused[name] = 2.0 * property["maximum"].get<double>();
-    } else if (property.contains("enum")) {
-      refused[name] = "unheard_of";
-    } else {
-      refused[name] = 1;
-    }
-  }
-  for (const auto& [name, value] : refused.items()) {
-    const json settings = {{name, value}};
-    EXPECT_NE(ViolationOf(settings, schema_), std::nullopt) << settings;
-    const CommandResult result = RunWith(settings);
-    EXPECT_EQ(result.exit_code, 2) << settings;
-    EXPECT_THAT(result.errors, HasSubstr("settings.json"));
-    EXPECT_THAT(result.errors, HasSubstr("'" + name + "'"));
-  }
-}
-
 std::string StageName(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
   std::erase(name, '-');
@@ -186,7 +161,6 @@ std::string StageName(const testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Stages, HelpTest, testing::ValuesIn(AllStages()), StageName);
-INSTANTIATE_TEST_SUITE_P(Stages, SlowHelpTest, testing::ValuesIn(AllStages()), StageName);
 
 }  // namespace
 }  // namespace soslam

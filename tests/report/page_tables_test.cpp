@@ -87,20 +87,6 @@ TEST(DatasetTables, HaveWhatCameOutOfTheStages) {
             HasSubstr("<td>SVD</td><td>failed: &lt;x&gt;</td>"), HasSubstr("a note")));
 }
 
-TEST(DatasetTables, BeginWithFindings) {
-  json page = Page();
-  EXPECT_THAT(DatasetTables(page), Not(HasSubstr("Findings")));
-  page["findings"] = {{{"severity", "warning"},
-                       {"check", "c"},
-                       {"found", "f"},
-                       {"expected", "e"},
-                       {"cause", "u"},
-                       {"remedy", "r"},
-                       {"where", "w"}}};
-  const std::string html = DatasetTables(page);
-  EXPECT_LT(html.find("Findings"), html.find("Numbers"));
-}
-
 TEST(DetailedVariants, AreThoseWithMostToShowFirst) {
   json page = Page();
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{2, 1, 0}));

@@ -122,22 +122,6 @@ TEST_F(WriteDatasetTest, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(first, Contents(folder_));
 }
 
-TEST_F(WriteDatasetTest, OtherSeedOtherNoiseSamePoses) {
-  Scene scene = SmallScene();
-  WriteDataset(scene, true, folder_, 1);
-  const auto first = Contents(folder_);
-  scene.seed += 1;
-  WriteDataset(scene, true, folder_, 1);
-  const auto second = Contents(folder_);
-  for (const char* name : {"detections.csv", "odometry.txt", "rgb/000000.png"}) {
-    EXPECT_NE(first.at(name), second.at(name)) << name;
-  }
-  for (const char* name : {"groundtruth.txt", "boxes_exact.csv", "objects.json"}) {
-    EXPECT_EQ(first.at(name), second.at(name)) << name;
-  }
-  EXPECT_NE(first.at("rgb/000000.png"), first.at("rgb/000001.png"));
-}
-
 TEST_F(WriteDatasetTest, ReplacesWhatItWroteBefore) {
   Scene scene = SmallScene();
   WriteDataset(scene, true, folder_, 1);
