@@ -130,9 +130,8 @@ template <typename Item>
 std::vector<Item> ParseListWithIds(const json& list, const std::string& name,
                                    Item (*parse)(const Entry&)) {
   std::vector<Item> items = ParseList(list, name, parse);
-  std::ranges::sort(items, [](const Item& a, const Item& b) { return a.id < b.id; });
-  const auto twice =
-      std::ranges::adjacent_find(items, [](const Item& a, const Item& b) { return a.id == b.id; });
+  std::ranges::sort(items, {}, &Item::id);
+  const auto twice = std::ranges::adjacent_find(items, {}, &Item::id);
   if (twice != items.end()) {
     throw InputError(fmt::format("{}: id {} twice; expected once", name, twice->id));
   }

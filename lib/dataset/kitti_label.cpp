@@ -190,8 +190,7 @@ std::vector<NumberedPath> NumberedFiles(const fs::path& folder, const std::strin
     throw InputError(
         fmt::format("{}: has no files; expected <number>{}", folder.string(), extension));
   }
-  std::ranges::sort(
-      files, [](const NumberedPath& a, const NumberedPath& b) { return a.number < b.number; });
+  std::ranges::sort(files, {}, &NumberedPath::number);
   return files;
 }
 

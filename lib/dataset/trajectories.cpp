@@ -138,20 +138,17 @@ std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
 std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
                                         const std::filesystem::path& path) {
   if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
-  std::ranges::stable_sort(
-      trajectory, [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
-  const auto same_time = [](const TimedPose& a, const TimedPose& b) {
-    return a.timestamp == b.timestamp;
-  };
+  std::ranges::stable_sort(trajectory, {}, &TimedPose::timestamp);
   const auto twice =
       std::ranges::adjacent_find(trajectory, [&](const TimedPose& a, const TimedPose& b) {
-        return same_time(a, b) && !IsSamePose(a.world_from_camera, b.world_from_camera);
+        return a.timestamp == b.timestamp && !IsSamePose(a.world_from_camera, b.world_from_camera);
       });
   if (twice != trajectory.end()) {
     throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
                                  path.string(), twice->timestamp));
   }
-  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), same_time), trajectory.end());
+  const auto repeated = std::ranges::unique(trajectory, {}, &TimedPose::timestamp);
+  trajectory.erase(repeated.begin(), repeated.end());
   return trajectory;
 }
 

@@ -122,8 +122,7 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
   std::vector<Cell> times = {published.dataset, "published ms"};
   std::vector<Cell> observations = {published.dataset, "published observations"};
   for (const std::string& name : TimedVariants()) {
-    const auto time = std::ranges::find_if(
-        published.values, [&](const PublishedTime& value) { return value.variant == name; });
+    const auto time = std::ranges::find(published.values, name, &PublishedTime::variant);
     const bool is_published = time != published.values.end();
     times.emplace_back(is_published ? fmt::format("{:.1f} ± {:.1f}", time->ms_mean, time->ms_sigma)
                                     : kNoValue);
@@ -157,8 +156,7 @@ std::vector<Cell> StageTimeRow(const std::string& dataset, const VariantResult& 
   };
   std::vector<Cell> row = {dataset, variant.name, clock.title};
   for (const std::string& stage : stages) {
-    const auto run = std::ranges::find_if(
-        variant.stages, [&](const StageRun& candidate) { return candidate.stage == stage; });
+    const auto run = std::ranges::find(variant.stages, stage, &StageRun::stage);
     row.push_back(cell(run == variant.stages.end() ? std::nullopt : Seconds(*run, clock)));
   }
   row.push_back(cell(TotalSeconds(variant.stages, clock)));

@@ -186,7 +186,7 @@ std::vector<ScenePlane> ParsePlanes(const json& entries, const std::string& wher
     if (entry.contains("table")) plane.table = ParseTable(entry.at("table"));
     planes.push_back(plane);
   }
-  std::ranges::sort(planes, [](const ScenePlane& a, const ScenePlane& b) { return a.id < b.id; });
+  std::ranges::sort(planes, {}, &ScenePlane::id);
   return planes;
 }
 
@@ -210,8 +210,7 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     object.yaw = Radians(entry.value("yaw_deg", 0.0));
     object.texture_seed = entry.value("texture_seed", object.id);
     const int plane_id = entry.at("plane").get<int>();
-    const auto plane =
-        std::ranges::find_if(planes, [&](const ScenePlane& p) { return p.id == plane_id; });
+    const auto plane = std::ranges::find(planes, plane_id, &ScenePlane::id);
     if (plane == planes.end()) {
       throw InputError(
           fmt::format("{}/{}/plane: there is no plane with id {}", where, i, plane_id));
@@ -219,8 +218,7 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     object.plane_index = static_cast<int>(plane - planes.begin());
     objects.push_back(object);
   }
-  std::ranges::sort(objects,
-                    [](const SceneObject& a, const SceneObject& b) { return a.id < b.id; });
+  std::ranges::sort(objects, {}, &SceneObject::id);
   return objects;
 }
 

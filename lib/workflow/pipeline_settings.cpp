@@ -66,8 +66,7 @@ const std::array<PipelineStage, 8>& Stages() {
 }
 
 const PipelineStage* FindStage(const std::string& name) {
-  const auto found = std::ranges::find_if(
-      Stages(), [&](const PipelineStage& stage) { return stage.name == name; });
+  const auto found = std::ranges::find(Stages(), name, &PipelineStage::name);
   return found == Stages().end() ? nullptr : &*found;
 }
 
