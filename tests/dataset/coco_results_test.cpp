@@ -77,7 +77,7 @@ TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
 TEST_F(CocoResultsTest, NoDetectionIsNoError) { EXPECT_TRUE(Read("[]").empty()); }
 
 TEST_F(CocoResultsTest, BadResultsAreNamed) {
-  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
+  const BadTexts cases = {
       {R"({"image_id": 0})", {"results.json", "not a list", "annotations"}},
       {R"([3])", {"results.json#/0", "not an object"}},
       {R"([{"category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])", {"#/0", "image_id is missing"}},
@@ -91,13 +91,13 @@ TEST_F(CocoResultsTest, BadResultsAreNamed) {
        {"#/0", "[x, y, width, height]"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "score": "1"}])",
        {"score is \"1\""}}};
-  for (const auto& [text, words] : cases) ExpectError<InputError>([&] { Read(text); }, words);
+  ExpectBadTexts(cases, "results.json", [&](const std::string& text) { Read(text); });
 }
 
 TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
   const std::string result =
       R"([{"image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4], "score": 1}])";
-  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+  const BadTexts cases = {
       {R"({"images": []})", {"dataset.json", "categories is missing"}},
       {R"({"images": {}, "categories": []})", {"dataset.json", "images is {}", "a list"}},
       {R"({"images": [{"id": 7}], "categories": []})",
@@ -108,9 +108,7 @@ TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
        {"results.json#/0", "category_id is 2"}},
       {R"({"images": [], "categories": [{"id": 1, "name": "cup"}, {"id": 1, "name": "box"}]})",
        {"dataset.json#/categories/1", "id is 1"}}};
-  for (const auto& [dataset, words] : cases) {
-    ExpectError<InputError>([&] { ReadWith(dataset, result); }, words);
-  }
+  ExpectBadTexts(cases, ".json", [&](const std::string& text) { ReadWith(text, result); });
 }
 
 TEST_F(CocoResultsTest, LongValuesAreCutInMessages) {

@@ -96,7 +96,7 @@ TEST_F(DetectionsCsvTest, OnlyRegularFilesAreRead) {
 
 TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
   const std::string header = "frame,label,score,x1,y1,x2,y2\n";
-  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+  const BadTexts cases = {
       {"", {"detections.csv", "is empty"}},
       {"0,cup,0.5,1,2,3,4\n", {"detections.csv:1", "'frame' is missing"}},
       {header + "0,cup,0.5,1,2,3\n", {"detections.csv:2", "has 6 fields; expected 7"}},
@@ -108,9 +108,8 @@ TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
       {"frame,Frame,label,score,x1,y1,x2,y2\n", {"detections.csv:1", "'frame' is twice"}},
       {header + "0,,0.5,1,2,3,4\n", {"detections.csv:2", "label is empty"}},
       {header + "0,cup,0.5,1,2,3,wide\n", {"detections.csv:2", "y2 is 'wide'"}}};
-  for (const auto& [text, words] : cases) {
-    ExpectError<InputError>([&] { ReadDetectionsCsv(Write(text)); }, words);
-  }
+  ExpectBadTexts(cases, "detections.csv",
+                 [&](const std::string& text) { ReadDetectionsCsv(Write(text)); });
 }
 
 }  // namespace

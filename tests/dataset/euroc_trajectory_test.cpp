@@ -34,14 +34,12 @@ TEST_F(EurocTrajectoryTest, NanosecondsAndScalarFirst) {
 }
 
 TEST_F(EurocTrajectoryTest, BadLinesAreNamed) {
-  const auto refused = [&](const std::string& line, const std::vector<std::string>& words) {
-    ExpectError<InputError>([&] { Read(line + "\n"); }, words);
-  };
-  refused("1,1,2,3,1,0,0", {"data.csv:1", "7 fields", "timestamp,x,y,z,qw"});
-  refused("1.5,1,2,3,1,0,0,0", {"timestamp is 1.5", "nanoseconds"});
-  refused("1,1,2,3,1,1,0,0", {"norm"});
-  refused("1,1,2,z,1,0,0,0", {"z is 'z'"});
-  refused("# nothing", {"data.csv", "no pose"});
+  const BadTexts cases = {{"1,1,2,3,1,0,0", {"data.csv:1", "7 fields", "timestamp,x,y,z,qw"}},
+                          {"1.5,1,2,3,1,0,0,0", {"timestamp is 1.5", "nanoseconds"}},
+                          {"1,1,2,3,1,1,0,0", {"norm"}},
+                          {"1,1,2,z,1,0,0,0", {"z is 'z'"}},
+                          {"# nothing", {"no pose"}}};
+  ExpectBadTexts(cases, "data.csv", [&](const std::string& line) { Read(line); });
 }
 
 }  // namespace

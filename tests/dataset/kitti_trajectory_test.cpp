@@ -46,20 +46,16 @@ TEST_F(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
 }
 
 TEST_F(KittiTrajectoryTest, BadLinesAreNamed) {
-  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
-      {"1 0 0 0 0 1 0 0 0 0 1", {"has 11 numbers", "12"}},
-      {"1 0 0 0 0 1 0 0 0 0 1 0 0", {"has 13 numbers"}},
-      {"1 0 0 0 0 1 0 x 0 0 1 0", {"number 8 is 'x'"}},
-      {"1 0 0 0 0 1 0 nan 0 0 1 0", {"number 8 is 'nan'"}},
-      {"1.01 0 0 0 0 1 0 0 0 0 1 0", {"not orthonormal", "0.0201", "0.001"}},
-      {"1 0.002 0 0 0 1 0 0 0 0 1 0", {"not orthonormal"}},
-      {"0 0 0 0 0 0 0 0 0 0 0 0", {"not orthonormal"}},
-      {"1 0 0 0 0 -1 0 0 0 0 1 0", {"determinant -1"}}};
-  for (const auto& [line, words] : cases) {
-    auto all = words;
-    all.push_back("poses.txt:2");
-    ExpectError<InputError>([&] { Read(std::string("1 0 0 0 0 1 0 0 0 0 1 0\n") + line); }, all);
-  }
+  const BadTexts cases = {{"1 0 0 0 0 1 0 0 0 0 1", {"has 11 numbers", "12"}},
+                          {"1 0 0 0 0 1 0 0 0 0 1 0 0", {"has 13 numbers"}},
+                          {"1 0 0 0 0 1 0 x 0 0 1 0", {"number 8 is 'x'"}},
+                          {"1 0 0 0 0 1 0 nan 0 0 1 0", {"number 8 is 'nan'"}},
+                          {"1.01 0 0 0 0 1 0 0 0 0 1 0", {"not orthonormal", "0.0201", "0.001"}},
+                          {"1 0.002 0 0 0 1 0 0 0 0 1 0", {"not orthonormal"}},
+                          {"0 0 0 0 0 0 0 0 0 0 0 0", {"not orthonormal"}},
+                          {"1 0 0 0 0 -1 0 0 0 0 1 0", {"determinant -1"}}};
+  ExpectBadTexts(cases, "poses.txt:2",
+                 [&](const std::string& line) { Read("1 0 0 0 0 1 0 0 0 0 1 0\n" + line); });
   ExpectError<InputError>([&] { Read("\n"); }, {"poses.txt", "no pose"});
 }
 

@@ -42,7 +42,7 @@ TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
            fields + "}]}]";
   };
   const std::string where = "boxes.json#/1/detections/0";
-  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+  const BadTexts cases = {
       {"{}", {"boxes.json", "not a list"}},
       {R"([{"detections": []}])", {"boxes.json#/0", "file_name is missing"}},
       {R"([{"file_name": "a.png", "detections": 3}])", {"boxes.json#/0", "detections is 3"}},
@@ -56,7 +56,7 @@ TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
        {where, "bbox is [1,2,\"3\",4]"}},
       {detection(R"("category_id": 1, "detection_score": 1, "bbox": [300, 68, 59, 97])"),
        {where, "x1 <= x2"}}};
-  for (const auto& [text, words] : cases) ExpectError<InputError>([&] { Read(text); }, words);
+  ExpectBadTexts(cases, "boxes.json", [&](const std::string& text) { Read(text); });
 }
 
 }  // namespace

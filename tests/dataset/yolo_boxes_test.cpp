@@ -50,7 +50,7 @@ TEST_F(YoloBoxesTest, PixelCornerAndSize) {
 }
 
 TEST_F(YoloBoxesTest, BadLinesAreNamed) {
-  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
+  const BadTexts cases = {
       {"0 0.1 0.1 0.1", {"has 4 numbers", "class cx cy w h [score] [track]"}},
       {"0 0.1 0.1 0.1 0.1 0.5 0.5", {"has 7 numbers", "0.5 0.5", "track", "segmentation"}},
       {"0 0.1 0.1 0.1 0.1 0.5 0.5 0.2 0.2", {"has 9 numbers", "segmentation", "save boxes"}},
@@ -61,25 +61,20 @@ TEST_F(YoloBoxesTest, BadLinesAreNamed) {
       {"0 0.1 0.1 0.1 0.1 high", {"number 6 is 'high'"}},
       {"0 0.1 0.1 0.1 -0.1", {"has -0.1", "fractions"}},
       {"0 218 246 65 94 0.4", {"has 218", "fractions"}}};
-  for (const auto& [line, words] : cases) {
-    Write("a.txt", std::string("0 0.1 0.1 0.1 0.1\n") + line + "\n");
-    auto all = words;
-    all.push_back("a.txt:2");
-    ExpectError<InputError>([&] { Normalised(); }, all);
-  }
+  ExpectBadTexts(cases, "a.txt:2", [&](const std::string& line) {
+    Write("a.txt", "0 0.1 0.1 0.1 0.1\n" + line + "\n");
+    Normalised();
+  });
 }
 
 TEST_F(YoloBoxesTest, BadPixelLinesAreNamed) {
-  const std::vector<std::pair<const char*, std::vector<std::string>>> cases = {
-      {"0 1 2 3", {"has 4 numbers", "class x y w h [score] [track]"}},
-      {"0 100 100 -5 20", {"size is -5 x 20"}},
-      {"0 0.5 0.25 0.125 0.5", {"at most 1", "pixels"}}};
-  for (const auto& [line, words] : cases) {
+  const BadTexts cases = {{"0 1 2 3", {"has 4 numbers", "class x y w h [score] [track]"}},
+                          {"0 100 100 -5 20", {"size is -5 x 20"}},
+                          {"0 0.5 0.25 0.125 0.5", {"at most 1", "pixels"}}};
+  ExpectBadTexts(cases, "a.txt:1", [&](const std::string& line) {
     Write("a.txt", line);
-    auto all = words;
-    all.push_back("a.txt:1");
-    ExpectError<InputError>([&] { Pixels(); }, all);
-  }
+    Pixels();
+  });
 }
 
 TEST_F(YoloBoxesTest, BoxesALittleOutsideAreCutAndCounted) {

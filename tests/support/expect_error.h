@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "base/error.h"
 
 namespace soslam {
 
@@ -18,6 +21,19 @@ void ExpectError(Action action, const std::vector<std::string>& words) {
     const std::string message = error.what();
     for (const std::string& word : words) EXPECT_THAT(message, testing::HasSubstr(word));
     EXPECT_THAT(message, testing::Not(testing::HasSubstr("\n")));
+  }
+}
+
+// Texts of a file that is refused, with words of the message.
+using BadTexts = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+// Expects that `read` refuses each text, and names `place`.
+template <typename Read>
+void ExpectBadTexts(const BadTexts& texts, const std::string& place, Read read) {
+  for (auto [text, words] : texts) {
+    SCOPED_TRACE(text);
+    words.push_back(place);
+    ExpectError<InputError>([&, &text = text] { read(text); }, words);
   }
 }
 
