@@ -70,8 +70,9 @@ Distortion DistortionOfSetting(const std::string& text) {
          "\"k1 k2 p1 p2 k3\" as OpenCV has them, or 4, 8, 12 or 14 of its numbers");
 }
 
-}  // namespace
-
+// The camera of a folder of images, from the options, otherwise from the camera file. ICL-NUIM's
+// camera is converted to the one with y down that gives the same images. Throws SettingsError for
+// invalid options; InputError naming the field.
 Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_file,
                              const ImportOptions& options) {
   const bool y_is_up = options.format == DatasetFormat::kIclNuim;
@@ -98,8 +99,6 @@ Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_
   }
   return read;
 }
-
-namespace {
 
 int FirstFreeId(const std::vector<ListedObject>& objects) {
   int id = 0;

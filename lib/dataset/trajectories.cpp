@@ -91,6 +91,24 @@ std::optional<ListedImage> EurocImage(const TextLine& line) {
   return ListedImage{timestamp * kSecondsPerUnit, std::string(fields[1])};
 }
 
+// Final step of a trajectory reader: sorts, removes duplicates, checks.
+std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
+                                        const std::filesystem::path& path) {
+  if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
+  std::ranges::stable_sort(trajectory, {}, &TimedPose::timestamp);
+  const auto twice =
+      std::ranges::adjacent_find(trajectory, [&](const TimedPose& a, const TimedPose& b) {
+        return a.timestamp == b.timestamp && !IsSamePose(a.world_from_camera, b.world_from_camera);
+      });
+  if (twice != trajectory.end()) {
+    throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
+                                 path.string(), twice->timestamp));
+  }
+  const auto repeated = std::ranges::unique(trajectory, {}, &TimedPose::timestamp);
+  trajectory.erase(repeated.begin(), repeated.end());
+  return trajectory;
+}
+
 }  // namespace
 
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path) {
@@ -133,23 +151,6 @@ std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
   std::vector<TimedPose> trajectory;
   for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParseTumPose(line));
   return SortedTrajectory(std::move(trajectory), path);
-}
-
-std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
-                                        const std::filesystem::path& path) {
-  if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
-  std::ranges::stable_sort(trajectory, {}, &TimedPose::timestamp);
-  const auto twice =
-      std::ranges::adjacent_find(trajectory, [&](const TimedPose& a, const TimedPose& b) {
-        return a.timestamp == b.timestamp && !IsSamePose(a.world_from_camera, b.world_from_camera);
-      });
-  if (twice != trajectory.end()) {
-    throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
-                                 path.string(), twice->timestamp));
-  }
-  const auto repeated = std::ranges::unique(trajectory, {}, &TimedPose::timestamp);
-  trajectory.erase(repeated.begin(), repeated.end());
-  return trajectory;
 }
 
 std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,

@@ -61,10 +61,6 @@ struct TimedPose {
 // timestamp, and when there is no pose.
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path);
 
-// Final step of a trajectory reader, as above: sorts, removes duplicates, checks.
-std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
-                                        const std::filesystem::path& path);
-
 // The pose of `trajectory` (ascending) nearest in time; none when it is further away than
 // `max_difference_s`.
 std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,

@@ -12,6 +12,14 @@
 #include "geometry/rigid3.h"
 
 namespace soslam {
+namespace {
+
+// Renaming of a box's axes: of the 24 rotations of the cube, the one from the new names to the old
+// ones that leaves the smallest angle (rad) to the axes of the truth.
+struct NearestAxes {
+  Eigen::Matrix3d old_from_new;
+  double angle = 0.0;
+};
 
 NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
                           const Eigen::Quaterniond& frame_from_truth) {
@@ -33,6 +41,8 @@ NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
   } while (std::next_permutation(axes.begin(), axes.end()));
   return nearest;
 }
+
+}  // namespace
 
 double RotationError(const Eigen::Quaterniond& frame_from_estimate,
                      const Eigen::Quaterniond& frame_from_truth) {
@@ -132,8 +142,7 @@ std::optional<Landmark> AlongSightOntoPlane(const Landmark& truth, const Landmar
   return WithFootAt(corrected, camera_centre + factor * (Foot(estimate) - camera_centre));
 }
 
-}  // namespace
-
+// The estimate with its axes renamed to be nearest those of the truth.
 Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
   const Eigen::Quaterniond& rotation = estimate.frame_from_object.rotation;
   const Eigen::Matrix3d old_from_new =
@@ -143,6 +152,8 @@ Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
   named.half_axes = old_from_new.cwiseAbs().transpose() * estimate.half_axes;
   return named;
 }
+
+}  // namespace
 
 BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
                          const Landmark& truth_in_frame) {

@@ -11,15 +11,6 @@
 
 namespace soslam {
 
-// Renaming of a box's axes: of the 24 rotations of the cube, the one from the new names to the old
-// ones that leaves the smallest angle (rad) to the axes of the truth.
-struct NearestAxes {
-  Eigen::Matrix3d old_from_new;
-  double angle = 0.0;
-};
-NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
-                          const Eigen::Quaterniond& frame_from_truth);
-
 // The paper's Rot, rad: the smallest rotation that brings the estimate's three axes onto any axes
 // of the truth, over the 24 rotations of the cube. It does not detect quarter turns.
 double RotationError(const Eigen::Quaterniond& frame_from_estimate,
@@ -58,9 +49,6 @@ struct BodyErrors {
 
 BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
                          const Landmark& truth_in_frame);
-
-// The estimate with its axes renamed as above.
-Landmark NamedLike(const Landmark& estimate, const Landmark& truth);
 
 // Errors of a landmark's support plane against that of the true one.
 struct PlaneErrors {

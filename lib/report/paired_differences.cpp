@@ -51,6 +51,21 @@ std::vector<Cell> RowOf(const Comparison& comparison, const std::string& dataset
           interval ? Signed(interval->high, quantity) : kNoValue};
 }
 
+// Differences of the objects for which both variants have the quantity, in the order of `variant`.
+std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
+                                        const Quantity& quantity) {
+  std::map<int, double> baseline_values;
+  for (const ObjectValue& object : ObjectValues(baseline, quantity)) {
+    baseline_values[object.object_id] = object.value;
+  }
+  std::vector<double> differences;
+  for (const ObjectValue& object : ObjectValues(variant, quantity)) {
+    const auto other = baseline_values.find(object.object_id);
+    if (other != baseline_values.end()) differences.push_back(object.value - other->second);
+  }
+  return differences;
+}
+
 }  // namespace
 
 std::vector<Comparison> ParseComparisons(const std::string& lists) {
@@ -91,20 +106,6 @@ PairedDifference MeanDifference(const std::vector<double>& differences) {
   const double half_width = StudentT95(count - 1) * standard_error;
   difference.confidence_95 = {difference.mean - half_width, difference.mean + half_width};
   return difference;
-}
-
-std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
-                                        const Quantity& quantity) {
-  std::map<int, double> baseline_values;
-  for (const ObjectValue& object : ObjectValues(baseline, quantity)) {
-    baseline_values[object.object_id] = object.value;
-  }
-  std::vector<double> differences;
-  for (const ObjectValue& object : ObjectValues(variant, quantity)) {
-    const auto other = baseline_values.find(object.object_id);
-    if (other != baseline_values.end()) differences.push_back(object.value - other->second);
-  }
-  return differences;
 }
 
 Table DifferencesTable(const std::vector<DatasetResult>& datasets,

@@ -42,10 +42,6 @@ double StudentT95(int degrees_of_freedom);
 // Requires at least one difference.
 PairedDifference MeanDifference(const std::vector<double>& differences);
 
-// Differences of the objects for which both variants have the quantity, in the order of `variant`.
-std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
-                                        const Quantity& quantity);
-
 // One row per comparison and dataset with objects to compare, then one over the objects of all
 // datasets if there are several. Bold: the interval excludes zero.
 Table DifferencesTable(const std::vector<DatasetResult>& datasets,

@@ -30,6 +30,9 @@ Published ReadPublished(const std::filesystem::path& path) {
 
 namespace {
 
+// The observations of an object that are used, for single-frame variants.
+enum class Observations { kAll, kFirst };
+
 // Kind of a row of measured values: its observations and its name.
 struct RowKind {
   Observations observations;
@@ -85,6 +88,20 @@ using Means = std::vector<std::optional<ObjectMean>>;
 
 bool HasAny(const Means& means) {
   return std::ranges::any_of(means, [](const auto& mean) { return mean.has_value(); });
+}
+
+// None without the quantity; the first observation exists for single-frame variants only. The
+// number of objects is that of objects with an angle in any observation, as metrics.json does not
+// have it for first observations.
+std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
+                                          Observations observations) {
+  const std::string summary =
+      observations == Observations::kAll ? "/summary/" : "/first_observation/";
+  const auto mean = MetricsNumber(variant, summary + quantity.key + "_mean");
+  const auto count = MetricsNumber(variant, summary + "observations");
+  const int objects = static_cast<int>(ObjectValues(variant, quantity).size());
+  if (!mean || !count || objects == 0) return std::nullopt;
+  return ObjectMean{*mean, objects, static_cast<int>(*count)};
 }
 
 Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
@@ -233,17 +250,6 @@ void AddAverages(const std::vector<DatasetResult>& datasets, const PublishedTabl
 }
 
 }  // namespace
-
-std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
-                                          Observations observations) {
-  const std::string summary =
-      observations == Observations::kAll ? "/summary/" : "/first_observation/";
-  const auto mean = MetricsNumber(variant, summary + quantity.key + "_mean");
-  const auto count = MetricsNumber(variant, summary + "observations");
-  const int objects = static_cast<int>(ObjectValues(variant, quantity).size());
-  if (!mean || !count || objects == 0) return std::nullopt;
-  return ObjectMean{*mean, objects, static_cast<int>(*count)};
-}
 
 ObjectMean WeightedMean(const std::vector<ObjectMean>& means) {
   ObjectMean total;

@@ -53,21 +53,12 @@ struct Published {
 // Reads schemas/published.schema.json. Throws InputError.
 Published ReadPublished(const std::filesystem::path& path);
 
-// The observations of an object that are used, for single-frame variants.
-enum class Observations { kAll, kFirst };
-
 // A quantity averaged over the objects that have it.
 struct ObjectMean {
   double mean = 0.0;
   int objects = 0;
   int observations = 0;  // of all objects that were compared
 };
-
-// None without the quantity; the first observation exists for single-frame variants only. The
-// number of objects is that of objects with an angle in any observation, as metrics.json does not
-// have it for first observations.
-std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
-                                          Observations observations);
 
 // Mean weighted by the number of objects, like the averages of the paper. Requires at least one
 // mean.
