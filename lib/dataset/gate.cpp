@@ -107,8 +107,8 @@ std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
 
 namespace {
 
-// Edges this close to the image border, as a fraction of the image's width or height, count as cut
-// by it. Detectors end cut boxes a few pixels before the border.
+// Edges this close to the image border, as a fraction of the image's shorter side, count as cut by
+// it. Detectors end cut boxes a few pixels before the border.
 constexpr double kCutAtBorderFraction = 0.01;
 // Errors of a lower edge and of the upper edge of what hides it, as a fraction of the box's height.
 constexpr double kEdgeErrorFraction = 0.05;
@@ -137,12 +137,11 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
 }  // namespace
 
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
-  const double side_px = kCutAtBorderFraction * camera.width;
-  const double end_px = kCutAtBorderFraction * camera.height;
-  return {box.x_min + 0.5 <= side_px,                 //
-          box.y_min + 0.5 <= end_px,                  //
-          camera.width - 0.5 - box.x_max <= side_px,  //
-          camera.height - 0.5 - box.y_max <= end_px};
+  const double margin_px = kCutAtBorderFraction * std::min(camera.width, camera.height);
+  return {box.x_min + 0.5 <= margin_px,                 //
+          box.y_min + 0.5 <= margin_px,                 //
+          camera.width - 0.5 - box.x_max <= margin_px,  //
+          camera.height - 0.5 - box.y_max <= margin_px};
 }
 
 // Nearer objects make only the lower edge a bound. They stand on the same support, so they occlude

@@ -39,6 +39,26 @@ TEST_F(ArtefactFilesTest, SequenceWithoutPlanesComesBackToThoseWhoNeedNone) {
   ExpectError<InputError>([&] { ReadSequence(file); }, {file.string(), "no support planes"});
 }
 
+// Planes are there, but it is not known which of them objects stand on.
+TEST_F(ArtefactFilesTest, UnknownSupportsComeBackToThoseWhoNeedNone) {
+  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
+  WriteSequence(file, sequence, {});
+  const Sequence read = ReadSequence(file, PlaneNeed::kNotNeeded);
+  EXPECT_EQ(read.planes.size(), sequence.planes.size());
+  EXPECT_EQ(read.objects.at(0).plane_index, kNoPlane);
+  EXPECT_FALSE(read.HasSupports());
+  ExpectError<InputError>([&] { ReadSequence(file); }, {file.string(), "\"associate\""});
+}
+
+TEST_F(ArtefactFilesTest, LabelsOfAnObjectComeBack) {
+  sequence.objects[0].labels = {{"chair", 0.75}, {"armchair", 0.25}};
+  WriteSequence(file, sequence, {});
+  const auto labels = ReadSequence(file).objects.at(0).labels;
+  ASSERT_EQ(labels.size(), 2U);
+  EXPECT_EQ(labels[1].label, "armchair");
+  EXPECT_EQ(labels[1].probability, 0.25);
+}
+
 TEST_F(ArtefactFilesTest, PlanesAreKnownForAllOrNone) {
   WriteSequence(file, sequence, {});
   nlohmann::json edited = ParseJsonFile(file);

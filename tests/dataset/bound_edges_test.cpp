@@ -37,12 +37,12 @@ TEST(BoundEdgesTest, ABoxAloneInsideTheImageHasNone) { EXPECT_EQ(BoundsOfFirst({
 
 // The image covers [-0.5, 639.5] x [-0.5, 479.5].
 TEST(BoundEdgesTest, EdgesAtTheImageBorderAreBounds) {
-  EXPECT_EQ(BoundsOfFirst({{5.9, 150, 300, 300}}), (Bounds{true, false, false, false}));
+  EXPECT_EQ(BoundsOfFirst({{4.29, 150, 300, 300}}), (Bounds{true, false, false, false}));
   EXPECT_EQ(BoundsOfFirst({{200, 4.29, 300, 300}}), (Bounds{false, true, false, false}));
-  EXPECT_EQ(BoundsOfFirst({{200, 150, 633.1, 300}}), (Bounds{false, false, true, false}));
+  EXPECT_EQ(BoundsOfFirst({{200, 150, 634.71, 300}}), (Bounds{false, false, true, false}));
   EXPECT_EQ(BoundsOfFirst({{200, 150, 300, 474.71}}), kBottom);
   EXPECT_EQ(BoundsOfFirst({{-20, 0, 700, 480}}), (Bounds{true, true, true, true}));
-  EXPECT_EQ(BoundsOfFirst({{5.91, 4.31, 633.09, 474.69}}), kNone);
+  EXPECT_EQ(BoundsOfFirst({{4.31, 4.31, 634.69, 474.69}}), kNone);
 }
 
 TEST(BoundEdgesTest, ALowerEdgeHiddenByExactlyTheFractionIsABound) {

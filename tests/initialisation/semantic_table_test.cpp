@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/random.h"
 
 namespace soslam {
@@ -128,6 +130,39 @@ TEST(LabelsWithoutEntry, NamesThemWhateverTheDefault) {
   sequence.frames.resize(1);
   for (int i = 0; i < 3; ++i) sequence.detections.push_back({0, i, 1.0, {}, {}, {}});
   EXPECT_THAT(LabelsWithoutEntry(sequence, kCupsAndDefault), ElementsAre("whisk"));
+}
+
+// Samples of the two labels, half and half, have these moments.
+TEST(MixtureTest, HasTheMomentsOfItsLabels) {
+  SemanticTable table;
+  table.priors["cup"] = {{1.0, 2.0}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}};
+  table.priors["vase"] = {{4.0, 2.0}, {0.3, 0.2}, 1.6, -0.5, LogNormal{0.4, 0.1}};
+  const double half_apart = 0.5 * std::log(4.0);
+  Object object;
+  object.label = "cup";
+  object.labels = {{"cup", 0.5}, {"vase", 0.5}};
+  const ShapePrior prior = table.Find(object).value();
+  EXPECT_NEAR(prior.ratio.x(), 2.0, 1e-12);
+  EXPECT_NEAR(prior.ratio.y(), 2.0, 1e-12);
+  EXPECT_NEAR(prior.log_sigma.x(), std::sqrt(0.5 * (0.01 + 0.09) + half_apart * half_apart), 1e-12);
+  EXPECT_NEAR(prior.log_sigma.y(), 0.2, 1e-12);
+  const double covariance = 0.5 * (0.5 * 0.1 * 0.2 - 0.5 * 0.3 * 0.2);
+  EXPECT_NEAR(prior.log_correlation * prior.log_sigma.prod(), covariance, 1e-12);
+  EXPECT_NEAR(prior.shape_exponent, 1.5, 1e-12);
+  EXPECT_NEAR(prior.height_m->median, 0.2, 1e-12);
+  EXPECT_NEAR(prior.height_m->log_sigma, std::sqrt(0.05 + half_apart * half_apart), 1e-12);
+}
+
+TEST(MixtureTest, OfOneLabelIsItsPrior) {
+  SemanticTable table;
+  table.priors["cup"] = {{1.0, 2.0}, {0.1, 0.2}, 1.4};
+  table.priors["picture"] = {{0.1, 2.0}, {0.1, 0.2}, 1.0};
+  table.priors["picture"].mount = Mount::kOnWall;
+  Object object;
+  object.label = "cup";
+  object.labels = {{"cup", 0.6}, {"picture", 0.4}};  // of another mount
+  EXPECT_EQ(table.Find(object)->ratio, table.Find("cup")->ratio);
+  EXPECT_EQ(table.Find(object)->log_sigma, table.Find("cup")->log_sigma);
 }
 
 }  // namespace
