@@ -107,9 +107,11 @@ std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
 
 namespace {
 
-// Edges this close to the image border, as a fraction of the image's shorter side, count as cut by
-// it. Detectors end cut boxes a few pixels before the border.
-constexpr double kCutAtBorderFraction = 0.01;
+// Edges this close to the image border count as cut by it: detectors end cut boxes a few pixels
+// before the border, and more where boxes are large. Fractions of the image's shorter side and of
+// the box's width or height; the larger one counts.
+constexpr double kCutAtBorderOfImage = 0.01;
+constexpr double kCutAtBorderOfBox = 0.02;
 // Errors of a lower edge and of the upper edge of what hides it, as a fraction of the box's height.
 constexpr double kEdgeErrorFraction = 0.05;
 
@@ -137,11 +139,13 @@ double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
 }  // namespace
 
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
-  const double margin_px = kCutAtBorderFraction * std::min(camera.width, camera.height);
-  return {box.x_min + 0.5 <= margin_px,                 //
-          box.y_min + 0.5 <= margin_px,                 //
-          camera.width - 0.5 - box.x_max <= margin_px,  //
-          camera.height - 0.5 - box.y_max <= margin_px};
+  const double of_image_px = kCutAtBorderOfImage * std::min(camera.width, camera.height);
+  const double x_margin_px = std::max(of_image_px, kCutAtBorderOfBox * box.Width());
+  const double y_margin_px = std::max(of_image_px, kCutAtBorderOfBox * box.Height());
+  return {box.x_min + 0.5 <= x_margin_px,                 //
+          box.y_min + 0.5 <= y_margin_px,                 //
+          camera.width - 0.5 - box.x_max <= x_margin_px,  //
+          camera.height - 0.5 - box.y_max <= y_margin_px};
 }
 
 // Nearer objects make only the lower edge a bound. They stand on the same support, so they occlude

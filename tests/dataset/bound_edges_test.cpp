@@ -42,7 +42,10 @@ TEST(BoundEdgesTest, EdgesAtTheImageBorderAreBounds) {
   EXPECT_EQ(BoundsOfFirst({{200, 150, 634.71, 300}}), (Bounds{false, false, true, false}));
   EXPECT_EQ(BoundsOfFirst({{200, 150, 300, 474.71}}), kBottom);
   EXPECT_EQ(BoundsOfFirst({{-20, 0, 700, 480}}), (Bounds{true, true, true, true}));
-  EXPECT_EQ(BoundsOfFirst({{4.31, 4.31, 634.69, 474.69}}), kNone);
+  EXPECT_EQ(BoundsOfFirst({{4.31, 4.31, 100, 100}}), kNone);
+  EXPECT_EQ(BoundsOfFirst({{535, 375, 634.69, 474.69}}), kNone);
+  // Large boxes err more: 2 % of their width, here 12 px.
+  EXPECT_EQ(BoundsOfFirst({{11.4, 150, 620, 300}}), (Bounds{true, false, false, false}));
 }
 
 TEST(BoundEdgesTest, ALowerEdgeHiddenByExactlyTheFractionIsABound) {
