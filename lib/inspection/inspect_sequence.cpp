@@ -10,6 +10,7 @@
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "inspection/inspection.h"
+#include "model/label_groups.h"
 
 // Sequences: rows are objects.
 
@@ -64,7 +65,7 @@ std::vector<Value> ObjectRow(const Sequence& sequence, const Object& object,
                              const std::vector<int>& detections) {
   const bool has_plane = object.plane_index != kNoPlane;
   std::vector<Value> row = {
-      object.id, object.label,
+      object.id, LabelInWords(object),
       has_plane ? Value(sequence.planes[static_cast<size_t>(object.plane_index)].id) : Value(),
       detections.size()};
   if (detections.empty()) {

@@ -39,6 +39,19 @@ std::vector<std::vector<std::string>> ParseLabelGroups(const char* option,
   return groups;
 }
 
+std::string LabelInWords(const Object& object) {
+  if (object.labels.size() < 2) return object.label;
+  std::vector<std::string> others;
+  double own = 0.0;
+  for (const auto& [label, probability] : object.labels) {
+    if (label == object.label)
+      own = probability;
+    else
+      others.push_back(fmt::format("{} {:.0f} %", label, 100.0 * probability));
+  }
+  return fmt::format("{} ({:.0f} %; {})", object.label, 100.0 * own, fmt::join(others, ", "));
+}
+
 LabelGroups::LabelGroups(const std::string& interchangeable) {
   for (const auto& group : ParseLabelGroups("interchangeable_labels", interchangeable)) {
     for (const std::string& label : group) {

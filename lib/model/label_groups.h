@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "model/sequence.h"
+
 namespace soslam {
 
 // Groups of labels from the text of an option, 'a, b; c, d'. Throws SettingsError, naming the
 // option, for an empty label.
 std::vector<std::vector<std::string>> ParseLabelGroups(const char* option, const std::string& text);
+
+// The label of an object; "chair (60 %; armchair 40 %)" where it is uncertain.
+std::string LabelInWords(const Object& object);
 
 // Labels that count as the same.
 class LabelGroups {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "model/label_groups.h"
 #include "report/page_geometry.h"
 
 namespace soslam {
@@ -128,6 +129,7 @@ json PageObjects(const Sequence& sequence) {
     objects.push_back(
         {{"id", object.id},
          {"label", object.label},
+         {"labels", LabelInWords(object)},
          {"segment", segments[i] ? json(*segments[i]) : json()},
          {"plane", sequence.planes.empty() ? json() : json(object.plane_index)},
          {"truth", truth ? PageLandmark(AsCuboid(truth->landmark_in_world)) : json()}});

@@ -24,5 +24,13 @@ TEST(LabelGroupsTest, MalformedGroupsAreRefused) {
   ExpectError<SettingsError>([] { LabelGroups("cup, bowl; tv, cup"); }, {"'cup' twice"});
 }
 
+TEST(LabelInWordsTest, NamesAlternatives) {
+  Object object;
+  object.label = "chair";
+  EXPECT_EQ(LabelInWords(object), "chair");
+  object.labels = {{"armchair", 0.6}, {"chair", 0.4}};
+  EXPECT_EQ(LabelInWords(object), "chair (40 %; armchair 60 %)");
+}
+
 }  // namespace
 }  // namespace soslam

@@ -19,6 +19,7 @@ function objectNumbers(page, variant, index) {
   } else {
     rows.push(["no landmark", estimate.failure]);
   }
+  if (object.labels !== object.label) rows.push(["label", object.labels]);
   if (estimate.sigma_centre) {
     rows.push(["sigma of centre, m", triple(estimate.sigma_centre, 3)]);
     rows.push(["sigma of half axes, %", triple(estimate.sigma_log_half_axes.map((value) => 100 * value), 1)]);
