@@ -18,11 +18,19 @@ Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& v) {
 
 }  // namespace
 
-OdometryResidual::OdometryResidual(const Rigid3d& first_from_second, double rotation_sigma,
-                                   double translation_sigma)
+double OdometryNoise::RotationSigma(const Rigid3d& first_from_second) const {
+  return std::hypot(rotation_rad,
+                    rotation_fraction * LogRotation(first_from_second.rotation).norm());
+}
+
+double OdometryNoise::TranslationSigma(const Rigid3d& first_from_second) const {
+  return std::hypot(translation_m, translation_fraction * first_from_second.translation.norm());
+}
+
+OdometryResidual::OdometryResidual(const Rigid3d& first_from_second, const OdometryNoise& noise)
     : first_from_second_(first_from_second),
-      rotation_weight_(1.0 / rotation_sigma),
-      translation_weight_(1.0 / translation_sigma) {}
+      rotation_weight_(1.0 / noise.RotationSigma(first_from_second)),
+      translation_weight_(1.0 / noise.TranslationSigma(first_from_second)) {}
 
 bool OdometryResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {

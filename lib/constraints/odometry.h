@@ -8,6 +8,19 @@
 
 namespace soslam {
 
+// Standard deviations of the measured motion between two frames: a constant and a fraction of the
+// motion, independent of each other. Whoever moves further between two frames errs more.
+struct OdometryNoise {
+  double rotation_rad = 0.0;
+  double rotation_fraction = 0.0;  // of the angle
+  double translation_m = 0.0;
+  double translation_fraction = 0.0;  // of the distance
+
+  // Per axis.
+  double RotationSigma(const Rigid3d& first_from_second) const;
+  double TranslationSigma(const Rigid3d& first_from_second) const;
+};
+
 // Odometry constraint (F_O of eq. (1)): the relative pose of two consecutive cameras equals the
 // measured one. With E = measured^-1 * (world_from_first^-1 * world_from_second): the rotation
 // vector of E (rad) and the difference of the translations (m, frame of the first camera), each
@@ -17,8 +30,7 @@ namespace soslam {
 // the rotations differ by less than half a turn.
 class OdometryResidual final : public ceres::SizedCostFunction<6, kPoseSize, kPoseSize> {
  public:
-  OdometryResidual(const Rigid3d& first_from_second, double rotation_sigma,
-                   double translation_sigma);
+  OdometryResidual(const Rigid3d& first_from_second, const OdometryNoise& noise);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 

@@ -105,10 +105,8 @@ void BackEndProblem::AddOdometry() {
     if (frames[i].segment != frames[i - 1].segment) continue;
     const Rigid3d first_from_second =
         frames[i - 1].world_from_camera.Inverse() * frames[i].world_from_camera;
-    problem_.AddResidualBlock(
-        new OdometryResidual(first_from_second, options_.odometry_rotation_sigma_deg * kRadPerDeg,
-                             options_.odometry_translation_sigma_m),
-        &loss_, variables_.Pose(i - 1), variables_.Pose(i));
+    problem_.AddResidualBlock(new OdometryResidual(first_from_second, options_.Odometry()), &loss_,
+                              variables_.Pose(i - 1), variables_.Pose(i));
     ++summary_.residuals["odometry"];
   }
 }

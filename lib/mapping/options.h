@@ -4,7 +4,9 @@
 #include <array>
 
 #include "base/options.h"
+#include "constraints/odometry.h"
 #include "constraints/variances.h"
+#include "geometry/angles.h"
 #include "initialisation/semantic_table.h"
 #include "orientation/options.h"
 #include "orientation/symmetry_options.h"
@@ -31,7 +33,9 @@ struct OptimiseOptions {
   // constraint.
   ConstraintVariances variances{.detection_dm4 = 1e5, .support_tangency_dm4 = 1e5};
   double odometry_rotation_sigma_deg = 0.2;
+  double odometry_rotation_sigma_fraction = 0.0;
   double odometry_translation_sigma_m = 0.01;
+  double odometry_translation_sigma_fraction = 0.0;
   double symmetry_sigma = 30.0;
   int symmetry_views = 1;
   double detection_sigma_fraction = 0.02;
@@ -47,6 +51,11 @@ struct OptimiseOptions {
   SymmetryOptions symmetry_options;
   bool covariances = true;
   int max_iterations = 500;
+
+  OdometryNoise Odometry() const {
+    return {odometry_rotation_sigma_deg * kRadPerDeg, odometry_rotation_sigma_fraction,
+            odometry_translation_sigma_m, odometry_translation_sigma_fraction};
+  }
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Constraints");
@@ -73,9 +82,15 @@ struct OptimiseOptions {
                "the poses of the trajectory are constant, as those of motion capture or structure "
                "from motion should be; otherwise they are odometry, which drifts");
     visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
-               "standard deviation of the odometry between two frames");
+               "standard deviation of the odometry between two frames, whatever the motion");
+    visit.Real("odometry_rotation_sigma_fraction", &odometry_rotation_sigma_fraction, {0.0, 1.0},
+               "further standard deviation, as a fraction of the rotation between the frames");
     visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
-               "standard deviation of the odometry between two frames, per axis");
+               "standard deviation of the odometry between two frames, per axis, whatever the "
+               "motion");
+    visit.Real("odometry_translation_sigma_fraction", &odometry_translation_sigma_fraction,
+               {0.0, 1.0},
+               "further standard deviation, as a fraction of the distance between the frames");
     visit.Group("Bodies of any shape (detection_model = tangency)");
     visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},

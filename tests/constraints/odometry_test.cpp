@@ -9,6 +9,16 @@
 namespace soslam {
 namespace {
 
+// A 3-4-5 triangle each: 0.03 rad constant and 4 % of a turn by 1 rad; 0.3 m and 10 % of 4 m.
+TEST(OdometryNoise, IsAConstantAndAFractionOfTheMotion) {
+  const OdometryNoise noise{0.03, 0.04, 0.3, 0.1};
+  const Rigid3d motion{ExpRotation({0, 0, 1.0}), {0, 4.0, 0}};
+  EXPECT_NEAR(noise.RotationSigma(motion), 0.05, 1e-12);
+  EXPECT_NEAR(noise.TranslationSigma(motion), 0.5, 1e-12);
+  EXPECT_EQ(noise.RotationSigma(Rigid3d()), 0.03);
+  EXPECT_EQ(noise.TranslationSigma(Rigid3d()), 0.3);
+}
+
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 Vector6d Residuals(const OdometryResidual& residual, const Rigid3d& first, const Rigid3d& second) {
@@ -24,14 +34,15 @@ TEST(OdometryResidual, IsZeroForTheMeasuredMotion) {
   for (int i = 0; i < 100; ++i) {
     const Rigid3d first = RandomRigid();
     const Rigid3d first_from_second = RandomRigid();
-    const OdometryResidual residual(first_from_second, 0.01, 0.02);
+    const OdometryResidual residual(first_from_second,
+                                    {.rotation_rad = 0.01, .translation_m = 0.02});
     EXPECT_LT(Residuals(residual, first, first * first_from_second).norm(), 1e-9);
   }
 }
 
 // Measured: no motion. Estimated: 0.3 m along x and a turn of 0.2 rad about y.
 TEST(OdometryResidual, WorkedByHand) {
-  const OdometryResidual residual(Rigid3d(), 0.1, 0.5);
+  const OdometryResidual residual(Rigid3d(), {.rotation_rad = 0.1, .translation_m = 0.5});
   const Rigid3d second{ExpRotation({0, 0.2, 0}), {0.3, 0, 0}};
   Vector6d expected;
   expected << 0, 2.0, 0, 0.6, 0, 0;
@@ -48,8 +59,9 @@ TEST(OdometryResidual, JacobiansAgreeWithNumbers) {
         RandomVector(-0.5, 0.5)};
     const PoseBlock first_block = ToParameterBlock(first);
     const PoseBlock second_block = ToParameterBlock(first * first_from_second * error);
-    ExpectCorrectJacobians(OdometryResidual(first_from_second, 0.5, 0.3),
-                           {first_block.data(), second_block.data()});
+    ExpectCorrectJacobians(
+        OdometryResidual(first_from_second, {.rotation_rad = 0.5, .translation_m = 0.3}),
+        {first_block.data(), second_block.data()});
   }
 }
 
@@ -57,7 +69,7 @@ TEST(OdometryResidual, DoesNotChangeWithTheWorld) {
   const Rigid3d first = RandomRigid();
   const Rigid3d second = RandomRigid();
   const Rigid3d motion = RandomRigid(10.0);
-  const OdometryResidual residual(RandomRigid(), 0.5, 0.3);
+  const OdometryResidual residual(RandomRigid(), {.rotation_rad = 0.5, .translation_m = 0.3});
   EXPECT_LT(
       (Residuals(residual, first, second) - Residuals(residual, motion * first, motion * second))
           .norm(),
