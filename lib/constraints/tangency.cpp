@@ -26,7 +26,7 @@ std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
     const double outwards = i < 2 ? -1.0 : 1.0;
     const double side = i % 2 == 0 ? box.Width() : box.Height();
     edges[i] = {outwards * (to_plane * lines[i]), is_bound[i],
-                std::max(kMinSigmaPx, sigma_fraction * side)};
+                std::max(kMinSigmaPx, sigma_fraction * side), side};
   }
   return edges;
 }
@@ -120,7 +120,8 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
                               is_near ? 0.0 : depth_ratio_};
   LandmarkJacobian1 d_tangency;
-  const double tangency = Tangency(edge_, landmark, depth, *blocks[2], &d_tangency);
+  const double outwards_px = *blocks[2] + edge_.length_px * *blocks[3];
+  const double tangency = Tangency(edge_, landmark, depth, outwards_px, &d_tangency);
   if (!std::isfinite(tangency)) return false;
   Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
   if (jacobians == nullptr) return true;
@@ -132,10 +133,11 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
         TangencyCurvature(edge_, landmark, depth.depth_m, tangency);
   }
   observation.WriteJacobians<3>(d_landmark, blocks, jacobians);
-  if (jacobians[2] != nullptr) {
-    const bool is_free = edge_.is_bound && !(tangency < 0.0);
-    Eigen::Map<Eigen::Vector3d>(jacobians[2]) << (is_free ? 0.0 : -1.0 / edge_.sigma_px), 0.0, 0.0;
-  }
+  const bool is_free = edge_.is_bound && !(tangency < 0.0);
+  const Eigen::Vector3d d_outwards_px(is_free ? 0.0 : -1.0 / edge_.sigma_px, 0.0, 0.0);
+  using Column = Eigen::Map<Eigen::Vector3d>;
+  if (jacobians[2] != nullptr) Column{jacobians[2]} = d_outwards_px;
+  if (jacobians[3] != nullptr) Column{jacobians[3]} = edge_.length_px * d_outwards_px;
   return true;
 }
 

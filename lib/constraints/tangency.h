@@ -21,6 +21,7 @@ struct BoxEdge {
   // it).
   bool is_bound = false;
   double sigma_px = 1.0;
+  double length_px = 1.0;  // width of the box for left and right, height for top and bottom
 };
 
 // Edges in the order left, top, right, bottom.
@@ -67,9 +68,9 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
 //
 // Residuals: 1 + 2, the tangency, and curvature rows: two zeros whose Jacobian is
 // TangencyCurvature. Blocks: world_from_camera; landmark in the world; bias (px) of the detector at
-// this side of boxes.
+// this side of boxes; misfit of the object at this side.
 class TangencyResidual final
-    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize> {
+    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize, kMisfitSize> {
  public:
   // The tangent point of the initial estimate must be in front of the camera. While
   // `*with_curvature` is false, the Jacobian of the curvature rows is zero.

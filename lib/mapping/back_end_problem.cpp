@@ -192,7 +192,7 @@ void BackEndProblem::AddDetections() {
     ++added;
   }
   if (added > 0) summary_.residuals["detection"] = added;
-  if (IsTangency()) AddBias();
+  if (IsTangency()) AddBiasAndMisfits();
 }
 
 void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camera) {
@@ -215,21 +215,28 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
     }
     problem_.AddResidualBlock(
         new TangencyResidual(edges[side], initial_in_camera, &with_curvature_),
-        &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side));
+        &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side),
+        variables_.Misfit(static_cast<size_t>(detection.object_index), side));
   }
 }
 
-void BackEndProblem::AddBias() {
-  for (size_t side = 0; side < variables_.BiasValues().size(); ++side) {
-    double* bias = variables_.Bias(side);
-    if (!problem_.HasParameterBlock(bias)) continue;
-    if (options_.detector_bias_sigma_px > 0.0) {
-      const ceres::Matrix weight =
-          ceres::Matrix::Constant(1, 1, 1.0 / options_.detector_bias_sigma_px);
-      problem_.AddResidualBlock(new ceres::NormalPrior(weight, ceres::Vector::Zero(1)), nullptr,
-                                bias);
-    } else {
-      problem_.SetParameterBlockConstant(bias);
+// A bias or misfit that some box has: normal about zero, or zero where sigma is.
+void BackEndProblem::AddOutwardPrior(double* variable, double sigma) {
+  if (!problem_.HasParameterBlock(variable)) return;
+  if (sigma > 0.0) {
+    const ceres::Matrix weight = ceres::Matrix::Constant(1, 1, 1.0 / sigma);
+    problem_.AddResidualBlock(new ceres::NormalPrior(weight, ceres::Vector::Zero(1)), nullptr,
+                              variable);
+  } else {
+    problem_.SetParameterBlockConstant(variable);
+  }
+}
+
+void BackEndProblem::AddBiasAndMisfits() {
+  for (size_t side = 0; side < 4; ++side) {
+    AddOutwardPrior(variables_.Bias(side), options_.detector_bias_sigma_px);
+    for (size_t i = 0; i < input_.initial_landmarks.size(); ++i) {
+      AddOutwardPrior(variables_.Misfit(i, side), options_.misfit_sigma_fraction);
     }
   }
 }

@@ -19,7 +19,8 @@ namespace soslam {
 // references to its arguments.
 class BackEndProblem {
  public:
-  // With odometry, detections, support and ratio constraints, preferred axes and the bias prior.
+  // With odometry, detections, support and ratio constraints, preferred axes and the priors of bias
+  // and misfits.
   BackEndProblem(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
   BackEndProblem(const BackEndProblem&) = delete;
   BackEndProblem& operator=(const BackEndProblem&) = delete;
@@ -59,7 +60,8 @@ class BackEndProblem {
   void AddRatio(size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& initial_in_camera);
-  void AddBias();
+  void AddOutwardPrior(double* variable, double sigma);
+  void AddBiasAndMisfits();
   void SetManifolds();
   void FixPoses();
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;

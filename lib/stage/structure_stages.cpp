@@ -138,6 +138,7 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
     optimise.odometry_rotation_sigma_deg = options.odometry_rotation_sigma_deg;
   }
   optimise.axes_weight = 0.0;  // the world's axes are arbitrary
+  optimise.misfit_sigma_fraction = 0.0;
   BackEndInput input{sequence, {}, priors, {}, {}};
   input.initial_landmarks = ChooseInitialUprightLandmarks(input, {}, optimise, threads);
   return OptimiseMap(input, optimise, threads);

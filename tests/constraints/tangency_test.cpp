@@ -39,6 +39,8 @@ TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
   EXPECT_FALSE(edges[1].is_bound || edges[2].is_bound);
   EXPECT_DOUBLE_EQ(edges[0].sigma_px, 10.0);
   EXPECT_DOUBLE_EQ(edges[1].sigma_px, 3.0);
+  EXPECT_DOUBLE_EQ(edges[2].length_px, 200.0);
+  EXPECT_DOUBLE_EQ(edges[3].length_px, 60.0);
   // Not below a pixel.
   EXPECT_DOUBLE_EQ(BoxEdges(camera, {100, 100, 110, 110}, {}, 0.05)[2].sigma_px, 1.0);
 }
@@ -227,6 +229,7 @@ struct View {
   PoseBlock pose = ToParameterBlock(RandomRigid());
   Landmark initial_in_camera = RandomLandmarkInCamera();
   double bias_px = RandomUniform(-3, 3);
+  double misfit = RandomUniform(-0.03, 0.03);
 
   LandmarkBlock LandmarkInWorld() const {
     return ToParameterBlock(Transform(UnpackPose(pose.data()), initial_in_camera));
@@ -243,7 +246,8 @@ TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
     BoxEdge edge = RandomEdge();
     edge.is_bound = i % 2 == 0;
     const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
-    ExpectCorrectJacobians(residual, {view.pose.data(), landmark.data(), &view.bias_px});
+    ExpectCorrectJacobians(residual,
+                           {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
   }
 }
 
@@ -256,12 +260,12 @@ TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
     view.initial_in_camera.shape_exponent = RandomUniform(1.0, 1.9);
     const LandmarkBlock landmark = view.LandmarkInWorld();
     const BoxEdge edge = RandomEdge();
-    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
     using Rows = Eigen::Matrix<double, 3, kLandmarkSize, Eigen::RowMajor>;
     Rows with_rows, without_rows;
     Eigen::Vector3d with_residuals, without_residuals;
-    double* with_jacobians[] = {nullptr, with_rows.data(), nullptr};
-    double* without_jacobians[] = {nullptr, without_rows.data(), nullptr};
+    double* with_jacobians[] = {nullptr, with_rows.data(), nullptr, nullptr};
+    double* without_jacobians[] = {nullptr, without_rows.data(), nullptr, nullptr};
     ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &with)
                     .Evaluate(blocks, with_residuals.data(), with_jacobians));
     ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &without)
@@ -285,15 +289,17 @@ TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
   Landmark behind = view.initial_in_camera;
   behind.frame_from_object.translation.z() = -1.0;
   const LandmarkBlock landmark = ToParameterBlock(Transform(UnpackPose(view.pose.data()), behind));
-  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
   Eigen::Vector3d values;
   ASSERT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
   const double depth_m = 0.1 * FindTangentDepth(edge, view.initial_in_camera).depth_m;
-  EXPECT_NEAR(values[0], Tangency(edge, behind, {depth_m}, view.bias_px, nullptr),
-              1e-9 * (1.0 + std::abs(values[0])));
+  EXPECT_NEAR(
+      values[0],
+      Tangency(edge, behind, {depth_m}, view.bias_px + edge.length_px * view.misfit, nullptr),
+      1e-9 * (1.0 + std::abs(values[0])));
   const bool without_curvature = false;
   ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &without_curvature),
-                         {view.pose.data(), landmark.data(), &view.bias_px});
+                         {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
 }
 
 // The depth of the tangent point shrinks with the world.
@@ -310,8 +316,9 @@ TEST(TangencyResidual, IsTheSameInASmallerWorld) {
       smaller[k] *= 0.6;
     }
     for (size_t k = 7; k < 10; ++k) smaller[k] += std::log(0.6);
-    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
-    const double* smaller_blocks[] = {smaller_pose.data(), smaller.data(), &view.bias_px};
+    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
+    const double* smaller_blocks[] = {smaller_pose.data(), smaller.data(), &view.bias_px,
+                                      &view.misfit};
     Eigen::Vector3d values, smaller_values;
     ASSERT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
     ASSERT_TRUE(residual.Evaluate(smaller_blocks, smaller_values.data(), nullptr));
@@ -324,7 +331,7 @@ TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {
   const View view;
   LandmarkBlock landmark = view.LandmarkInWorld();
   landmark[8] = 1000.0;
-  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px};
+  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
   Eigen::Vector3d values;
   for (const bool is_bound : {false, true}) {
     BoxEdge edge = RandomEdge();

@@ -16,6 +16,16 @@ TEST(Calibration, CovariancesAreHonestWhereTheModelHolds) {
   }
 }
 
+// An object whose boxes all are too large, or too far to one side.
+TEST(Calibration, CovariancesAreHonestWhereBoxesShareAMisfit) {
+  Case c;
+  c.actual.misfit_sigma_fraction = c.assumed.misfit_sigma_fraction =
+      OptimiseOptions().misfit_sigma_fraction;
+  ExpectHonest(MeanNees(c), c.scenes);
+  c.assumed.misfit_sigma_fraction = 0.0;
+  EXPECT_GT(MeanNees(c).centre, 1.5);
+}
+
 // A loss that forgives outliers costs next to nothing where there are none.
 TEST(Calibration, HoldsUnderTheHuberLoss) {
   Case c;

@@ -35,7 +35,8 @@ inline OptimiseOptions ModelOptions() {
   options.odometry_translation_sigma_m = 0.003;
   options.huber_delta = 1e6;           // errors are Gaussian
   options.view_correlation_deg = 0.0;  // and independent
-  options.axes_weight = 0.0;           // yaws are any
+  options.misfit_sigma_fraction = 0.0;
+  options.axes_weight = 0.0;  // yaws are any
   return options;
 }
 
@@ -57,6 +58,7 @@ struct Case {
   // yaw.
   std::array<double, 4> ratio_range = {0.5, 0.7, 1.2, 1.6};
   double arc_rad = 2.5;  // around the object, over all frames
+  OptimiseOptions actual = ModelOptions();
   OptimiseOptions assumed = ModelOptions();
   // What is seen of the body's edges; nothing where it is empty.
   std::function<EdgeImages(const Truth&)> edge_images;
@@ -100,6 +102,10 @@ inline Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
   sequence.camera = TestCamera();
   sequence.planes = {{0, Plane()}};
   sequence.objects.resize(1);
+  std::array<double, 4> misfits{};
+  if (options.misfit_sigma_fraction > 0.0) {
+    for (double& misfit : misfits) misfit = Normal(options.misfit_sigma_fraction);
+  }
   for (size_t i = 0; i < truth.world_from_camera.size(); ++i) {
     Frame frame;
     frame.id = static_cast<int>(i);
@@ -114,8 +120,12 @@ inline Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
     sequence.frames.push_back(frame);
     Box box = *OutlineBox(sequence.camera,
                           Transform(truth.world_from_camera[i].Inverse(), truth.landmark_in_world));
-    const double sigma_x = options.detection_sigma_fraction * box.Width();
-    const double sigma_y = options.detection_sigma_fraction * box.Height();
+    const double width = box.Width();
+    const double height = box.Height();
+    box = {box.x_min - misfits[0] * width, box.y_min - misfits[1] * height,
+           box.x_max + misfits[2] * width, box.y_max + misfits[3] * height};
+    const double sigma_x = options.detection_sigma_fraction * width;
+    const double sigma_y = options.detection_sigma_fraction * height;
     box = {box.x_min + Normal(sigma_x), box.y_min + Normal(sigma_y), box.x_max + Normal(sigma_x),
            box.y_max + Normal(sigma_y)};
     Detection detection;
@@ -136,8 +146,8 @@ struct Nees {
 inline Nees MeanNees(const Case& c) {
   Nees sum;
   for (int i = 0; i < c.scenes; ++i) {
-    const Truth truth = RandomTruth(c, ModelOptions());
-    const Sequence sequence = Observe(truth, ModelOptions());
+    const Truth truth = RandomTruth(c, c.actual);
+    const Sequence sequence = Observe(truth, c.actual);
     Landmark start = truth.landmark_in_world;
     start.shape_exponent = c.assumed_exponent;
     BackEndInput input{sequence, {start}, {truth.prior}, {}, {}};
