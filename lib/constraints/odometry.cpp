@@ -32,6 +32,16 @@ OdometryResidual::OdometryResidual(const Rigid3d& first_from_second, const Odome
       rotation_weight_(1.0 / noise.RotationSigma(first_from_second)),
       translation_weight_(1.0 / noise.TranslationSigma(first_from_second)) {}
 
+Eigen::Matrix<double, 6, 1> OdometryResidual::Values(const Rigid3d& world_from_first,
+                                                     const Rigid3d& world_from_second) const {
+  const PoseBlock first = ToParameterBlock(world_from_first);
+  const PoseBlock second = ToParameterBlock(world_from_second);
+  const double* blocks[] = {first.data(), second.data()};
+  Eigen::Matrix<double, kNumResiduals, 1> values;
+  Evaluate(blocks, values.data(), nullptr);
+  return values;
+}
+
 bool OdometryResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   const Rigid3d world_from_first = UnpackPose(blocks[0]);

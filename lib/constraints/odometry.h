@@ -30,7 +30,12 @@ struct OdometryNoise {
 // the rotations differ by less than half a turn.
 class OdometryResidual final : public ceres::SizedCostFunction<6, kPoseSize, kPoseSize> {
  public:
+  static constexpr int kNumResiduals = 6;
+
   OdometryResidual(const Rigid3d& first_from_second, const OdometryNoise& noise);
+
+  Eigen::Matrix<double, kNumResiduals, 1> Values(const Rigid3d& world_from_first,
+                                                 const Rigid3d& world_from_second) const;
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 

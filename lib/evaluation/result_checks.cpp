@@ -199,6 +199,36 @@ std::vector<Finding> CheckCost(const SolverSummary& solver) {
        "errors: soslam-inspect, or the report page"}};
 }
 
+std::vector<Finding> CheckPoseCorrections(const Sequence& sequence,
+                                          const std::vector<Rigid3d>& world_from_camera,
+                                          const OdometryNoise& noise) {
+  constexpr double kNormalQuantile = 2.3263;  // 99 %
+  double sum = 0.0;
+  int degrees = 0;
+  for (size_t i = 1; i < sequence.frames.size(); ++i) {
+    const Frame& first = sequence.frames[i - 1];
+    const Frame& second = sequence.frames[i];
+    if (first.segment != second.segment) continue;
+    const OdometryResidual odometry(first.world_from_camera.Inverse() * second.world_from_camera,
+                                    noise);
+    sum += odometry.Values(world_from_camera[i - 1], world_from_camera[i]).squaredNorm();
+    degrees += OdometryResidual::kNumResiduals;
+  }
+  if (degrees == 0) return {};
+  const double bound = degrees * ChiSquareQuantile(degrees, kNormalQuantile);
+  if (sum <= bound) return {};
+  return {
+      {"pose_corrections", Severity::kWarning,
+       fmt::format("the motions between {} pairs of frames differ from the odometry by a sum of "
+                   "{:.4g} squared standard deviations",
+                   degrees / OdometryResidual::kNumResiduals, sum),
+       fmt::format("at most {:.4g}, which chance exceeds once in 100 times", bound),
+       "odometry that errs more than its standard deviations say, boxes of a wrong object, objects "
+       "that move, or planes that contradict the odometry",
+       "odometry_rotation_sigma_fraction and its like as large as the odometry's error, or "
+       "hold_poses where poses are exact; look at boxes and planes: soslam-inspect"}};
+}
+
 std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
                              double tilt_variance) {
   if (tilt_variance == 0.0) return {};

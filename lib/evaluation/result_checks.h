@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "constraints/odometry.h"
 #include "initialisation/semantic_table.h"
 #include "model/estimates.h"
 #include "model/finding.h"
@@ -31,6 +32,13 @@ std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates);
 
 // Final cost of boxes whose edges have a standard deviation, against the cost expected by chance.
 std::vector<Finding> CheckCost(const SolverSummary& solver);
+
+// Motions between frames that differ more from the odometry than its noise allows: the squared
+// corrections over their variances, summed over all steps, against the 99 % bound of chi-square.
+// One pose per frame of the sequence.
+std::vector<Finding> CheckPoseCorrections(const Sequence& sequence,
+                                          const std::vector<Rigid3d>& world_from_camera,
+                                          const OdometryNoise& noise);
 
 // Estimated planes that are nearly as many as the objects on them.
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects);

@@ -2,6 +2,7 @@
 #include "evaluation/statistics.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace soslam {
 
@@ -17,6 +18,11 @@ std::optional<double> MedianOf(std::vector<double> values) {
   std::ranges::sort(values);
   const size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double ChiSquareQuantile(int degrees, double normal_quantile) {
+  const double spread = 2.0 / (9.0 * degrees);
+  return std::pow(1.0 - spread + normal_quantile * std::sqrt(spread), 3);
 }
 
 }  // namespace soslam

@@ -10,4 +10,8 @@ namespace soslam {
 std::optional<double> MeanOf(const std::vector<double>& values);
 std::optional<double> MedianOf(std::vector<double> values);
 
+// The quantile of the chi-square distribution, divided by its degrees of freedom, that belongs to
+// one of the standard normal distribution (Wilson and Hilferty).
+double ChiSquareQuantile(int degrees, double normal_quantile);
+
 }  // namespace soslam

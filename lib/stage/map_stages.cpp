@@ -126,6 +126,8 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.detection_model == DetectionModel::kTangency) {
     std::ranges::move(CheckCost(map.solver), std::back_inserter(info.findings));
   }
+  std::ranges::move(CheckPoseCorrections(sequence, map.world_from_camera, options.Odometry()),
+                    std::back_inserter(info.findings));
   ReportFindings("optimise", info.findings);
   WriteMap(files.at("output"), map, sequence, info);
   fmt::print("{} iterations, cost {:.6g} -> {:.6g}{}\n", map.solver.iterations,

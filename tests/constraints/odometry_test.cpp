@@ -21,22 +21,13 @@ TEST(OdometryNoise, IsAConstantAndAFractionOfTheMotion) {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-Vector6d Residuals(const OdometryResidual& residual, const Rigid3d& first, const Rigid3d& second) {
-  const PoseBlock first_block = ToParameterBlock(first);
-  const PoseBlock second_block = ToParameterBlock(second);
-  const double* blocks[] = {first_block.data(), second_block.data()};
-  Vector6d values = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
-  return values;
-}
-
 TEST(OdometryResidual, IsZeroForTheMeasuredMotion) {
   for (int i = 0; i < 100; ++i) {
     const Rigid3d first = RandomRigid();
     const Rigid3d first_from_second = RandomRigid();
     const OdometryResidual residual(first_from_second,
                                     {.rotation_rad = 0.01, .translation_m = 0.02});
-    EXPECT_LT(Residuals(residual, first, first * first_from_second).norm(), 1e-9);
+    EXPECT_LT(residual.Values(first, first * first_from_second).norm(), 1e-9);
   }
 }
 
@@ -46,7 +37,7 @@ TEST(OdometryResidual, WorkedByHand) {
   const Rigid3d second{ExpRotation({0, 0.2, 0}), {0.3, 0, 0}};
   Vector6d expected;
   expected << 0, 2.0, 0, 0.6, 0, 0;
-  EXPECT_LT((Residuals(residual, Rigid3d(), second) - expected).norm(), 1e-12);
+  EXPECT_LT((residual.Values(Rigid3d(), second) - expected).norm(), 1e-12);
 }
 
 // Up to 2.8 rad of error; the rotation vector is not smooth at pi.
@@ -71,8 +62,7 @@ TEST(OdometryResidual, DoesNotChangeWithTheWorld) {
   const Rigid3d motion = RandomRigid(10.0);
   const OdometryResidual residual(RandomRigid(), {.rotation_rad = 0.5, .translation_m = 0.3});
   EXPECT_LT(
-      (Residuals(residual, first, second) - Residuals(residual, motion * first, motion * second))
-          .norm(),
+      (residual.Values(first, second) - residual.Values(motion * first, motion * second)).norm(),
       1e-8);
 }
 

@@ -129,6 +129,25 @@ TEST(CheckCostTest, FarAboveWhatNoiseGives) {
   EXPECT_THAT(CheckCost(solver)[0].found, HasSubstr("210 of 10 boxes, 10.5 times"));
 }
 
+// Three frames of one segment and one of another: two steps, 12 degrees of freedom, of which the
+// 99 % quantile is 26.2 (tables).
+TEST(CheckPoseCorrectionsTest, FarFromTheOdometryForItsNoise) {
+  Sequence sequence;
+  sequence.frames.resize(4);
+  sequence.frames[3].segment = 1;
+  std::vector<Rigid3d> poses(4);
+  poses[3].translation.x() = 100.0;
+  const OdometryNoise noise{.rotation_rad = 0.01, .translation_m = 0.1};
+  EXPECT_THAT(CheckPoseCorrections(sequence, poses, noise), IsEmpty());
+  poses[1].translation.x() = 0.36;  // there and back: 2 * 3.6^2 = 25.9
+  EXPECT_THAT(CheckPoseCorrections(sequence, poses, noise), IsEmpty());
+  poses[1].translation.x() = 0.37;  // 27.4
+  const auto findings = CheckPoseCorrections(sequence, poses, noise);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].found, AllOf(HasSubstr("2 pairs"), HasSubstr("27.38")));
+  EXPECT_THAT(findings[0].expected, HasSubstr("at most 26.2"));
+}
+
 TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
   EXPECT_THAT(CheckPlaneCount(2, 2), IsEmpty());
   EXPECT_THAT(CheckPlaneCount(4, 24), IsEmpty());

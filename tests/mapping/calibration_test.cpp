@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "evaluation/result_checks.h"
+
 namespace soslam::calibration {
 namespace {
 
@@ -31,6 +33,32 @@ TEST(Calibration, HoldsUnderTheHuberLoss) {
   Case c;
   c.assumed.huber_delta = OptimiseOptions().huber_delta;
   ExpectHonest(MeanNees(c), c.scenes);
+}
+
+// In how many of 50 scenes the poses are farther from the odometry than its noise allows.
+int ScenesWithFarPoses(const OptimiseOptions& actual, const OptimiseOptions& assumed) {
+  int far = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Truth truth = RandomTruth({}, actual);
+    const Sequence sequence = Observe(truth, actual);
+    const BackEndInput input{sequence, {truth.landmark_in_world}, {truth.prior}, {}, {}};
+    const MapEstimate map = OptimiseMap(input, assumed);
+    far += static_cast<int>(
+        CheckPoseCorrections(sequence, map.world_from_camera, assumed.Odometry()).size());
+  }
+  return far;
+}
+
+TEST(PoseCorrections, AreFarOnlyWhereOdometryIsWorseThanItsNoise) {
+  const OptimiseOptions model = ModelOptions();
+  EXPECT_EQ(ScenesWithFarPoses(model, model), 0);
+  OptimiseOptions worse = model;
+  worse.odometry_rotation_sigma_deg *= 30.0;
+  worse.odometry_translation_sigma_m *= 30.0;
+  OptimiseOptions robust = model;
+  robust.huber_delta = OptimiseOptions().huber_delta;
+  EXPECT_GE(ScenesWithFarPoses(worse, model), 45);
+  EXPECT_GE(ScenesWithFarPoses(worse, robust), 45);
 }
 
 // The cases of the table in docs/shapes.md where it does not hold.

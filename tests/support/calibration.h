@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "initialisation/upright.h"
 #include "mapping/back_end.h"
@@ -173,12 +174,6 @@ inline Nees MeanNees(const Case& c) {
     sum.yaw += yaw * yaw / (*covariance)(2, 2) / c.scenes;
   }
   return sum;
-}
-
-// The quantile of the chi-square distribution over its degrees of freedom (Wilson and Hilferty).
-inline double ChiSquareQuantile(int degrees, double normal_quantile) {
-  const double spread = 2.0 / (9.0 * degrees);
-  return std::pow(1.0 - spread + normal_quantile * std::sqrt(spread), 3);
 }
 
 // The range in which the mean NEES of that many degrees of freedom, counted over all scenes, is
