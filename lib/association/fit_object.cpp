@@ -83,11 +83,16 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
                                         const MultiViewObservation& all,
                                         const AssociateOptions& options) {
   const Frame& frame = sequence.FrameOf(detection);
-  UprightObservation observation = MakeUprightObservation(
-      sequence, detection, *all.prior,
-      {options.box_sigma_fraction, /*axes_weight=*/0.0, options.yaw_grid_deg});
-  // The pose shared by all views, whereas the detection's own plane may come from a better pose.
-  observation.plane_in_camera = Transform(frame.world_from_camera.Inverse(), all.plane_in_world);
+  const Camera& camera = sequence.CameraOf(detection);
+  // The plane and pose shared by all views: the detection's own plane may be unknown, or come from
+  // a better pose.
+  const UprightObservation observation = {
+      camera,
+      BoxEdges(camera, detection.box, detection.is_bound, options.box_sigma_fraction),
+      Transform(frame.world_from_camera.Inverse(), all.plane_in_world),
+      *all.prior,
+      frame.world_from_camera.rotation.conjugate() * WorldAxis(all.plane_in_world),
+      /*axes_weight=*/0.0};
   const YawObjective objective;
   const auto optima =
       LocalOptima(observation, objective,

@@ -120,7 +120,7 @@ void DrawGrid(const Grid& grid, const Camera& camera, cv::Mat* image) {
 std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_index,
                                             const std::vector<Plane>& planes_in_camera) {
   std::map<int, OverlayInput::Ground> by_plane;
-  if (sequence.planes.empty()) return {};
+  if (!sequence.HasSupports()) return {};
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     const int plane_index = sequence.ObjectOf(detection).plane_index;
     const Plane& plane = planes_in_camera.empty()

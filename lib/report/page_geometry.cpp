@@ -133,7 +133,7 @@ json PageGrids(const PlaneGrids& grids) {
 json PageGridInFrame(const Sequence& sequence, int frame_index, const PlaneGrids& grids,
                      const std::function<Rigid3d(const Detection&)>& camera_from_world_for) {
   json lines = json::array();
-  if (sequence.planes.empty()) return lines;
+  if (!sequence.HasSupports()) return lines;
   std::set<int> drawn;
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     const int plane_index = sequence.ObjectOf(detection).plane_index;

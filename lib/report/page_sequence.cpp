@@ -131,7 +131,7 @@ json PageObjects(const Sequence& sequence) {
          {"label", object.label},
          {"labels", LabelInWords(object)},
          {"segment", segments[i] ? json(*segments[i]) : json()},
-         {"plane", sequence.planes.empty() ? json() : json(object.plane_index)},
+         {"plane", object.plane_index == kNoPlane ? json() : json(object.plane_index)},
          {"truth", truth ? PageLandmark(AsCuboid(truth->landmark_in_world)) : json()}});
   }
   return objects;
