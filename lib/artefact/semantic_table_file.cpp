@@ -34,6 +34,7 @@ ShapePrior Prior(const json& entry) {
     prior.height_m = {entry.at("height_m").get<double>(),
                       entry.value("height_log_sigma", kDefaultLogSigma)};
   }
+  prior.edge_bias = entry.value("edge_bias", EdgeBias());
   return prior;
 }
 
@@ -60,6 +61,7 @@ json Entry(const SemanticRow& row) {
     entry["height_m"] = prior.height_m->median;
     entry["height_log_sigma"] = prior.height_m->log_sigma;
   }
+  if (prior.edge_bias != EdgeBias()) entry["edge_bias"] = prior.edge_bias;
   return entry;
 }
 

@@ -237,7 +237,8 @@ std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Predic
   if (sequence_.HasSupports() && PlaneOf(detection) != track.plane_index) return std::nullopt;
   const double label_cost = -2.0 * std::log(labels_.Probability(LabelOf(detection), track.labels));
   if (!std::isfinite(label_cost)) return std::nullopt;
-  auto match = boxes_.Match(prediction, detection);
+  const auto prior = table_.Find(soslam::LabelOf(track));
+  auto match = boxes_.Match(prediction, detection, prior ? prior->edge_bias : EdgeBias());
   if (!match) return std::nullopt;
   match->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
   return match->cost < NewObjectCost(detection) ? match : std::nullopt;

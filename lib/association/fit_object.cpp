@@ -283,14 +283,16 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
 }
 
 std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
-                                             const Detection& detection) const {
+                                             const Detection& detection,
+                                             const EdgeBias& bias) const {
+  const Box box = WithoutBias(detection.box, detection.is_bound, bias);
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_bound,
-                              options_.box_sigma_fraction);
-  const Innovation innovation = InnovationOf(prediction, detection.box, edges);
+                              options_.box_sigma_fraction, bias);
+  const Innovation innovation = InnovationOf(prediction, box, edges);
   if (IsOutOfReach(innovation)) return std::nullopt;
   const double p = options_.cut_edge_probability;
   BoxMatch best;
-  best.overlap = BoxOverlap(prediction.outline, detection.box);
+  best.overlap = BoxOverlap(prediction.outline, box);
   const NormalDensity whole = DensityOf(innovation, {0, 1, 2, 3});
   best.cost = whole.cost - 2.0 * std::log(1.0 - 4.0 * p);
   best.distance = whole.distance;

@@ -97,8 +97,10 @@ class BoxLikelihood {
   std::optional<Prediction> Predict(const FittedObject& object, int known_frame_index,
                                     int frame_index) const;
 
-  // None when the box is so far off that CostOfAnyBox is certainly lower.
-  std::optional<BoxMatch> Match(const Prediction& prediction, const Detection& detection) const;
+  // None when the box is so far off that CostOfAnyBox is certainly lower. `bias`: of boxes of the
+  // object's label.
+  std::optional<BoxMatch> Match(const Prediction& prediction, const Detection& detection,
+                                const EdgeBias& bias = {}) const;
 
   // Cost of the box of an unseen object: uniform over all positions and sizes in the image.
   double CostOfAnyBox(const Detection& detection) const;

@@ -18,9 +18,10 @@ constexpr double kSettledExcess = 1e-10;  // px / sigma
 }  // namespace
 
 std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
-                                const std::array<bool, 4>& is_bound, double sigma_fraction) {
+                                const std::array<bool, 4>& is_bound, double sigma_fraction,
+                                const EdgeBias& bias) {
   const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
-  const auto lines = box.EdgeLines();
+  const auto lines = WithoutBias(box, is_bound, bias).EdgeLines();
   std::array<BoxEdge, 4> edges;
   for (size_t i = 0; i < edges.size(); ++i) {
     const double outwards = i < 2 ? -1.0 : 1.0;

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "constraints/edge_bias.h"
 #include "constraints/parameters.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
@@ -24,9 +25,10 @@ struct BoxEdge {
   double length_px = 1.0;  // width of the box for left and right, height for top and bottom
 };
 
-// Edges in the order left, top, right, bottom.
+// Edges in the order left, top, right, bottom, of the box without its bias.
 std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
-                                const std::array<bool, 4>& is_bound, double sigma_fraction);
+                                const std::array<bool, 4>& is_bound, double sigma_fraction,
+                                const EdgeBias& bias = {});
 
 // Depth of a tangent point, and its derivative by the depth of the body's centre: 0 if it is fixed.
 struct TangentDepth {

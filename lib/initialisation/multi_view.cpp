@@ -296,6 +296,7 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
   observation.prior = prior;
   observation.height_is_free = height_is_free;
   observation.size_is_known = size_is_known;
+  const EdgeBias bias = prior ? prior->edge_bias : EdgeBias();
   for (const int index : detections) {
     const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
@@ -307,7 +308,7 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
           sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
     }
     observation.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
-                                          detection.is_bound, detection_sigma_fraction),
+                                          detection.is_bound, detection_sigma_fraction, bias),
                                  frame.world_from_camera.Inverse()});
   }
   const auto weights =

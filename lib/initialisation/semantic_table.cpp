@@ -82,9 +82,13 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   if (priors.size() == 1) return mixture;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   mixture.shape_exponent = 0.0;
+  mixture.edge_bias = {};
   for (const auto& [weight, prior] : priors) {
     mean += weight * prior.ratio.array().log().matrix();
     mixture.shape_exponent += weight * prior.shape_exponent;
+    for (size_t i = 0; i < mixture.edge_bias.size(); ++i) {
+      mixture.edge_bias[i] += weight * prior.edge_bias[i];
+    }
   }
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const auto& [weight, prior] : priors) {

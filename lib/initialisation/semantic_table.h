@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "constraints/edge_bias.h"
 #include "geometry/support_function.h"
 #include "model/sequence.h"
 
@@ -36,6 +37,7 @@ struct ShapePrior {
   double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
   std::optional<LogNormal> height_m = {};  // 2 c; none if the size is unknown
   Mount mount = Mount::kStanding;
+  EdgeBias edge_bias = {};  // of detected boxes, for this shape
 };
 
 // The prior in the object frame, whose z points away from the support plane, from a prior of

@@ -9,7 +9,7 @@ UprightObservation MakeUprightObservation(const Sequence& sequence, const Detect
                                           const ShapePrior& prior, const UprightOptions& options) {
   return {sequence.CameraOf(detection),
           BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_bound,
-                   options.detection_sigma_fraction),
+                   options.detection_sigma_fraction, prior.edge_bias),
           detection.plane_in_camera,
           prior,
           WorldAxisInCamera(sequence, detection),

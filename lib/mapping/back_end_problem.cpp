@@ -205,8 +205,10 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
     return;
   }
   view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
+  const auto& prior = input_.priors[static_cast<size_t>(detection.object_index)];
   const auto edges =
-      BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction);
+      BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction,
+               prior ? prior->edge_bias : EdgeBias());
   for (size_t side = 0; side < edges.size(); ++side) {
     // A body so near that it reaches behind the camera has no tangent point in view.
     if (!(FindTangentDepth(edges[side], initial_in_camera).depth_m > 0.0)) {

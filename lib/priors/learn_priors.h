@@ -28,6 +28,8 @@ struct LearnPriorsOptions {
   double spread_weight = 4.0;
   double correlation_weight = 8.0;
   int min_views = 10;
+  bool edge_bias = false;
+  double no_bias_weight = 2.0;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Table");
@@ -45,6 +47,11 @@ struct LearnPriorsOptions {
                "What the correlation over all labels counts as, in objects");
     visit.Integer("min_views", &min_views, {1, 1000000},
                   "Boxes that an object needs for its shape exponent to be learned");
+    visit.Group("Edges of boxes");
+    visit.Flag("edge_bias", &edge_bias,
+               "Learn the bias of box edges by label and side from the sequences: the table "
+               "is then one for the detector that their boxes are of");
+    visit.Real("no_bias_weight", &no_bias_weight, {0.0, 1e3}, "What no bias counts as, in objects");
   }
 };
 

@@ -14,6 +14,7 @@
 #include "dataset/gate.h"
 #include "dataset/import.h"
 #include "priors/furniture_catalogue.h"
+#include "priors/learn_edge_bias.h"
 #include "priors/learn_priors.h"
 #include "synthesis/scene.h"
 #include "synthesis/simulate.h"
@@ -117,7 +118,8 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
   for (const Sequence& sequence : sequences) {
     sources.push_back(SourceOfSequence(sequence, base_table, options.min_views));
   }
-  const SemanticRows learned = LearnPriors(base, sources, options);
+  SemanticRows learned = LearnPriors(base, sources, options);
+  if (options.edge_bias) LearnEdgeBias(sequences, options.no_bias_weight, &learned);
   if (learned.rows.empty()) {
     throw NothingUsableError("no label: neither base table nor ground truth nor furniture has one");
   }

@@ -110,6 +110,29 @@ TEST_F(SemanticTableFileTest, WhatIsNoSizeOrCorrelationIsRefused) {
   ExpectRefused("samples", -1);
 }
 
+TEST_F(SemanticTableFileTest, WhatIsNoEdgeBiasIsRefused) {
+  ExpectRefused("edge_bias", {0.1, 0.1, 0.1});
+  ExpectRefused("edge_bias", 0.1);
+  json entry = kRatioOnly;
+  entry["edge_bias"] = {0.0, 0.0, 0.0, 0.5};  // two of these would leave no box
+  ExpectError<InputError>(
+      [&] {
+        Read({{"labels", {{"cup", entry}}}});
+      },
+      {"table.json: /labels/cup/edge_bias/3 is 0.5"});
+}
+
+TEST_F(SemanticTableFileTest, EdgeBiasIsWrittenWhereThereIsOne) {
+  const SemanticRow plain = {"plain", {}, {}, 0, "the test"};
+  SemanticRow biased = {"biased", {}, {}, 0, "the test"};
+  biased.prior.edge_bias = {-0.02, 0.0, 0.01, -0.15};
+  WriteSemanticRows(file_, {"", {}, {biased, plain}}, {});
+  EXPECT_EQ(ReadSemanticRows(file_).rows[0].prior.edge_bias, biased.prior.edge_bias);
+  const json labels = json::parse(FileBytes(file_)).at("labels");
+  EXPECT_TRUE(labels.at("biased").contains("edge_bias"));
+  EXPECT_FALSE(labels.at("plain").contains("edge_bias"));
+}
+
 TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   const SemanticRow cup = {
       "cup", {"mug"}, {{1.2, 0.9}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}}, 7, "the test"};

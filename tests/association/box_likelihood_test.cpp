@@ -61,6 +61,20 @@ TEST_F(BoxLikelihoodTest, TheExpectedBoxIsExplainedBest) {
   EXPECT_LT(best->cost, BoxLikelihood(sequence_, options_).CostOfAnyBox(expected_));
 }
 
+TEST_F(BoxLikelihoodTest, ABoxThatIsWrongByTheBiasIsTheExpectedOne) {
+  Detection detection = expected_;
+  detection.box.y_max -= 0.2 * expected_.box.Height();
+  const auto match = [&](const EdgeBias& bias) {
+    return BoxLikelihood(sequence_, options_).Match(Predicted(0), detection, bias);
+  };
+  const auto corrected = match({0.0, 0.0, 0.0, -0.25});  // of the height that is left
+  ASSERT_TRUE(corrected);
+  EXPECT_NEAR(corrected->distance, 0.0, 1e-4);
+  EXPECT_NEAR(corrected->overlap, 1.0, 1e-12);
+  const auto taken_as_it_is = match({});
+  EXPECT_TRUE(!taken_as_it_is || taken_as_it_is->distance > 1.0);
+}
+
 // Near ones are compared, and found less likely.
 TEST_F(BoxLikelihoodTest, ABoxFarOffIsNotExplainedAtAll) {
   EXPECT_TRUE(Match(Shifted(0.5)));

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/iou.h"
 #include "geometry/angles.h"
+#include "geometry/iou.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/yaw_sweep.h"
@@ -183,6 +183,19 @@ TEST(SolveViewsAtYaw, TakesBoundsForBounds) {
   EXPECT_TRUE(!taken_for_measured || BoxIou(taken_for_measured->landmark, world.truth) < 0.95);
   for (Detection& detection : world.sequence.detections) detection.is_bound[3] = true;
   const auto found = solve();
+  ASSERT_TRUE(found);
+  ExpectSame(found->landmark, world.truth, 1e-4);
+}
+
+TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
+  World world(kCuboidExponent);
+  world.AddArc(8);
+  for (Detection& detection : world.sequence.detections) {
+    detection.box.y_max -= 0.2 * detection.box.Height();
+  }
+  ShapePrior prior = world.Prior(0.3);
+  prior.edge_bias = {0.0, 0.0, 0.0, -0.25};  // of the height that is left
+  const auto found = SolveViewsAtYaw(world.Observation(prior), world.TrueYaw());
   ASSERT_TRUE(found);
   ExpectSame(found->landmark, world.truth, 1e-4);
 }

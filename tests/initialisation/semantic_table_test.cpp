@@ -119,6 +119,13 @@ TEST(ObjectPriors, ShapesCanBeTheSameForAll) {
   }
 }
 
+TEST(MomentsOfMixture, HasTheMeanEdgeBias) {
+  ShapePrior tv = kCup;
+  tv.edge_bias = {-0.02, 0.0, 0.04, -0.2};
+  const EdgeBias bias = MomentsOfMixture({{0.25, tv}, {0.75, kDefault}}).edge_bias;
+  for (size_t i = 0; i < bias.size(); ++i) EXPECT_DOUBLE_EQ(bias[i], 0.25 * tv.edge_bias[i]);
+}
+
 TEST(ObjectRatios, AreThoseOfThePriors) {
   EXPECT_THAT(ObjectRatios(CupCupWhisk(), kCupsOnly, RatioPrior::kTable),
               ElementsAre(Eq(kCup.ratio), Eq(kCup.ratio), Eq(std::nullopt)));
