@@ -62,7 +62,7 @@ std::map<std::string, size_t> RowOfName(const SemanticRows& rows) {
   return row_of_name;
 }
 
-// By index of the row.
+// Offsets by index of the row.
 std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences,
                                           const SemanticRows& rows) {
   const auto row_of_name = RowOfName(rows);
