@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/odometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace soslam {
@@ -18,19 +19,17 @@ Eigen::Matrix3d InverseRightJacobian(const Eigen::Vector3d& v) {
 
 }  // namespace
 
-double OdometryNoise::RotationSigma(const Rigid3d& first_from_second) const {
-  return std::hypot(rotation_rad,
-                    rotation_fraction * LogRotation(first_from_second.rotation).norm());
-}
-
-double OdometryNoise::TranslationSigma(const Rigid3d& first_from_second) const {
-  return std::hypot(translation_m, translation_fraction * first_from_second.translation.norm());
+double OdometryNoise::RotationSigma(const Eigen::Quaterniond& rotation) const {
+  constexpr double kLeastShare = 0.025;  // of a camera that does not turn
+  if (!(rotation_fraction > 0.0)) return rotation_rad;
+  return std::clamp(rotation_fraction * LogRotation(rotation).norm(), kLeastShare * rotation_rad,
+                    rotation_rad);
 }
 
 OdometryResidual::OdometryResidual(const Rigid3d& first_from_second, const OdometryNoise& noise)
     : first_from_second_(first_from_second),
-      rotation_weight_(1.0 / noise.RotationSigma(first_from_second)),
-      translation_weight_(1.0 / noise.TranslationSigma(first_from_second)) {}
+      rotation_weight_(1.0 / noise.RotationSigma(first_from_second.rotation)),
+      translation_weight_(1.0 / noise.translation_m) {}
 
 Eigen::Matrix<double, 6, 1> OdometryResidual::Values(const Rigid3d& world_from_first,
                                                      const Rigid3d& world_from_second) const {

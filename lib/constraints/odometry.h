@@ -8,17 +8,14 @@
 
 namespace soslam {
 
-// Standard deviations of the measured motion between two frames: a constant and a fraction of the
-// motion, independent of each other. Whoever moves further between two frames errs more.
+// Standard deviations per axis of the measured motion between two frames. A small rotation errs by
+// a fraction of itself; a large one by no more than what images tell, `rotation_rad`.
 struct OdometryNoise {
   double rotation_rad = 0.0;
-  double rotation_fraction = 0.0;  // of the angle
   double translation_m = 0.0;
-  double translation_fraction = 0.0;  // of the distance
+  double rotation_fraction = 0.0;  // 0: every rotation errs by rotation_rad
 
-  // Per axis.
-  double RotationSigma(const Rigid3d& first_from_second) const;
-  double TranslationSigma(const Rigid3d& first_from_second) const;
+  double RotationSigma(const Eigen::Quaterniond& rotation) const;
 };
 
 // Odometry constraint (F_O of eq. (1)): the relative pose of two consecutive cameras equals the

@@ -33,9 +33,8 @@ struct OptimiseOptions {
   // constraint.
   ConstraintVariances variances{.detection_dm4 = 1e5, .support_tangency_dm4 = 1e5};
   double odometry_rotation_sigma_deg = 0.2;
-  double odometry_rotation_sigma_fraction = 0.0;
+  double odometry_rotation_fraction = 0.0;
   double odometry_translation_sigma_m = 0.01;
-  double odometry_translation_sigma_fraction = 0.0;
   double symmetry_sigma = 30.0;
   int symmetry_views = 1;
   double detection_sigma_fraction = 0.02;
@@ -54,8 +53,8 @@ struct OptimiseOptions {
   int max_iterations = 500;
 
   OdometryNoise Odometry() const {
-    return {odometry_rotation_sigma_deg * kRadPerDeg, odometry_rotation_sigma_fraction,
-            odometry_translation_sigma_m, odometry_translation_sigma_fraction};
+    return {odometry_rotation_sigma_deg * kRadPerDeg, odometry_translation_sigma_m,
+            odometry_rotation_fraction};
   }
 
   void Describe(OptionVisitor& visit) {
@@ -83,15 +82,13 @@ struct OptimiseOptions {
                "the poses of the trajectory are constant, as those of motion capture or structure "
                "from motion should be; otherwise they are odometry, which drifts");
     visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
-               "standard deviation of the odometry between two frames, whatever the motion");
-    visit.Real("odometry_rotation_sigma_fraction", &odometry_rotation_sigma_fraction, {0.0, 1.0},
-               "further standard deviation, as a fraction of the rotation between the frames");
+               "standard deviation of the odometry between two frames");
+    visit.Real("odometry_rotation_fraction", &odometry_rotation_fraction, {0.0, 1.0},
+               "the same, but at most this fraction of the rotation, and at least a fortieth of "
+               "odometry_rotation_sigma_deg: odometry of a camera that turns little errs little; "
+               "0: the same for every rotation");
     visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
-               "standard deviation of the odometry between two frames, per axis, whatever the "
-               "motion");
-    visit.Real("odometry_translation_sigma_fraction", &odometry_translation_sigma_fraction,
-               {0.0, 1.0},
-               "further standard deviation, as a fraction of the distance between the frames");
+               "standard deviation of the odometry between two frames, per axis");
     visit.Group("Bodies of any shape (detection_model = tangency)");
     visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},

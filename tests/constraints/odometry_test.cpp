@@ -9,14 +9,16 @@
 namespace soslam {
 namespace {
 
-// A 3-4-5 triangle each: 0.03 rad constant and 4 % of a turn by 1 rad; 0.3 m and 10 % of 4 m.
-TEST(OdometryNoise, IsAConstantAndAFractionOfTheMotion) {
-  const OdometryNoise noise{0.03, 0.04, 0.3, 0.1};
-  const Rigid3d motion{ExpRotation({0, 0, 1.0}), {0, 4.0, 0}};
-  EXPECT_NEAR(noise.RotationSigma(motion), 0.05, 1e-12);
-  EXPECT_NEAR(noise.TranslationSigma(motion), 0.5, 1e-12);
-  EXPECT_EQ(noise.RotationSigma(Rigid3d()), 0.03);
-  EXPECT_EQ(noise.TranslationSigma(Rigid3d()), 0.3);
+TEST(OdometryNoise, OfARotationIsAFractionOfItWithinBounds) {
+  OdometryNoise noise{.rotation_rad = 0.1, .translation_m = 1.0};
+  const auto sigma = [&](double angle) { return noise.RotationSigma(ExpRotation({0, angle, 0})); };
+  EXPECT_EQ(sigma(0.0), 0.1);
+  EXPECT_EQ(sigma(1.5), 0.1);
+  noise.rotation_fraction = 0.2;
+  EXPECT_DOUBLE_EQ(sigma(0.0), 0.0025);
+  EXPECT_DOUBLE_EQ(sigma(0.01), 0.0025);
+  EXPECT_NEAR(sigma(0.3), 0.06, 1e-12);
+  EXPECT_EQ(sigma(1.5), 0.1);
 }
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
