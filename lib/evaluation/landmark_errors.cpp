@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/iou.h"
 #include "geometry/angles.h"
+#include "geometry/iou.h"
 #include "geometry/landmark.h"
 #include "geometry/rigid3.h"
 

@@ -11,8 +11,8 @@
 #include <set>
 
 #include "base/assignment.h"
-#include "geometry/iou.h"
 #include "evaluation/landmark_errors.h"
+#include "geometry/iou.h"
 #include "initialisation/semantic_table.h"
 
 namespace soslam {

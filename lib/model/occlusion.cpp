@@ -10,8 +10,8 @@ namespace soslam {
 namespace {
 
 // Depth (m, along the optical axis) of a detection's ground contact point; infinite without one.
-// Where support planes are unknown, a value with the same order for objects on one plane: a box that ends lower in
-// the image is nearer.
+// Where support planes are unknown, a value with the same order for objects on one plane: a box
+// that ends lower in the image is nearer.
 double GroundContactDepth(const Sequence& sequence, const Detection& detection) {
   if (!sequence.HasSupports()) return -detection.box.y_max;
   const auto foot =

@@ -59,7 +59,7 @@ struct LabelProbability {
 
 struct Object {
   int id = 0;
-  std::string label;  // the most probable one
+  std::string label;    // the most probable one
   int plane_index = 0;  // index in Sequence::planes of its support plane, or kNoPlane
   std::optional<GroundTruth> ground_truth;
   // False: it moves or is not known to be static; single frames can estimate it, but it has no

@@ -72,7 +72,7 @@ TEST(BoundEdgesTest, ANearerBoxHidesOnlyWhatIsInsideIt) {
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 300, 320, 400}}), kBottom);    // begins at the edge
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 307.5, 320, 400}}), kBottom);  // up to 5 % of the height
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 307.6, 320, 400}}), kNone);    // below
-  EXPECT_EQ(BoundsOfFirst({kBox, {300, 200, 400, 400}}), kNone);    // beside
+  EXPECT_EQ(BoundsOfFirst({kBox, {300, 200, 400, 400}}), kNone);      // beside
 }
 
 TEST(BoundEdgesTest, ObjectsThatAreNotNearerHideNothing) {

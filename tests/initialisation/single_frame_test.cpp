@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/iou.h"
 #include "geometry/angles.h"
+#include "geometry/iou.h"
 #include "initialisation/initialise.h"
 #include "support/random.h"
 #include "synthesis/random_scene.h"

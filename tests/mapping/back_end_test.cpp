@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/error.h"
-#include "geometry/iou.h"
 #include "evaluation/metrics.h"
+#include "geometry/iou.h"
 #include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"
 #include "support/random.h"

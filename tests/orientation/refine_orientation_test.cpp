@@ -8,8 +8,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/iou.h"
 #include "geometry/angles.h"
+#include "geometry/iou.h"
 #include "support/drawn_cuboids.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
