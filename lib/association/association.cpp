@@ -245,14 +245,16 @@ std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Predic
 }
 
 bool AssociationModel::Moves(const Track& track) const {
+  const auto is_moving = [this](const std::string& label) {
+    return std::ranges::any_of(moving_labels_, [&](const auto& group) {
+      return std::ranges::find(group, label) != group.end();
+    });
+  };
   double moving = 0.0;
   double all = 0.0;
   for (const auto& [label, score] : track.votes) {
     all += score;
-    const auto lists = [&](const auto& group) {
-      return std::ranges::find(group, label) != group.end();
-    };
-    if (std::ranges::any_of(moving_labels_, lists)) moving += score;
+    if (is_moving(label)) moving += score;
   }
   return 2.0 * moving > all;
 }
