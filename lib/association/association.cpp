@@ -118,9 +118,8 @@ bool Fits(Mount mount, double cosine) {
 // -log of the prior probability that an object stands on a plane of the sequence: low things stand
 // on tables and shelves, high ones on the floor. Infinite where its mount does not fit.
 double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const ShapePrior& prior) {
-  constexpr double kTableHeightM = 0.2;  // over the floor, at least
-  constexpr double kUndecidedHeightM =
-      0.5;  // of things that are as often on the floor as on tables
+  constexpr double kTableHeightM = 0.2;      // over the floor, at least
+  constexpr double kUndecidedHeightM = 0.5;  // of things as often on the floor as on tables
   const Eigen::Vector3d up = UpOfPlanes(sequence);
   double floor = std::numeric_limits<double>::infinity();
   for (const SupportPlane& plane : sequence.planes) {
@@ -132,7 +131,8 @@ double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const 
   const auto is_raised = [&](const Plane& plane) { return -plane.offset > floor + kTableHeightM; };
   const auto alike = std::ranges::count_if(sequence.planes, [&](const SupportPlane& plane) {
     return Fits(prior.mount, plane.plane_in_world.normal.dot(up)) &&
-           is_raised(plane.plane_in_world) == is_raised(plane_in_world);
+           (prior.mount != Mount::kStanding ||
+            is_raised(plane.plane_in_world) == is_raised(plane_in_world));
   });
   if (prior.mount != Mount::kStanding) return std::log(static_cast<double>(alike));
   const double odds = std::pow(prior.height_m->median / kUndecidedHeightM, 3.0);
@@ -257,6 +257,13 @@ bool AssociationModel::Moves(const Track& track) const {
     if (is_moving(label)) moving += score;
   }
   return 2.0 * moving > all;
+}
+
+bool AssociationModel::MayBeOneObject(const Track& one, const Track& other) const {
+  return SegmentOf(one) == SegmentOf(other) &&
+         std::ranges::all_of(other.votes, [&](const auto& vote) {
+           return labels_.Probability(vote.first, one.labels) > 0.0;
+         });
 }
 
 double AssociationModel::NewObjectCost(const Detection& detection) const {

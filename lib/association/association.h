@@ -129,6 +129,9 @@ class AssociationModel {
   // likely, or the detection is on another plane.
   std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
                                 const Detection& detection) const;
+  // True if the segment of two tracks is the same and the detector may give the labels of the other
+  // track to an object like the first.
+  bool MayBeOneObject(const Track& one, const Track& other) const;
   // True if most votes of a track are for labels of things that move.
   bool Moves(const Track& track) const;
   // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.

@@ -88,7 +88,8 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
   // a better pose.
   const UprightObservation observation = {
       camera,
-      BoxEdges(camera, detection.box, detection.is_bound, options.box_sigma_fraction),
+      BoxEdges(camera, detection.box, detection.is_bound, options.box_sigma_fraction,
+               all.prior->edge_bias),
       Transform(frame.world_from_camera.Inverse(), all.plane_in_world),
       *all.prior,
       frame.world_from_camera.rotation.conjugate() * WorldAxis(all.plane_in_world),

@@ -62,7 +62,7 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
 }
 
 // Number of detections that show at least three edges of the object.
-int NumTelling(const AssociationModel& model, const Track& track) {
+int NumShowingThreeEdges(const AssociationModel& model, const Track& track) {
   return static_cast<int>(std::ranges::count_if(track.detections, [&](int index) {
     const auto& is_bound = model.sequence().detections[static_cast<size_t>(index)].is_bound;
     return std::ranges::count(is_bound, true) <= 1;
@@ -71,7 +71,7 @@ int NumTelling(const AssociationModel& model, const Track& track) {
 
 TrackFate FateOf(const AssociationModel& model, const Track& track) {
   const auto detections = static_cast<double>(track.detections.size());
-  if (NumTelling(model, track) < model.options().min_observations) {
+  if (NumShowingThreeEdges(model, track) < model.options().min_observations) {
     return TrackFate::kTooFewDetections;
   }
   if (!track.fit) return TrackFate::kNoLandmark;
@@ -90,7 +90,7 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
     Track& track = association->tracks[static_cast<size_t>(i)];
     if (track.fate == TrackFate::kMerged) return;
     const bool is_candidate =
-        track.fit && NumTelling(model, track) >= model.options().min_observations;
+        track.fit && NumShowingThreeEdges(model, track) >= model.options().min_observations;
     if (is_candidate) track.frames_in_sight = FramesInSight(model, track, border_px);
     track.fate = FateOf(model, track);
   });
@@ -215,13 +215,9 @@ class TrackMerger {
     return merge;
   }
 
-  int SegmentOf(const Track& track) const {
-    return model_.sequence().FrameOf(At(track.detections.front())).segment;
-  }
-
   // True if the bodies of two tracks take up the same place, which those of two objects cannot.
   bool AreAtOnePlace(const Track& one, const Track& other) const {
-    if (!one.fit || !other.fit || SegmentOf(one) != SegmentOf(other)) return false;
+    if (!one.fit || !other.fit || !model_.MayBeOneObject(one, other)) return false;
     const Landmark& a = one.fit->landmark_in_world;
     const Landmark& b = other.fit->landmark_in_world;
     const double smaller = 8.0 * std::min(a.half_axes.prod(), b.half_axes.prod());

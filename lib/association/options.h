@@ -130,8 +130,9 @@ struct AssociateOptions {
     visit.Real("same_place_overlap", &same_place_overlap, {0.0, 1.0},
                "two tracks are one object, also when both are detected together, when their bodies "
                "share at least this fraction of the smaller one's volume");
-    visit.Integer("min_observations", &min_observations, {1, 1000000},
-                  "objects with fewer detections are false");
+    visit.Integer(
+        "min_observations", &min_observations, {1, 1000000},
+        "objects with fewer detections that show at least three of their edges are false");
     visit.Real("min_detection_share", &min_detection_share, {0.0, 1.0},
                "objects that are detected in a smaller share of the frames that should show them "
                "are false");

@@ -225,8 +225,8 @@ std::vector<Finding> CheckPoseCorrections(const Sequence& sequence,
        fmt::format("at most {:.4g}, which chance exceeds once in 100 times", bound),
        "odometry that errs more than its standard deviations say, boxes of a wrong object, objects "
        "that move, or planes that contradict the odometry",
-       "odometry_rotation_sigma_deg and its like as large as the odometry's error, or "
-       "hold_poses where poses are exact; look at boxes and planes: soslam-inspect"}};
+       "set the standard deviations of the odometry to its errors, or hold_poses where poses are "
+       "exact; look at boxes and planes: soslam-inspect"}};
 }
 
 std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,

@@ -40,7 +40,8 @@ std::vector<std::vector<std::string>> ParseLabelGroups(const char* option,
 }
 
 std::string LabelInWords(const Object& object) {
-  if (object.labels.size() < 2) return object.label;
+  const auto is_own = [&](const LabelProbability& label) { return label.label == object.label; };
+  if (std::ranges::all_of(object.labels, is_own)) return object.label;
   std::vector<std::string> others;
   double own = 0.0;
   for (const auto& [label, probability] : object.labels) {

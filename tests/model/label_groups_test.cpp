@@ -28,6 +28,10 @@ TEST(LabelInWordsTest, NamesAlternatives) {
   Object object;
   object.label = "chair";
   EXPECT_EQ(LabelInWords(object), "chair");
+  object.labels = {{"chair", 1.0}};
+  EXPECT_EQ(LabelInWords(object), "chair");
+  object.labels = {{"armchair", 1.0}};
+  EXPECT_EQ(LabelInWords(object), "chair (0 %; armchair 100 %)");
   object.labels = {{"armchair", 0.6}, {"chair", 0.4}};
   EXPECT_EQ(LabelInWords(object), "chair (40 %; armchair 60 %)");
 }
