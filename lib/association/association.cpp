@@ -245,18 +245,9 @@ std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Predic
 }
 
 bool AssociationModel::Moves(const Track& track) const {
-  const auto is_moving = [this](const std::string& label) {
-    return std::ranges::any_of(moving_labels_, [&](const auto& group) {
-      return std::ranges::find(group, label) != group.end();
-    });
-  };
-  double moving = 0.0;
-  double all = 0.0;
-  for (const auto& [label, score] : track.votes) {
-    all += score;
-    if (is_moving(label)) moving += score;
-  }
-  return 2.0 * moving > all;
+  return std::ranges::any_of(moving_labels_, [&](const auto& group) {
+    return std::ranges::find(group, soslam::LabelOf(track)) != group.end();
+  });
 }
 
 bool AssociationModel::MayBeOneObject(const Track& one, const Track& other) const {

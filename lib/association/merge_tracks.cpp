@@ -192,7 +192,8 @@ class TrackMerger {
     }
     const std::vector<int> boxes =
         SpreadOver(small.detections, static_cast<size_t>(model_.options().max_views));
-    const bool are_at_one_place = AreAtOnePlace(large, small);
+    const std::vector<double> overlaps = OverlapsInSharedFrames(large, small);
+    const bool are_at_one_place = AreAtOnePlace(large, small, overlaps);
     Merge merge{into, 0, static_cast<int>(boxes.size()), 0, 0.0};
     const int needed = are_at_one_place
                            ? 0
@@ -208,31 +209,42 @@ class TrackMerger {
       merge.cost += match->cost;
     }
     if (merge.explained < needed) return std::nullopt;
-    merge.shared_frames = SharedFrames(large, small);
+    merge.shared_frames = static_cast<int>(overlaps.size());
     const double allowed =
         model_.options().max_shared_frames * static_cast<double>(small.detections.size());
     if (merge.shared_frames > allowed && !are_at_one_place) return std::nullopt;
     return merge;
   }
 
-  // True if the bodies of two tracks take up the same place, which those of two objects cannot.
-  bool AreAtOnePlace(const Track& one, const Track& other) const {
-    if (!one.fit || !other.fit || !model_.MayBeOneObject(one, other)) return false;
+  // True if two tracks take up the same place, which two objects cannot: their bodies share a
+  // volume and, as depths are uncertain, their boxes in the frames that have both.
+  bool AreAtOnePlace(const Track& one, const Track& other,
+                     const std::vector<double>& overlaps) const {
+    if (overlaps.empty() || !one.fit || !other.fit || !model_.MayBeOneObject(one, other)) {
+      return false;
+    }
+    const double least = model_.options().same_place_overlap;
+    const double sum = std::accumulate(overlaps.begin(), overlaps.end(), 0.0);
+    if (sum < least * static_cast<double>(overlaps.size())) return false;
     const Landmark& a = one.fit->landmark_in_world;
     const Landmark& b = other.fit->landmark_in_world;
     const double smaller = 8.0 * std::min(a.half_axes.prod(), b.half_axes.prod());
-    return IntersectionVolume(a, b) >= model_.options().same_place_overlap * smaller;
+    return IntersectionVolume(a, b) >= least * smaller;
   }
 
-  int SharedFrames(const Track& one, const Track& other) const {
-    const auto frames_of = [this](const Track& track) {
-      std::vector<int> frames;
-      for (const int detection : track.detections) frames.push_back(At(detection).frame_index);
-      return frames;
-    };
-    std::vector<int> shared;
-    std::ranges::set_intersection(frames_of(one), frames_of(other), std::back_inserter(shared));
-    return static_cast<int>(shared.size());
+  // Intersection over union of the boxes in each frame in which both tracks are detected.
+  std::vector<double> OverlapsInSharedFrames(const Track& one, const Track& other) const {
+    std::vector<double> overlaps;
+    auto next = other.detections.begin();
+    for (const int index : one.detections) {
+      const Detection& detection = At(index);
+      next = std::ranges::lower_bound(next, other.detections.end(), detection.frame_index, {},
+                                      [this](int i) { return At(i).frame_index; });
+      if (next == other.detections.end()) break;
+      if (At(*next).frame_index != detection.frame_index) continue;
+      overlaps.push_back(BoxOverlap(detection.box, At(*next).box));
+    }
+    return overlaps;
   }
 
   void Apply(const Merge& merge, int smaller) {

@@ -128,8 +128,9 @@ struct AssociateOptions {
                "two tracks are not one object when both are detected together in more than this "
                "share of the smaller one's frames");
     visit.Real("same_place_overlap", &same_place_overlap, {0.0, 1.0},
-               "two tracks are one object, also when both are detected together, when their bodies "
-               "share at least this fraction of the smaller one's volume");
+               "two tracks that are detected together are one object when their bodies share at "
+               "least this fraction of the smaller one's volume, and their boxes in one frame "
+               "overlap as much (intersection over union)");
     visit.Integer(
         "min_observations", &min_observations, {1, 1000000},
         "objects with fewer detections that show at least three of their edges are false");

@@ -160,8 +160,8 @@ json PageFindings(const DatasetResult& dataset) {
       findings.push_back(finding);
     }
   }
-  std::ranges::stable_partition(findings,
-                                [](const json& finding) { return finding["severity"] == "error"; });
+  std::stable_partition(findings.begin(), findings.end(),
+                        [](const json& finding) { return finding["severity"] == "error"; });
   return findings;
 }
 
