@@ -49,10 +49,11 @@ enum class TrackFate {
   kNoLandmark,        // its boxes determine no landmark
   kNoSupport,         // its boxes fit better at a free height than on any support plane
   kMoves,             // its label is one of things that move
+  kLowScores,         // false: none of its detections has min_best_score
 };
 inline constexpr std::array kTrackFateNames = {
     "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
-    "no_support", "moves"};
+    "no_support", "moves",  "low_scores"};
 
 // Detections of one object, linked frame by frame.
 struct Track {

@@ -69,6 +69,14 @@ int NumShowingThreeEdges(const AssociationModel& model, const Track& track) {
   }));
 }
 
+double BestScore(const AssociationModel& model, const Track& track) {
+  double best = 0.0;
+  for (const int index : track.detections) {
+    best = std::max(best, model.sequence().detections[static_cast<size_t>(index)].score);
+  }
+  return best;
+}
+
 TrackFate FateOf(const AssociationModel& model, const Track& track) {
   const auto detections = static_cast<double>(track.detections.size());
   if (NumShowingThreeEdges(model, track) < model.options().min_observations) {
@@ -77,6 +85,7 @@ TrackFate FateOf(const AssociationModel& model, const Track& track) {
   if (!track.fit) return TrackFate::kNoLandmark;
   if (!track.has_support) return TrackFate::kNoSupport;
   if (model.Moves(track)) return TrackFate::kMoves;
+  if (BestScore(model, track) < model.options().min_best_score) return TrackFate::kLowScores;
   return detections < model.options().min_detection_share * track.frames_in_sight.value()
              ? TrackFate::kRarelyDetected
              : TrackFate::kObject;
@@ -217,7 +226,8 @@ class TrackMerger {
   }
 
   // True if two tracks take up the same place, which two objects cannot: their bodies share a
-  // volume and, as depths are uncertain, their boxes in the frames that have both.
+  // volume and, where depths are uncertain because no support is given, their boxes in the frames
+  // that have both overlap as well.
   bool AreAtOnePlace(const Track& one, const Track& other,
                      const std::vector<double>& overlaps) const {
     if (overlaps.empty() || !one.fit || !other.fit || !model_.MayBeOneObject(one, other)) {
@@ -225,7 +235,8 @@ class TrackMerger {
     }
     const double least = model_.options().same_place_overlap;
     const double sum = std::accumulate(overlaps.begin(), overlaps.end(), 0.0);
-    if (sum < least * static_cast<double>(overlaps.size())) return false;
+    if (!model_.sequence().HasSupports() && sum < least * static_cast<double>(overlaps.size()))
+      return false;
     const Landmark& a = one.fit->landmark_in_world;
     const Landmark& b = other.fit->landmark_in_world;
     const double smaller = 8.0 * std::min(a.half_axes.prod(), b.half_axes.prod());

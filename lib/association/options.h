@@ -52,6 +52,7 @@ struct AssociateOptions {
   double same_place_overlap = 0.5;
   int min_observations = 3;
   double min_detection_share = 0.1;
+  double min_best_score = 0.35;
   int max_views = 16;
   double view_correlation_deg = 20.0;
   double yaw_grid_deg = 10.0;
@@ -127,16 +128,19 @@ struct AssociateOptions {
     visit.Real("max_shared_frames", &max_shared_frames, {0.0, 1.0},
                "two tracks are not one object when both are detected together in more than this "
                "share of the smaller one's frames");
-    visit.Real("same_place_overlap", &same_place_overlap, {0.0, 1.0},
-               "two tracks that are detected together are one object when their bodies share at "
-               "least this fraction of the smaller one's volume, and their boxes in one frame "
-               "overlap as much (intersection over union)");
+    visit.Real(
+        "same_place_overlap", &same_place_overlap, {0.0, 1.0},
+        "two tracks that are detected together are one object when their bodies share at "
+        "least this fraction of the smaller one's volume and, without planes, their boxes in "
+        "one frame overlap as much (intersection over union)");
     visit.Integer(
         "min_observations", &min_observations, {1, 1000000},
         "objects with fewer detections that show at least three of their edges are false");
     visit.Real("min_detection_share", &min_detection_share, {0.0, 1.0},
                "objects that are detected in a smaller share of the frames that should show them "
                "are false");
+    visit.Real("min_best_score", &min_best_score, {0.0, 1.0},
+               "objects none of whose detections has at least this score are false");
   }
 };
 

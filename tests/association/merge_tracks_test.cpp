@@ -132,6 +132,18 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
   EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
 }
 
+TEST_F(TrackTest, OneGoodScoreMakesAnObject) {
+  const int track = AddTrack(of_objects_[0]);
+  for (const int index : of_objects_[0]) {
+    sequence_.detections[static_cast<size_t>(index)].score = options_.min_best_score - 0.01;
+  }
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kLowScores);
+  sequence_.detections[static_cast<size_t>(of_objects_[0][1])].score = options_.min_best_score;
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+}
+
 TEST_F(TrackTest, ATrackWithoutLandmarkIsNoObject) {
   const int track = AddTrack(of_objects_[0]);
   association_.tracks[static_cast<size_t>(track)].fit.reset();
