@@ -38,15 +38,15 @@ std::vector<Finding> FindingsFromJson(const json& artefact) {
   return findings;
 }
 
+Eigen::Vector3d VectorFromJson(const json& json) {
+  return Eigen::Vector3d(json.get<std::array<double, 3>>().data());
+}
+
 namespace {
 
 // Tolerance far above the rounding of composed poses, but below the error of a number typed by
 // hand.
 constexpr double kUnitTolerance = 1e-6;
-
-Eigen::Vector3d VectorFromJson(const json& json) {
-  return Eigen::Vector3d(json.get<std::array<double, 3>>().data());
-}
 
 void RequireUnit(double norm, const char* name, const json& found) {
   if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {

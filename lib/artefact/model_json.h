@@ -84,6 +84,7 @@ void from_json(const nlohmann::json& json, Camera& camera);
 inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
 
 nlohmann::json VectorToJson(const Eigen::Vector3d& vector);
+Eigen::Vector3d VectorFromJson(const nlohmann::json& json);
 
 // Matrix as rows of three numbers.
 nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);

@@ -45,6 +45,9 @@ SupportPlane SupportPlaneFromJson(const json& json) {
   if (json.contains("attitude_information")) {  // since version 1.3
     plane.attitude_information = MatrixFromJson(json["attitude_information"]);
   }
+  if (json.contains("scene_axis")) {  // since version 1.7
+    plane.scene_axis_in_world = VectorFromJson(json["scene_axis"]);
+  }
   return plane;
 }
 

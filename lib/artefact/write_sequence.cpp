@@ -35,6 +35,7 @@ json SupportPlaneToJson(const SupportPlane& plane) {
   if (plane.attitude_information) {
     fields["attitude_information"] = MatrixToJson(*plane.attitude_information);
   }
+  if (plane.scene_axis_in_world) fields["scene_axis"] = VectorToJson(*plane.scene_axis_in_world);
   return fields;
 }
 

@@ -90,10 +90,7 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
       camera,
       BoxEdges(camera, detection.box, detection.is_bound, options.box_sigma_fraction,
                all.prior->edge_bias),
-      Transform(frame.world_from_camera.Inverse(), all.plane_in_world),
-      *all.prior,
-      frame.world_from_camera.rotation.conjugate() * WorldAxis(all.plane_in_world),
-      /*axes_weight=*/0.0};
+      Transform(frame.world_from_camera.Inverse(), all.plane_in_world), *all.prior};
   const YawObjective objective;
   const auto optima =
       LocalOptima(observation, objective,

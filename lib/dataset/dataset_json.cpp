@@ -79,7 +79,7 @@ const KnownKeys& CameraKeys() {
 // Keys of an entry of planes.json.
 const KnownKeys& PlaneKeys() {
   static const KnownKeys known = {
-      {"id", "normal", "d", "label", "name", "description", "comment"},
+      {"id", "normal", "d", "scene_axis", "label", "name", "description", "comment"},
       {{"offset", kOffset}, {"distance", kOffset}, {"point", kOffset}, {"equation", kOffset}}};
   return known;
 }
@@ -144,7 +144,17 @@ SupportPlane ParsePlane(const Entry& entry) {
   const Eigen::Vector3d normal = entry.Vector<3>("normal");
   const double length = normal.norm();
   if (!(length > kShortest)) entry.Refuse("normal", "a direction, not a zero vector");
-  return {entry.Integer("id"), {normal / length, entry.Real("d") / length}};
+  SupportPlane plane{entry.Integer("id"), {normal / length, entry.Real("d") / length}};
+  if (entry.Has("scene_axis")) {
+    const Eigen::Vector3d axis = entry.Vector<3>("scene_axis");
+    const Eigen::Vector3d& up = plane.plane_in_world.normal;
+    const Eigen::Vector3d in_plane = axis - axis.dot(up) * up;
+    if (!(in_plane.norm() > kShortest)) {
+      entry.Refuse("scene_axis", "a direction in the plane, not along its normal");
+    }
+    plane.scene_axis_in_world = in_plane.normalized();
+  }
+  return plane;
 }
 
 Landmark ParseLandmark(const Entry& entry) {

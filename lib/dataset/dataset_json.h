@@ -30,7 +30,8 @@ enum class CameraYAxis {
 LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis = CameraYAxis::kDown);
 
 // Reads [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal
-// pointing away from the support, of any length. Ignored keys: "label", "name", "description",
+// pointing away from the support, of any length; optionally "scene_axis": [x, y, z], projected onto
+// the plane, see SupportPlane. Ignored keys: "label", "name", "description",
 // "comment". Sorted by id; at least one.
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path);
 

@@ -159,6 +159,7 @@ struct ImportOptions {
   double max_time_difference_s = 0.02;
   double min_score = 0.0;
   double hidden_edge_fraction = 0.7;
+  bool scene_axes = true;
   FolderOptions folder;
   KittiOptions kitti;
 
@@ -213,6 +214,9 @@ struct ImportOptions {
         "hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
         "the share of a box's lower edge that must lie inside boxes of nearer objects for it "
         "to be a lower bound only");
+    visit.Flag("scene_axes", &scene_axes,
+               "the directions along which the straight edges of the images lie on the support "
+               "planes are estimated, for later stages to prefer them for objects");
     folder.Describe(visit);
     kitti.Describe(visit);
   }

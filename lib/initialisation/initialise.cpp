@@ -45,7 +45,7 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
     }
     SingleFrameSolution solution = InitialiseFromSingleFrame(
         {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, *ratio,
-         WorldAxisInCamera(sequence, detection)},
+         SceneAxisInCamera(sequence, detection)},
         options);
     estimate.hypotheses = std::move(solution.hypotheses);
     estimate.failure = std::move(solution.failure);

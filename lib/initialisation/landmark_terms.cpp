@@ -105,10 +105,6 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
   if (jacobian != nullptr) *jacobian *= root_weight_;
 }
 
-Eigen::Vector3d WorldAxis(const Plane& plane_in_world) {
-  return UprightRotation(plane_in_world.normal, 0.0) * Eigen::Vector3d::UnitX();
-}
-
 AxisTerm::AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera,
                    double weight)
     : normal_(plane_in_camera.normal),

@@ -118,10 +118,7 @@ class RobustViewTerm final : public LandmarkTerm {
   double root_weight_;
 };
 
-// A horizontal axis of the world on a plane: x, or y where x is vertical.
-Eigen::Vector3d WorldAxis(const Plane& plane_in_world);
-
-// Weak prior of yaws along or across a horizontal axis of the world, as for furniture: cost
+// Weak prior of yaws along or across an axis of the scene, as for furniture: cost
 // `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`.
 class AxisTerm final : public LandmarkTerm {
  public:

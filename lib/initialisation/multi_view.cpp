@@ -117,7 +117,10 @@ LandmarkCosts PriorTerms(const MultiViewObservation& observation) {
   if (HasSize(observation)) {
     terms.push_back(std::make_unique<HeightTerm>(*observation.prior->height_m));
   }
-  terms.push_back(std::make_unique<AxisTerm>(plane, WorldAxis(plane), observation.axes_weight));
+  if (observation.scene_axis_in_world) {
+    terms.push_back(std::make_unique<AxisTerm>(plane, *observation.scene_axis_in_world,
+                                               observation.axes_weight));
+  }
   return terms;
 }
 
@@ -304,8 +307,9 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
     if (plane_in_world) {
       observation.plane_in_world = *plane_in_world;
     } else if (object.plane_index != kNoPlane) {
-      observation.plane_in_world =
-          sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+      const SupportPlane& support = sequence.planes[static_cast<size_t>(object.plane_index)];
+      observation.plane_in_world = support.plane_in_world;
+      observation.scene_axis_in_world = support.scene_axis_in_world;
     }
     observation.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
                                           detection.is_bound, detection_sigma_fraction, bias),

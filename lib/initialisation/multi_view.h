@@ -29,7 +29,8 @@ struct MultiViewObservation {
   bool ratio_is_free = false;       // the prior's ratio is not used as a cost
   bool height_is_free = false;      // only the normal of the plane is known
   bool size_is_known = false;       // the prior's height_m, if any, is used as a cost
-  double axes_weight = 0.0;         // see AxisTerm
+  std::optional<Eigen::Vector3d> scene_axis_in_world = std::nullopt;
+  double axes_weight = 0.0;  // see AxisTerm
   double huber_delta = 1.0;
 
   double ShapeExponent() const { return prior ? prior->shape_exponent : kCuboidExponent; }

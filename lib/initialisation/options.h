@@ -23,12 +23,11 @@ inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_s
 // Choice among several yaws that fit a box equally well. The box does not determine it; the choices
 // are assumptions about how objects stand.
 enum class TieBreak {
-  kWorldAxes,  // along the world's horizontal axes: furniture stands along walls, and maps mostly
-               // do too
+  kSceneAxes,     // along the scene's straight edges: furniture stands along walls
   kFacingCamera,  // front (or back) towards the camera: what is looked at is mostly seen from the
                   // front
 };
-inline constexpr std::array kTieBreakNames = {"world_axes", "facing_camera"};
+inline constexpr std::array kTieBreakNames = {"scene_axes", "facing_camera"};
 
 struct InitialiseOptions {
   InitialisationMethod method = InitialisationMethod::kSingleFrame;
@@ -38,7 +37,7 @@ struct InitialiseOptions {
   int yaw_starts = 12;
   int max_iterations = 100;
   double tie_edge_px = 1.0;
-  TieBreak tie_break = TieBreak::kWorldAxes;
+  TieBreak tie_break = TieBreak::kSceneAxes;
   UprightOptions upright;
   YawPriorOptions yaw_prior;
   double view_correlation_deg = 20.0;

@@ -83,15 +83,15 @@ bool IsSame(const Plane& plane, const Landmark& one, const Landmark& other) {
 }
 
 // Tie-break score of a solution: 0 if the x axis is along the preferred direction or, for the
-// world's axes, at right angles to it.
+// scene's axes, at right angles to it.
 double Oddity(const SingleFrameObservation& observation, const Landmark& landmark,
               TieBreak tie_break) {
-  const bool world_axes = tie_break == TieBreak::kWorldAxes;
-  const Eigen::Vector3d& preferred =
-      world_axes ? observation.world_axis_in_camera : landmark.Centre();
+  const bool scene_axes = tie_break == TieBreak::kSceneAxes && observation.scene_axis_in_camera;
+  const Eigen::Vector3d preferred =
+      scene_axes ? *observation.scene_axis_in_camera : landmark.Centre();
   const Eigen::Vector2d front =
       (landmark.frame_from_object.rotation.conjugate() * preferred).head<2>().normalized();
-  return world_axes ? std::abs(front.x() * front.y()) : std::abs(front.y());
+  return scene_axes ? std::abs(front.x() * front.y()) : std::abs(front.y());
 }
 
 }  // namespace

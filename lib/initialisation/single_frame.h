@@ -22,8 +22,8 @@ struct SingleFrameObservation {
   Box box;
   Plane plane_in_camera;  // the support plane
   Eigen::Vector2d ratio;  // (a / c, b / c)
-  // A horizontal axis of the world, for TieBreak::kWorldAxes.
-  Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();
+  // For TieBreak::kSceneAxes, see SupportPlane. Where there is none, the line of sight decides.
+  std::optional<Eigen::Vector3d> scene_axis_in_camera = std::nullopt;
 };
 
 struct SingleFrameSolution {

@@ -12,7 +12,7 @@ UprightObservation MakeUprightObservation(const Sequence& sequence, const Detect
                    options.detection_sigma_fraction, prior.edge_bias),
           detection.plane_in_camera,
           prior,
-          WorldAxisInCamera(sequence, detection),
+          SceneAxisInCamera(sequence, detection),
           options.axes_weight};
 }
 
@@ -22,19 +22,22 @@ LandmarkCosts ObservationTerms(const UprightObservation& observation,
   LandmarkCosts terms;
   terms.push_back(std::make_unique<BoxTerm>(observation.edges, start_in_camera));
   terms.push_back(std::make_unique<RatioTerm>(observation.prior));
-  terms.push_back(
-      std::make_unique<AxisTerm>(plane, observation.world_axis_in_camera, observation.axes_weight));
+  if (observation.scene_axis_in_camera) {
+    terms.push_back(std::make_unique<AxisTerm>(plane, *observation.scene_axis_in_camera,
+                                               observation.axes_weight));
+  }
   if (observation.yaw_prior) {
     terms.push_back(std::make_unique<YawTerm>(plane, *observation.yaw_prior));
   }
   return terms;
 }
 
-Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection) {
-  const auto& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-  const Plane& plane = sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
-  const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-  return frame.world_from_camera.rotation.conjugate() * WorldAxis(plane);
+std::optional<Eigen::Vector3d> SceneAxisInCamera(const Sequence& sequence,
+                                                 const Detection& detection) {
+  const auto plane = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
+  const std::optional<Eigen::Vector3d>& axis = sequence.planes[plane].scene_axis_in_world;
+  if (!axis) return std::nullopt;
+  return sequence.FrameOf(detection).world_from_camera.rotation.conjugate() * *axis;
 }
 
 }  // namespace soslam

@@ -26,9 +26,10 @@ struct UprightOptions {
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
                "standard deviation of a detector's box edge, as a fraction of the box's width or "
                "height; at least 1 px");
-    visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
-               "cost (negative logarithm of a likelihood) of a yaw half-way between the world's "
-               "horizontal axes; 0 if objects are not aligned with them");
+    visit.Real(
+        "axes_weight", &axes_weight, {0.0, 1e6},
+        "cost (negative logarithm of a likelihood) of a yaw half-way between the axes of the "
+        "scene, along which its straight edges lie; 0 if objects are not aligned with them");
     visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0}, "grid of the sweep over half a turn");
   }
 };
@@ -39,7 +40,7 @@ struct UprightObservation {
   std::array<BoxEdge, 4> edges;
   Plane plane_in_camera;
   ShapePrior prior;
-  Eigen::Vector3d world_axis_in_camera = Eigen::Vector3d::UnitX();  // horizontal axis of the world
+  std::optional<Eigen::Vector3d> scene_axis_in_camera = std::nullopt;
   double axes_weight = 0.0;
   std::optional<YawPrior> yaw_prior = std::nullopt;
 };
@@ -47,11 +48,12 @@ UprightObservation MakeUprightObservation(const Sequence& sequence, const Detect
                                           const ShapePrior& prior, const UprightOptions& options);
 
 // Costs of a landmark in the camera: box, with the tangent points at the depths that they have on
-// `start`, ratio, world axes and yaw prior.
+// `start`, ratio, scene axes and yaw prior.
 LandmarkCosts ObservationTerms(const UprightObservation& observation,
                                const Landmark& start_in_camera);
 
-// A horizontal axis of the world at a detection's support plane: x, or y where x is vertical.
-Eigen::Vector3d WorldAxisInCamera(const Sequence& sequence, const Detection& detection);
+// SupportPlane::scene_axis_in_world of a detection's plane.
+std::optional<Eigen::Vector3d> SceneAxisInCamera(const Sequence& sequence,
+                                                 const Detection& detection);
 
 }  // namespace soslam

@@ -134,8 +134,8 @@ void BackEndProblem::AddStanding(size_t object_index) {
 
 void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
-  const Plane& plane =
-      input_.sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world;
+  const SupportPlane& support = input_.sequence.planes[static_cast<size_t>(object.plane_index)];
+  const Plane& plane = support.plane_in_world;
   double* landmark = variables_.Landmark(object_index);
   if (options_.support) {
     if (IsTangency()) {
@@ -148,9 +148,9 @@ void BackEndProblem::AddLandmark(size_t object_index) {
     ++summary_.residuals["support"];
   }
   if (options_.ratio) AddRatio(object_index);
-  if (IsTangency() && options_.axes_weight > 0.0) {
+  if (IsTangency() && options_.axes_weight > 0.0 && support.scene_axis_in_world) {
     problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<AxisTerm>(
-                                  plane, WorldAxis(plane), options_.axes_weight)),
+                                  plane, *support.scene_axis_in_world, options_.axes_weight)),
                               nullptr, landmark);
   }
 }

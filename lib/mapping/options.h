@@ -104,9 +104,10 @@ struct OptimiseOptions {
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
                "boxes from viewpoints closer than this angle at the object share the error of the "
                "label's shape, and together have the weight of one; 0: all boxes are independent");
-    visit.Real("axes_weight", &axes_weight, {0.0, 1e6},
-               "cost (negative logarithm of a likelihood) of a yaw half-way between the world's "
-               "horizontal axes; 0 if objects are not aligned with them");
+    visit.Real(
+        "axes_weight", &axes_weight, {0.0, 1e6},
+        "cost (negative logarithm of a likelihood) of a yaw half-way between the axes of the "
+        "scene, along which its straight edges lie; 0 if objects are not aligned with them");
     visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
                "standard deviation of the tilt of a body on its support plane");
     visit.Real("standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},

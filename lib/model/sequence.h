@@ -47,6 +47,9 @@ struct SupportPlane {
   // cost 0.5 n^T information n. None: the plane is given and exact. Estimated planes of one normal
   // are parallel.
   std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
+  // Unit vector in the plane along which, modulo quarter turns, most straight edges of the scene
+  // lie. None: unknown, or there is no such direction.
+  std::optional<Eigen::Vector3d> scene_axis_in_world = std::nullopt;
 };
 
 // Object::plane_index while the support plane is unknown.

@@ -21,18 +21,21 @@
 
 namespace soslam {
 
-std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& files) {
+namespace fs = std::filesystem;
+
+std::vector<FrameImage> FrameImages(const Sequence& sequence, const fs::path& dataset,
+                                    const fs::path& sequence_file) {
   std::vector<FrameImage> images;
   for (const Frame& frame : sequence.frames) {
     if (frame.image.empty()) continue;
     images.push_back(
-        {&frame, ImagePath(files.at("dataset"), frame.image,
-                           fmt::format("{}: frame {}", files.at("sequence").string(), frame.id))});
+        {&frame, ImagePath(dataset, frame.image,
+                           fmt::format("{}: frame {}", sequence_file.string(), frame.id))});
   }
   if (images.empty()) {
     throw NothingUsableError(
         fmt::format("{}: none of its {} frames has an image; expected at least one",
-                    files.at("sequence").string(), sequence.frames.size()));
+                    sequence_file.string(), sequence.frames.size()));
   }
   return images;
 }
@@ -55,9 +58,21 @@ cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
   return undistorter_ ? undistorter_->Undistort(colour) : colour;
 }
 
-namespace {
+std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
+                                          const std::vector<FrameImage>& images,
+                                          double min_length_px, int threads) {
+  const FrameImageReader reader(sequence);
+  std::vector<SegmentView> views(images.size());
+  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
+    const FrameImage& image = images[static_cast<size_t>(i)];
+    views[static_cast<size_t>(i)] = {sequence.CameraOf(*image.frame),
+                                     FindLineSegments(reader.ReadGrey(image), min_length_px),
+                                     image.frame->world_from_camera};
+  });
+  return views;
+}
 
-namespace fs = std::filesystem;
+namespace {
 
 // Checks the image size, as nearest edges are stored as 16-bit coordinates.
 void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
@@ -74,7 +89,7 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   options.Check();
   const fs::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
-  const std::vector<FrameImage> images = FrameImages(sequence, files);
+  const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
   std::vector<fs::path> inputs = {sequence_file};
   for (const FrameImage& image : images) {
     CheckCamera(sequence.CameraOf(*image.frame), sequence_file);

@@ -10,6 +10,7 @@
 #include "image/edge_maps.h"
 #include "image/read_image.h"
 #include "model/sequence.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -19,10 +20,11 @@ struct FrameImage {
   std::filesystem::path path;
 };
 
-// All frames that have an image, in order. Uses files "dataset" and "sequence", the latter for
-// messages. Throws InputError for a path that leaves the folder, NothingUsableError when no frame
-// has an image.
-std::vector<FrameImage> FrameImages(const Sequence& sequence, const StageFiles& files);
+// All frames that have an image in the folder `dataset`, in order. `sequence_file` is for messages.
+// Throws InputError for a path that leaves the folder, NothingUsableError when no frame has an
+// image.
+std::vector<FrameImage> FrameImages(const Sequence& sequence, const std::filesystem::path& dataset,
+                                    const std::filesystem::path& sequence_file);
 
 // Reads undistorted images for the cameras of a sequence, which must outlive it.
 class FrameImageReader {
@@ -38,6 +40,11 @@ class FrameImageReader {
   const Sequence& sequence_;
   std::optional<ImageUndistorter> undistorter_;
 };
+
+// Straight edges of at least `min_length_px` in images of a sequence, with the frames' poses.
+std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
+                                          const std::vector<FrameImage>& images,
+                                          double min_length_px, int threads);
 
 // soslam-edges: computes the edge maps of the undistorted image of every frame. Files: "dataset",
 // the folder of the frames' images; "sequence", sequence.json; "output", edges.h5. Throws

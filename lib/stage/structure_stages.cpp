@@ -21,6 +21,7 @@
 #include "mapping/initial_landmarks.h"
 #include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
+#include "planes/scene_axis.h"
 #include "stage/image_stages.h"
 
 namespace soslam {
@@ -91,18 +92,18 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesO
     throw SettingsError(
         "verticals is true; expected --dataset with the images, or verticals = false");
   }
+  const std::vector<FrameImage> images =
+      FrameImages(sequence, files.at("dataset"), files.at("sequence"));
+  for (const FrameImage& image : images) inputs->push_back(image.path);
+  const std::vector<SegmentView> of_images =
+      ReadSegmentViews(sequence, images, options.vertical_min_length_px, threads);
   std::vector<SegmentView> views(sequence.frames.size());
   for (size_t i = 0; i < views.size(); ++i) {
     views[i] = {sequence.CameraOf(sequence.frames[i]), {}, sequence.frames[i].world_from_camera};
   }
-  const std::vector<FrameImage> images = FrameImages(sequence, files);
-  for (const FrameImage& image : images) inputs->push_back(image.path);
-  const FrameImageReader reader(sequence);
-  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
-    const FrameImage& image = images[static_cast<size_t>(i)];
-    SegmentView& view = views[static_cast<size_t>(image.frame - sequence.frames.data())];
-    view.segments = FindLineSegments(reader.ReadGrey(image), options.vertical_min_length_px);
-  });
+  for (size_t i = 0; i < images.size(); ++i) {
+    views[static_cast<size_t>(images[i].frame - sequence.frames.data())] = of_images[i];
+  }
   return views;
 }
 
@@ -199,6 +200,7 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   result.estimate = std::move(held.estimate);
   result.sequence = WithPlanes(std::move(held.level), result.estimate);
   result.sequence.frames = sequence.frames;  // odometry stays what was measured
+  SetSceneAxes(views, options.view_correlation_deg * kRadPerDeg, &result.sequence);
   return result;
 }
 

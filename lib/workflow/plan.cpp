@@ -122,7 +122,7 @@ std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
     files.push_back({Folder::kResults, InstancePath(source.instance, source.file)});
   }
   if (instance.stage == "import") files.push_back({Folder::kResults, kDatasetListing});
-  if (instance.stage == "edges" || instance.stage == "planes") {
+  if (instance.stage == "import" || instance.stage == "edges" || instance.stage == "planes") {
     files.push_back({Folder::kResults, kImagesListing});
   }
   if (!instance.semantic_table.empty()) {

@@ -97,5 +97,16 @@ TEST_F(CameraJsonTest, IgnoredThingsSayWhatTheyAre) {
   refused(R"("cup")", {"objects.json: is not a list"});
 }
 
+TEST_F(CameraJsonTest, SceneAxisOfAPlaneIsProjectedOntoIt) {
+  WriteBytes(folder_ / "planes.json",
+             R"([{"id": 0, "normal": [0, 0, 2], "d": 0, "scene_axis": [0, 3, 1]}])");
+  const std::vector<SupportPlane> planes = ReadPlanes(folder_ / "planes.json");
+  EXPECT_EQ(planes.front().scene_axis_in_world, Eigen::Vector3d(0, 1, 0));
+  WriteBytes(folder_ / "planes.json",
+             R"([{"id": 0, "normal": [0, 0, 2], "d": 0, "scene_axis": [0, 0, 1]}])");
+  ExpectError<InputError>([&] { ReadPlanes(folder_ / "planes.json"); },
+                          {"planes.json", "scene_axis", "not along its normal"});
+}
+
 }  // namespace
 }  // namespace soslam

@@ -22,6 +22,7 @@ Sequence Bodies() {
     if (scene.objects[i].shape != Shape::kBox) continue;
     sequence.objects[i].ground_truth->landmark_in_world.shape_exponent = kCuboidExponent;
   }
+  sequence.planes.front().scene_axis_in_world = Eigen::Vector3d::UnitX();
   return sequence;
 }
 

@@ -69,10 +69,10 @@ TEST(SingleFrame, BreaksTiesAsItIsTold) {
   const Standing standing(0.5, {0.4, 0.2, 0.3});
   for (const auto& other :
        InitialiseFromSingleFrame(standing.observation, InitialiseOptions()).hypotheses) {
-    // With the world's axis along a solution's front, that solution comes first.
+    // With the scene's axis along a solution's front, that solution comes first.
     SingleFrameObservation observation = standing.observation;
-    observation.world_axis_in_camera =
-        other.landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitX();
+    observation.scene_axis_in_camera =
+        (other.landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitX()).eval();
     const auto solution = InitialiseFromSingleFrame(observation, InitialiseOptions());
     EXPECT_GT(BoxIou(solution.hypotheses.front().landmark_in_camera, other.landmark_in_camera),
               0.9999);

@@ -40,6 +40,7 @@ class RefineBoxes : public testing::Test {
   static void SetUpTestSuite() {
     const Scene scene = BoxScene();
     sequence_ = new Sequence(SyntheticSequence(scene, false));
+    sequence_->planes.front().scene_axis_in_world = Eigen::Vector3d::UnitX();
     for (const Frame& frame : sequence_->frames) {
       cv::Mat grey;
       cv::cvtColor(RenderFrame(scene, frame.world_from_camera), grey, cv::COLOR_BGR2GRAY);
@@ -138,7 +139,7 @@ TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxes) {
   }
 }
 
-TEST_F(RefineBoxes, AreDrawnToTheWorldsAxesAsMuchAsTheirPreferenceWeighs) {
+TEST_F(RefineBoxes, AreDrawnToTheScenesAxesAsMuchAsTheirPreferenceWeighs) {
   const Frames plain = PlainMaps();
   for (const int i : {3, 4, 5}) {  // one of each box
     const double true_yaw =        // in the world

@@ -49,7 +49,7 @@ TEST_F(DoctorTest, WarningsOfTheImportAreNoErrors) {
 }
 
 TEST_F(DoctorTest, AStageThatFailedIsAnError) {
-  ReplaceAll("planes.json", "[0.0,0.0,1.0]", "[0.0,0.0,-1.0]");
+  ReplaceAll("planes.json", "[0, 0, 1]", "[0, 0, -1]");
   EXPECT_NE(pipeline_.Run("InitP").exit_code, 0);
   const CommandResult result = Doctor();
   EXPECT_EQ(result.exit_code, 1);

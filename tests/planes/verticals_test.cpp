@@ -6,6 +6,7 @@
 #include "geometry/angles.h"
 #include "planes/up_prior.h"
 #include "support/random.h"
+#include "support/segment_views.h"
 
 namespace soslam {
 namespace {
@@ -14,42 +15,13 @@ constexpr double kSigma = 1.0 * kRadPerDeg;
 constexpr double kSegmentCorrelation = 20.0 * kRadPerDeg;
 constexpr double kMaxVerticalTilt = 12.0 * kRadPerDeg;
 
-// A camera anywhere in a room around the origin that looks somewhat downwards, not level.
-Rigid3d RandomCamera(double heading) {
-  const Eigen::Quaterniond level =
-      Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ())) *
-      Eigen::Quaterniond((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
-  const Eigen::Vector3d attitude(RandomUniform(-0.5, -0.2), 0.0, RandomUniform(-0.1, 0.1));
-  return {level * ExpRotation(attitude), RandomVector(-0.3, 0.3)};
-}
-
-// Edges along `directions` (or any, where there is none) as a camera sees them.
-SegmentView View(const Rigid3d& world_from_camera, const std::vector<Eigen::Vector3d>& directions) {
-  SegmentView view{TestCamera(), {}, world_from_camera};
-  const Camera camera = TestCamera();
-  const Rigid3d camera_from_world = world_from_camera.Inverse();
-  for (const Eigen::Vector3d& direction : directions) {
-    for (;;) {
-      const Eigen::Vector3d point =
-          world_from_camera *
-          Eigen::Vector3d(RandomUniform(-1, 1), RandomUniform(-0.7, 0.7), RandomUniform(2.5, 4));
-      const auto begin = camera.Project(camera_from_world * point);
-      const auto end = camera.Project(camera_from_world * (point + 0.5 * direction));
-      if (!begin || !end || (*end - *begin).norm() < 30.0) continue;
-      view.segments.push_back({*begin, *end});
-      break;
-    }
-  }
-  return view;
-}
-
 // Verticals, and twice as many edges of any direction.
 std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc) {
   std::vector<SegmentView> views;
   for (int i = 0; i < cameras; ++i) {
     std::vector<Eigen::Vector3d> directions(8, up);
     for (int k = 0; k < 16; ++k) directions.push_back(RandomRotation() * up);
-    views.push_back(View(RandomCamera(arc * i / cameras), directions));
+    views.push_back(ViewOfEdges(CameraInRoom(arc * i / cameras), directions));
   }
   return views;
 }

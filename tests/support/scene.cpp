@@ -113,6 +113,9 @@ Sequence Moved(const Rigid3d& new_from_old, Sequence sequence) {
   }
   for (SupportPlane& plane : sequence.planes) {
     plane.plane_in_world = Transform(new_from_old, plane.plane_in_world);
+    if (plane.scene_axis_in_world) {
+      plane.scene_axis_in_world = new_from_old.rotation * *plane.scene_axis_in_world;
+    }
   }
   for (Object& object : sequence.objects) {
     if (!object.ground_truth) continue;

@@ -64,6 +64,8 @@ class SmallPipeline {
         RunCommand({StageProgram("synthesise"), "--scene", (folder_ / "scene.json").string(),
                     "--output", Dataset().string(), "--threads", threads_});
     EXPECT_EQ(made.exit_code, 0) << made.errors;
+    WriteBytes(Dataset() / "planes.json",
+               R"([{"id": 0, "normal": [0, 0, 1], "d": 0, "scene_axis": [1, 0, 0]}])");
     std::filesystem::copy(SOSLAM_SOURCE_DIR "/pipelines", Pipelines(),
                           std::filesystem::copy_options::recursive);
     std::filesystem::create_directory(Pipelines() / "datasets");

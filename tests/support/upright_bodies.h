@@ -64,8 +64,8 @@ inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4
   observation.edges = BoxEdges(observation.camera, box, is_bound, kDetectionSigmaFraction);
   observation.plane_in_camera = floor;
   observation.prior = prior;
-  observation.world_axis_in_camera =
-      UprightRotation(floor.normal, RandomYaw()) * Eigen::Vector3d::UnitX();
+  observation.scene_axis_in_camera =
+      (UprightRotation(floor.normal, RandomYaw()) * Eigen::Vector3d::UnitX()).eval();
   return observation;
 }
 

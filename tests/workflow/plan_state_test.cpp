@@ -31,6 +31,7 @@ class PlanStateTest : public testing::Test {
     Write("data/poses.txt", "");
     Write("results/shared/dataset.txt",
           (folder_ / "data").string() + "\nposes.txt 0 1\nrgb/1.png\n");
+    Write("results/shared/images.txt", (folder_ / "data").string() + "\n");
     plan_ = MakePlan(folders_.pipelines, "room", {"Plain"});
     for (const StageInstance& instance : plan_.instances) {
       Write("bin/soslam-" + instance.stage, "");
