@@ -212,8 +212,8 @@ json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
   return document;
 }
 
-void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
-                   const ArtefactInfo& info, json body) {
+std::string ArtefactText(const std::filesystem::path& path, const std::string& kind,
+                         const ArtefactInfo& info, json body) {
   body["artefact"] = ArtefactHeader(kind, info);
   if (!info.findings.empty()) body["findings"] = FindingsToJson(info.findings);
   RefuseNonFinite(body, json::json_pointer(), path.string());
@@ -221,7 +221,12 @@ void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
     throw std::logic_error(fmt::format("{}: would break the schema of kind '{}': {}", path.string(),
                                        kind, *violation));
   }
-  WriteTextFile(path, body.dump(1) + "\n");
+  return body.dump(1) + "\n";
+}
+
+void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
+                   const ArtefactInfo& info, json body) {
+  WriteTextFile(path, ArtefactText(path, kind, info, std::move(body)));
 }
 
 }  // namespace soslam

@@ -87,10 +87,14 @@ auto ReadArtefactAs(const std::filesystem::path& path, const std::string& kind,
   }
 }
 
-// Writes {"artefact": header, "findings": if any, ...body} atomically; an existing file with the
-// same bytes keeps its modification time. Throws NumericalError, naming the place, for a number
-// that is not finite; SettingsError when the file cannot be written; std::logic_error when the
-// schema does not allow it.
+// The text of an artefact: {"artefact": header, "findings": if any, ...body}. `path` is for error
+// messages. Throws NumericalError, naming the place, for a number that is not finite;
+// std::logic_error when the schema does not allow it.
+std::string ArtefactText(const std::filesystem::path& path, const std::string& kind,
+                         const ArtefactInfo& info, nlohmann::json body);
+
+// Writes this text atomically; an existing file with the same bytes keeps its modification time.
+// Errors as ArtefactText; SettingsError when the file cannot be written.
 void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
                    const ArtefactInfo& info, nlohmann::json body);
 

@@ -18,11 +18,7 @@
 #include "base/text.h"
 
 namespace soslam {
-namespace {
 
-constexpr std::string_view kBlanks = " \t\r\v\f";
-
-// Names and labels are written to JSON, which must be UTF-8.
 bool IsUtf8(const std::string& text) {
   try {
     nlohmann::json(text).dump();
@@ -31,6 +27,10 @@ bool IsUtf8(const std::string& text) {
     return false;
   }
 }
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
 
 void CheckEncoding(std::string_view text, const std::string& place) {
   if (text.find('\0') != text.npos) {

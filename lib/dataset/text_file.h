@@ -8,6 +8,9 @@
 
 namespace soslam {
 
+// True for UTF-8, which names and labels have to be: they are written to JSON.
+bool IsUtf8(const std::string& text);
+
 // One line of a text file, without its line ending.
 struct TextLine {
   std::string place;  // "<file>:<line number from 1>", for error messages

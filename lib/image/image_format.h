@@ -23,6 +23,8 @@ struct ImageSize {
 struct ImageHeader {
   ImageSize stored;     // size of the pixels that the file stores
   int orientation = 1;  // EXIF's, 1 to 8: 1 upright, 3 upside down, 5 to 8 turned by a quarter
+  // Focal length over the diagonal of the image, from the EXIF data of a JPEG file.
+  std::optional<double> focal_over_diagonal = std::nullopt;
 
   bool IsTurnedByAQuarter() const { return orientation >= 5; }
   // The size of the image when it is read with this setting.

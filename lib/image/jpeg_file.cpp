@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "image/exif_focal_length.h"
 #include "image/image_format.h"
 #include "image/tiff_file.h"
 
@@ -33,12 +34,12 @@ bool MayFollowScan(std::uint64_t marker) {
 
 bool IsJpeg(std::string_view first_bytes) { return first_bytes.starts_with("\xff\xd8\xff"sv); }
 
-std::optional<int> OrientationInSegment(const ImageBytes& file, std::uint64_t begin,
-                                        size_t length) {
+std::optional<std::string> ExifInSegment(const ImageBytes& file, std::uint64_t begin,
+                                         size_t length) {
   constexpr std::string_view kName = "Exif\0\0"sv;
   const std::string data = file.UpTo(begin + 4, length - 2);
   if (!data.starts_with(kName)) return std::nullopt;
-  return ExifOrientation(std::string_view(data).substr(kName.size()));
+  return data.substr(kName.size());
 }
 
 // Reads the segments before the first scan. No marker without a length belongs there, but decoders
@@ -46,6 +47,7 @@ std::optional<int> OrientationInSegment(const ImageBytes& file, std::uint64_t be
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   std::optional<ImageSize> size;
   std::optional<int> orientation;
+  std::string exif;  // that with the orientation, otherwise the last
   std::uint64_t begin = 2;
   for (int i = 0; i < kMaxSegments; ++i) {
     const std::string head = file.UpTo(begin, 9);  // marker 2, length 2, bits 1, height 2, width 2
@@ -63,11 +65,14 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
     if (BeginsFrame(marker) && !size && head.size() == 9) {
       size = {static_cast<std::int64_t>(number(7, 2)), static_cast<std::int64_t>(number(5, 2))};
     }
-    if (marker == kApp1 && !orientation) orientation = OrientationInSegment(file, begin, length);
+    if (marker == kApp1 && !orientation) {
+      if (auto data = ExifInSegment(file, begin, length)) exif = std::move(*data);
+      orientation = ExifOrientation(exif);
+    }
     begin += 2 + length;
   }
   if (!size) return std::nullopt;
-  return ImageHeader{*size, orientation.value_or(1)};
+  return ImageHeader{*size, orientation.value_or(1), ExifFocalOverDiagonal(exif, *size)};
 }
 
 // Length up to the marker EOI that is not within a segment, as those of thumbnails are.

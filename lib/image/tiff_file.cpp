@@ -30,8 +30,10 @@ TiffEntry ParseEntry(std::string_view bytes, std::uint64_t begin, ByteOrder orde
   const auto number = [&](size_t at, size_t count) {
     return NumberFromBytes(bytes.substr(at, count), order);
   };
-  TiffEntry entry{number(0, 2), BytesEach(number(2, 2)), number(4, 4), begin + 8};
-  if (entry.bytes_each * entry.count > 4) entry.begin = number(8, 4);
+  constexpr std::uint64_t kRational = 5;
+  const std::uint64_t type = number(2, 2);
+  TiffEntry entry{number(0, 2), BytesEach(type), type == kRational, number(4, 4), begin + 8};
+  if (entry.is_ratio || entry.bytes_each * entry.count > 4) entry.begin = number(8, 4);
   return entry;
 }
 
@@ -41,15 +43,26 @@ std::optional<TiffDirectory> TiffDirectory::Read(const ImageBytes& file) {
   const auto order = OrderOf(file.UpTo(0, 4));
   if (!order) return std::nullopt;
   const auto begin = file.NumberAt(4, 4, *order);
-  const auto count = begin ? file.NumberAt(*begin, 2, *order) : std::nullopt;
-  const auto bytes = count ? file.At(*begin + 2, *count * kEntrySize) : std::nullopt;
+  return begin ? ReadAt(*begin, *order, file) : std::nullopt;
+}
+
+std::optional<TiffDirectory> TiffDirectory::ReadAt(std::uint64_t begin, ByteOrder order,
+                                                   const ImageBytes& file) {
+  const auto count = file.NumberAt(begin, 2, order);
+  const auto bytes = count ? file.At(begin + 2, *count * kEntrySize) : std::nullopt;
   if (!bytes) return std::nullopt;
   std::vector<TiffEntry> entries;
   for (size_t at = 0; at < bytes->size(); at += kEntrySize) {
     entries.push_back(
-        ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), *begin + 2 + at, *order));
+        ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), begin + 2 + at, order));
   }
-  return TiffDirectory(*order, std::move(entries));
+  return TiffDirectory(order, std::move(entries));
+}
+
+std::optional<TiffDirectory> TiffDirectory::SubDirectory(std::uint64_t tag,
+                                                         const ImageBytes& file) const {
+  const auto begin = Number(tag, file);
+  return begin ? ReadAt(*begin, order_, file) : std::nullopt;
 }
 
 std::optional<TiffEntry> TiffDirectory::Find(std::uint64_t tag) const {
@@ -66,6 +79,15 @@ std::optional<std::uint64_t> TiffDirectory::Number(std::uint64_t tag,
                                                    const ImageBytes& file) const {
   const auto entry = Find(tag);
   return entry ? file.NumberAt(entry->begin, entry->bytes_each, order_) : std::nullopt;
+}
+
+std::optional<double> TiffDirectory::Ratio(std::uint64_t tag, const ImageBytes& file) const {
+  const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
+  if (found == entries_.end() || !found->is_ratio || found->count == 0) return std::nullopt;
+  const auto numerator = file.NumberAt(found->begin, 4, order_);
+  const auto denominator = file.NumberAt(found->begin + 4, 4, order_);
+  if (!numerator || !denominator || *denominator == 0) return std::nullopt;
+  return static_cast<double>(*numerator) / static_cast<double>(*denominator);
 }
 
 std::optional<int> ExifOrientation(const TiffDirectory& exif, const ImageBytes& file) {

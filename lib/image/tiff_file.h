@@ -16,6 +16,7 @@ inline constexpr std::uint64_t kTiffOrientation = 274;
 struct TiffEntry {
   std::uint64_t tag;
   size_t bytes_each;    // bytes per number; 0 if they are not unsigned integers
+  bool is_ratio;        // each value is a RATIONAL: two unsigned integers of 4 bytes
   std::uint64_t count;  // as the file claims
   std::uint64_t begin;  // offset in the file
 };
@@ -26,6 +27,8 @@ class TiffDirectory {
  public:
   // None if the file is no TIFF file, or ends before the directory does.
   static std::optional<TiffDirectory> Read(const ImageBytes& file);
+  // The directory that an entry with this tag points to, as EXIF's own; none as for Read.
+  std::optional<TiffDirectory> SubDirectory(std::uint64_t tag, const ImageBytes& file) const;
 
   ByteOrder order() const { return order_; }
   // The first entry with this tag; none if there is none, or its numbers are not unsigned integers.
@@ -35,8 +38,12 @@ class TiffDirectory {
   // The first number of the first entry with this tag; none if there is none, or it is not in the
   // file.
   std::optional<std::uint64_t> Number(std::uint64_t tag, const ImageBytes& file) const;
+  // The first ratio of the first entry with this tag; none also if its denominator is zero.
+  std::optional<double> Ratio(std::uint64_t tag, const ImageBytes& file) const;
 
  private:
+  static std::optional<TiffDirectory> ReadAt(std::uint64_t begin, ByteOrder order,
+                                             const ImageBytes& file);
   TiffDirectory(ByteOrder order, std::vector<TiffEntry> entries)
       : order_(order), entries_(std::move(entries)) {}
 

@@ -21,6 +21,7 @@
 #include "dataset/import_options.h"
 #include "evaluation/alignment.h"
 #include "image/edge_maps.h"
+#include "image/frame_choice.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
 #include "orientation/options.h"
@@ -43,6 +44,7 @@ const std::vector<Maker>& Makers() {
   static const std::vector<Maker> makers = {
       {"associations", "associate", OptionsToJson(AssociateOptions())},
       {"edges", "edges", OptionsToJson(EdgesOptions())},
+      {"frames", "frames", OptionsToJson(FrameOptions())},
       {"landmarks", "initialise", OptionsToJson(InitialiseOptions())},
       {"landmarks", "refine", OptionsToJson(OrientationOptions())},
       {"map", "optimise", OptionsToJson(OptimiseOptions())},
@@ -138,6 +140,7 @@ const std::vector<Kind>& Kinds() {
       {"associations", "which detections are of the same object, and why",
        WithoutSequence(&InspectAssociations)},
       {"edges", "edges, distances and corners of images", WithoutSequence(&InspectEdges)},
+      {"frames", "images chosen from photos or a video", WithoutSequence(&InspectFrames)},
       {"landmarks", "estimated landmarks", &InspectLandmarks},
       {"map", "landmarks and trajectory of the back end", &InspectMap},
       {"metrics", "errors against ground truth", WithoutSequence(&InspectMetrics)},

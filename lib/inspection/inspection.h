@@ -46,6 +46,7 @@ std::string FillIn(std::string_view text, const nlohmann::json& fields);
 // Contents of an artefact of each kind; Inspect adds title and provenance. Errors as there.
 Inspection InspectAssociations(const std::filesystem::path& file);
 Inspection InspectEdges(const std::filesystem::path& file);
+Inspection InspectFrames(const std::filesystem::path& file);
 Inspection InspectLandmarks(const std::filesystem::path& file,
                             const std::optional<Sequence>& sequence);
 Inspection InspectMap(const std::filesystem::path& file, const std::optional<Sequence>& sequence);

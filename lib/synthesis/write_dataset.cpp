@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "synthesis/write_dataset.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
-#include <system_error>
 
-#include "base/error.h"
+#include "artefact/dataset_folder.h"
 #include "base/parallel.h"
-#include "base/paths.h"
-#include "base/run_log.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
 
@@ -27,96 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsSynthesised(const fs::path& folder) {
-  std::ifstream readme(folder / "README.md");
-  std::string first_line;
-  return std::getline(readme, first_line) && first_line.rfind(kSynthesisedMark, 0) == 0;
-}
-
-[[noreturn]] void Refuse(const fs::path& folder, const std::string& why) {
-  throw SettingsError(fmt::format("{}: {}", folder.string(), why));
-}
-
-void CheckReplaceable(const fs::path& folder) {
-  std::error_code error;
-  if (!Exists(folder)) return;
-  if (!IsFolder(folder)) Refuse(folder, "is not a folder; expected one, or nothing");
-  if (!fs::is_empty(folder, error) && !IsSynthesised(folder)) {
-    Refuse(folder, "is not empty and was not written by soslam-synthesise; expected a new folder");
-  }
-}
-
-fs::path Sibling(const fs::path& folder, const std::string& purpose) {
-  return folder.parent_path() /
-         fmt::format(".{}.{}-{}", folder.filename().string(), purpose, getpid());
-}
-
-// Flushes the disk of a folder; returns the errno of a failure, else 0.
-int SyncDiskOf(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int error = ::syncfs(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  return error;
-}
-
-// Atomic, so that there is a folder of that name at any moment. Not all file systems support it.
-bool Exchange(const fs::path& one, const fs::path& other) {
-  return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
-}
-
-}  // namespace
-
-DatasetFolder::DatasetFolder(const fs::path& folder)
-    : folder_(PlainPath(folder)), temporary_(Sibling(folder_, "new")) {
-  CheckReplaceable(folder_);
-  std::error_code error;
-  fs::create_directories(folder_.parent_path(), error);
-  fs::remove_all(temporary_, error);
-  if (!fs::create_directory(temporary_, error)) Refuse(folder_, "cannot be written");
-}
-
-DatasetFolder::~DatasetFolder() {
-  std::error_code ignored;
-  fs::remove_all(temporary_, ignored);
-}
-
-void DatasetFolder::Commit() {
-  CheckInputsUnchanged();
-  CheckReplaceable(folder_);
-  if (const int error = SyncDiskOf(temporary_)) {
-    Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
-  }
-  if (!Exists(folder_) || !Exchange(temporary_, folder_)) Replace();
-  for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-    if (entry.is_regular_file()) RecordOutput(entry.path());
-  }
-}
-
-void DatasetFolder::Replace() {
-  const fs::path old = Sibling(folder_, "old");
-  std::error_code error;
-  const bool replaces = Exists(folder_);
-  if (replaces) fs::rename(folder_, old, error);
-  if (!error) fs::rename(temporary_, folder_, error);
-  if (error) {
-    const std::string why = "cannot be written: " + error.message();
-    if (replaces && !Exists(folder_)) fs::rename(old, folder_, error);
-    Refuse(folder_, why);
-  }
-  fs::remove_all(old, error);
-}
-
-namespace {
-
 using nlohmann::ordered_json;
-
-void WriteText(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw SettingsError(path.string() + ": cannot be written; is the disk full?");
-}
 
 std::string Timestamp(const Scene& scene, int frame_index) {
   return fmt::format("{}", frame_index * scene.trajectory.frame_interval);
@@ -217,7 +119,7 @@ std::string NoiseText(const Scene& scene) {
       noise.odometry_rotation_sigma_deg, noise.image_sigma);
 }
 
-std::string ReadmeText(const Scene& scene, bool noise) {
+std::string ReadmeText(const Scene& scene, bool noise, const std::string& mark) {
   return fmt::format(
       "{} from a scene description; the next run into this folder replaces it. -->\n"
       "# {}\n\n"
@@ -239,7 +141,7 @@ std::string ReadmeText(const Scene& scene, bool noise) {
       "- `objects.json`: `mirror_symmetric` and `mirror_symmetric_yz` are of shape and texture,\n"
       "  `rotationally_symmetric` of the shape.\n\n"
       "## Noise\n\n{}",
-      kSynthesisedMark, scene.name, scene.trajectory.frames, scene.objects.size(),
+      mark, scene.name, scene.trajectory.frames, scene.objects.size(),
       noise ? NoiseText(scene) : "None: detections and odometry are exact.\n");
 }
 
@@ -255,34 +157,31 @@ void AddImageNoise(const Scene& scene, int frame_index, cv::Mat* image) {
 }
 
 void WriteImage(const Scene& scene, bool noise, int frame_index, const Rigid3d& world_from_camera,
-                const fs::path& folder) {
+                const DatasetFolder& output) {
   cv::Mat image = RenderFrame(scene, world_from_camera);
   if (noise) AddImageNoise(scene, frame_index, &image);
   std::vector<uchar> bytes;
   cv::imencode(".png", image, bytes);
-  WriteText(folder / ImageName(frame_index), std::string(bytes.begin(), bytes.end()));
+  output.Write(ImageName(frame_index), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace
 
 void WriteDataset(const Scene& scene, bool noise, const fs::path& folder, int threads) {
-  DatasetFolder output(folder);
-  const fs::path& temporary = output.Temporary();
+  DatasetFolder output(folder, "soslam-synthesise");
   const Simulation simulation = Simulate(scene, noise);
-  WriteText(temporary / "README.md", ReadmeText(scene, noise));
-  WriteText(temporary / "rgb.txt", ImageListText(scene));
-  WriteText(temporary / "groundtruth.txt",
-            TrajectoryText(scene, simulation.true_world_from_camera));
-  WriteText(temporary / "odometry.txt",
-            TrajectoryText(scene, simulation.odometry_world_from_camera));
-  WriteText(temporary / "camera.json", CameraText(scene.camera));
-  WriteText(temporary / "planes.json", PlanesText(scene));
-  WriteText(temporary / "objects.json", ObjectsText(scene));
-  WriteText(temporary / "detections.csv", BoxesText(scene, simulation.detections, true));
-  WriteText(temporary / "boxes_exact.csv", BoxesText(scene, simulation.exact_boxes, false));
-  fs::create_directory(temporary / "rgb");
+  output.Write("README.md", ReadmeText(scene, noise, output.Mark()));
+  output.Write("rgb.txt", ImageListText(scene));
+  output.Write("groundtruth.txt", TrajectoryText(scene, simulation.true_world_from_camera));
+  output.Write("odometry.txt", TrajectoryText(scene, simulation.odometry_world_from_camera));
+  output.Write("camera.json", CameraText(scene.camera));
+  output.Write("planes.json", PlanesText(scene));
+  output.Write("objects.json", ObjectsText(scene));
+  output.Write("detections.csv", BoxesText(scene, simulation.detections, true));
+  output.Write("boxes_exact.csv", BoxesText(scene, simulation.exact_boxes, false));
+  fs::create_directory(output.Temporary() / "rgb");
   ParallelFor("frames", scene.trajectory.frames, threads, [&](int i) {
-    WriteImage(scene, noise, i, simulation.true_world_from_camera[i], temporary);
+    WriteImage(scene, noise, i, simulation.true_world_from_camera[i], output);
   });
   output.Commit();
 }

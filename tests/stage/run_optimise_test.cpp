@@ -7,6 +7,7 @@
 #include "artefact/sequence_file.h"
 #include "evaluation/metrics.h"
 #include "stage/map_stages.h"
+#include "support/scene.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

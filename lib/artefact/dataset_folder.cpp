@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/dataset_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "base/paths.h"
+#include "base/run_log.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Refuse(const fs::path& folder, const std::string& why) {
+  throw SettingsError(fmt::format("{}: {}", folder.string(), why));
+}
+
+fs::path Sibling(const fs::path& folder, const std::string& purpose) {
+  return folder.parent_path() /
+         fmt::format(".{}.{}-{}", folder.filename().string(), purpose, getpid());
+}
+
+// Flushes the disk of a folder; returns the errno of a failure, else 0.
+int SyncDiskOf(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int error = ::syncfs(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  return error;
+}
+
+// Atomic, so that there is a folder of that name at any moment. Not all file systems support it.
+bool Exchange(const fs::path& one, const fs::path& other) {
+  return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
+}
+
+}  // namespace
+
+DatasetFolder::DatasetFolder(const fs::path& folder, std::string writer)
+    : folder_(PlainPath(folder)), writer_(std::move(writer)), temporary_(Sibling(folder_, "new")) {
+  CheckReplaceable();
+  std::error_code error;
+  fs::create_directories(folder_.parent_path(), error);
+  fs::remove_all(temporary_, error);
+  if (!fs::create_directory(temporary_, error)) Refuse(folder_, "cannot be written");
+}
+
+DatasetFolder::~DatasetFolder() {
+  std::error_code ignored;
+  fs::remove_all(temporary_, ignored);
+}
+
+std::string DatasetFolder::Mark() const { return "<!-- Written by " + writer_; }
+
+void DatasetFolder::CheckReplaceable() const {
+  std::error_code error;
+  if (!Exists(folder_)) return;
+  if (!IsFolder(folder_)) Refuse(folder_, "is not a folder; expected one, or nothing");
+  std::ifstream readme(folder_ / "README.md");
+  std::string first_line;
+  std::getline(readme, first_line);
+  if (!fs::is_empty(folder_, error) && !first_line.starts_with(Mark())) {
+    Refuse(folder_,
+           fmt::format("is not empty and was not written by {}; expected a new folder", writer_));
+  }
+}
+
+void DatasetFolder::Write(const std::string& name, std::string_view bytes) const {
+  const fs::path path = temporary_ / name;
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw SettingsError(path.string() + ": cannot be written; is the disk full?");
+}
+
+void DatasetFolder::Commit() {
+  CheckInputsUnchanged();
+  CheckReplaceable();
+  if (const int error = SyncDiskOf(temporary_)) {
+    Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
+  }
+  if (!Exists(folder_) || !Exchange(temporary_, folder_)) Replace();
+  for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+    if (entry.is_regular_file()) RecordOutput(entry.path());
+  }
+}
+
+void DatasetFolder::Replace() {
+  const fs::path old = Sibling(folder_, "old");
+  std::error_code error;
+  const bool replaces = Exists(folder_);
+  if (replaces) fs::rename(folder_, old, error);
+  if (!error) fs::rename(temporary_, folder_, error);
+  if (error) {
+    const std::string why = "cannot be written: " + error.message();
+    if (replaces && !Exists(folder_)) fs::rename(old, folder_, error);
+    Refuse(folder_, why);
+  }
+  fs::remove_all(old, error);
+}
+
+}  // namespace soslam

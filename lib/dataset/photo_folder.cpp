@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/photo_folder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "base/error.h"
+#include "base/paths.h"
+#include "base/text.h"
+#include "dataset/text_file.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMaxPhotos = 5000;
+constexpr double kMaxFocalChange = 0.05;
+
+constexpr const char* kConversion =
+    "for f in *.HEIC; do heif-convert -q 95 \"$f\" \"$f.jpg\"; done (Debian's package "
+    "libheif-examples)";
+
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool HasNameOfImage(const fs::path& path) {
+  static const std::set<std::string> kExtensions = {".jpg",  ".jpeg", ".jpe", ".png",
+                                                    ".webp", ".bmp",  ".tif", ".tiff"};
+  return kExtensions.contains(LowerExtension(path));
+}
+
+// Image formats that are not read.
+bool HasNameOfOtherImage(const fs::path& path) {
+  static const std::set<std::string> kExtensions = {".heic", ".heif", ".avif", ".dng", ".cr2",
+                                                    ".cr3",  ".nef",  ".arw",  ".gif", ".jxl"};
+  return kExtensions.contains(LowerExtension(path));
+}
+
+bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+
+// The digits at `begin` without leading zeros; moves `begin` behind them.
+std::string_view TakeNumber(std::string_view text, size_t* begin) {
+  while (*begin < text.size() && text[*begin] == '0') ++*begin;
+  const size_t first = *begin;
+  while (*begin < text.size() && IsDigit(text[*begin])) ++*begin;
+  return text.substr(first, *begin - first);
+}
+
+// True if `one` comes before `other`, where numbers in names compare as numbers.
+bool IsNamedBefore(const std::string& one, const std::string& other) {
+  size_t i = 0, j = 0;
+  while (i < one.size() && j < other.size()) {
+    if (IsDigit(one[i]) && IsDigit(other[j])) {
+      const std::string_view number = TakeNumber(one, &i), other_number = TakeNumber(other, &j);
+      if (number.size() != other_number.size()) return number.size() < other_number.size();
+      if (number != other_number) return number < other_number;
+    } else if (one[i] != other[j]) {
+      return one[i] < other[j];
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+  const size_t rest = one.size() - i, other_rest = other.size() - j;
+  return rest != other_rest ? rest < other_rest : one < other;  // a007 after a7, in any folder
+}
+
+struct FilesOfFolder {
+  std::vector<fs::path> images;
+  std::vector<std::string> others;
+};
+
+FilesOfFolder FilesIn(const fs::path& folder) {
+  FilesOfFolder files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.')) continue;
+    const bool is_image = HasNameOfImage(entry->path()) || HasNameOfOtherImage(entry->path());
+    if (!is_image || !IsFile(entry->path())) {
+      files.others.push_back(name);
+    } else if (!IsUtf8(name)) {
+      throw InputError(fmt::format("{}: image '{}' has a name that is not UTF-8; rename it",
+                                   folder.string(), name));
+    } else {
+      files.images.push_back(entry->path());
+    }
+  }
+  if (error) {
+    throw InputError(
+        fmt::format("{}: its files cannot be listed: {}", folder.string(), error.message()));
+  }
+  std::ranges::sort(files.others);
+  std::ranges::sort(files.images, &IsNamedBefore,
+                    [](const fs::path& path) { return path.filename().string(); });
+  return files;
+}
+
+[[noreturn]] void RefuseFolder(const fs::path& folder, const FilesOfFolder& files) {
+  constexpr size_t kShown = 5;
+  const std::vector<std::string> shown(
+      files.others.begin(),
+      files.others.begin() + static_cast<std::ptrdiff_t>(std::min(kShown, files.others.size())));
+  throw InputError(fmt::format(
+      "{}: has {} image(s); expected at least 2 (JPEG, PNG, WebP, BMP or TIFF) of one scene, "
+      "directly in this folder; a video is given itself{}{}",
+      folder.string(), files.images.size(), shown.empty() ? "" : ". It also has ",
+      fmt::join(shown, ", ")));
+}
+
+ImageSize UprightSize(const Photo& photo) { return photo.header.Size(ImageOrientation::kUpright); }
+
+bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
+
+bool IsSameFocalLength(double one, double other) {
+  return std::abs(one - other) <= kMaxFocalChange * other;
+}
+
+// The focal length that most others are close to; of several the smallest.
+std::optional<double> CommonFocalLength(std::vector<double> focal_lengths) {
+  std::ranges::sort(focal_lengths);
+  std::optional<double> common;
+  std::ptrdiff_t most = 0;
+  for (const double focal : focal_lengths) {
+    const auto count = std::ranges::count_if(
+        focal_lengths, [&](double other) { return IsSameFocalLength(other, focal); });
+    if (count > most) {
+      most = count;
+      common = focal;
+    }
+  }
+  return common;
+}
+
+}  // namespace
+
+std::vector<Photo> ListPhotos(const fs::path& folder) {
+  if (!IsFolder(folder)) {
+    throw InputError(folder.string() + ": no such folder; expected a folder of photos");
+  }
+  const FilesOfFolder files = FilesIn(folder);
+  if (files.images.size() < 2) RefuseFolder(folder, files);
+  if (files.images.size() > kMaxPhotos) {
+    throw InputError(fmt::format("{}: has {} images; expected at most {}: give a part of them",
+                                 folder.string(), files.images.size(), kMaxPhotos));
+  }
+  std::vector<Photo> photos;
+  for (const fs::path& path : files.images) {
+    photos.push_back({path, ReadImageHeader(path).value_or(ImageHeader())});
+  }
+  return photos;
+}
+
+CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& photos) {
+  std::map<std::pair<std::int64_t, std::int64_t>, int> counts;
+  for (const Photo& photo : photos) {
+    const ImageSize size = UprightSize(photo);
+    if (HasHeader(photo)) ++counts[{size.width, size.height}];
+  }
+  if (counts.empty()) {
+    const bool are_heif = std::ranges::any_of(
+        photos, [](const Photo& photo) { return HasNameOfOtherImage(photo.path); });
+    throw InputError(fmt::format(
+        "{}: none of its {} images can be read, as {}; expected JPEG, PNG, WebP, BMP or TIFF{}{}",
+        folder.string(), photos.size(), photos.front().path.filename().string(),
+        are_heif ? ": convert HEIC with " : "", are_heif ? kConversion : ""));
+  }
+  const auto most =
+      std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+  CommonCamera common{{most->first.first, most->first.second}, std::nullopt};
+  std::vector<double> focal_lengths;
+  for (const Photo& photo : photos) {
+    const auto& focal = photo.header.focal_over_diagonal;
+    if (focal && !FindOtherCamera(photo, common)) focal_lengths.push_back(*focal);
+  }
+  common.focal_over_diagonal = CommonFocalLength(std::move(focal_lengths));
+  return common;
+}
+
+std::optional<OtherCamera> FindOtherCamera(const Photo& photo, const CommonCamera& common) {
+  if (!HasHeader(photo)) return std::nullopt;
+  const ImageSize size = UprightSize(photo);
+  if (size.width != common.size.width || size.height != common.size.height) {
+    return OtherCamera{FrameRejection::kOtherSize,
+                       fmt::format("{} x {} px, not {} x {}", size.width, size.height,
+                                   common.size.width, common.size.height)};
+  }
+  const auto& focal = photo.header.focal_over_diagonal;
+  if (!focal || !common.focal_over_diagonal ||
+      IsSameFocalLength(*focal, *common.focal_over_diagonal)) {
+    return std::nullopt;
+  }
+  const double diagonal =
+      std::hypot(static_cast<double>(size.width), static_cast<double>(size.height));
+  return OtherCamera{FrameRejection::kOtherFocalLength,
+                     fmt::format("{:.0f} px, not {:.0f}", *focal * diagonal,
+                                 *common.focal_over_diagonal * diagonal)};
+}
+
+}  // namespace soslam

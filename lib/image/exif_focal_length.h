@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "image/image_format.h"
+
+namespace soslam {
+
+// The focal length in EXIF data over the diagonal of the image, which has `stored` pixels: a guess,
+// as cameras round it. From FocalLengthIn35mmFilm, otherwise from FocalLength and the resolution of
+// the sensor. None if the data have neither, an absurd one, or one of an image that was cropped
+// since.
+std::optional<double> ExifFocalOverDiagonal(std::string_view exif, const ImageSize& stored);
+
+}  // namespace soslam

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <map>
+
+#include "artefact/json_file.h"
+#include "inspection/inspection.h"
+
+// Chosen frames: rows are the images of the dataset.
+
+namespace soslam {
+
+Inspection InspectFrames(const std::filesystem::path& file) {
+  using nlohmann::json;
+  return ReadArtefactAs(file, "frames", [](const json& document) {
+    std::map<std::string, int> reasons;
+    for (const json& frame : document.at("left_out")) ++reasons[frame.at("reason")];
+    const json& hint = document.at("focal_hint");
+    Inspection inspection;
+    inspection.facts = {
+        {"source", document.at("name")},
+        {"images", fmt::format("{}, {} x {} px", document.at("frames").size(),
+                               document.at("width").get<int>(), document.at("height").get<int>())},
+        {"left out", CountsInWords(reasons)},
+        {"focal length",
+         hint.is_null()
+             ? "not known"
+             : FillIn("{focal_px:.0f} px, a guess from the EXIF data of {images} photos", hint)}};
+    inspection.table.columns = {
+        {"image", ""}, {"source", ""}, {"frame", ""}, {"time", "s", 3}, {"sharpness", "", 1}};
+    for (const json& frame : document.at("frames")) {
+      inspection.table.rows.push_back({frame.at("image"), frame.at("source"),
+                                       frame.at("frame_number"), frame.at("time_s"),
+                                       frame.at("sharpness")});
+    }
+    return inspection;
+  });
+}
+
+}  // namespace soslam

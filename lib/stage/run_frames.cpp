@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "artefact/dataset_folder.h"
+#include "artefact/frames_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/paths.h"
+#include "base/progress.h"
+#include "base/text.h"
+#include "cli/command_line.h"
+#include "dataset/photo_folder.h"
+#include "image/read_image.h"
+#include "image/video_file.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is in the folder beside the images.
+constexpr std::array kFiles = {"README.md", "rgb.txt", "frames.json", "run.json", "timing.json"};
+
+bool IsDone(const SourceFrame& frame) { return frame.rejection.has_value(); }
+
+// Files that others put into the folder would be lost with it.
+void RefuseFilesOfOthers(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "rgb" || std::ranges::find(kFiles, name) != kFiles.end()) continue;
+    throw SettingsError(fmt::format(
+        "{}: has {}, which would be lost; expected a new folder, or one with the files of "
+        "soslam-frames only",
+        folder.string(), name));
+  }
+}
+
+// Applies the choice to all frames that have no rejection yet; `reasons` are for these, in order.
+void Reject(const std::vector<std::optional<FrameRejection>>& reasons,
+            std::vector<SourceFrame>* frames) {
+  auto reason = reasons.begin();
+  for (SourceFrame& frame : *frames) {
+    if (!IsDone(frame)) frame.rejection = *reason++;
+  }
+}
+
+// Gives each chosen frame the name of its image.
+void NameImages(const std::vector<std::string>& extensions, std::vector<SourceFrame>* frames) {
+  int count = 0;
+  for (size_t i = 0; i < frames->size(); ++i) {
+    if (IsDone((*frames)[i])) continue;
+    (*frames)[i].image = fmt::format("rgb/{:06}{}", count++, extensions[i]);
+  }
+}
+
+cv::Size SizeWithin(const cv::Size& size, int max_image_px) {
+  const double scale = static_cast<double>(max_image_px) / std::max(size.width, size.height);
+  if (scale >= 1.0) return size;
+  return {std::max(1, cvRound(scale * size.width)), std::max(1, cvRound(scale * size.height))};
+}
+
+void WriteJpeg(cv::Mat image, int max_image_px, const std::string& name,
+               const DatasetFolder& output) {
+  constexpr int kQuality = 95;
+  const cv::Size size = SizeWithin(image.size(), max_image_px);
+  if (size != image.size()) {
+    cv::Mat scaled;
+    cv::resize(image, scaled, size, 0, 0, cv::INTER_AREA);
+    image = scaled;
+  }
+  std::vector<uchar> bytes;
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  output.Write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+// Frames with what was chosen from, before any is written.
+struct Chosen {
+  FramesRecord record;
+  std::vector<fs::path> inputs;
+};
+
+std::map<std::string, int> CountRejections(const std::vector<SourceFrame>& frames) {
+  std::map<std::string, int> counts;
+  for (const SourceFrame& frame : frames) {
+    if (frame.rejection) ++counts[kFrameRejectionNames[static_cast<size_t>(*frame.rejection)]];
+  }
+  return counts;
+}
+
+void CheckEnough(const FramesRecord& record, const fs::path& images) {
+  const auto left_out = std::ranges::count_if(record.frames, IsDone);
+  if (std::ssize(record.frames) - left_out >= 2) return;
+  throw NothingUsableError(fmt::format(
+      "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
+      "camera sideways, not only turn it",
+      images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
+      CountsText(CountRejections(record.frames))));
+}
+
+// Photos.
+
+void MeasurePhoto(const Photo& photo, SourceFrame* frame, FrameView* view) {
+  try {
+    *view = ViewOf(ReadGreyImage(photo.path));
+    frame->sharpness = view->sharpness;
+  } catch (const InputError& error) {
+    const std::string message = error.what(), place = photo.path.string() + ": ";
+    frame->rejection = FrameRejection::kUnreadable;
+    frame->detail = OneLine(message.starts_with(place) ? message.substr(place.size()) : message);
+  }
+}
+
+bool IsCopied(const Photo& photo, int max_image_px) {
+  const ImageSize& size = photo.header.stored;
+  return photo.header.orientation == 1 && std::max(size.width, size.height) <= max_image_px;
+}
+
+std::string ExtensionOf(const Photo& photo, int max_image_px) {
+  if (!IsCopied(photo, max_image_px)) return ".jpg";
+  std::string extension = photo.path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
+                const DatasetFolder& output) {
+  if (!IsCopied(photo, max_image_px)) {
+    return WriteJpeg(ReadColourImage(photo.path), max_image_px, name, output);
+  }
+  std::ifstream stream(photo.path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw InputError(photo.path.string() + ": cannot be read");
+  output.Write(name, bytes);
+}
+
+std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& record,
+                                const std::vector<Photo>& photos) {
+  int count = 0;
+  for (size_t i = 0; i < photos.size(); ++i) {
+    count += !IsDone(record.frames[i]) && photos[i].header.focal_over_diagonal ? 1 : 0;
+  }
+  if (count == 0) return std::nullopt;
+  return FocalHint{*camera.focal_over_diagonal * std::hypot(record.width, record.height), count};
+}
+
+Chosen ChoosePhotos(const FrameOptions& options, const fs::path& folder, int threads,
+                    std::vector<Photo>* photos) {
+  *photos = ListPhotos(folder);
+  const CommonCamera camera = FindCommonCamera(folder, *photos);
+  Chosen chosen;
+  chosen.record.name = PlainPath(folder).filename().string();
+  std::vector<SourceFrame>& frames = chosen.record.frames;
+  for (const Photo& photo : *photos) {
+    frames.push_back({photo.path.filename().string(), {}, {}, {}, {}});
+    if (const auto other = FindOtherCamera(photo, camera)) {
+      frames.back().rejection = other->reason;
+      frames.back().detail = other->detail;
+    }
+  }
+  std::vector<FrameView> views(photos->size());
+  ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int index) {
+    const auto i = static_cast<size_t>(index);
+    if (!IsDone(frames[i])) MeasurePhoto((*photos)[i], &frames[i], &views[i]);
+  });
+  FrameSelector selector(options);
+  for (size_t i = 0; i < views.size(); ++i) {
+    if (IsDone(frames[i])) continue;
+    selector.Add(std::move(views[i]));
+    chosen.inputs.push_back((*photos)[i].path);
+  }
+  Reject(selector.Choose(), &frames);
+  const cv::Size size =
+      SizeWithin({static_cast<int>(camera.size.width), static_cast<int>(camera.size.height)},
+                 options.max_image_px);
+  chosen.record.width = size.width;
+  chosen.record.height = size.height;
+  chosen.record.focal_hint = HintOf(camera, chosen.record, *photos);
+  std::vector<std::string> extensions;
+  for (const Photo& photo : *photos) {
+    extensions.push_back(ExtensionOf(photo, options.max_image_px));
+  }
+  NameImages(extensions, &frames);
+  return chosen;
+}
+
+// Videos.
+
+Chosen ChooseFromVideo(const FrameOptions& options, const fs::path& path, bool* is_cut_short) {
+  VideoReader video(path);
+  const int announced = video.announced_frames();
+  Chosen chosen;
+  chosen.record.name = path.filename().string();
+  chosen.inputs = {path};
+  std::vector<SourceFrame>& frames = chosen.record.frames;
+  FrameSelector selector(options);
+  Progress progress("frames", announced > 0 ? announced : Progress::kUnknownCount);
+  cv::Mat grey;
+  for (; video.Next(); progress.Step()) {
+    cv::cvtColor(video.image(), grey, cv::COLOR_BGR2GRAY);
+    const FrameView view = ViewOf(grey);
+    selector.Add(view);
+    frames.push_back(
+        {chosen.record.name, static_cast<int>(frames.size()), video.time_s(), view.sharpness, {}});
+    const cv::Size size = SizeWithin(grey.size(), options.max_image_px);
+    chosen.record.width = size.width;
+    chosen.record.height = size.height;
+  }
+  *is_cut_short = 10 * std::ssize(frames) < 9 * static_cast<std::ptrdiff_t>(announced);
+  Reject(selector.Choose(), &frames);
+  NameImages(std::vector<std::string>(frames.size(), ".jpg"), &frames);
+  return chosen;
+}
+
+void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_image_px,
+                      const DatasetFolder& output) {
+  VideoReader video(path);
+  for (const SourceFrame& frame : record.frames) {
+    if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
+    if (!IsDone(frame)) WriteJpeg(video.image(), max_image_px, frame.image, output);
+  }
+}
+
+// Both.
+
+// The likely cause and the remedy where much is left out for one reason.
+struct Advice {
+  FrameRejection reason;
+  const char* cause;
+  const char* remedy;
+};
+constexpr std::array kAdvice = {
+    Advice{FrameRejection::kUnreadable, "files of another format, or copied incompletely",
+           "convert them to JPEG, or copy them again"},
+    Advice{FrameRejection::kOtherSize, "photos of several cameras, or upright ones among others",
+           "take all photos with one camera that is held in one way"},
+    Advice{FrameRejection::kOtherFocalLength, "a zoom, or several lenses of one telephone",
+           "take all photos with one lens, without zoom"},
+    Advice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
+           "move more slowly, with more light; or lower min_sharpness"}};
+
+std::vector<Finding> FindingsOf(const FramesRecord& record, bool is_cut_short) {
+  constexpr int kFewest = 6;
+  std::vector<Finding> findings;
+  const int all = static_cast<int>(record.frames.size());
+  const auto counts = CountRejections(record.frames);
+  for (const Advice& advice : kAdvice) {
+    const std::string name = kFrameRejectionNames[static_cast<size_t>(advice.reason)];
+    const auto found = counts.find(name);
+    if (found == counts.end() || all < kFewest || 3 * found->second <= all) continue;
+    findings.push_back({"frames_" + name, Severity::kWarning,
+                        fmt::format("{} of {} images are left out as {}", found->second, all, name),
+                        "at most a third left out for one reason", advice.cause, advice.remedy});
+  }
+  if (is_cut_short) {
+    findings.push_back(
+        {"video_cut_short", Severity::kWarning,
+         fmt::format("{}: {} frames can be decoded, fewer than it announces", record.name, all),
+         "all frames", "a file that was copied or recorded incompletely", "copy it again"});
+  }
+  return findings;
+}
+
+std::string ImageListText(const std::vector<SourceFrame>& frames) {
+  std::string text = "# timestamp filename\n";
+  int count = 0;
+  for (const SourceFrame& frame : frames) {
+    if (IsDone(frame)) continue;
+    text += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
+    ++count;
+  }
+  return text;
+}
+
+std::string ReadmeText(const DatasetFolder& output) {
+  return output.Mark() +
+         "; the next run into this folder replaces it. -->\n\n"
+         "Images that were chosen from photos or a video: `rgb/`, listed in `rgb.txt` in the "
+         "order\n"
+         "in which they were taken; times are seconds for videos, and count from 0 for photos.\n"
+         "`frames.json` says where each image comes from, and what was left out, and why. Its\n"
+         "`focal_hint` is no calibration.\n";
+}
+
+}  // namespace
+
+void RunFrames(const FrameOptions& options, const StageFiles& files, int threads) {
+  const fs::path &images = files.at("images"), &folder = files.at("output");
+  DatasetFolder output(folder, "soslam-frames");
+  RefuseFilesOfOthers(folder);
+  std::vector<Photo> photos;
+  bool is_cut_short = false;
+  const bool is_video = !IsFolder(images);
+  const Chosen chosen = is_video ? ChooseFromVideo(options, images, &is_cut_short)
+                                 : ChoosePhotos(options, images, threads, &photos);
+  const FramesRecord& record = chosen.record;
+  CheckEnough(record, images);
+  const std::vector<Finding> findings = FindingsOf(record, is_cut_short);
+  ReportFindings("frames", findings);
+  fs::create_directory(output.Temporary() / "rgb");
+  if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
+  ParallelFor("images", static_cast<int>(photos.size()), threads, [&](int index) {
+    const auto i = static_cast<size_t>(index);
+    if (IsDone(record.frames[i])) return;
+    WritePhoto(photos[i], options.max_image_px, record.frames[i].image, output);
+  });
+  output.Write("README.md", ReadmeText(output));
+  output.Write("rgb.txt", ImageListText(record.frames));
+  output.Write("frames.json", FramesText(folder / "frames.json", record,
+                                         {OptionsToJson(options), chosen.inputs, findings}));
+  output.Commit();
+  const auto counts = CountRejections(record.frames);
+  const auto left_out = std::ranges::count_if(record.frames, IsDone);
+  fmt::print("{}: {} of {} images chosen, {} x {} px; left out: {}\n", record.name,
+             std::ssize(record.frames) - left_out, record.frames.size(), record.width,
+             record.height, counts.empty() ? "none" : CountsText(counts));
+}
+
+}  // namespace soslam

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command_line.h"
+#include "stage/run_frames.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::FrameOptions>(
+      argc, argv,
+      {.name = "soslam-frames",
+       .purpose = "Chooses sharp images with motion between them from photos or a video.",
+       .inputs = {{"images", "folder of photos, or a video"}},
+       .outputs = {{"output",
+                    "dataset folder to write: rgb/, rgb.txt, and frames.json, which says what was "
+                    "left out, and why",
+                    true, false, true}},
+       .example = "soslam-frames --images \"holiday photos\" --output data/my_room"},
+      &soslam::RunFrames);
+}

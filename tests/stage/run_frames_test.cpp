@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_frames.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "artefact/json_file.h"
+#include "image/read_image.h"
+#include "support/drawn_photos.h"
+#include "support/expect_error.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class RunFramesTest : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directory(photos_); }
+
+  json Run(const fs::path& images, const FrameOptions& options = {}, int threads = 2) {
+    RunFrames(options, {{"images", images}, {"output", output_}}, threads);
+    return ReadArtefact(output_ / "frames.json", "frames");
+  }
+  void AddViews(int count) {
+    for (int i = 0; i < count; ++i) {
+      WritePhoto(photos_ / ("view " + std::to_string(i) + ".jpg"), DrawnView(20 * i));
+    }
+  }
+  // The reason for which each source was left out.
+  static std::map<std::string, std::string> LeftOut(const json& frames) {
+    std::map<std::string, std::string> reasons;
+    for (const json& frame : frames.at("left_out")) {
+      reasons[frame.at("source")] = frame.at("reason");
+    }
+    return reasons;
+  }
+
+  TemporaryFolder temporary_;
+  fs::path photos_ = temporary_ / "my photos' $x";
+  fs::path output_ = temporary_ / "room";
+};
+
+TEST_F(RunFramesTest, PhotosThatNeedNoChangeAreCopied) {
+  AddViews(3);
+  const json frames = Run(photos_);
+  ASSERT_EQ(frames.at("frames").size(), 3u);
+  EXPECT_EQ(frames.at("name"), "my photos' $x");
+  EXPECT_EQ(frames.at("frames")[1].at("source"), "view 1.jpg");
+  EXPECT_EQ(frames.at("frames")[1].at("image"), "rgb/000001.jpg");
+  EXPECT_TRUE(frames.at("focal_hint").is_null());
+  EXPECT_EQ(FileBytes(output_ / "rgb/000001.jpg"), FileBytes(photos_ / "view 1.jpg"));
+  EXPECT_EQ(FileBytes(output_ / "rgb.txt"),
+            "# timestamp filename\n0 rgb/000000.jpg\n1 rgb/000001.jpg\n2 rgb/000002.jpg\n");
+}
+
+TEST_F(RunFramesTest, LargePhotosAreTurnedUprightAndScaledDown) {
+  for (int i = 0; i < 2; ++i) {
+    cv::Mat image = DrawnView(40 * i, {200, 100});
+    image(cv::Rect(0, 0, 20, 20)).setTo(cv::Scalar(255, 255, 255));
+    WritePhoto(photos_ / (std::to_string(i) + ".jpg"), image, ExifOfCamera(6, 26));
+  }
+  FrameOptions options;
+  options.max_image_px = 100;
+  const json frames = Run(photos_, options);
+  EXPECT_EQ(frames.at("width"), 50);
+  EXPECT_EQ(frames.at("height"), 100);
+  EXPECT_EQ(frames.at("focal_hint").at("images"), 2);
+  EXPECT_NEAR(frames.at("focal_hint").at("focal_px").get<double>(),
+              26.0 / 43.267 * std::hypot(50.0, 100.0), 1e-9);
+  const cv::Mat image = ReadGreyImage(output_ / "rgb/000000.jpg", ImageOrientation::kStored);
+  EXPECT_EQ(image.size(), cv::Size(50, 100));
+  EXPECT_GT(cv::mean(image(cv::Rect(42, 2, 6, 6)))[0], 240.0) << "the corner is at the top right";
+  EXPECT_EQ(ReadImageHeader(output_ / "rgb/000000.jpg")->orientation, 1);
+}
+
+TEST_F(RunFramesTest, SaysWhatIsLeftOut) {
+  AddViews(6);
+  WritePhoto(photos_ / "view 2.jpg", Blurred(DrawnView(40)));
+  WritePhoto(photos_ / "view 6.jpg", DrawnView(100));
+  WritePhoto(photos_ / "view 7.jpg", DrawnView(0, {100, 100}));
+  WriteBytes(photos_ / "view 8.jpg", FileBytes(photos_ / "view 0.jpg").substr(0, 2000));
+  WriteBytes(photos_ / "view 9.heic", "HEIC");
+  const json frames = Run(photos_);
+  EXPECT_EQ(frames.at("frames").size(), 5u);
+  EXPECT_THAT(LeftOut(frames),
+              testing::UnorderedElementsAre(testing::Pair("view 2.jpg", "blurred"),
+                                            testing::Pair("view 6.jpg", "no_motion"),
+                                            testing::Pair("view 7.jpg", "other_size"),
+                                            testing::Pair("view 8.jpg", "unreadable"),
+                                            testing::Pair("view 9.heic", "unreadable")));
+  for (const json& frame : frames.at("left_out")) {
+    EXPECT_THAT(frame.at("detail").get<std::string>(),
+                testing::Not(testing::HasSubstr(temporary_.path().string())));
+  }
+  EXPECT_FALSE(frames.contains("findings"));
+}
+
+TEST_F(RunFramesTest, MuchThatIsLeftOutIsAFinding) {
+  AddViews(4);
+  for (int i = 0; i < 3; ++i) WriteBytes(photos_ / (std::to_string(i) + ".jpg"), "damaged");
+  const json findings = Run(photos_).at("findings");
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].at("check"), "frames_unreadable");
+  EXPECT_THAT(findings[0].at("found").get<std::string>(), testing::HasSubstr("3 of 7 images"));
+}
+
+TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
+  std::vector<cv::Mat> views;
+  for (int i = 0; i < 30; ++i) views.push_back(DrawnView(10 * (i / 3)));  // each three times
+  const fs::path video = temporary_ / "my video.avi";
+  WriteVideo(video, views);
+  const json frames = Run(video);
+  ASSERT_EQ(frames.at("frames").size(), 10u);
+  EXPECT_EQ(frames.at("left_out").size(), 20u);
+  for (int i = 0; i < 10; ++i) {
+    const json& frame = frames.at("frames")[static_cast<size_t>(i)];
+    const int number = frame.at("frame_number");
+    EXPECT_EQ(number / 3, i);
+    EXPECT_NEAR(frame.at("time_s").get<double>(), 0.1 * number, 1e-6);
+    const cv::Mat image = ReadColourImage(output_ / frame.at("image").get<std::string>());
+    EXPECT_LT(cv::norm(image, DrawnView(10 * i), cv::NORM_L1) / (3 * 320 * 240), 12.0);
+  }
+}
+
+TEST_F(RunFramesTest, SameBytesForAnyNumberOfThreads) {
+  AddViews(5);
+  FrameOptions options;
+  options.max_image_px = 200;
+  Run(photos_, options, 1);
+  const std::string frames = FileBytes(output_ / "frames.json");
+  const std::string image = FileBytes(output_ / "rgb/000003.jpg");
+  Run(photos_, options, 3);
+  EXPECT_EQ(FileBytes(output_ / "frames.json"), frames);
+  EXPECT_EQ(FileBytes(output_ / "rgb/000003.jpg"), image);
+}
+
+TEST_F(RunFramesTest, ADatasetIsReplacedUnlessItHasFilesOfOthers) {
+  AddViews(3);
+  Run(photos_);
+  fs::remove(photos_ / "view 0.jpg");
+  EXPECT_EQ(Run(photos_).at("frames").size(), 2u);
+  EXPECT_FALSE(fs::exists(output_ / "rgb/000002.jpg"));
+  WriteBytes(output_ / "detections.csv", "by hand");
+  ExpectError<SettingsError>([&] { Run(photos_); }, {output_.string(), "detections.csv", "lost"});
+  EXPECT_EQ(FileBytes(output_ / "detections.csv"), "by hand");
+}
+
+TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
+  WritePhoto(photos_ / "1.jpg", DrawnView(0));
+  ExpectError<InputError>([&] { Run(photos_); }, {photos_.string(), "has 1 image(s)"});
+  WritePhoto(photos_ / "2.jpg", DrawnView(0));
+  ExpectError<NothingUsableError>([&] { Run(photos_); },
+                                  {photos_.string(), "1 of 2 images", "no_motion 1"});
+  ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); }, {"1.jpg", "is no video"});
+  EXPECT_EQ(std::distance(fs::directory_iterator(temporary_.path()), {}), 1) << "nothing is left";
+}
+
+}  // namespace
+}  // namespace soslam
