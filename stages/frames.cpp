@@ -7,7 +7,11 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "soslam-frames",
        .purpose = "Chooses sharp images with motion between them from photos or a video.",
-       .inputs = {{"images", "folder of photos, or a video"}},
+       .inputs = {{"images", "folder of photos, or a video"},
+                  {"detections",
+                   "detections.csv for all of them, whose frames are numbered from 0 in the order "
+                   "of names or of the video; those of chosen images are written",
+                   false}},
        .outputs = {{"output",
                     "dataset folder to write: rgb/, rgb.txt, and frames.json, which says what was "
                     "left out, and why",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "image/image_format.h"
@@ -13,5 +14,9 @@ namespace soslam {
 // the sensor. None if the data have neither, an absurd one, or one of an image that was cropped
 // since.
 std::optional<double> ExifFocalOverDiagonal(std::string_view exif, const ImageSize& stored);
+
+// A segment of a JPEG file with EXIF data that have this focal length only, rounded to a millimetre
+// of 35 mm film.
+std::string FocalLengthSegment(double focal_over_diagonal);
 
 }  // namespace soslam

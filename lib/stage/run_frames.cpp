@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +13,9 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,7 +27,10 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/command_line.h"
+#include "dataset/chosen_boxes.h"
+#include "dataset/labelled_box.h"
 #include "dataset/photo_folder.h"
+#include "image/exif_focal_length.h"
 #include "image/read_image.h"
 #include "image/video_file.h"
 
@@ -36,18 +42,31 @@ namespace fs = std::filesystem;
 // What is in the folder beside the images.
 constexpr std::array kFiles = {"README.md", "rgb.txt", "frames.json", "run.json", "timing.json"};
 
-bool IsDone(const SourceFrame& frame) { return frame.rejection.has_value(); }
+bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
+
+// First line of detections.csv.
+constexpr std::string_view kBoxesMark = "# Written by soslam-frames";
+
+bool IsOwnFile(const fs::path& path) {
+  const std::string name = path.filename().string();
+  std::string first_line;
+  if (name == "detections.csv") {
+    std::ifstream stream(path);
+    std::getline(stream, first_line);
+  }
+  return name == "rgb" || std::ranges::find(kFiles, name) != kFiles.end() ||
+         first_line.starts_with(kBoxesMark);
+}
 
 // Files that others put into the folder would be lost with it.
 void RefuseFilesOfOthers(const fs::path& folder) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name == "rgb" || std::ranges::find(kFiles, name) != kFiles.end()) continue;
+    if (IsOwnFile(entry.path())) continue;
     throw SettingsError(fmt::format(
         "{}: has {}, which would be lost; expected a new folder, or one with the files of "
         "soslam-frames only",
-        folder.string(), name));
+        folder.string(), entry.path().filename().string()));
   }
 }
 
@@ -56,16 +75,35 @@ void Reject(const std::vector<std::optional<FrameRejection>>& reasons,
             std::vector<SourceFrame>* frames) {
   auto reason = reasons.begin();
   for (SourceFrame& frame : *frames) {
-    if (!IsDone(frame)) frame.rejection = *reason++;
+    if (!IsLeftOut(frame)) frame.rejection = *reason++;
   }
 }
 
-// Gives each chosen frame the name of its image.
+// The stem with letters, digits and ._- only, which every program can read.
+std::string PlainStem(const std::string& name) {
+  std::string stem = fs::path(name).stem().string();
+  for (char& character : stem) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(character)) != 0 ||
+                          character == '.' || character == '-';
+    if (!is_plain) character = '_';
+  }
+  if (stem.front() == '-') stem.front() = '_';
+  return stem;
+}
+
+// Gives each chosen frame a name of its own, that of its photo where it is plain.
 void NameImages(const std::vector<std::string>& extensions, std::vector<SourceFrame>* frames) {
-  int count = 0;
+  std::set<std::string> stems;
   for (size_t i = 0; i < frames->size(); ++i) {
-    if (IsDone((*frames)[i])) continue;
-    (*frames)[i].image = fmt::format("rgb/{:06}{}", count++, extensions[i]);
+    SourceFrame& frame = (*frames)[i];
+    if (IsLeftOut(frame)) continue;
+    const std::string plain =
+        frame.frame_number ? fmt::format("{:06}", *frame.frame_number) : PlainStem(frame.source);
+    std::string stem = plain;
+    for (int count = 2; !stems.insert(stem).second; ++count) {
+      stem = fmt::format("{}_{}", plain, count);
+    }
+    frame.image = "rgb/" + stem + extensions[i];
   }
 }
 
@@ -75,8 +113,9 @@ cv::Size SizeWithin(const cv::Size& size, int max_image_px) {
   return {std::max(1, cvRound(scale * size.width)), std::max(1, cvRound(scale * size.height))};
 }
 
-void WriteJpeg(cv::Mat image, int max_image_px, const std::string& name,
-               const DatasetFolder& output) {
+// `focal_over_diagonal`, if known, becomes part of the file, where reconstructions look for it.
+void WriteJpeg(cv::Mat image, int max_image_px, const std::optional<double>& focal_over_diagonal,
+               const std::string& name, const DatasetFolder& output) {
   constexpr int kQuality = 95;
   const cv::Size size = SizeWithin(image.size(), max_image_px);
   if (size != image.size()) {
@@ -86,14 +125,24 @@ void WriteJpeg(cv::Mat image, int max_image_px, const std::string& name,
   }
   std::vector<uchar> bytes;
   cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  output.Write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  std::string jpeg(bytes.begin(), bytes.end());
+  constexpr size_t kAfterStart = 2;
+  if (focal_over_diagonal) jpeg.insert(kAfterStart, FocalLengthSegment(*focal_over_diagonal));
+  output.Write(name, jpeg);
 }
 
 // Frames with what was chosen from, before any is written.
 struct Chosen {
   FramesRecord record;
+  cv::Size source_size;  // of the images that were chosen from, upright
   std::vector<fs::path> inputs;
 };
+
+void SetSize(int max_image_px, Chosen* chosen) {
+  const cv::Size size = SizeWithin(chosen->source_size, max_image_px);
+  chosen->record.width = size.width;
+  chosen->record.height = size.height;
+}
 
 std::map<std::string, int> CountRejections(const std::vector<SourceFrame>& frames) {
   std::map<std::string, int> counts;
@@ -104,7 +153,7 @@ std::map<std::string, int> CountRejections(const std::vector<SourceFrame>& frame
 }
 
 void CheckEnough(const FramesRecord& record, const fs::path& images) {
-  const auto left_out = std::ranges::count_if(record.frames, IsDone);
+  const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   if (std::ssize(record.frames) - left_out >= 2) return;
   throw NothingUsableError(fmt::format(
       "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
@@ -142,7 +191,8 @@ std::string ExtensionOf(const Photo& photo, int max_image_px) {
 void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
                 const DatasetFolder& output) {
   if (!IsCopied(photo, max_image_px)) {
-    return WriteJpeg(ReadColourImage(photo.path), max_image_px, name, output);
+    return WriteJpeg(ReadColourImage(photo.path), max_image_px, photo.header.focal_over_diagonal,
+                     name, output);
   }
   std::ifstream stream(photo.path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
@@ -154,7 +204,7 @@ std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& 
                                 const std::vector<Photo>& photos) {
   int count = 0;
   for (size_t i = 0; i < photos.size(); ++i) {
-    count += !IsDone(record.frames[i]) && photos[i].header.focal_over_diagonal ? 1 : 0;
+    count += !IsLeftOut(record.frames[i]) && photos[i].header.focal_over_diagonal ? 1 : 0;
   }
   if (count == 0) return std::nullopt;
   return FocalHint{*camera.focal_over_diagonal * std::hypot(record.width, record.height), count};
@@ -177,20 +227,17 @@ Chosen ChoosePhotos(const FrameOptions& options, const fs::path& folder, int thr
   std::vector<FrameView> views(photos->size());
   ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
-    if (!IsDone(frames[i])) MeasurePhoto((*photos)[i], &frames[i], &views[i]);
+    if (!IsLeftOut(frames[i])) MeasurePhoto((*photos)[i], &frames[i], &views[i]);
   });
   FrameSelector selector(options);
   for (size_t i = 0; i < views.size(); ++i) {
-    if (IsDone(frames[i])) continue;
+    if (IsLeftOut(frames[i])) continue;
     selector.Add(std::move(views[i]));
     chosen.inputs.push_back((*photos)[i].path);
   }
   Reject(selector.Choose(), &frames);
-  const cv::Size size =
-      SizeWithin({static_cast<int>(camera.size.width), static_cast<int>(camera.size.height)},
-                 options.max_image_px);
-  chosen.record.width = size.width;
-  chosen.record.height = size.height;
+  chosen.source_size = {static_cast<int>(camera.size.width), static_cast<int>(camera.size.height)};
+  SetSize(options.max_image_px, &chosen);
   chosen.record.focal_hint = HintOf(camera, chosen.record, *photos);
   std::vector<std::string> extensions;
   for (const Photo& photo : *photos) {
@@ -218,10 +265,9 @@ Chosen ChooseFromVideo(const FrameOptions& options, const fs::path& path, bool* 
     selector.Add(view);
     frames.push_back(
         {chosen.record.name, static_cast<int>(frames.size()), video.time_s(), view.sharpness, {}});
-    const cv::Size size = SizeWithin(grey.size(), options.max_image_px);
-    chosen.record.width = size.width;
-    chosen.record.height = size.height;
+    chosen.source_size = grey.size();
   }
+  SetSize(options.max_image_px, &chosen);
   *is_cut_short = 10 * std::ssize(frames) < 9 * static_cast<std::ptrdiff_t>(announced);
   Reject(selector.Choose(), &frames);
   NameImages(std::vector<std::string>(frames.size(), ".jpg"), &frames);
@@ -233,7 +279,7 @@ void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_
   VideoReader video(path);
   for (const SourceFrame& frame : record.frames) {
     if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
-    if (!IsDone(frame)) WriteJpeg(video.image(), max_image_px, frame.image, output);
+    if (!IsLeftOut(frame)) WriteJpeg(video.image(), max_image_px, {}, frame.image, output);
   }
 }
 
@@ -281,11 +327,35 @@ std::string ImageListText(const std::vector<SourceFrame>& frames) {
   std::string text = "# timestamp filename\n";
   int count = 0;
   for (const SourceFrame& frame : frames) {
-    if (IsDone(frame)) continue;
+    if (IsLeftOut(frame)) continue;
     text += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
     ++count;
   }
   return text;
+}
+
+// The text of detections.csv: the boxes of the chosen images. Prints how many they are.
+std::string BoxesText(const fs::path& path, const Chosen& chosen) {
+  std::vector<std::optional<int>> rows;
+  int row = 0;
+  for (const SourceFrame& frame : chosen.record.frames) {
+    rows.push_back(IsLeftOut(frame) ? std::nullopt : std::optional(row++));
+  }
+  const std::vector<LabelledBox> boxes = ReadDetectionsCsv(path);
+  const ChosenBoxes of_chosen = BoxesOfChosen(
+      boxes, rows, static_cast<double>(chosen.record.width) / chosen.source_size.width,
+      static_cast<double>(chosen.record.height) / chosen.source_size.height);
+  if (of_chosen.boxes.empty()) {
+    throw InputError(fmt::format(
+        "{}: none of its {} boxes is of a chosen image; expected as `frame` the number of the "
+        "image, from 0, in the order of their names or of the video",
+        path.string(), boxes.size()));
+  }
+  fmt::print("{}: {} boxes of chosen images, {} of images that were left out, {} of others\n",
+             path.filename().string(), of_chosen.boxes.size(), of_chosen.left_out,
+             of_chosen.unknown);
+  return fmt::format("{} from {}\n{}", kBoxesMark, OneLine(path.filename().string()),
+                     LabelledBoxesText(of_chosen.boxes));
 }
 
 std::string ReadmeText(const DatasetFolder& output) {
@@ -307,8 +377,8 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   std::vector<Photo> photos;
   bool is_cut_short = false;
   const bool is_video = !IsFolder(images);
-  const Chosen chosen = is_video ? ChooseFromVideo(options, images, &is_cut_short)
-                                 : ChoosePhotos(options, images, threads, &photos);
+  Chosen chosen = is_video ? ChooseFromVideo(options, images, &is_cut_short)
+                           : ChoosePhotos(options, images, threads, &photos);
   const FramesRecord& record = chosen.record;
   CheckEnough(record, images);
   const std::vector<Finding> findings = FindingsOf(record, is_cut_short);
@@ -317,16 +387,20 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
   ParallelFor("images", static_cast<int>(photos.size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
-    if (IsDone(record.frames[i])) return;
+    if (IsLeftOut(record.frames[i])) return;
     WritePhoto(photos[i], options.max_image_px, record.frames[i].image, output);
   });
+  if (files.contains("detections")) {
+    output.Write("detections.csv", BoxesText(files.at("detections"), chosen));
+    chosen.inputs.push_back(files.at("detections"));
+  }
   output.Write("README.md", ReadmeText(output));
   output.Write("rgb.txt", ImageListText(record.frames));
   output.Write("frames.json", FramesText(folder / "frames.json", record,
                                          {OptionsToJson(options), chosen.inputs, findings}));
   output.Commit();
   const auto counts = CountRejections(record.frames);
-  const auto left_out = std::ranges::count_if(record.frames, IsDone);
+  const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   fmt::print("{}: {} of {} images chosen, {} x {} px; left out: {}\n", record.name,
              std::ssize(record.frames) - left_out, record.frames.size(), record.width,
              record.height, counts.empty() ? "none" : CountsText(counts));

@@ -48,11 +48,11 @@ TEST_F(RunFramesTest, PhotosThatNeedNoChangeAreCopied) {
   ASSERT_EQ(frames.at("frames").size(), 3u);
   EXPECT_EQ(frames.at("name"), "my photos' $x");
   EXPECT_EQ(frames.at("frames")[1].at("source"), "view 1.jpg");
-  EXPECT_EQ(frames.at("frames")[1].at("image"), "rgb/000001.jpg");
+  EXPECT_EQ(frames.at("frames")[1].at("image"), "rgb/view_1.jpg");
   EXPECT_TRUE(frames.at("focal_hint").is_null());
-  EXPECT_EQ(FileBytes(output_ / "rgb/000001.jpg"), FileBytes(photos_ / "view 1.jpg"));
+  EXPECT_EQ(FileBytes(output_ / "rgb/view_1.jpg"), FileBytes(photos_ / "view 1.jpg"));
   EXPECT_EQ(FileBytes(output_ / "rgb.txt"),
-            "# timestamp filename\n0 rgb/000000.jpg\n1 rgb/000001.jpg\n2 rgb/000002.jpg\n");
+            "# timestamp filename\n0 rgb/view_0.jpg\n1 rgb/view_1.jpg\n2 rgb/view_2.jpg\n");
 }
 
 TEST_F(RunFramesTest, LargePhotosAreTurnedUprightAndScaledDown) {
@@ -69,10 +69,12 @@ TEST_F(RunFramesTest, LargePhotosAreTurnedUprightAndScaledDown) {
   EXPECT_EQ(frames.at("focal_hint").at("images"), 2);
   EXPECT_NEAR(frames.at("focal_hint").at("focal_px").get<double>(),
               26.0 / 43.267 * std::hypot(50.0, 100.0), 1e-9);
-  const cv::Mat image = ReadGreyImage(output_ / "rgb/000000.jpg", ImageOrientation::kStored);
+  const cv::Mat image = ReadGreyImage(output_ / "rgb/0.jpg", ImageOrientation::kStored);
   EXPECT_EQ(image.size(), cv::Size(50, 100));
   EXPECT_GT(cv::mean(image(cv::Rect(42, 2, 6, 6)))[0], 240.0) << "the corner is at the top right";
-  EXPECT_EQ(ReadImageHeader(output_ / "rgb/000000.jpg")->orientation, 1);
+  const auto header = ReadImageHeader(output_ / "rgb/0.jpg");
+  EXPECT_EQ(header->orientation, 1);
+  EXPECT_NEAR(header->focal_over_diagonal.value_or(0.0), 26.0 / 43.267, 1e-9);
 }
 
 TEST_F(RunFramesTest, SaysWhatIsLeftOut) {
@@ -130,10 +132,10 @@ TEST_F(RunFramesTest, SameBytesForAnyNumberOfThreads) {
   options.max_image_px = 200;
   Run(photos_, options, 1);
   const std::string frames = FileBytes(output_ / "frames.json");
-  const std::string image = FileBytes(output_ / "rgb/000003.jpg");
+  const std::string image = FileBytes(output_ / "rgb/view_3.jpg");
   Run(photos_, options, 3);
   EXPECT_EQ(FileBytes(output_ / "frames.json"), frames);
-  EXPECT_EQ(FileBytes(output_ / "rgb/000003.jpg"), image);
+  EXPECT_EQ(FileBytes(output_ / "rgb/view_3.jpg"), image);
 }
 
 TEST_F(RunFramesTest, ADatasetIsReplacedUnlessItHasFilesOfOthers) {
@@ -141,10 +143,43 @@ TEST_F(RunFramesTest, ADatasetIsReplacedUnlessItHasFilesOfOthers) {
   Run(photos_);
   fs::remove(photos_ / "view 0.jpg");
   EXPECT_EQ(Run(photos_).at("frames").size(), 2u);
-  EXPECT_FALSE(fs::exists(output_ / "rgb/000002.jpg"));
+  EXPECT_FALSE(fs::exists(output_ / "rgb/view_0.jpg"));
   WriteBytes(output_ / "detections.csv", "by hand");
   ExpectError<SettingsError>([&] { Run(photos_); }, {output_.string(), "detections.csv", "lost"});
   EXPECT_EQ(FileBytes(output_ / "detections.csv"), "by hand");
+}
+
+TEST_F(RunFramesTest, ImagesHavePlainNamesOfTheirOwn) {
+  const std::vector<std::string> names = {"-1 $x.jpg", "-1_$x.jpg", "Küche's \"2\".jpeg", "b.JPG"};
+  for (size_t i = 0; i < names.size(); ++i) {
+    WritePhoto(photos_ / names[i], DrawnView(static_cast<int>(20 * i)));
+  }
+  std::vector<std::string> images;
+  const json frames = Run(photos_);
+  for (const json& frame : frames.at("frames")) images.push_back(frame.at("image"));
+  EXPECT_THAT(images, testing::ElementsAre("rgb/_1__x.jpg", "rgb/_1__x_2.jpg",
+                                           "rgb/K__che_s__2_.jpeg", "rgb/b.jpg"));
+}
+
+TEST_F(RunFramesTest, BoxesOfAllImagesBecomeThoseOfTheChosenOnes) {
+  AddViews(3);
+  WritePhoto(photos_ / "view 1.jpg", DrawnView(0));  // the same as view 0
+  const fs::path boxes = temporary_ / "boxes.csv";
+  WriteBytes(boxes,
+             "frame,label,score,x1,y1,x2,y2\n2,cup,0.9,-0.5,19.5,99.5,119.5\n1,cup,0.8,1,2,3,4\n"
+             "0,tv,1,9.5,9.5,19.5,29.5\n7,tv,1,1,2,3,4\n");
+  FrameOptions options;
+  options.max_image_px = 160;  // half the size
+  const StageFiles files = {{"images", photos_}, {"output", output_}, {"detections", boxes}};
+  for (int run = 0; run < 2; ++run) {  // its own boxes may be replaced
+    RunFrames(options, files, 1);
+    EXPECT_EQ(FileBytes(output_ / "detections.csv"),
+              "# Written by soslam-frames from boxes.csv\nframe,label,score,x1,y1,x2,y2\n"
+              "0,tv,1.0000,4.50,4.50,9.50,14.50\n1,cup,0.9000,-0.50,9.50,49.50,59.50\n");
+  }
+  WriteBytes(boxes, "frame,label,score,x1,y1,x2,y2\n9,cup,0.9,0,20,100,120\n");
+  ExpectError<InputError>([&] { RunFrames(options, files, 1); },
+                          {boxes.string(), "none of its 1 boxes"});
 }
 
 TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
