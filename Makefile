@@ -22,6 +22,13 @@ ANNOTATIONS ?= data/annotations
 NETWORKS ?= networks
 WITHOUT ?=
 MIRROR ?=
+MAPS ?= maps
+NAME ?=
+IMAGES ?=
+NETWORK ?=
+DETECTIONS ?=
+CAMERA ?=
+MODEL ?=
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -40,9 +47,9 @@ refuse-options = $(if $(filter -%,$(value $(1))),$(error $(1)='$(value $(1))': e
 one-word = $(if $(filter-out 1,$(words $(value $(1)))),$(error $(1)='$(value $(1))': expected $(2)))
 ONE_FOLDER = one folder without spaces in its path (a symbolic link to it will do)
 NAMES := DATASET VARIANT STAGE DATA_ROOT RESULTS PIPELINES THREADS BUILD DATASETS SCENES SEEDS
-NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT
+NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MAPS NAME
 $(foreach name,$(NAMES),$(call refuse-special,$(name))$(call refuse-options,$(name)))
-$(foreach name,DATA_ROOT RESULTS PIPELINES BUILD ANNOTATIONS NETWORKS,$(call one-word,$(name),$(ONE_FOLDER)))
+$(foreach name,DATA_ROOT RESULTS PIPELINES BUILD ANNOTATIONS NETWORKS MAPS,$(call one-word,$(name),$(ONE_FOLDER)))
 $(call one-word,DOWNLOADS,one file without spaces in its path)
 $(if $(filter-out :,$(call special-in,MIRROR)),$(error MIRROR='$(value MIRROR)': expected an address))
 $(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_PATHS: expected --allow_outside_paths))
@@ -117,6 +124,32 @@ network: ## Fetch the detector network YOLOX-nano, check it and show its licence
 	@pipelines/install-packages.sh pipelines/data-packages.txt
 	@$(FETCH) pipelines/networks $(NETWORKS) yolox_nano
 	@cat $(NETWORKS)/yolox_nano/README.md
+
+# Paths that may have any characters: the shell gets them as one quoted word, make expands them nowhere, also not on the
+# way to a make below.
+PATHS := IMAGES NETWORK DETECTIONS CAMERA MODEL
+unexport $(PATHS)
+define line-end
+
+
+endef
+refuse-lines = $(if $(findstring $(line-end),$(value $(1))),$(error $(1): expected a path of one line))
+$(foreach name,$(PATHS),$(call refuse-lines,$(name)))
+shell-word = '$(subst ','\'',$(value $(1)))'
+ifneq ($(filter map,$(MAKECMDGOALS)),)
+MAKEOVERRIDES :=
+MAKE_PROGRAM := $(MAKE)
+override NAME := $(or $(NAME),$(shell pipelines/map-name $(call shell-word,IMAGES)))
+$(call one-word,NAME,one name of letters and digits)
+endif
+
+.PHONY: map
+map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.onnx>; see docs/photos-to-map.md
+	@$(MAKE) build BUILD=$(BUILD) CMAKE_ARGS='$(CMAKE_ARGS)'
+	$(if $(findstring n,$(firstword -$(MAKEFLAGS))),,+)@MAP_IMAGES=$(call shell-word,IMAGES) MAP_NETWORK=$(call shell-word,NETWORK) \
+	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
+	  MAP_MODEL=$(call shell-word,MODEL) MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
+	  MAP_VARIANT=$(VARIANT:all=OursS) BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The steps from photos to a dataset; map.sh calls this. Each leaves a stamp with the time at which it began, so that a
+# run that was killed goes on with the step that it was in. Paths of the user come through the environment, as make
+# splits names at spaces.
+folder := $(MAP_ROOT)/data/$(MAP_NAME)
+steps := $(MAP_ROOT)/steps
+QUIET ?=
+
+.PHONY: dataset
+dataset: $(steps)/reconstructed $(steps)/detected
+
+# $(call step,TITLE,COMMAND)
+define step
+@echo '[$(MAP_NAME)] $(1)'
+@touch $@.begun
+@$(2)
+@mv $@.begun $@
+endef
+
+$(steps)/frames: $(steps)/images.txt
+	@rm -rf $(MAP_ROOT)/.frames.*
+	$(call step,frames,$(BIN)/soslam-frames --images "$$MAP_IMAGES" --output $(MAP_ROOT)/frames $$MAP_FRAMES_OPTIONS \
+	  $${MAP_DETECTIONS:+--detections "$$MAP_DETECTIONS"} --threads $(MAP_THREADS) $(QUIET))
+
+# The dataset begins with the images, as links to those of the step before, and the camera where it is given.
+$(steps)/dataset: $(steps)/frames $(steps)/camera.txt
+	@rm -rf $(folder).new && mkdir -p $(MAP_ROOT)/data
+	@cp -rl $(MAP_ROOT)/frames $(folder).new 2> /dev/null || \
+	  { rm -rf $(folder).new && cp -r $(MAP_ROOT)/frames $(folder).new; }
+	@rm -f $(folder).new/run.json $(folder).new/timing.json
+	@test -z "$$MAP_CAMERA" || cp -- "$$MAP_CAMERA" $(folder).new/camera.json
+	$(call step,dataset,rm -rf $(folder) && mv $(folder).new $(folder))
+
+# COLMAP's own files stay beside the dataset: it goes on from them.
+$(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt
+	$(call step,reconstruct,$(BIN)/soslam-reconstruct --dataset $(folder) --output $(MAP_ROOT)/reconstruction \
+	  $${MAP_MODEL:+--model "$$MAP_MODEL"} --threads $(MAP_THREADS) $(QUIET) && \
+	  cp $(addprefix $(MAP_ROOT)/reconstruction/,camera.json odometry.txt points.h5) $(folder))
+
+$(steps)/detected: $(steps)/dataset $(steps)/network.txt
+	@mkdir -p $(MAP_ROOT)/detections
+	$(call step,detect,test -z "$$MAP_NETWORK" || { \
+	  $(BIN)/soslam-detect --dataset $(folder) --network "$$MAP_NETWORK" \
+	  --output $(MAP_ROOT)/detections/detections.csv --threads $(MAP_THREADS) $(QUIET) && \
+	  cp $(MAP_ROOT)/detections/detections.csv $(folder); })

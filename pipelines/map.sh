@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# map.sh: what `make map` does once the programs are built. Environment: MAP_IMAGES, MAP_NETWORK, MAP_DETECTIONS,
+# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_ROOT, MAP_NAME, MAP_VARIANT, MAP_THREADS,
+# BIN and BUILD: names without spaces; MAKE. The steps and the files that tell that they are done are in map.mk.
+set -euo pipefail
+
+refuse() {
+  echo "map: $1" >&2
+  exit "${2:-2}"
+}
+
+[[ -n $MAP_IMAGES ]] || refuse "expected IMAGES=<folder of photos, or a video>"
+[[ -e $MAP_IMAGES ]] || refuse "IMAGES='$MAP_IMAGES': no such folder or video" 3
+[[ -n $MAP_NETWORK || -n $MAP_DETECTIONS ]] ||
+  refuse "expected NETWORK=<file.onnx> (\`make network\` fetches one) or DETECTIONS=<detections.csv>"
+[[ -z $MAP_NETWORK || -z $MAP_DETECTIONS ]] || refuse "found NETWORK and DETECTIONS; expected one of them"
+for file in "$MAP_NETWORK" "$MAP_DETECTIONS" "$MAP_CAMERA"; do
+  [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
+done
+[[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
+
+if [[ -z $MAP_MODEL ]] && ! command -v colmap > /dev/null; then
+  pipelines/install-packages.sh pipelines/map-packages.txt ||
+    refuse "COLMAP is missing, which finds where the images were taken; install it, or give MODEL=<its finished model>"
+fi
+
+mkdir -p "$MAP_ROOT/steps" || refuse "expected MAPS=<a folder that you may write to>"
+
+# One map of a name at a time. What it started keeps the lock, so that a run that was killed does not write beside the
+# next one.
+exec 9> "$MAP_ROOT/.lock"
+flock --nonblock 9 || { echo "map: waiting for another run of $MAP_NAME" && flock 9; }
+
+# keep FILE: replaces FILE by standard input where it differs, so that unchanged files keep their time.
+keep() {
+  cat > "$1.tmp"
+  if cmp --quiet "$1.tmp" "$1"; then rm "$1.tmp"; else mv "$1.tmp" "$1"; fi
+}
+
+# listed PATH: a line for each file of it, which changes whenever the file does.
+listed() {
+  [[ -n $1 ]] || return 0
+  realpath -- "$1"
+  find "$(realpath -- "$1")" -maxdepth 1 -type f -printf '%f %s %T@\n' | LC_ALL=C sort
+}
+
+# A model or camera of others refers to the images as they are; a model does so for all of them.
+options=''
+[[ -z $MAP_CAMERA$MAP_MODEL ]] || options+=' --max_image_px 16384'
+[[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0'
+export MAP_FRAMES_OPTIONS=$options
+
+first=$(head -n 1 "$MAP_ROOT/steps/images.txt" 2> /dev/null || true)
+[[ -z $first || $first == "$(realpath -- "$MAP_IMAGES")" ]] ||
+  refuse "$MAP_ROOT is of other images, '$first'; expected NAME=<another name>"
+{ listed "$MAP_IMAGES" && listed "$MAP_DETECTIONS" && echo "$options"; } | keep "$MAP_ROOT/steps/images.txt"
+listed "$MAP_CAMERA" | keep "$MAP_ROOT/steps/camera.txt"
+listed "$MAP_MODEL" | keep "$MAP_ROOT/steps/model.txt"
+listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
+
+# The settings: those of all maps of photos.
+mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors}
+keep "$MAP_ROOT/pipelines/base.json" < pipelines/photos/base.json
+for file in variants/*.json priors/semantic_table.json; do
+  for from in pipelines/$file; do keep "$MAP_ROOT/${from}" < "$from"; done
+done
+
+$MAKE --no-print-directory -f pipelines/map.mk
+$MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/data" RESULTS="$MAP_ROOT/results" \
+  PIPELINES="$MAP_ROOT/pipelines" VARIANT="$MAP_VARIANT" THREADS="$MAP_THREADS" BUILD="$BUILD"
+"$BIN/soslam-pages" --results "$MAP_ROOT/results"
+
+objects=$("$BIN/soslam-inspect" "$MAP_ROOT/results/$MAP_NAME/$MAP_VARIANT/map.json" --csv - | tail -n +2 | grep -c .) || true
+echo "$objects objects, scale unknown, page: $MAP_ROOT/results/$MAP_NAME/report.html"
