@@ -145,6 +145,7 @@ const std::vector<Kind>& Kinds() {
       {"map", "landmarks and trajectory of the back end", &InspectMap},
       {"metrics", "errors against ground truth", WithoutSequence(&InspectMetrics)},
       {"planes", "estimated support planes", WithoutSequence(&InspectPlanes)},
+      {"points", "sparse points of structure from motion", WithoutSequence(&InspectPoints)},
       {"semantic_table", "sizes and shapes by label", WithoutSequence(&InspectSemanticTable)},
       {"sequence", "a dataset, checked and gated", WithoutSequence(&InspectSequence)},
       {"symmetry", "what symmetry and edges say about the yaw of observations", &InspectSymmetry}};

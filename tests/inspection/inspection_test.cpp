@@ -14,6 +14,7 @@
 #include "artefact/landmarks_file.h"
 #include "artefact/metrics_file.h"
 #include "artefact/planes_file.h"
+#include "artefact/points_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
@@ -228,6 +229,21 @@ TEST_F(InspectionTest, SemanticTablesHaveARowPerLabel) {
   EXPECT_EQ(Said(inspection, "what"), "sizes");
   EXPECT_EQ(At(inspection, 0, "aliases"), "mug, beaker");
   EXPECT_EQ(At(inspection, 0, "height"), 0.1);
+}
+
+TEST_F(InspectionTest, PointsHaveARowPerFrame) {
+  WritePoints(File(),
+              {{{0.0, 1.0, 2.0}, 0.5, {{3, {1.0, 1.0}}, {5, {2.0, 2.0}}}},
+               {{0.5, 1.0, 2.0}, 1.5, {{5, {3.0, 3.0}}, {9, {4.0, 4.0}}}}},
+              {});
+  const Inspection inspection = Read();
+  EXPECT_EQ(Said(inspection, "points"), "2, 4 observations in 3 frames");
+  EXPECT_EQ(Said(inspection, "reprojection error"), "median 1.00 px");
+  EXPECT_THAT(Said(inspection, "98 % lie within"), HasSubstr("x 0.000 to 0.500"));
+  ASSERT_EQ(inspection.table.rows.size(), 3u);
+  EXPECT_EQ(At(inspection, 1, "frame"), 5);
+  EXPECT_EQ(At(inspection, 1, "points"), 2);
+  EXPECT_EQ(At(inspection, 1, "median_error"), 1.0);
 }
 
 TEST_F(InspectionTest, EdgesHaveARowPerFrame) {
