@@ -3,12 +3,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -54,17 +56,69 @@ void Lower(__rlimit_resource resource, rlim_t value) {
   _exit(0);
 }
 
+int ExitStatusOf(pid_t process) {
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+  }
+  return status;
+}
+
+constexpr int kNoSuchProgram = 127;
+
+[[noreturn]] void BecomeProgram(const std::vector<char*>& words, int output) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  dup2(nothing, STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
+  execvp(words.front(), words.data());
+  _exit(kNoSuchProgram);
+}
+
+// Calls `use_line` with each line of a stream, up to its end.
+void ForEachLine(int stream, const std::function<void(const std::string&)>& use_line) {
+  std::string rest;
+  char buffer[4096];
+  for (ssize_t count; (count = read(stream, buffer, sizeof(buffer))) != 0;) {
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) break;
+    rest.append(buffer, static_cast<size_t>(count));
+    for (size_t end = rest.find('\n'); end != rest.npos; end = rest.find('\n')) {
+      use_line(rest.substr(0, end));
+      rest.erase(0, end + 1);
+    }
+  }
+  if (!rest.empty()) use_line(rest);
+}
+
 }  // namespace
+
+std::optional<int> FollowProgram(const std::vector<std::string>& words,
+                                 const std::function<void(const std::string&)>& use_line) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  const pid_t process = fork();
+  if (process == 0) BecomeProgram(arguments, ends[1]);
+  close(ends[1]);
+  if (process > 0) ForEachLine(ends[0], use_line);
+  close(ends[0]);
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  const int status = ExitStatusOf(process);
+  if (WIFSIGNALED(status)) return 128 + WTERMSIG(status);
+  if (WEXITSTATUS(status) == kNoSuchProgram) return std::nullopt;
+  return WEXITSTATUS(status);
+}
 
 std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
                                              const ProcessLimits& limits) {
   const pid_t process = fork();
   if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (process == 0) WorkAndExit(work, limits);
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0) {
-    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
-  }
+  const int status = ExitStatusOf(process);
   if (WIFSIGNALED(status)) {
     return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace soslam {
 
@@ -20,6 +21,13 @@ struct ProcessLimits {
 // std::bad_alloc. Must not be called while other threads are running.
 std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
                                              const ProcessLimits& limits = {});
+
+// Runs a program, found on PATH, with these arguments, and calls `use_line` with each line that it
+// prints on stdout or stderr, without its end. The program ends with this process, at the latest.
+// Returns its exit code, 128 + the number of the signal that ended it; none if there is no such
+// program. `use_line` must not throw.
+std::optional<int> FollowProgram(const std::vector<std::string>& words,
+                                 const std::function<void(const std::string&)>& use_line);
 
 // The hardware that a program runs on, as far as it matters for run times.
 struct Machine {

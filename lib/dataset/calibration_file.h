@@ -53,7 +53,7 @@ struct Calibration {
 Calibration ReadCalibration(const std::filesystem::path& path);
 
 // Reads a camera file; the format follows from its name: .yaml, .yml, .xml (ReadCalibration), .txt
-// (ReadColmapCamera; its binary .bin is refused), otherwise JSON: nerfstudio's if it has "frames"
+// or .bin (ReadColmapCamera), otherwise JSON: nerfstudio's if it has "frames"
 // or "fl_x", or a camera.json (ReadCamera). Throws InputError.
 Calibration ReadCameraFile(const std::filesystem::path& path);
 

@@ -5,90 +5,41 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <string>
+#include <map>
+#include <string_view>
 #include <utility>
 
 #include "base/error.h"
+#include "base/paths.h"
+#include "dataset/colmap_binary.h"
+#include "dataset/colmap_camera.h"
 #include "dataset/text_file.h"
-#include "dataset/trajectories.h"
-#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {
 
-// Camera model with the names of its parameters, in order. "f" is both focal lengths.
-struct ColmapModel {
-  const char* name;
-  std::vector<const char*> parameters;
-};
-
-const std::vector<ColmapModel>& Models() {
-  static const std::vector<ColmapModel> models = {
-      {"SIMPLE_PINHOLE", {"f", "cx", "cy"}},
-      {"PINHOLE", {"fx", "fy", "cx", "cy"}},
-      {"SIMPLE_RADIAL", {"f", "cx", "cy", "k1"}},
-      {"RADIAL", {"f", "cx", "cy", "k1", "k2"}},
-      {"OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}},
-      {"FULL_OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
-  return models;
-}
-
-// Parameters of one line, accessed by name.
-class Parameters {
- public:
-  Parameters(const ColmapModel& model, std::vector<double> values)
-      : model_(model), values_(std::move(values)) {}
-
-  double Of(const char* name) const {
-    for (size_t i = 0; i < values_.size(); ++i) {
-      if (std::string_view(model_.parameters[i]) == name) return values_[i];
-    }
-    return 0.0;
-  }
-
- private:
-  const ColmapModel& model_;
-  std::vector<double> values_;
-};
+bool IsBinary(const std::filesystem::path& path) { return path.extension() == ".bin"; }
 
 LensCamera ParseColmapCamera(const TextLine& line) {
   const auto words = SplitWords(line.text);
   if (words.size() < 4) {
     throw InputError(line.place + ": expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
   }
-  const auto model = std::ranges::find(Models(), words[1], &ColmapModel::name);
-  if (model == Models().end()) {
-    ParseLens(std::string(words[1]), {}, line.place);
-    throw InputError(fmt::format("{}: camera model '{}' is not supported", line.place, words[1]));
-  }
-  if (words.size() != 4 + model->parameters.size()) {
+  const ColmapCameraModel& model = FindColmapCameraModel(words[1], line.place);
+  if (words.size() != 4 + model.parameters.size()) {
     throw InputError(fmt::format("{}: has {} parameters; expected {} of {}", line.place,
-                                 words.size() - 4, model->parameters.size(), model->name));
+                                 words.size() - 4, model.parameters.size(), model.name));
   }
   std::vector<double> values;
   for (size_t i = 4; i < words.size(); ++i) {
-    values.push_back(ParseReal(words[i], line.place, model->parameters[i - 4]));
+    values.push_back(ParseReal(words[i], line.place, model.parameters[i - 4]));
   }
-  const Parameters of(*model, values);
-  const double fx = of.Of("f") + of.Of("fx"), fy = of.Of("f") + of.Of("fy");
-  LensCamera read;
-  read.camera = {ParseInteger(words[2], line.place, "width"),
-                 ParseInteger(words[3], line.place, "height"),
-                 fx,
-                 fy,
-                 of.Of("cx") - 0.5,
-                 of.Of("cy") - 0.5};
-  if (!IsImageSize(read.camera.width, read.camera.height) || !(fx > 0.0) || !(fy > 0.0)) {
-    throw InputError(line.place + ": expected width, height and focal length above 0");
-  }
-  const Distortion lens{of.Of("k1"), of.Of("k2"), of.Of("p1"), of.Of("p2"),
-                        of.Of("k3"), of.Of("k4"), of.Of("k5"), of.Of("k6")};
-  if (lens != Distortion()) read.distortion = lens;
-  return read;
+  return CameraOfColmap(model, ParseInteger(words[2], line.place, "width"),
+                        ParseInteger(words[3], line.place, "height"), values, line.place);
 }
 
-NamedPose ParsePose(const TextLine& line) {
+// One line of an image, without its image points.
+ColmapImage ParseImage(const TextLine& line) {
   constexpr std::array kFields = {"QW", "QX", "QY", "QZ", "TX", "TY", "TZ"};
   const auto words = SplitWords(line.text);
   if (words.size() < 10) {
@@ -99,54 +50,175 @@ NamedPose ParsePose(const TextLine& line) {
   }
   std::array<double, kFields.size()> v;
   for (size_t i = 0; i < v.size(); ++i) v[i] = ParseReal(words[i + 1], line.place, kFields[i]);
-  ParseInteger(words[0], line.place, "IMAGE_ID");
+  ColmapImage image;
+  image.id = ParseInteger(words[0], line.place, "IMAGE_ID");
   ParseInteger(words[8], line.place, "CAMERA_ID");
-  const Rigid3d camera_from_world{UnitQuaternion({v[1], v[2], v[3], v[0]}, line.place),
-                                  {v[4], v[5], v[6]}};
   // The name may contain blanks: it is the rest of the line.
   const auto name = static_cast<size_t>(words[9].data() - line.text.data());
-  return {line.place, std::string(Trimmed(std::string_view(line.text).substr(name))),
-          camera_from_world.Inverse()};
+  image.pose =
+      PoseOfColmapImage({v[1], v[2], v[3], v[0]}, {v[4], v[5], v[6]},
+                        std::string(Trimmed(std::string_view(line.text).substr(name))), line.place);
+  return image;
 }
 
-void RefuseBinary(const std::filesystem::path& path) {
-  if (path.extension() != ".bin") return;
-  throw InputError(path.string() +
-                   ": is of a binary model of COLMAP; expected its text: colmap model_converter "
-                   "--input_path FOLDER --output_path FOLDER --output_type TXT");
-}
-
-}  // namespace
-
-LensCamera ReadColmapCamera(const std::filesystem::path& path) {
-  RefuseBinary(path);
-  std::optional<LensCamera> read;
-  for (const TextLine& line : ReadTextLines(path)) {
-    const LensCamera camera = ParseColmapCamera(line);
-    if (read && (camera.camera != read->camera || camera.distortion != read->distortion)) {
-      throw InputError(line.place +
-                       ": is another camera than the first; expected one for all images "
-                       "(COLMAP's --ImageReader.single_camera 1)");
-    }
-    read = camera;
+std::vector<Eigen::Vector2d> ParsePixels(const TextLine& line) {
+  const auto words = SplitWords(line.text);
+  if (words.size() % 3 != 0) {
+    throw InputError(fmt::format("{}: has {} words; expected X Y POINT3D_ID of each image point",
+                                 line.place, words.size()));
   }
-  if (!read) throw InputError(path.string() + ": has no camera; expected COLMAP's cameras.txt");
-  return *read;
+  std::vector<Eigen::Vector2d> pixels;
+  for (size_t i = 0; i < words.size(); i += 3) {
+    pixels.emplace_back(ParseReal(words[i], line.place, "X") - 0.5,
+                        ParseReal(words[i + 1], line.place, "Y") - 0.5);
+  }
+  return pixels;
 }
 
-std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
-  RefuseBinary(path);
-  std::vector<NamedPose> poses;
+enum class ImagePoints { kRead, kSkipped };
+
+std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path, ImagePoints points) {
+  std::vector<ColmapImage> images;
   bool is_points = false;
   for (const TextLine& line : ReadRawLines(path)) {
     const std::string_view text = Trimmed(line.text);
     if (!is_points && (text.empty() || text.front() == '#')) continue;
-    if (!is_points) poses.push_back(ParsePose({line.place, std::string(text)}));
+    if (!is_points) {
+      images.push_back(ParseImage({line.place, std::string(text)}));
+    } else if (points == ImagePoints::kRead) {
+      images.back().pixels = ParsePixels(line);
+    }
     is_points = !is_points;
   }
-  if (poses.empty())
-    throw InputError(path.string() + ": has no pose; expected COLMAP's images.txt");
+  return images;
+}
+
+std::vector<ColmapImage> ReadImages(const std::filesystem::path& path, ImagePoints points) {
+  auto images = IsBinary(path) ? ReadColmapImagesBinary(path) : ReadImagesText(path, points);
+  if (images.empty())
+    throw InputError(path.string() + ": has no pose; expected COLMAP's images.txt or images.bin");
+  return images;
+}
+
+ColmapPoint ParsePoint(const TextLine& line) {
+  constexpr size_t kTrack = 8;
+  const auto words = SplitWords(line.text);
+  if (words.size() < kTrack || words.size() % 2 != 0) {
+    throw InputError(fmt::format(
+        "{}: has {} words; expected POINT3D_ID X Y Z R G B ERROR, then IMAGE_ID POINT2D_IDX of "
+        "each observation",
+        line.place, words.size()));
+  }
+  ColmapPoint point;
+  const int id = ParseInteger(words[0], line.place, "POINT3D_ID");
+  point.id = static_cast<std::uint64_t>(std::max(id, 0));
+  for (size_t i = 0; i < 3; ++i) {
+    point.position_in_world[static_cast<int>(i)] = ParseReal(words[i + 1], line.place, "XYZ");
+  }
+  point.reprojection_error_px = ParseReal(words[7], line.place, "ERROR");
+  for (size_t i = kTrack; i < words.size(); i += 2) {
+    point.track.push_back({ParseInteger(words[i], line.place, "IMAGE_ID"),
+                           ParseInteger(words[i + 1], line.place, "POINT2D_IDX")});
+  }
+  return point;
+}
+
+std::vector<ColmapPoint> ReadPointsText(const std::filesystem::path& path) {
+  std::vector<ColmapPoint> points;
+  for (const TextLine& line : ReadTextLines(path)) points.push_back(ParsePoint(line));
+  return points;
+}
+
+// Throws InputError unless ids are unique, and tracks refer to existing image points.
+void CheckTracks(const ColmapModel& model) {
+  std::map<std::int64_t, std::int64_t> pixels_of_image;
+  for (const ColmapImage& image : model.images) {
+    if (!pixels_of_image.emplace(image.id, image.pixels.size()).second) {
+      throw InputError(fmt::format("{}: is the second image with id {}; expected one",
+                                   image.pose.place, image.id));
+    }
+  }
+  const std::string file = model.files.back().string();
+  for (size_t i = 0; i < model.points.size(); ++i) {
+    const ColmapPoint& point = model.points[i];
+    if (i > 0 && point.id == model.points[i - 1].id) {
+      throw InputError(fmt::format("{}: has two points with id {}; expected one", file, point.id));
+    }
+    for (const ColmapPoint::Observation& observation : point.track) {
+      const auto image = pixels_of_image.find(observation.image_id);
+      if (image != pixels_of_image.end() && observation.pixel_index >= 0 &&
+          observation.pixel_index < image->second) {
+        continue;
+      }
+      throw InputError(fmt::format(
+          "{}: point {}: is seen at image point {} of image {}, which the images do not have; "
+          "expected files of one model",
+          file, point.id, observation.pixel_index, observation.image_id));
+    }
+  }
+}
+
+}  // namespace
+
+NamedPose PoseOfColmapImage(const Eigen::Vector4d& xyzw, const Eigen::Vector3d& translation,
+                            std::string name, const std::string& place) {
+  const Rigid3d camera_from_world{UnitQuaternion(xyzw, place), translation};
+  return {place, std::move(name), camera_from_world.Inverse()};
+}
+
+LensCamera ReadColmapCamera(const std::filesystem::path& path) {
+  std::vector<LensCamera> cameras;
+  std::vector<std::string> places;
+  if (IsBinary(path)) {
+    cameras = ReadColmapCamerasBinary(path);
+    places.assign(cameras.size(), path.string());
+  } else {
+    for (const TextLine& line : ReadTextLines(path)) {
+      cameras.push_back(ParseColmapCamera(line));
+      places.push_back(line.place);
+    }
+  }
+  for (size_t i = 1; i < cameras.size(); ++i) {
+    if (cameras[i].camera == cameras[0].camera && cameras[i].distortion == cameras[0].distortion) {
+      continue;
+    }
+    throw InputError(
+        fmt::format("{}: camera {} is another camera than the first; expected one for "
+                    "all images (COLMAP's --ImageReader.single_camera 1)",
+                    places[i], i + 1));
+  }
+  if (cameras.empty()) {
+    throw InputError(path.string() +
+                     ": has no camera; expected COLMAP's cameras.txt or cameras.bin");
+  }
+  return cameras.front();
+}
+
+std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
+  std::vector<NamedPose> poses;
+  for (ColmapImage& image : ReadImages(path, ImagePoints::kSkipped)) {
+    poses.push_back(std::move(image.pose));
+  }
   return poses;
+}
+
+bool IsColmapModel(const std::filesystem::path& folder) {
+  return IsFile(folder / "cameras.bin") || IsFile(folder / "cameras.txt");
+}
+
+ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
+  const std::string extension = IsFile(folder / "cameras.bin") ? ".bin" : ".txt";
+  ColmapModel model;
+  for (const char* name : {"cameras", "images", "points3D"}) {
+    model.files.push_back(folder / (name + extension));
+  }
+  model.camera = ReadColmapCamera(model.files[0]);
+  model.images = ReadImages(model.files[1], ImagePoints::kRead);
+  const std::filesystem::path& points = model.files[2];
+  model.points = IsBinary(points) ? ReadColmapPointsBinary(points) : ReadPointsText(points);
+  std::ranges::sort(model.points, {}, &ColmapPoint::id);
+  CheckTracks(model);
+  return model;
 }
 
 }  // namespace soslam

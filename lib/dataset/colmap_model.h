@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "dataset/calibration_file.h"
@@ -9,18 +12,54 @@
 
 namespace soslam {
 
-// COLMAP's model as text. The readers throw InputError naming the line; for binary files (.bin)
-// with the command that converts them to text.
+// Finished models of COLMAP, text (.txt) or binary (.bin); the format follows from the name. The
+// readers throw InputError naming the line, or the entry of a binary file.
+//
+// COLMAP's pixel (0, 0) is the outer corner of the top-left one: half a pixel is subtracted
+// everywhere. Its poses are camera_from_world; they are inverted here.
 
-// Reads the camera of cameras.txt, lines "CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]". Several cameras
-// must be identical. Models: SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV.
-// COLMAP's pixel (0, 0) is the outer corner of the top-left one: half a pixel is subtracted from
-// cx, cy.
+// Reads the camera of cameras.txt or cameras.bin. Several cameras must be identical. Models:
+// SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV.
 LensCamera ReadColmapCamera(const std::filesystem::path& path);
 
-// Reads the poses of images.txt, two lines per image: "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID
-// NAME", and its points, which are ignored and may be empty. COLMAP's pose is camera_from_world; it
-// is inverted here. In file order; at least one.
+// Reads the poses of images.txt or images.bin, without their image points. In file order; at least
+// one.
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path);
+
+// The pose of an image from a quaternion and a translation of camera_from_world. Throws InputError,
+// naming `place`, for a quaternion that is not of unit length.
+NamedPose PoseOfColmapImage(const Eigen::Vector4d& xyzw, const Eigen::Vector3d& translation,
+                            std::string name, const std::string& place);
+
+struct ColmapImage {
+  std::int64_t id = 0;
+  NamedPose pose;
+  std::vector<Eigen::Vector2d> pixels;  // image points, whether or not they are of a point
+};
+
+struct ColmapPoint {
+  struct Observation {
+    std::int64_t image_id = 0;
+    std::int64_t pixel_index = 0;  // in ColmapImage::pixels
+  };
+  std::uint64_t id = 0;
+  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  double reprojection_error_px = 0.0;  // mean over its observations; below 0 where unknown
+  std::vector<Observation> track;
+};
+
+struct ColmapModel {
+  LensCamera camera;
+  std::vector<ColmapImage> images;  // in file order
+  std::vector<ColmapPoint> points;  // sorted by id
+  std::vector<std::filesystem::path> files;
+};
+
+// True if a folder has the camera file of a model.
+bool IsColmapModel(const std::filesystem::path& folder);
+
+// Reads the cameras, images and points3D of a folder: .bin, or .txt where there is no cameras.bin.
+// Each track refers to existing images and image points, no id occurs twice.
+ColmapModel ReadColmapModel(const std::filesystem::path& folder);
 
 }  // namespace soslam

@@ -72,7 +72,7 @@ struct FolderOptions {
                  "format of the poses of the odometry: timestamp tx ty tz qx qy qz qw (tum, "
                  "ORB-SLAM); 12 numbers, one line for each listed image (kitti); EuRoC's CSV, "
                  "nanoseconds, qw first (euroc); by the names of the images COLMAP's images.txt "
-                 "(colmap) or nerfstudio's transforms.json (nerfstudio)");
+                 "or images.bin (colmap) or nerfstudio's transforms.json (nerfstudio)");
     visit.Choice("groundtruth_format", &groundtruth_format, kGroundtruthFormatNames,
                  "format of the poses of the ground truth; same: as trajectory_format says");
     visit.Flag("align_odometry", &align_odometry,
@@ -83,10 +83,11 @@ struct FolderOptions {
                "compared with the truth at the scale that fits best");
     visit.Text("camera", &camera,
                "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
-    visit.Text("camera_file", &camera_file,
-               "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
-               "(.yaml, .xml), COLMAP's cameras.txt, nerfstudio's transforms.json; empty: "
-               "camera.json");
+    visit.Text(
+        "camera_file", &camera_file,
+        "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
+        "(.yaml, .xml), COLMAP's cameras.txt or cameras.bin, nerfstudio's transforms.json; empty: "
+        "camera.json");
     visit.Text("distortion", &distortion,
                "soslam, tum_rgbd: distortion of images and boxes by the lens: \"k1 k2 p1 p2 k3\" "
                "as OpenCV has them, or 4, 8, 12 or 14 of its coefficients; empty: the camera file "

@@ -31,29 +31,13 @@ bool IsUtf8(const std::string& text) {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
+constexpr const char* kTextFile = "text file";
 
 void CheckEncoding(std::string_view text, const std::string& place) {
   if (text.find('\0') != text.npos) {
     throw InputError(place + ": has a zero byte, as UTF-16 text has; expected UTF-8");
   }
   if (!IsUtf8(std::string(text))) throw InputError(place + ": is not UTF-8 text");
-}
-
-std::string ReadWhole(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kMaxBytes = 1 << 30;
-  RecordInput(path);
-  std::error_code error;
-  const std::uintmax_t bytes = IsFile(path) ? std::filesystem::file_size(path, error) : 0;
-  std::ifstream stream;
-  if (IsFile(path) && !error) stream.open(path, std::ios::binary);  // opening a pipe would block
-  if (!stream.is_open()) {
-    throw InputError(path.string() + ": cannot be read; expected a text file");
-  }
-  if (bytes > kMaxBytes) {
-    throw InputError(fmt::format("{}: has {} bytes; expected a text file of at most {}",
-                                 path.string(), bytes, kMaxBytes));
-  }
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 // Calls `use` with each line and its number from 1.
@@ -107,8 +91,25 @@ bool HasDecimalComma(std::string_view text) {
 
 }  // namespace
 
+std::string ReadWholeFile(const std::filesystem::path& path, const char* kind) {
+  constexpr std::uintmax_t kMaxBytes = 1 << 30;
+  RecordInput(path);
+  std::error_code error;
+  const std::uintmax_t bytes = IsFile(path) ? std::filesystem::file_size(path, error) : 0;
+  std::ifstream stream;
+  if (IsFile(path) && !error) stream.open(path, std::ios::binary);  // opening a pipe would block
+  if (!stream.is_open()) {
+    throw InputError(fmt::format("{}: cannot be read; expected a {}", path.string(), kind));
+  }
+  if (bytes > kMaxBytes) {
+    throw InputError(fmt::format("{}: has {} bytes; expected a {} of at most {}", path.string(),
+                                 bytes, kind, kMaxBytes));
+  }
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
-  return TextLines(ReadWhole(path), path.string());
+  return TextLines(ReadWholeFile(path, kTextFile), path.string());
 }
 
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name) {
@@ -116,11 +117,11 @@ std::vector<TextLine> TextLines(const std::string& text, const std::string& name
 }
 
 std::vector<TextLine> ReadTableLines(const std::filesystem::path& path) {
-  return LinesWithout(" \r", ReadWhole(path), path.string());
+  return LinesWithout(" \r", ReadWholeFile(path, kTextFile), path.string());
 }
 
 std::vector<TextLine> ReadRawLines(const std::filesystem::path& path) {
-  return RawLines(ReadWhole(path), path.string());
+  return RawLines(ReadWholeFile(path, kTextFile), path.string());
 }
 
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {

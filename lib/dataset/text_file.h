@@ -11,6 +11,10 @@ namespace soslam {
 // True for UTF-8, which names and labels have to be: they are written to JSON.
 bool IsUtf8(const std::string& text);
 
+// The bytes of a file. Throws InputError, naming the `kind` of file that was expected ("text
+// file"), when it cannot be read, is not a regular file, or is larger than 1 GiB.
+std::string ReadWholeFile(const std::filesystem::path& path, const char* kind);
+
 // One line of a text file, without its line ending.
 struct TextLine {
   std::string place;  // "<file>:<line number from 1>", for error messages

@@ -150,6 +150,12 @@ std::vector<ListedImage> ReadPairedImageList(const std::filesystem::path& path, 
   return images;
 }
 
+std::string TrajectoryLine(const TimedPose& pose) {
+  return fmt::format("{} {} {}\n", pose.timestamp,
+                     fmt::join(pose.world_from_camera.translation, " "),
+                     fmt::join(pose.world_from_camera.rotation.coeffs(), " "));
+}
+
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
   std::vector<TimedPose> trajectory;
   for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParseTumPose(line));

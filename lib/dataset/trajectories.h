@@ -56,6 +56,9 @@ struct TimedPose {
   Rigid3d world_from_camera;
 };
 
+// The pose as a line of a trajectory, with its line end; all digits.
+std::string TrajectoryLine(const TimedPose& pose);
+
 // Reads a trajectory, sorted by timestamp, with normalised quaternions; of several poses with one
 // timestamp the first. Throws InputError naming the line for two clearly different poses with one
 // timestamp, and when there is no pose.

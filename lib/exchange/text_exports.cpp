@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/table.h"
+#include "dataset/trajectories.h"
 #include "geometry/angles.h"
 
 namespace soslam {
@@ -78,9 +79,7 @@ std::string TumTrajectoryText(const World& world) {
   std::vector<WorldFrame> frames = world.frames;
   std::ranges::stable_sort(frames, {}, &WorldFrame::timestamp);
   for (const WorldFrame& frame : frames) {
-    text += fmt::format("{} {} {}\n", frame.timestamp,
-                        fmt::join(frame.world_from_camera.translation, " "),
-                        fmt::join(frame.world_from_camera.rotation.coeffs(), " "));
+    text += TrajectoryLine({frame.timestamp, frame.world_from_camera});
   }
   return text;
 }

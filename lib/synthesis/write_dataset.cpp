@@ -10,6 +10,7 @@
 
 #include "artefact/dataset_folder.h"
 #include "base/parallel.h"
+#include "dataset/trajectories.h"
 #include "synthesis/render.h"
 #include "synthesis/simulate.h"
 
@@ -35,10 +36,7 @@ std::string ImageListText(const Scene& scene) {
 std::string TrajectoryText(const Scene& scene, const std::vector<Rigid3d>& world_from_camera) {
   std::string text = "# timestamp tx ty tz qx qy qz qw  (world_from_camera, metres)\n";
   for (int i = 0; i < scene.trajectory.frames; ++i) {
-    const Eigen::Vector3d& t = world_from_camera[i].translation;
-    const Eigen::Quaterniond& q = world_from_camera[i].rotation;
-    text += fmt::format("{} {} {} {} {} {} {} {}\n", Timestamp(scene, i), t.x(), t.y(), t.z(),
-                        q.x(), q.y(), q.z(), q.w());
+    text += TrajectoryLine({i * scene.trajectory.frame_interval, world_from_camera[i]});
   }
   return text;
 }

@@ -50,5 +50,15 @@ TEST(OwnProcessTest, LimitsOfTimeAndMemoryEndIt) {
   }));
 }
 
+TEST(FollowProgramTest, GivesEachLineAndTheExitCode) {
+  std::vector<std::string> lines;
+  const auto use = [&](const std::string& line) { lines.push_back(line); };
+  EXPECT_EQ(
+      FollowProgram({"sh", "-c", "echo \"$0\"; echo b >&2; printf end; exit 3", "a 'x'"}, use), 3);
+  EXPECT_EQ(lines, (std::vector<std::string>{"a 'x'", "b", "end"}));
+  EXPECT_EQ(FollowProgram({"sh", "-c", "kill -SEGV $$"}, use), 128 + SIGSEGV);
+  EXPECT_EQ(FollowProgram({"no-such-program-here"}, use), std::nullopt);
+}
+
 }  // namespace
 }  // namespace soslam

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "base/error.h"
 #include "dataset/calibration_file.h"
+#include "support/colmap_files.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -55,20 +57,11 @@ TEST_F(ColmapModelTest, CamerasThatAreNotReadAreNamed) {
   refused(first + "2 PINHOLE 640 480 500 511 320 240\n",
           {"cameras.txt:3", "another camera", "single_camera"});
   refused("1 OPENCV_FISHEYE 640 480 500 500 320 240 0 0 0 0\n",
-          {"cameras.txt:2", "'OPENCV_FISHEYE' is not supported", "undistort"});
+          {"cameras.txt:2", "'OPENCV_FISHEYE' is not supported", "image_undistorter"});
   refused("1 CUBIC 640 480 500 500 320 240\n", {"'CUBIC'"});
   refused("1 PINHOLE 640 480 500 320 240\n", {"3 parameters; expected 4 of PINHOLE"});
   refused("1 PINHOLE 640 0 500 500 320 240\n", {"above 0"});
   refused("", {"cameras.txt", "no camera"});
-}
-
-TEST_F(ColmapModelTest, BinaryModelsAreNamed) {
-  for (const auto& read : std::vector<std::function<void(const std::filesystem::path&)>>{
-           [](const auto& path) { ReadColmapPoses(path); },
-           [](const auto& path) { ReadCameraFile(path); }}) {
-    ExpectError<InputError>([&] { read(folder_ / "cameras.bin"); },
-                            {"cameras.bin", "binary", "colmap model_converter", "TXT"});
-  }
 }
 
 // A camera at (1, 2, 3) that looks along the world's x axis: its z is the world's x, its x the
@@ -104,6 +97,150 @@ TEST_F(ColmapModelTest, BadPosesAreNamed) {
   refused("1 0.5 x 0.5 0.5 3 -1 2 1 a.jpg\n", {"images.txt:2", "QX is 'x'"});
   refused("a 1 0 0 0 0 0 0 1 a.jpg\n", {"IMAGE_ID"});
   refused("", {"images.txt", "no pose"});
+}
+
+// Two images and two points, in both formats; the second point comes first.
+class WholeModelTest : public testing::Test {
+ protected:
+  WholeModelTest() {
+    WriteBytes(folder_ / "cameras.txt", "1 SIMPLE_RADIAL 640 480 500 320 240 0.1\n");
+    WriteBytes(folder_ / "images.txt",
+               "3 0.5 0.5 -0.5 0.5 2 3 -1 1 rgb/a b.jpg\n10.5 20.5 -1 1.5 2.5 7\n"
+               "4 1 0 0 0 -4 0 0 1 rgb/c.jpg\n3 4 7\n");
+    WriteBytes(folder_ / "points3D.txt",
+               "9 4 5 6 255 0 0 -1 4 0 3 0\n7 1 2 3 0 0 0 0.25 3 1 4 0\n");
+  }
+
+  // The bytes of a file of the binary model.
+  static std::string Images() {
+    return ColmapBytes()
+        .Add<std::uint64_t>(2)
+        .Add<std::uint32_t>(3)
+        .Reals({0.5, 0.5, -0.5, 0.5, 2, 3, -1})
+        .Add<std::uint32_t>(1)
+        .Text("rgb/a b.jpg")
+        .Add<std::uint64_t>(2)
+        .Reals({10.5, 20.5})
+        .Add<std::int64_t>(-1)
+        .Reals({1.5, 2.5})
+        .Add<std::int64_t>(7)
+        .Add<std::uint32_t>(4)
+        .Reals({1, 0, 0, 0, -4, 0, 0})
+        .Add<std::uint32_t>(1)
+        .Text("rgb/c.jpg")
+        .Add<std::uint64_t>(1)
+        .Reals({3, 4})
+        .Add<std::int64_t>(7);
+  }
+  static std::string Points(double z = 6.0, std::uint32_t image = 4) {
+    return ColmapBytes()
+        .Add<std::uint64_t>(2)
+        .Add<std::uint64_t>(9)
+        .Reals({4, 5, z})
+        .Add<std::uint8_t>(255)
+        .Add<std::uint16_t>(0)
+        .Reals({-1})
+        .Add<std::uint64_t>(2)
+        .Add<std::uint32_t>(image)
+        .Add<std::uint32_t>(0)
+        .Add<std::uint32_t>(3)
+        .Add<std::uint32_t>(0)
+        .Add<std::uint64_t>(7)
+        .Reals({1, 2, 3})
+        .Add<std::uint8_t>(0)
+        .Add<std::uint16_t>(0)
+        .Reals({0.25})
+        .Add<std::uint64_t>(2)
+        .Add<std::uint32_t>(3)
+        .Add<std::uint32_t>(1)
+        .Add<std::uint32_t>(4)
+        .Add<std::uint32_t>(0);
+  }
+  void WriteBinary() {
+    WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(2, {500, 320, 240, 0.1}));
+    WriteBytes(folder_ / "images.bin", Images());
+    WriteBytes(folder_ / "points3D.bin", Points());
+  }
+  void ExpectRefused(const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { ReadColmapModel(folder_.path()); }, words);
+  }
+  void ExpectTheModel() {
+    const ColmapModel model = ReadColmapModel(folder_.path());
+    EXPECT_EQ(model.camera.camera, (Camera{640, 480, 500, 500, 319.5, 239.5}));
+    EXPECT_EQ(model.camera.distortion, Distortion{0.1});
+    ASSERT_EQ(model.images.size(), 2u);
+    EXPECT_EQ(model.images[0].id, 3);
+    EXPECT_EQ(model.images[0].pose.image, "rgb/a b.jpg");
+    EXPECT_TRUE(
+        model.images[0].pose.world_from_camera.translation.isApprox(Eigen::Vector3d(1, 2, 3)));
+    ASSERT_EQ(model.images[0].pixels.size(), 2u);
+    EXPECT_EQ(model.images[0].pixels[1], Eigen::Vector2d(1, 2)) << "from the centre of a pixel";
+    ASSERT_EQ(model.points.size(), 2u);
+    EXPECT_EQ(model.points[0].id, 7u);
+    EXPECT_EQ(model.points[0].position_in_world, Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(model.points[0].reprojection_error_px, 0.25);
+    ASSERT_EQ(model.points[0].track.size(), 2u);
+    EXPECT_EQ(model.points[0].track[0].image_id, 3);
+    EXPECT_EQ(model.points[0].track[0].pixel_index, 1);
+    EXPECT_EQ(model.points[1].reprojection_error_px, -1.0);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(WholeModelTest, TextAndBinaryAreTheSame) {
+  EXPECT_TRUE(IsColmapModel(folder_.path()));
+  EXPECT_FALSE(IsColmapModel(folder_ / "images.txt"));
+  ExpectTheModel();
+  WriteBytes(folder_ / "images.txt", "the text is not read where there is a binary model");
+  WriteBinary();
+  ExpectTheModel();
+  EXPECT_EQ(ReadColmapPoses(folder_ / "images.bin")[1].image, "rgb/c.jpg");
+  EXPECT_EQ(ReadCameraFile(folder_ / "cameras.bin").camera.camera.fx, 500);
+}
+
+TEST_F(WholeModelTest, BinaryFilesThatAreCutAreRefused) {
+  for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
+    WriteBinary();
+    const std::string whole = FileBytes(folder_ / name);
+    for (size_t size = 0; size < whole.size(); size += 3) {
+      WriteBytes(folder_ / name, whole.substr(0, size));
+      ExpectRefused({name, "expected"});
+    }
+    WriteBytes(folder_ / name, whole + "x");
+    ExpectRefused({name, "1 bytes after its last entry"});
+  }
+}
+
+TEST_F(WholeModelTest, BinaryNumbersThatCannotBeAreRefused) {
+  WriteBinary();
+  WriteBytes(folder_ / "points3D.bin", Points(std::nan("")));
+  ExpectRefused({"points3D.bin: point 1", "nan"});
+  WriteBytes(folder_ / "points3D.bin", ColmapBytes().Add<std::uint64_t>(1ull << 60));
+  ExpectRefused({"points3D.bin", "1152921504606846976 points", "damaged"});
+  WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(8, {500, 320, 240, 0.1}));
+  ExpectRefused({"cameras.bin: camera 1", "'SIMPLE_RADIAL_FISHEYE'", "image_undistorter"});
+  WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(77, {}));
+  ExpectRefused({"cameras.bin: camera 1", "model 77"});
+  WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(2, {-500, 320, 240, 0.1}));
+  ExpectRefused({"cameras.bin: camera 1", "focal length above 0"});
+}
+
+TEST_F(WholeModelTest, TracksOfOtherModelsAreRefused) {
+  WriteBinary();
+  WriteBytes(folder_ / "points3D.bin", Points(6.0, 5));
+  ExpectRefused({"points3D.bin: point 9", "image point 0 of image 5", "one model"});
+  std::filesystem::remove(folder_ / "cameras.bin");
+  WriteBytes(folder_ / "points3D.txt", "7 1 2 3 0 0 0 0.25 3 2\n");
+  ExpectRefused({"points3D.txt: point 7", "image point 2 of image 3"});
+  WriteBytes(folder_ / "points3D.txt", "7 1 2 3 0 0 0 0.25\n7 1 2 3 0 0 0 0.25\n");
+  ExpectRefused({"points3D.txt", "two points with id 7"});
+  WriteBytes(folder_ / "points3D.txt", "7 1 2 3 0 0 0 0.25 3\n");
+  ExpectRefused({"points3D.txt:1", "9 words", "POINT2D_IDX"});
+  WriteBytes(folder_ / "images.txt", "3 1 0 0 0 -4 0 0 1 c.jpg\n3 4\n");
+  ExpectRefused({"images.txt:2", "2 words", "POINT3D_ID"});
+  WriteBytes(folder_ / "points3D.txt", "");
+  WriteBytes(folder_ / "images.txt", "3 1 0 0 0 0 0 0 1 c.jpg\n\n3 1 0 0 0 0 0 0 1 d.jpg\n\n");
+  ExpectRefused({"images.txt:3", "second image with id 3"});
 }
 
 }  // namespace
