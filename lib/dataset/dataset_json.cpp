@@ -235,6 +235,21 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
   return read;
 }
 
+std::string CameraText(const LensCamera& camera, const std::string& source) {
+  const Camera& c = camera.camera;
+  nlohmann::ordered_json document = {{"width", c.width}, {"height", c.height}, {"fx", c.fx},
+                                     {"fy", c.fy},       {"cx", c.cx},         {"cy", c.cy}};
+  if (camera.distortion) document["distortion"] = DistortionCoefficients(*camera.distortion);
+  document["source"] = source;
+  return document.dump() + "\n";
+}
+
+std::string SourceOfCamera(const std::filesystem::path& path) {
+  const json fields = ParseJsonFile(path);
+  const bool has_source = fields.is_object() && fields.contains("source");
+  return has_source && fields["source"].is_string() ? fields["source"].get<std::string>() : "";
+}
+
 std::vector<SupportPlane> ReadPlanes(const std::filesystem::path& path) {
   std::vector<SupportPlane> planes =
       ParseListWithIds(ParseJsonFile(path), path.string(), &ParsePlane);

@@ -29,6 +29,11 @@ enum class CameraYAxis {
 // "name", "description", "comment", "source", "fps", "depth_scale".
 LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis = CameraYAxis::kDown);
 
+// A camera.json that ReadCamera reads. `source` goes to its ignored key "source".
+std::string CameraText(const LensCamera& camera, const std::string& source);
+// "source" of a camera.json, empty without one.
+std::string SourceOfCamera(const std::filesystem::path& path);
+
 // Reads [{"id", "normal": [x, y, z], "d"}]: planes normal . x + d = 0 in the world frame, normal
 // pointing away from the support, of any length; optionally "scene_axis": [x, y, z], projected onto
 // the plane, see SupportPlane. Ignored keys: "label", "name", "description",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "artefact/points_file.h"
+#include "artefact/reconstruction_file.h"
 #include "evaluation/statistics.h"
 #include "inspection/inspection.h"
 
@@ -55,6 +56,30 @@ Inspection InspectPoints(const std::filesystem::path& file) {
   inspection.table.columns = {{"frame", ""}, {"points", ""}, {"median_error", "px", 2}};
   for (const auto& [frame, of_frame] : errors_of_frame) {
     inspection.table.rows.push_back({frame, of_frame.size(), *MedianOf(of_frame)});
+  }
+  return inspection;
+}
+
+Inspection InspectReconstruction(const std::filesystem::path& file) {
+  const ReconstructionSummary summary = ReadReconstruction(file);
+  const auto in_words = [](const std::optional<double>& value, const char* unit) {
+    return value ? fmt::format("{:.2f} {}", *value, unit) : "unknown";
+  };
+  const auto source = [](bool is_given) { return is_given ? "given" : "estimated"; };
+  Inspection inspection;
+  inspection.facts = {
+      {"COLMAP", summary.colmap.empty() ? "ran before; its model was given" : summary.colmap},
+      {"registered", fmt::format("{} of {} images", summary.registered, summary.images)},
+      {"poses, camera",
+       fmt::format("{}, {}", source(summary.poses_are_given), source(summary.camera_is_given))},
+      {"points", fmt::format("{}, {} observations", summary.points, summary.observations)},
+      {"medians", fmt::format("reprojection error {}, triangulation angle {}",
+                              in_words(summary.median_reprojection_error_px, "px"),
+                              in_words(summary.median_triangulation_angle_deg, "degrees"))}};
+  inspection.table.columns = {{"component", ""}, {"images", ""}, {"points", ""}};
+  for (size_t i = 0; i < summary.components.size(); ++i) {
+    inspection.table.rows.push_back(
+        {i + 1, summary.components[i].images, summary.components[i].points});
   }
   return inspection;
 }

@@ -19,6 +19,7 @@
 #include "base/table.h"
 #include "base/text.h"
 #include "dataset/import_options.h"
+#include "dataset/reconstruct_options.h"
 #include "evaluation/alignment.h"
 #include "image/edge_maps.h"
 #include "image/frame_choice.h"
@@ -50,6 +51,8 @@ const std::vector<Maker>& Makers() {
       {"map", "optimise", OptionsToJson(OptimiseOptions())},
       {"metrics", "evaluate", OptionsToJson(EvaluateOptions())},
       {"planes", "planes", OptionsToJson(PlanesOptions())},
+      {"points", "reconstruct", OptionsToJson(ReconstructOptions())},
+      {"reconstruction", "reconstruct", OptionsToJson(ReconstructOptions())},
       {"semantic_table", "learn-priors", OptionsToJson(LearnPriorsOptions())},
       {"sequence", "import", OptionsToJson(ImportOptions())},
       {"sequence", "associate", OptionsToJson(AssociateOptions())},
@@ -146,6 +149,8 @@ const std::vector<Kind>& Kinds() {
       {"metrics", "errors against ground truth", WithoutSequence(&InspectMetrics)},
       {"planes", "estimated support planes", WithoutSequence(&InspectPlanes)},
       {"points", "sparse points of structure from motion", WithoutSequence(&InspectPoints)},
+      {"reconstruction", "poses, camera and points by structure from motion",
+       WithoutSequence(&InspectReconstruction)},
       {"semantic_table", "sizes and shapes by label", WithoutSequence(&InspectSemanticTable)},
       {"sequence", "a dataset, checked and gated", WithoutSequence(&InspectSequence)},
       {"symmetry", "what symmetry and edges say about the yaw of observations", &InspectSymmetry}};

@@ -53,6 +53,7 @@ Inspection InspectMap(const std::filesystem::path& file, const std::optional<Seq
 Inspection InspectMetrics(const std::filesystem::path& file);
 Inspection InspectPlanes(const std::filesystem::path& file);
 Inspection InspectPoints(const std::filesystem::path& file);
+Inspection InspectReconstruction(const std::filesystem::path& file);
 Inspection InspectSemanticTable(const std::filesystem::path& file);
 Inspection InspectSequence(const std::filesystem::path& file);
 Inspection InspectSymmetry(const std::filesystem::path& file,

@@ -15,9 +15,11 @@
 #include "artefact/metrics_file.h"
 #include "artefact/planes_file.h"
 #include "artefact/points_file.h"
+#include "artefact/reconstruction_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "dataset/reconstruct_options.h"
 #include "geometry/angles.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
@@ -244,6 +246,22 @@ TEST_F(InspectionTest, PointsHaveARowPerFrame) {
   EXPECT_EQ(At(inspection, 1, "frame"), 5);
   EXPECT_EQ(At(inspection, 1, "points"), 2);
   EXPECT_EQ(At(inspection, 1, "median_error"), 1.0);
+}
+
+TEST_F(InspectionTest, ReconstructionsHaveARowPerComponent) {
+  ReconstructionSummary summary;
+  summary.images = 60;
+  summary.registered = 40;
+  summary.components = {{40, 900}, {12, 80}};
+  summary.median_triangulation_angle_deg = 3.5;
+  WriteReconstruction(File(), summary, {OptionsToJson(ReconstructOptions()), {}});
+  const Inspection inspection = Read();
+  EXPECT_THAT(Said(inspection, "made by"), HasSubstr("soslam-reconstruct"));
+  EXPECT_EQ(Said(inspection, "registered"), "40 of 60 images");
+  EXPECT_EQ(Said(inspection, "medians"),
+            "reprojection error unknown, triangulation angle 3.50 degrees");
+  ASSERT_EQ(inspection.table.rows.size(), 2u);
+  EXPECT_EQ(At(inspection, 1, "images"), 12);
 }
 
 TEST_F(InspectionTest, EdgesHaveARowPerFrame) {

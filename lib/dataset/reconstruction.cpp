@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/reconstruction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "dataset/image_path.h"
+#include "evaluation/statistics.h"
+#include "geometry/angles.h"
+
+namespace soslam {
+namespace {
+
+MapPoint PointOf(const ColmapPoint& point, const ColmapModel& model,
+                 const std::map<std::int64_t, std::pair<size_t, int>>& frames) {
+  MapPoint read;
+  read.position_in_world = point.position_in_world;
+  read.reprojection_error_px = std::max(point.reprojection_error_px, 0.0);
+  for (const ColmapPoint::Observation& observation : point.track) {
+    const auto frame = frames.find(observation.image_id);
+    if (frame == frames.end()) continue;
+    const auto& [image, frame_id] = frame->second;
+    read.observations.push_back(
+        {frame_id, model.images[image].pixels[static_cast<size_t>(observation.pixel_index)]});
+  }
+  std::ranges::stable_sort(read.observations, {}, &PointObservation::frame_id);
+  return read;
+}
+
+}  // namespace
+
+Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images) {
+  Reconstruction reconstruction;
+  reconstruction.world_from_camera.resize(images.size());
+  FrameLookup lookup(images);
+  std::map<std::int64_t, std::pair<size_t, int>> frames;  // index in the model, and frame, by id
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    const NamedPose& pose = model.images[i].pose;
+    const auto row = lookup.Find(pose.image, pose.place);
+    if (!row) continue;
+    auto& found = reconstruction.world_from_camera[static_cast<size_t>(*row)];
+    if (found) {
+      throw InputError(fmt::format("{}: is the second pose of image '{}'; expected one", pose.place,
+                                   pose.image));
+    }
+    found = pose.world_from_camera;
+    frames[model.images[i].id] = {i, *row};
+  }
+  if (frames.empty()) {
+    const NamedPose& first = model.images.front().pose;
+    throw InputError(fmt::format(
+        "{}: image '{}' is not listed, nor is any other; expected a model of the listed images",
+        first.place, first.image));
+  }
+  for (const ColmapPoint& point : model.points) {
+    MapPoint read = PointOf(point, model, frames);
+    if (!read.observations.empty()) reconstruction.points.push_back(std::move(read));
+  }
+  return reconstruction;
+}
+
+double TriangulationAngle(const MapPoint& point,
+                          const std::vector<std::optional<Rigid3d>>& world_from_camera) {
+  constexpr size_t kMostViews = 50;
+  const size_t views = point.observations.size();
+  const size_t used = std::min(views, kMostViews);
+  std::vector<Eigen::Vector3d> rays;
+  for (size_t i = 0; i < used; ++i) {
+    const auto frame = static_cast<size_t>(point.observations[i * views / used].frame_id);
+    rays.push_back(point.position_in_world - world_from_camera[frame]->translation);
+  }
+  double largest = 0.0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      largest = std::max(largest, std::atan2(rays[i].cross(rays[k]).norm(), rays[i].dot(rays[k])));
+    }
+  }
+  return largest;
+}
+
+void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summary) {
+  std::vector<double> errors, angles;
+  summary->observations = 0;
+  for (const MapPoint& point : reconstruction.points) {
+    if (point.reprojection_error_px > 0.0) errors.push_back(point.reprojection_error_px);
+    angles.push_back(kDegPerRad * TriangulationAngle(point, reconstruction.world_from_camera));
+    summary->observations += static_cast<int>(point.observations.size());
+  }
+  summary->images = static_cast<int>(reconstruction.world_from_camera.size());
+  summary->registered = static_cast<int>(std::ranges::count_if(
+      reconstruction.world_from_camera, [](const auto& pose) { return pose.has_value(); }));
+  summary->points = static_cast<int>(reconstruction.points.size());
+  summary->median_reprojection_error_px = MedianOf(errors);
+  summary->median_triangulation_angle_deg = MedianOf(angles);
+}
+
+std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary) {
+  constexpr double kRegistered = 0.8;
+  constexpr double kAngleDeg = 2.0;
+  std::vector<Finding> findings;
+  if (summary.registered < kRegistered * summary.images) {
+    findings.push_back({"images_registered", Severity::kWarning,
+                        fmt::format("{} of {} images are registered; the others have no pose",
+                                    summary.registered, summary.images),
+                        "80 % of the images at least",
+                        "images that are blurred, show little texture, or overlap too little",
+                        "take more images between those that are far apart, or give the poses"});
+  }
+  if (summary.components.size() > 1) {
+    const ReconstructionSummary::Component& second = summary.components[1];
+    findings.push_back(
+        {"components", Severity::kWarning,
+         fmt::format("the images fall into {} parts that are not connected; used is the largest, "
+                     "of {} images; the second one has {} images and {} points",
+                     summary.components.size(), summary.components.front().images, second.images,
+                     second.points),
+         "one part", "too little overlap between the parts, or images of several places",
+         "take images that connect the parts, or make a dataset of each"});
+  }
+  const auto& angle = summary.median_triangulation_angle_deg;
+  if (!summary.poses_are_given && angle && *angle < kAngleDeg) {
+    findings.push_back(
+        {"triangulation_angle", Severity::kWarning,
+         fmt::format("the median triangulation angle is {:.2f} degrees: no baseline: poses needed",
+                     *angle),
+         "2 degrees at least", "a camera that turns on the spot, or hardly moves",
+         "move the camera sideways, about a tenth of the distance between images; or give the "
+         "poses"});
+  }
+  return findings;
+}
+
+}  // namespace soslam

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/colmap_model.h"
+#include "dataset/trajectories.h"
+#include "model/finding.h"
+#include "model/map_points.h"
+#include "model/reconstruction.h"
+
+namespace soslam {
+
+// Poses and points of a COLMAP model for the images of a dataset.
+struct Reconstruction {
+  std::vector<std::optional<Rigid3d>> world_from_camera;  // one per listed image
+  std::vector<MapPoint> points;                           // sorted by COLMAP's id
+};
+
+// Assigns the images of a model to those of the list by name (FrameLookup). Images that are not
+// listed are left out with their observations, and points with them that no listed image sees.
+// Observations are sorted by frame. Throws InputError when an image has two poses, and when none is
+// listed.
+Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images);
+
+// The largest angle between rays from two of the cameras that see a point, rad; of tracks longer
+// than 50 views, of 50 that are evenly spread.
+double TriangulationAngle(const MapPoint& point,
+                          const std::vector<std::optional<Rigid3d>>& world_from_camera);
+
+// Numbers of images and points, and medians; the rest is left as it is.
+void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summary);
+
+// Finds fewer than 80 % of the images registered, more than one component, and a median
+// triangulation angle of less than 2 degrees where the poses are estimated.
+std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary);
+
+}  // namespace soslam

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dataset/calibration_file.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+// Work for COLMAP: images of one camera.
+struct ColmapJob {
+  std::filesystem::path dataset;                    // folder that the names are relative to
+  std::vector<std::string> images;                  // names
+  std::optional<LensCamera> camera = std::nullopt;  // none: estimated from nothing or EXIF
+  bool camera_is_fixed = false;
+  // world_from_camera of each image, which needs a fixed camera; empty: they are estimated.
+  std::vector<std::optional<Rigid3d>> poses = {};
+  bool exhaustive = true;  // match each image with each other; otherwise with its successors
+  int threads = 1;
+};
+
+// COLMAP's programs (3.8 to 3.13), which run on the processor.
+class Colmap {
+ public:
+  // Throws SettingsError if there is no program "colmap" on PATH.
+  Colmap();
+
+  const std::string& version() const { return version_; }
+
+  // Runs features, matches and mapper, or triangulation with given poses, in the folder
+  // `workspace`, with progress on stderr, and returns the folders of the models. A workspace of the
+  // same job is continued, or used if it is finished; another is replaced. What COLMAP prints is in
+  // log.txt there. Throws NothingUsableError when no image has features or a program fails,
+  // NumericalError when there is no model.
+  std::vector<std::filesystem::path> Run(const ColmapJob& job,
+                                         const std::filesystem::path& workspace) const;
+
+ private:
+  std::vector<std::string> ExtractorWords(const ColmapJob& job,
+                                          const std::filesystem::path& workspace) const;
+  std::vector<std::string> MatcherWords(const ColmapJob& job,
+                                        const std::filesystem::path& workspace) const;
+  void MakeModels(const ColmapJob& job, const std::filesystem::path& workspace) const;
+
+  std::string version_;
+  std::string extraction_, matching_;  // prefixes of options, which have changed in 3.13
+};
+
+// The models in a folder: itself, or its subfolders, sorted by number.
+std::vector<std::filesystem::path> ColmapModelsIn(const std::filesystem::path& folder);
+
+}  // namespace soslam

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_reconstruct.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "artefact/atomic_file.h"
+#include "artefact/points_file.h"
+#include "artefact/reconstruction_file.h"
+#include "base/error.h"
+#include "base/paths.h"
+#include "cli/command_line.h"
+#include "dataset/dataset_json.h"
+#include "dataset/image_path.h"
+#include "dataset/reconstruction.h"
+#include "dataset/text_file.h"
+#include "image/image_format.h"
+#include "stage/colmap_programs.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Mark of files that this stage wrote, and may replace: "source" of camera.json, and the beginning
+// of odometry.txt.
+constexpr const char* kSource = "soslam-reconstruct";
+const std::string kOdometryMark = fmt::format("# {}:", kSource);
+
+// What is known before COLMAP runs.
+struct Given {
+  std::vector<ListedImage> images;
+  std::optional<LensCamera> camera;
+  bool camera_is_fixed = false;
+  std::vector<std::optional<Rigid3d>> poses;  // one per image; empty: they are estimated
+};
+
+CalibrationChoice ChooseCalibration(CalibrationChoice choice, const fs::path& camera) {
+  if (choice != CalibrationChoice::kAuto) return choice;
+  const bool is_given = Exists(camera) && SourceOfCamera(camera) != kSource;
+  return is_given ? CalibrationChoice::kGiven : CalibrationChoice::kEstimated;
+}
+
+std::vector<std::optional<Rigid3d>> GivenPoses(const fs::path& path, double max_difference_s,
+                                               const std::vector<ListedImage>& images) {
+  const std::vector<TimedPose> trajectory = ReadTrajectory(path);
+  std::vector<std::optional<Rigid3d>> poses;
+  for (const ListedImage& image : images) {
+    const auto pose = NearestPose(trajectory, image.timestamp, max_difference_s);
+    poses.push_back(pose ? std::optional(pose->world_from_camera) : std::nullopt);
+  }
+  const auto count = std::ranges::count_if(poses, [](const auto& pose) { return bool(pose); });
+  if (count >= 2) return poses;
+  throw InputError(fmt::format("{}: {} of {} images have a pose within {} s; expected two at least",
+                               path.string(), count, images.size(), max_difference_s));
+}
+
+Given ReadGiven(const fs::path& dataset, const ReconstructOptions& options) {
+  Given given;
+  const fs::path list = dataset / "rgb.txt", camera = dataset / "camera.json";
+  given.images = ReadImageList(list);
+  if (given.images.size() < 2) {
+    throw InputError(list.string() + ": has a single image; expected several, from places apart");
+  }
+  for (ListedImage& image : given.images) image.image = NameInDataset(dataset, image.image);
+  const CalibrationChoice calibration = ChooseCalibration(options.calibration, camera);
+  if (calibration != CalibrationChoice::kEstimated) given.camera = ReadCamera(camera);
+  given.camera_is_fixed = calibration == CalibrationChoice::kGiven;
+  if (options.poses == PoseChoice::kEstimated) return given;
+  if (!given.camera_is_fixed) {
+    throw SettingsError(
+        "poses: given poses need a given camera; expected a camera.json, and "
+        "calibration given or auto");
+  }
+  given.poses = GivenPoses(dataset / "odometry.txt", options.max_time_difference_s, given.images);
+  return given;
+}
+
+// Throws SettingsError if the output would replace poses of another source.
+void CheckReplaceable(const fs::path& odometry, const ReconstructOptions& options) {
+  if (options.poses == PoseChoice::kGiven || !IsFile(odometry)) return;
+  const auto lines = ReadRawLines(odometry);
+  if (lines.empty() || lines.front().text.starts_with(kOdometryMark)) return;
+  throw SettingsError(fmt::format(
+      "{}: has poses that are not of soslam-reconstruct, which would be replaced; expected "
+      "poses given, to keep them, another --output, or no such file",
+      odometry.string()));
+}
+
+// Throws InputError unless COLMAP can take the images for those of one camera, that of soslam.
+void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation read_as) {
+  const std::string list = (dataset / "rgb.txt").string();
+  std::optional<ImageSize> first;
+  if (given.camera) first = {given.camera->camera.width, given.camera->camera.height};
+  for (const ListedImage& image : given.images) {
+    const fs::path path = ImagePath(dataset, image.image, list);
+    const auto header = ReadImageHeader(path);
+    if (!header) {
+      throw InputError(path.string() + ": cannot be read; expected a JPEG, PNG, WebP, BMP or TIFF");
+    }
+    if (header->orientation != 1 && read_as == ImageOrientation::kUpright) {
+      throw InputError(fmt::format(
+          "{}: EXIF turns this image, and COLMAP reads images as they are stored; expected upright "
+          "files: turn them (exiftran -ai), or set image_orientation stored here, in import and "
+          "for soslam-detect",
+          path.string()));
+    }
+    const ImageSize& size = header->stored;
+    if (!first) first = size;
+    if (size.width == first->width && size.height == first->height) continue;
+    throw InputError(fmt::format("{}: is {} x {} pixels; expected {} x {}, as {}", path.string(),
+                                 size.width, size.height, first->width, first->height,
+                                 given.camera ? "camera.json has" : "the first image is"));
+  }
+}
+
+bool IsExhaustive(const ReconstructOptions& options, size_t images) {
+  if (options.matching != ImageMatching::kAuto) {
+    return options.matching == ImageMatching::kExhaustive;
+  }
+  return images <= static_cast<size_t>(options.exhaustive_max_images);
+}
+
+std::vector<fs::path> RunColmap(const ReconstructOptions& options, const Given& given,
+                                const fs::path& dataset, const fs::path& output, int threads,
+                                std::string* version) {
+  const Colmap colmap;
+  *version = colmap.version();
+  ColmapJob job{fs::absolute(dataset),
+                {},
+                given.camera,
+                given.camera_is_fixed,
+                given.poses,
+                IsExhaustive(options, given.images.size()),
+                threads};
+  for (const ListedImage& image : given.images) job.images.push_back(image.image);
+  return colmap.Run(job, output / "colmap");
+}
+
+std::vector<fs::path> GivenModels(const fs::path& folder) {
+  std::vector<fs::path> models = ColmapModelsIn(folder);
+  if (!models.empty()) return models;
+  throw InputError(folder.string() +
+                   ": has no model of COLMAP; expected cameras, images and points3D (.bin or "
+                   ".txt), or numbered folders of them");
+}
+
+// The largest model; lists all in `components`.
+ColmapModel LargestModel(const std::vector<fs::path>& folders,
+                         std::vector<ReconstructionSummary::Component>* components) {
+  using Component = ReconstructionSummary::Component;
+  const auto is_larger = [](const Component& a, const Component& b) {
+    return std::pair(a.images, a.points) > std::pair(b.images, b.points);
+  };
+  std::optional<ColmapModel> largest;
+  for (const fs::path& folder : folders) {
+    ColmapModel model = ReadColmapModel(folder);
+    const Component component{static_cast<int>(model.images.size()),
+                              static_cast<int>(model.points.size())};
+    const bool is_largest = std::ranges::all_of(
+        *components, [&](const Component& other) { return is_larger(component, other); });
+    if (is_largest) largest = std::move(model);
+    components->push_back(component);
+  }
+  std::ranges::stable_sort(*components, is_larger);
+  return std::move(*largest);
+}
+
+// Throws InputError unless the model has the camera that was given.
+void CheckCamera(const ColmapModel& model, const Given& given, const fs::path& dataset) {
+  constexpr double kTolerancePx = 0.01;
+  if (!given.camera_is_fixed) return;
+  const Camera& found = model.camera.camera;
+  const Camera& expected = given.camera->camera;
+  const Eigen::Vector4d difference(found.fx - expected.fx, found.fy - expected.fy,
+                                   found.cx - expected.cx, found.cy - expected.cy);
+  if (difference.cwiseAbs().maxCoeff() < kTolerancePx && found.width == expected.width &&
+      found.height == expected.height) {
+    return;
+  }
+  throw InputError(fmt::format(
+      "{}: is another camera than the model's (fx {:.2f}, not {:.2f}); expected a model of this "
+      "camera, or calibration estimated, which replaces the file by the model's camera",
+      (dataset / "camera.json").string(), found.fx, expected.fx));
+}
+
+// Throws InputError unless the model's poses are those that were given.
+void CheckPoses(const Reconstruction& reconstruction, const Given& given) {
+  constexpr double kTolerance = 1e-6;
+  for (size_t i = 0; i < given.poses.size(); ++i) {
+    const auto& found = reconstruction.world_from_camera[i];
+    if (!found || !given.poses[i]) continue;
+    const Rigid3d change = given.poses[i]->Inverse() * *found;
+    const double size = std::max(1.0, given.poses[i]->translation.norm());
+    if (change.translation.norm() < kTolerance * size &&
+        change.rotation.vec().norm() < kTolerance) {
+      continue;
+    }
+    throw InputError(
+        fmt::format("{}: the model has another pose than odometry.txt; expected a "
+                    "model of the given poses, or poses estimated",
+                    given.images[i].image));
+  }
+}
+
+void CopyInto(const fs::path& output, const fs::path& file) {
+  if (PlainPath(file.parent_path()) == PlainPath(output)) return;
+  WriteTextFile(output / file.filename(), ReadWholeFile(file, "text file"));
+}
+
+void WriteAll(const fs::path& dataset, const fs::path& output, const Given& given,
+              const ColmapModel& model, const Reconstruction& reconstruction,
+              const ReconstructionSummary& summary, const ArtefactInfo& info) {
+  WritePoints(output / "points.h5", reconstruction.points, info);
+  if (summary.poses_are_given) {
+    CopyInto(output, dataset / "odometry.txt");
+  } else {
+    std::string text = kOdometryMark +
+                       " timestamp tx ty tz qx qy qz qw, world_from_camera, in a unit of its own\n";
+    for (size_t i = 0; i < given.images.size(); ++i) {
+      const auto& pose = reconstruction.world_from_camera[i];
+      if (pose) text += TrajectoryLine({given.images[i].timestamp, *pose});
+    }
+    WriteTextFile(output / "odometry.txt", text);
+  }
+  if (summary.camera_is_given) {
+    CopyInto(output, dataset / "camera.json");
+  } else {
+    WriteTextFile(output / "camera.json", CameraText(model.camera, kSource));
+  }
+  WriteReconstruction(output / "reconstruction.json", summary, info);
+}
+
+std::string InWords(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.2f} {}", *value, unit) : "unknown";
+}
+
+}  // namespace
+
+void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, int threads) {
+  const fs::path& dataset = files.at("dataset");
+  const fs::path& output = files.at("output");
+  const Given given = ReadGiven(dataset, options);
+  CheckReplaceable(output / "odometry.txt", options);
+  CheckImages(dataset, given, options.image_orientation);
+  std::error_code ignored;  // the first file that is written reports it
+  fs::create_directories(output, ignored);
+
+  ReconstructionSummary summary;
+  const ColmapModel model =
+      LargestModel(files.contains("model")
+                       ? GivenModels(files.at("model"))
+                       : RunColmap(options, given, dataset, output, threads, &summary.colmap),
+                   &summary.components);
+  const Reconstruction reconstruction = ReconstructionOf(model, given.images);
+  CheckCamera(model, given, dataset);
+  CheckPoses(reconstruction, given);
+  summary.poses_are_given = !given.poses.empty();
+  summary.camera_is_given = given.camera_is_fixed;
+  Summarise(reconstruction, &summary);
+  if (summary.points == 0) {
+    throw NothingUsableError(
+        fmt::format("{}: the model has no points; expected some: do the poses fit the images?",
+                    dataset.string()));
+  }
+  ArtefactInfo info{OptionsToJson(options), model.files, CheckReconstruction(summary)};
+  info.inputs.push_back(dataset / "rgb.txt");
+  ReportFindings("reconstruct", info.findings);
+  WriteAll(dataset, output, given, model, reconstruction, summary, info);
+  fmt::print(
+      "{}: registered {} of {} images, {} points, median reprojection error {}, median "
+      "triangulation angle {}{}\n",
+      dataset.string(), summary.registered, summary.images, summary.points,
+      InWords(summary.median_reprojection_error_px, "px"),
+      InWords(summary.median_triangulation_angle_deg, "degrees"),
+      summary.components.size() > 1
+          ? fmt::format("; {} images in a second component", summary.components[1].images)
+          : "");
+}
+
+}  // namespace soslam

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_reconstruct.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
+
+#include "artefact/model_json.h"
+#include "artefact/points_file.h"
+#include "artefact/reconstruction_file.h"
+#include "base/error.h"
+#include "dataset/dataset_json.h"
+#include "dataset/trajectories.h"
+#include "support/expect_error.h"
+#include "support/image_files.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+// Stands for COLMAP: notes how it was called, and copies a model to --output_path.
+constexpr const char* kProgram = R"(#!/bin/sh
+here=$(dirname "$0")
+echo "$@" >> "$here/calls"
+case "$1" in
+  -h) echo "COLMAP 3.8 -- Structure-from-Motion";;
+  feature_extractor) cat "$here/printed";;
+  mapper|point_triangulator)
+    while [ $# -gt 1 ]; do [ "$1" = --output_path ] && output=$2; shift; done
+    echo "Registering image #1 (3)"[-f "$here/crash"] &&
+                                     kill - SEGV $$[-d "$here/models"] ||
+                                 exit 1 cp - r "$here" / models /."$output";
+;
+esac
+)";
+
+// Three images, of cameras side by side that look along z.
+class RunReconstructTest : public testing::Test {
+ protected:
+  RunReconstructTest() : path_(std::getenv("PATH")) {
+    for (const char* name : {"data/rgb", "bin", "nothing"}) fs::create_directories(folder_ / name);
+    for (int i = 0; i < 3; ++i) {
+      cv::imwrite((Dataset() / ("rgb/" + std::to_string(i) + ".png")).string(),
+                  cv::Mat(48, 64, CV_8UC3, cv::Scalar(0, 0, 51 * i)));
+    }
+    WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/2.png\n");
+    WriteBytes(folder_ / "bin/colmap", kProgram);
+    fs::permissions(folder_ / "bin/colmap", fs::perms::owner_all);
+    Prints("  Features:        1481");
+    WriteModel("0", 3);
+    setenv("PATH", ((folder_ / "bin").string() + ":" + path_).c_str(), 1);
+  }
+  ~RunReconstructTest() override { setenv("PATH", path_.c_str(), 1); }
+
+  fs::path Dataset() const { return folder_ / "data"; }
+  fs::path Output(const std::string& file) const { return folder_ / "out" / file; }
+  void Prints(const std::string& line) const { WriteBytes(folder_ / "bin/printed", line + "\n"); }
+
+  // A model of so many images with one point (1, 0, 5).
+  void WriteModel(const std::string& name, int images) const {
+    const fs::path model = folder_ / "bin/models" / name;
+    fs::create_directories(model);
+    std::string lines, track;
+    for (int i = 0; i < images; ++i) {
+      lines += fmt::format("{} 1 0 0 0 {} 0 0 1 rgb/{}.png\n{} 24.5 1\n", i + 1, -i, i, 10 + i);
+      track += fmt::format(" {} 0", i + 1);
+    }
+    WriteBytes(model / "cameras.txt", "1 SIMPLE_RADIAL 64 48 50 32 24 0.01\n");
+    WriteBytes(model / "images.txt", lines);
+    WriteBytes(model / "points3D.txt", "1 1 0 5 0 0 0 0.25" + track + "\n");
+  }
+  // As COLMAP writes what it triangulates.
+  void WriteModelWithoutNumber() const {
+    WriteModel("", 3);
+    fs::remove_all(folder_ / "bin/models/0");
+  }
+
+  void Run(const std::string& output = "out", const std::string& model = "") {
+    StageFiles files = {{"dataset", Dataset()}, {"output", folder_ / output}};
+    if (!model.empty()) files["model"] = folder_ / model;
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const auto captured = [&] {
+      printed_ = testing::internal::GetCapturedStdout();
+      errors_ = testing::internal::GetCapturedStderr();
+    };
+    try {
+      RunReconstruct(options_, files, 2);
+    } catch (...) {
+      captured();
+      throw;
+    }
+    captured();
+  }
+  // Returns the calls of COLMAP since the last time.
+  std::string Calls() const {
+    if (!fs::exists(folder_ / "bin/calls")) return "";
+    const std::string calls = FileBytes(folder_ / "bin/calls");
+    fs::remove(folder_ / "bin/calls");
+    return calls;
+  }
+  template <typename ErrorType>
+  void ExpectFailure(ExitCode exit_code, const std::vector<std::string>& words) {
+    ExpectError<ErrorType>([&] { Run(); }, words);
+    EXPECT_EQ(ErrorType("").exit_code(), exit_code);
+    EXPECT_FALSE(fs::exists(Output("reconstruction.json")));
+  }
+
+  TemporaryFolder folder_;
+  std::string path_;
+  ReconstructOptions options_;
+  std::string printed_, errors_;
+};
+
+TEST_F(RunReconstructTest, WritesADatasetFolder) {
+  Run();
+  EXPECT_THAT(printed_, HasSubstr("registered 3 of 3 images, 1 points, median reprojection error "
+                                  "0.25 px, median triangulation angle 22.62 degrees\n"));
+  EXPECT_EQ(errors_, "");
+  const LensCamera camera = ReadCamera(Output("camera.json"));
+  EXPECT_EQ(camera.camera, (Camera{64, 48, 50, 50, 31.5, 23.5}));
+  EXPECT_EQ(camera.distortion, Distortion{0.01});
+  const auto poses = ReadTrajectory(Output("odometry.txt"));
+  ASSERT_EQ(poses.size(), 3u);
+  EXPECT_EQ(poses[1].timestamp, 0.5);
+  EXPECT_EQ(poses[2].world_from_camera.translation, Eigen::Vector3d(2, 0, 0));
+  const auto points = ReadPoints(Output("points.h5"));
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_EQ(points[0].position_in_world, Eigen::Vector3d(1, 0, 5));
+  ASSERT_EQ(points[0].observations.size(), 3u);
+  EXPECT_EQ(points[0].observations[2].frame_id, 2);
+  EXPECT_EQ(points[0].observations[2].pixel, Eigen::Vector2d(11.5, 24.0));
+  const auto summary = ReadReconstruction(Output("reconstruction.json"));
+  EXPECT_EQ(summary.registered, 3);
+  EXPECT_EQ(summary.colmap, "3.8");
+  EXPECT_FALSE(summary.camera_is_given);
+}
+
+TEST_F(RunReconstructTest, ColmapIsCalledForTheProcessorAndOneCamera) {
+  Run();
+  const std::string calls = Calls();
+  for (const char* words :
+       {"--SiftExtraction.use_gpu 0", "--SiftMatching.use_gpu 0", "--ImageReader.single_camera 1",
+        "camera_model SIMPLE_RADIAL", "exhaustive_matcher"}) {
+    EXPECT_THAT(calls, HasSubstr(words));
+  }
+  EXPECT_THAT(calls, Not(HasSubstr("ba_refine")));
+  Prints("--FeatureExtraction.use_gpu arg (=1)\nFeatures: 3");
+  options_.exhaustive_max_images = 2;
+  Run("other");
+  const std::string newer = Calls();
+  EXPECT_THAT(newer, HasSubstr("--FeatureExtraction.use_gpu 0"));
+  EXPECT_THAT(newer, HasSubstr("sequential_matcher"));
+  EXPECT_THAT(newer, HasSubstr("--FeatureMatching.use_gpu 0"));
+}
+
+TEST_F(RunReconstructTest, AGivenModelGivesTheSameBytes) {
+  Run();
+  Calls();
+  Run("again", "out/colmap/sparse");
+  EXPECT_EQ(Calls(), "");
+  for (const char* file : {"camera.json", "odometry.txt", "points.h5"}) {
+    EXPECT_EQ(FileBytes(folder_ / "again" / file), FileBytes(Output(file))) << file;
+  }
+  EXPECT_EQ(ReadReconstruction(folder_ / "again/reconstruction.json").colmap, "");
+  ExpectError<InputError>([&] { Run("again", "nothing"); }, {"nothing", "no model of COLMAP"});
+}
+
+TEST_F(RunReconstructTest, AFinishedJobIsNotRunAgain) {
+  Run();
+  Calls();
+  Run();
+  EXPECT_THAT(Calls(), Not(HasSubstr("mapper")));
+  cv::imwrite((Dataset() / "rgb/1.png").string(), cv::Mat::zeros(48, 64, CV_8UC3));
+  Run();
+  EXPECT_THAT(Calls(), HasSubstr("mapper"));
+}
+
+TEST_F(RunReconstructTest, AGivenCameraIsKept) {
+  const std::string camera =
+      R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})";
+  WriteBytes(Dataset() / "camera.json", camera);
+  Run();
+  const std::string calls = Calls();
+  EXPECT_THAT(calls, HasSubstr("camera_model PINHOLE --ImageReader.camera_params 50,50,32,24"));
+  EXPECT_THAT(calls, HasSubstr("--Mapper.ba_refine_focal_length 0"));
+  EXPECT_EQ(FileBytes(Output("camera.json")), camera);
+  EXPECT_TRUE(ReadReconstruction(Output("reconstruction.json")).camera_is_given);
+  options_.calibration = CalibrationChoice::kInitial;
+  Run("refined");
+  EXPECT_THAT(Calls(), Not(HasSubstr("ba_refine")));
+  EXPECT_THAT(FileBytes(folder_ / "refined/camera.json"), HasSubstr("0.01"));
+  options_ = {};
+  WriteBytes(Dataset() / "camera.json",
+             R"({"width": 64, "height": 48, "fx": 51, "fy": 50, "cx": 31.5, "cy": 23.5})");
+  ExpectError<InputError>([&] { Run("other", "bin/models"); },
+                          {"camera.json", "another camera than the model's", "fx 50.00"});
+}
+
+TEST_F(RunReconstructTest, FilesInTheDatasetThatAreOfThisStageAreNotGiven) {
+  Run("data");
+  Run("data");
+  EXPECT_FALSE(ReadReconstruction(Dataset() / "reconstruction.json").camera_is_given);
+  WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n");
+  ExpectError<SettingsError>([&] { Run("data"); }, {"odometry.txt", "would be replaced"});
+}
+
+TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
+  WriteBytes(Dataset() / "camera.json",
+             R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})");
+  const std::string odometry = "0 0 0 0 0 0 0 1\n0.5 1 0 0 0 0 0 1\n1.01 2 0 0 0 0 0 1\n";
+  WriteBytes(Dataset() / "odometry.txt", odometry);
+  WriteModelWithoutNumber();
+  options_.poses = PoseChoice::kGiven;
+  Run("data");
+  EXPECT_THAT(Calls(), HasSubstr("point_triangulator"));
+  EXPECT_EQ(FileBytes(Dataset() / "odometry.txt"), odometry);
+  EXPECT_EQ(ReadPoints(Dataset() / "points.h5").size(), 1u);
+  EXPECT_THAT(FileBytes(Dataset() / "colmap/given/images.txt"),
+              HasSubstr("2 1 -0 -0 -0 -1 -0 -0 1 rgb/1.png\n\n"));
+  WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n0.5 1.1 0 0 0 0 0 1\n");
+  ExpectError<InputError>([&] { Run("data"); }, {"rgb/1.png", "another pose than odometry.txt"});
+  WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n");
+  ExpectError<InputError>([&] { Run("data"); }, {"odometry.txt", "1 of 3 images"});
+  options_.calibration = CalibrationChoice::kEstimated;
+  ExpectError<SettingsError>([&] { Run("data"); }, {"given camera"});
+}
+
+TEST_F(RunReconstructTest, FindingsAreReported) {
+  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n1 rgb/1.png\n2 rgb/2.png\n3 rgb/0.png\n");
+  WriteModel("1", 2);
+  WriteBytes(folder_ / "bin/models/0/points3D.txt", "1 1 0 500 0 0 0 0.25 1 0 3 0\n");
+  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n1 rgb/1.png\n2 rgb/2.png\n3 rgb/more.png\n");
+  fs::copy_file(Dataset() / "rgb/0.png", Dataset() / "rgb/more.png");
+  Run();
+  for (const char* words : {"3 of 4 images are registered", "2 parts",
+                            "the second one has 2 images", "no baseline: poses needed"}) {
+    EXPECT_THAT(errors_, HasSubstr(words));
+  }
+  EXPECT_THAT(printed_, HasSubstr("; 2 images in a second component"));
+  EXPECT_EQ(FindingsFromJson(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
+}
+
+TEST_F(RunReconstructTest, ColmapIsMissing) {
+  setenv("PATH", (folder_ / "nothing").string().c_str(), 1);
+  ExpectFailure<SettingsError>(ExitCode::kSettings, {"package colmap", "--model"});
+}
+
+TEST_F(RunReconstructTest, ASingleImage) {
+  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n");
+  ExpectFailure<InputError>(ExitCode::kInput, {"rgb.txt", "single image"});
+}
+
+TEST_F(RunReconstructTest, NoImageHasFeatures) {
+  Prints("  Features:        0");
+  ExpectFailure<NothingUsableError>(ExitCode::kNothingUsable, {"none of 3 images has features"});
+}
+
+TEST_F(RunReconstructTest, NoModel) {
+  fs::remove_all(folder_ / "bin/models");
+  ExpectFailure<NumericalError>(ExitCode::kNumerical, {"no two images", "log.txt"});
+}
+
+TEST_F(RunReconstructTest, Crash) {
+  WriteBytes(folder_ / "bin/crash", "");
+  ExpectFailure<NothingUsableError>(ExitCode::kNothingUsable,
+                                    {"colmap mapper", "exit code 139", "Registering", "log.txt"});
+}
+
+TEST_F(RunReconstructTest, ImagesThatColmapWouldMistakeAreRefused) {
+  cv::imwrite((Dataset() / "rgb/1.png").string(), cv::Mat::zeros(64, 48, CV_8UC3));
+  ExpectFailure<InputError>(ExitCode::kInput, {"1.png", "48 x 64", "64 x 48", "first image"});
+  WriteBytes(Dataset() / "rgb/1.png", "no image");
+  ExpectFailure<InputError>(ExitCode::kInput, {"1.png", "expected a JPEG"});
+}
+
+}  // namespace
+}  // namespace soslam
