@@ -100,6 +100,8 @@ help: ## List the targets
 	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
+	@echo 'Maps of photos (see docs/photos-to-map.md): IMAGES, NETWORK or DETECTIONS=<file>, CAMERA=<camera.json>,'
+	@echo 'MODEL=<folder of COLMAP>, NAME=<of the map>, MAPS=maps'
 	@echo 'Datasets of others (see docs/data.md): MIRROR=<address of copies of the downloads>, WITHOUT=<folder of the'
 	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dataset/trajectories.h"
+#include "support/background_command.h"
+#include "support/small_pipeline.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+// Stands for COLMAP: copies a finished model to --output_path.
+constexpr const char* kColmap = R"(#!/bin/sh
+here=$(dirname "$0")
+case "$1" in
+  -h) echo "COLMAP 3.8 -- Structure-from-Motion";;
+  feature_extractor) echo "  Features:        1000";;
+  mapper)
+    while [ $# -gt 1 ]; do [ "$1" = --output_path ] && output=$2; shift; done
+    cp -r "$here/model" "$output/0";;
+esac
+)";
+
+// COLMAP's model of the small scene: its true poses, and points on the floor and above it.
+class ModelOfSmallScene {
+ public:
+  explicit ModelOfSmallScene(const fs::path& dataset) {
+    for (const TimedPose& pose : ReadTrajectory(dataset / "groundtruth.txt")) {
+      camera_from_world_.push_back(pose.world_from_camera.Inverse());
+    }
+    for (int i = 0; i < 40; ++i) points_.emplace_back(2.5 + 0.1 * (i % 8), 0.1 * i - 2.0, 0.1 * (i % 3));
+  }
+
+  void Write(const fs::path& folder) const {
+    fs::create_directories(folder);
+    WriteBytes(folder / "cameras.txt", "1 PINHOLE 480 360 400 400 240 180\n");
+    std::string images, points;
+    for (size_t i = 0; i < camera_from_world_.size(); ++i) images += ImageLines(i);
+    for (size_t j = 0; j < points_.size(); ++j) {
+      points += fmt::format("{} {} 0 0 0 0.3", j + 1, fmt::join(points_[j], " "));
+      for (size_t i = 0; i < camera_from_world_.size(); ++i) points += fmt::format(" {} {}", i + 1, j);
+      points += "\n";
+    }
+    WriteBytes(folder / "images.txt", images);
+    WriteBytes(folder / "points3D.txt", points);
+  }
+
+ private:
+  std::string ImageLines(size_t index) const {
+    const Rigid3d& pose = camera_from_world_[index];
+    const Eigen::Quaterniond& q = pose.rotation;
+    std::string lines = fmt::format("{} {} {} {} {} {} 1 rgb/IMG_{}.png\n", index + 1, q.w(), q.x(),
+                                    q.y(), q.z(), fmt::join(pose.translation, " "), index);
+    for (size_t j = 0; j < points_.size(); ++j) {
+      const Eigen::Vector3d point = pose * points_[j];
+      lines += fmt::format("{} {} {} ", 400.0 * point.x() / point.z() + 240.0,
+                           400.0 * point.y() / point.z() + 180.0, j + 1);
+    }
+    return lines + "\n";
+  }
+
+  std::vector<Rigid3d> camera_from_world_;
+  std::vector<Eigen::Vector3d> points_;
+};
+
+// `make map` of the project itself, on photos of the small scene in a folder with a name that make
+// and the shell would read otherwise.
+class MapTest : public testing::Test {
+ protected:
+  static constexpr int kFrames = 8;
+
+  MapTest() {
+    fs::create_directories(photos_);
+    for (int i = 0; i < kFrames; ++i) {
+      fs::copy(pipeline_.Dataset() / fmt::format("rgb/{:06}.png", i),
+               photos_ / fmt::format("IMG {}.png", i));
+    }
+    fs::copy(pipeline_.Dataset() / "detections.csv", detections_);
+    ModelOfSmallScene(pipeline_.Dataset()).Write(programs_ / "model");
+    WriteBytes(programs_ / "colmap", kColmap);
+    fs::permissions(programs_ / "colmap", fs::perms::owner_all);
+  }
+
+  std::vector<std::string> Words(const std::vector<std::string>& settings) const {
+    std::vector<std::string> words = {"env",
+                                      "-u",
+                                      "MAKEFLAGS",
+                                      "-u",
+                                      "MFLAGS",
+                                      "-u",
+                                      "MAKELEVEL",
+                                      "PATH=" + programs_.string() + ":" + std::getenv("PATH"),
+                                      "make",
+                                      "-C",
+                                      SOSLAM_SOURCE_DIR,
+                                      "map",
+                                      "THREADS=2",
+                                      "MAPS=" + maps_.string(),
+                                      "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string()};
+    words.insert(words.end(), settings.begin(), settings.end());
+    return words;
+  }
+  std::vector<std::string> WordsForPhotos() const {
+    return Words({"IMAGES=" + photos_.string(), "DETECTIONS=" + detections_.string()});
+  }
+  CommandResult Run(const std::vector<std::string>& words) const {
+    return BackgroundCommand(words).Wait();
+  }
+  // What the steps made, without lists of files, which have their times.
+  std::map<std::string, std::string> Made() const {
+    auto made = SmallPipeline::Artefacts(maps_);
+    std::erase_if(made, [](const auto& file) { return file.first.find("/steps/") != std::string::npos; });
+    return made;
+  }
+
+  SmallPipeline pipeline_{kFrames};
+  fs::path photos_ = pipeline_.Folder() / "it's \"my\" $(room) #1";
+  fs::path detections_ = pipeline_.Folder() / "boxes of $it.csv";
+  fs::path programs_ = pipeline_.Folder() / "colmap programs";
+  fs::path maps_ = pipeline_.Folder() / "maps";
+};
+
+TEST_F(MapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
+  const CommandResult first = Run(WordsForPhotos());
+  ASSERT_EQ(first.exit_code, 0) << first.output << first.errors;
+  const fs::path map = maps_ / "it_s_my_room_1";
+  EXPECT_THAT(first.output,
+              testing::EndsWith("3 objects, scale unknown, page: " +
+                                (map / "results/it_s_my_room_1/report.html").string() + "\n"));
+  EXPECT_TRUE(fs::exists(map / "results/it_s_my_room_1/report.html"));
+  const auto made = Made();
+
+  const CommandResult again = Run(WordsForPhotos());
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_THAT(again.output, testing::Not(HasSubstr("[it_s_my_room_1]"))) << "nothing to do";
+  EXPECT_EQ(Made(), made);
+
+  // Other boxes: images and poses stay.
+  const std::string boxes = FileBytes(detections_);
+  WriteBytes(detections_, boxes.substr(0, boxes.rfind("\n7,")) + "\n");
+  const CommandResult changed = Run(WordsForPhotos());
+  EXPECT_EQ(changed.exit_code, 0) << changed.errors;
+  EXPECT_THAT(changed.output, HasSubstr("[it_s_my_room_1] associate"));
+  EXPECT_NE(Made(), made);
+  WriteBytes(detections_, boxes);
+  EXPECT_EQ(Run(WordsForPhotos()).exit_code, 0);
+  EXPECT_EQ(Made(), made);
+}
+
+TEST_F(MapTest, TakesAFinishedModel) {
+  fs::remove(programs_ / "colmap");
+  std::vector<std::string> words = WordsForPhotos();
+  words.insert(words.end(), {"MODEL=" + (programs_ / "model").string(), "NAME=room"});
+  const CommandResult run = Run(words);
+  ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("3 objects, scale unknown"));
+  words[words.size() - 5] = "MAPS=" + maps_.string();
+  EXPECT_THAT(Run(Words({"IMAGES=" + programs_.string(), "DETECTIONS=" + detections_.string(),
+                         "NAME=room"}))
+                  .errors,
+              HasSubstr("is of other images"));
+}
+
+TEST_F(MapTest, RefusesWhatIsMissing) {
+  const auto expect_refused = [&](const std::vector<std::string>& settings, const std::string& words) {
+    const CommandResult run = Run(Words(settings));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.errors, HasSubstr(words));
+    EXPECT_FALSE(fs::exists(maps_));
+  };
+  const std::string images = "IMAGES=" + photos_.string();
+  const std::string marker = (pipeline_.Folder() / "marker").string();
+  expect_refused({}, "expected IMAGES=");
+  expect_refused({images}, "expected NETWORK=");
+  expect_refused({images, "NETWORK=$(shell touch " + marker + ")"}, "no such file");
+  expect_refused({images, "NETWORK=`touch " + marker + "`"}, "no such file");
+  expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
+  expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");
+  EXPECT_FALSE(fs::exists(marker));
+}
+
+class SlowMapTest : public MapTest {};
+
+TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
+  const auto begin = std::chrono::steady_clock::now();
+  const CommandResult undisturbed = Run(WordsForPhotos());
+  const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - begin;
+  ASSERT_EQ(undisturbed.exit_code, 0) << undisturbed.output << undisturbed.errors;
+  const auto made = Made();
+  std::mt19937 random(1);
+  for (int i = 0; i < 4; ++i) {
+    SCOPED_TRACE(i);
+    fs::remove_all(maps_);
+    for (int kill = 0; kill < 2; ++kill) {
+      BackgroundCommand run(WordsForPhotos());
+      std::this_thread::sleep_for(duration * std::uniform_real_distribution<double>(0, 1)(random));
+      if (i % 2 == 0) {
+        run.KillAll();
+      } else {
+        run.KillFirst();
+      }
+      run.Wait();
+    }
+    const CommandResult last = Run(WordsForPhotos());
+    EXPECT_EQ(last.exit_code, 0) << last.output << last.errors;
+    EXPECT_EQ(Made(), made);
+  }
+}
+
+}  // namespace
+}  // namespace soslam
