@@ -19,7 +19,8 @@ std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& normal_in_world,
                                          const std::vector<SegmentView>& views,
                                          double correlation_rad);
 
-// Sets SupportPlane::scene_axis_in_world of all planes that have none. Views of the sequence's world.
+// Sets SupportPlane::scene_axis_in_world of all planes that have none. The views are in the
+// sequence's world.
 void SetSceneAxes(const std::vector<SegmentView>& views, double correlation_rad,
                   Sequence* sequence);
 

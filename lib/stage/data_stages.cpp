@@ -6,20 +6,21 @@
 #include <cmath>
 #include <set>
 
+#include "artefact/points_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/run_log.h"
 #include "cli/command_line.h"
+#include "dataset/dataset_files.h"
+#include "dataset/folder_frames.h"
 #include "dataset/gate.h"
 #include "dataset/import.h"
-#include "geometry/angles.h"
-#include "planes/scene_axis.h"
+#include "dataset/reconstruction.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_edge_bias.h"
 #include "priors/learn_priors.h"
-#include "stage/image_stages.h"
+#include "stage/scene_axes.h"
 #include "synthesis/scene.h"
 #include "synthesis/simulate.h"
 #include "synthesis/write_dataset.h"
@@ -28,53 +29,19 @@ namespace soslam {
 
 namespace {
 
-constexpr int kMaxSceneImages = 24;
-constexpr double kMinSegmentPx = 30.0;
-constexpr double kSceneCorrelation = 20.0 * kRadPerDeg;
-
-// The sequence's images that exist, at most kMaxSceneImages, spread over all.
-std::vector<FrameImage> SomeImages(const Sequence& sequence, const std::filesystem::path& folder) {
-  std::vector<FrameImage> images;
-  if (std::ranges::all_of(sequence.frames, [](const Frame& frame) { return frame.image.empty(); }))
-    return images;
-  for (const FrameImage& image : FrameImages(sequence, folder, folder)) {
-    if (std::filesystem::exists(image.path)) images.push_back(image);
+void WritePointsOfColmap(const std::filesystem::path& folder, const ImportOptions& options,
+                         const std::filesystem::path& output) {
+  if (options.folder.trajectory_format != TrajectoryFormat::kColmap) {
+    throw SettingsError(
+        "points: found trajectory_format other than colmap; expected colmap, as "
+        "points are read from the model that has the poses");
   }
-  const size_t step = images.size() / kMaxSceneImages + 1;
-  std::vector<FrameImage> some;
-  for (size_t i = 0; i < images.size(); i += step) some.push_back(images[i]);
-  return some;
-}
-
-// Straight edges of the images that can be read; soslam-edges says what is wrong with others.
-std::vector<SegmentView> SegmentsOf(const std::vector<FrameImage>& images, int threads,
-                                    const Sequence& sequence) {
-  std::vector<SegmentView> views(images.size());
-  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    try {
-      views[index] = ReadSegmentViews(sequence, {images[index]}, kMinSegmentPx, 1).front();
-    } catch (const InputError&) {
-    }
-  });
-  std::erase_if(views, [](const SegmentView& view) { return view.segments.empty(); });
-  return views;
-}
-
-// Sets the axes of given planes, if the sequence has one world. The images are added to `inputs`.
-void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* sequence,
-                  std::vector<std::filesystem::path>* inputs) {
-  const auto has_axis = [](const SupportPlane& plane) { return bool(plane.scene_axis_in_world); };
-  const auto is_of_first = [&](const Frame& frame) {
-    return frame.segment == sequence->frames.front().segment;
-  };
-  if (std::ranges::all_of(sequence->planes, has_axis) ||
-      !std::ranges::all_of(sequence->frames, is_of_first)) {
-    return;
-  }
-  const std::vector<FrameImage> images = SomeImages(*sequence, folder);
-  for (const FrameImage& image : images) inputs->push_back(image.path);
-  SetSceneAxes(SegmentsOf(images, threads, *sequence), kSceneCorrelation, sequence);
+  const DatasetFiles found = FindDatasetFiles(folder, options);
+  const ColmapModel model = ReadColmapModel(found.trajectory.parent_path());
+  const auto images = ListImages(folder, found, options, {});
+  const std::vector<MapPoint> points = ReconstructionOf(model, images).points;
+  WritePoints(output, points, {OptionsToJson(options), model.files});
+  fmt::print("{}: {} points\n", output.filename().string(), points.size());
 }
 
 }  // namespace
@@ -85,6 +52,7 @@ void RunImport(const ImportOptions& options, const StageFiles& files, int thread
   Sequence sequence = ImportDataset(folder, options, &inputs);
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
   ReportFindings("import", sequence.findings);
+  if (files.contains("points")) WritePointsOfColmap(folder, options, files.at("points"));
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
              sequence.frames.size(), sequence.objects.size(), sequence.detections.size(),

@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Stands for COLMAP: notes how it was called, and copies a model to --output_path.
-constexpr const char* kProgram = R"(#!/bin/sh
+constexpr const char* kProgram = R"sh(#!/bin/sh
 here=$(dirname "$0")
 echo "$@" >> "$here/calls"
 case "$1" in
@@ -33,12 +33,12 @@ case "$1" in
   feature_extractor) cat "$here/printed";;
   mapper|point_triangulator)
     while [ $# -gt 1 ]; do [ "$1" = --output_path ] && output=$2; shift; done
-    echo "Registering image #1 (3)"[-f "$here/crash"] &&
-                                     kill - SEGV $$[-d "$here/models"] ||
-                                 exit 1 cp - r "$here" / models /."$output";
-;
+    echo "Registering image #1 (3)"
+    [ -f "$here/crash" ] && kill -SEGV $$
+    [ -d "$here/models" ] || exit 1
+    cp -r "$here"/models/. "$output";;
 esac
-)";
+)sh";
 
 // Three images, of cameras side by side that look along z.
 class RunReconstructTest : public testing::Test {
@@ -233,7 +233,6 @@ TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
 }
 
 TEST_F(RunReconstructTest, FindingsAreReported) {
-  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n1 rgb/1.png\n2 rgb/2.png\n3 rgb/0.png\n");
   WriteModel("1", 2);
   WriteBytes(folder_ / "bin/models/0/points3D.txt", "1 1 0 500 0 0 0 0.25 1 0 3 0\n");
   WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n1 rgb/1.png\n2 rgb/2.png\n3 rgb/more.png\n");
@@ -276,6 +275,12 @@ TEST_F(RunReconstructTest, Crash) {
 TEST_F(RunReconstructTest, ImagesThatColmapWouldMistakeAreRefused) {
   cv::imwrite((Dataset() / "rgb/1.png").string(), cv::Mat::zeros(64, 48, CV_8UC3));
   ExpectFailure<InputError>(ExitCode::kInput, {"1.png", "48 x 64", "64 x 48", "first image"});
+  WriteBytes(Dataset() / "rgb/1.png",
+             JpegWithExif(EncodedImage(".jpg", cv::Mat::zeros(48, 64, CV_8UC3)), ExifOf(6)));
+  ExpectFailure<InputError>(ExitCode::kInput, {"1.png", "EXIF turns", "exiftran -ai"});
+  options_.image_orientation = ImageOrientation::kStored;
+  EXPECT_NO_THROW(Run());
+  fs::remove_all(folder_ / "out");
   WriteBytes(Dataset() / "rgb/1.png", "no image");
   ExpectFailure<InputError>(ExitCode::kInput, {"1.png", "expected a JPEG"});
 }
