@@ -143,6 +143,7 @@ MAKEOVERRIDES :=
 MAKE_PROGRAM := $(MAKE)
 override NAME := $(or $(NAME),$(shell pipelines/map-name $(call shell-word,IMAGES)))
 $(call one-word,NAME,one name of letters and digits)
+$(if $(SCALE)$(CAMERA_HEIGHT),$(error map: found SCALE or CAMERA_HEIGHT; maps have the unit of COLMAP as yet))
 endif
 
 .PHONY: map

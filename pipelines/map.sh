@@ -21,7 +21,7 @@ done
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
 
 if [[ -z $MAP_MODEL ]] && ! command -v colmap > /dev/null; then
-  pipelines/install-packages.sh pipelines/map-packages.txt ||
+  pipelines/install-packages.sh pipelines/colmap-packages.txt ||
     refuse "COLMAP is missing, which finds where the images were taken; install it, or give MODEL=<its finished model>"
 fi
 
@@ -71,5 +71,7 @@ $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/da
   PIPELINES="$MAP_ROOT/pipelines" VARIANT="$MAP_VARIANT" THREADS="$MAP_THREADS" BUILD="$BUILD"
 "$BIN/soslam-pages" --results "$MAP_ROOT/results"
 
-objects=$("$BIN/soslam-inspect" "$MAP_ROOT/results/$MAP_NAME/$MAP_VARIANT/map.json" --csv - | tail -n +2 | grep -c .) || true
+map=$MAP_ROOT/results/$MAP_NAME/${MAP_VARIANT%% *}/map.json
+[[ -e $map ]] || refuse "VARIANT='$MAP_VARIANT' makes no map; expected one that does, as OursS" 4
+objects=$("$BIN/soslam-inspect" "$map" --csv - | tail -n +2 | wc -l)
 echo "$objects objects, scale unknown, page: $MAP_ROOT/results/$MAP_NAME/report.html"
