@@ -24,9 +24,10 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxPhotos = 5000;
 constexpr double kMaxFocalChange = 0.05;
 
+// Into a folder of their own, so that each photo is there once.
 constexpr const char* kConversion =
-    "for f in *.HEIC; do heif-convert -q 95 \"$f\" \"$f.jpg\"; done (Debian's package "
-    "libheif-examples)";
+    "mkdir jpg; for f in *.HEIC; do heif-convert -q 95 \"$f\" \"jpg/$f.jpg\"; done (Debian's "
+    "package libheif-examples), and give the folder jpg";
 
 std::string LowerExtension(const fs::path& path) {
   std::string extension = path.extension().string();

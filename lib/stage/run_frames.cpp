@@ -10,12 +10,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,12 +25,11 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/command_line.h"
-#include "dataset/chosen_boxes.h"
-#include "dataset/labelled_box.h"
 #include "dataset/photo_folder.h"
 #include "image/exif_focal_length.h"
 #include "image/read_image.h"
 #include "image/video_file.h"
+#include "stage/chosen_frames.h"
 
 namespace soslam {
 namespace {
@@ -42,11 +39,6 @@ namespace fs = std::filesystem;
 // What is in the folder beside the images.
 constexpr std::array kFiles = {"README.md", "rgb.txt", "frames.json", "run.json", "timing.json"};
 
-bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
-
-// First line of detections.csv.
-constexpr std::string_view kBoxesMark = "# Written by soslam-frames";
-
 bool IsOwnFile(const fs::path& path) {
   const std::string name = path.filename().string();
   std::string first_line;
@@ -55,7 +47,7 @@ bool IsOwnFile(const fs::path& path) {
     std::getline(stream, first_line);
   }
   return name == "rgb" || std::ranges::find(kFiles, name) != kFiles.end() ||
-         first_line.starts_with(kBoxesMark);
+         first_line.starts_with(kFrameBoxesMark);
 }
 
 // Files that others put into the folder would be lost with it.
@@ -131,25 +123,10 @@ void WriteJpeg(cv::Mat image, int max_image_px, const std::optional<double>& foc
   output.Write(name, jpeg);
 }
 
-// Frames with what was chosen from, before any is written.
-struct Chosen {
-  FramesRecord record;
-  cv::Size source_size;  // of the images that were chosen from, upright
-  std::vector<fs::path> inputs;
-};
-
-void SetSize(int max_image_px, Chosen* chosen) {
+void SetSize(int max_image_px, ChosenFrames* chosen) {
   const cv::Size size = SizeWithin(chosen->source_size, max_image_px);
   chosen->record.width = size.width;
   chosen->record.height = size.height;
-}
-
-std::map<std::string, int> CountRejections(const std::vector<SourceFrame>& frames) {
-  std::map<std::string, int> counts;
-  for (const SourceFrame& frame : frames) {
-    if (frame.rejection) ++counts[kFrameRejectionNames[static_cast<size_t>(*frame.rejection)]];
-  }
-  return counts;
 }
 
 void CheckEnough(const FramesRecord& record, const fs::path& images) {
@@ -159,7 +136,7 @@ void CheckEnough(const FramesRecord& record, const fs::path& images) {
       "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
       "camera sideways, not only turn it",
       images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
-      CountsText(CountRejections(record.frames))));
+      CountsText(CountLeftOut(record.frames))));
 }
 
 // Photos.
@@ -210,11 +187,11 @@ std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& 
   return FocalHint{*camera.focal_over_diagonal * std::hypot(record.width, record.height), count};
 }
 
-Chosen ChoosePhotos(const FrameOptions& options, const fs::path& folder, int threads,
-                    std::vector<Photo>* photos) {
+ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, int threads,
+                          std::vector<Photo>* photos) {
   *photos = ListPhotos(folder);
   const CommonCamera camera = FindCommonCamera(folder, *photos);
-  Chosen chosen;
+  ChosenFrames chosen;
   chosen.record.name = PlainPath(folder).filename().string();
   std::vector<SourceFrame>& frames = chosen.record.frames;
   for (const Photo& photo : *photos) {
@@ -249,10 +226,10 @@ Chosen ChoosePhotos(const FrameOptions& options, const fs::path& folder, int thr
 
 // Videos.
 
-Chosen ChooseFromVideo(const FrameOptions& options, const fs::path& path, bool* is_cut_short) {
+ChosenFrames ChooseFromVideo(const FrameOptions& options, const fs::path& path) {
   VideoReader video(path);
   const int announced = video.announced_frames();
-  Chosen chosen;
+  ChosenFrames chosen;
   chosen.record.name = path.filename().string();
   chosen.inputs = {path};
   std::vector<SourceFrame>& frames = chosen.record.frames;
@@ -268,7 +245,7 @@ Chosen ChooseFromVideo(const FrameOptions& options, const fs::path& path, bool* 
     chosen.source_size = grey.size();
   }
   SetSize(options.max_image_px, &chosen);
-  *is_cut_short = 10 * std::ssize(frames) < 9 * static_cast<std::ptrdiff_t>(announced);
+  chosen.is_cut_short = 10 * std::ssize(frames) < 9 * static_cast<std::ptrdiff_t>(announced);
   Reject(selector.Choose(), &frames);
   NameImages(std::vector<std::string>(frames.size(), ".jpg"), &frames);
   return chosen;
@@ -281,81 +258,6 @@ void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_
     if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
     if (!IsLeftOut(frame)) WriteJpeg(video.image(), max_image_px, {}, frame.image, output);
   }
-}
-
-// Both.
-
-// The likely cause and the remedy where much is left out for one reason.
-struct Advice {
-  FrameRejection reason;
-  const char* cause;
-  const char* remedy;
-};
-constexpr std::array kAdvice = {
-    Advice{FrameRejection::kUnreadable, "files of another format, or copied incompletely",
-           "convert them to JPEG, or copy them again"},
-    Advice{FrameRejection::kOtherSize, "photos of several cameras, or upright ones among others",
-           "take all photos with one camera that is held in one way"},
-    Advice{FrameRejection::kOtherFocalLength, "a zoom, or several lenses of one telephone",
-           "take all photos with one lens, without zoom"},
-    Advice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
-           "move more slowly, with more light; or lower min_sharpness"}};
-
-std::vector<Finding> FindingsOf(const FramesRecord& record, bool is_cut_short) {
-  constexpr int kFewest = 6;
-  std::vector<Finding> findings;
-  const int all = static_cast<int>(record.frames.size());
-  const auto counts = CountRejections(record.frames);
-  for (const Advice& advice : kAdvice) {
-    const std::string name = kFrameRejectionNames[static_cast<size_t>(advice.reason)];
-    const auto found = counts.find(name);
-    if (found == counts.end() || all < kFewest || 3 * found->second <= all) continue;
-    findings.push_back({"frames_" + name, Severity::kWarning,
-                        fmt::format("{} of {} images are left out as {}", found->second, all, name),
-                        "at most a third left out for one reason", advice.cause, advice.remedy});
-  }
-  if (is_cut_short) {
-    findings.push_back(
-        {"video_cut_short", Severity::kWarning,
-         fmt::format("{}: {} frames can be decoded, fewer than it announces", record.name, all),
-         "all frames", "a file that was copied or recorded incompletely", "copy it again"});
-  }
-  return findings;
-}
-
-std::string ImageListText(const std::vector<SourceFrame>& frames) {
-  std::string text = "# timestamp filename\n";
-  int count = 0;
-  for (const SourceFrame& frame : frames) {
-    if (IsLeftOut(frame)) continue;
-    text += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
-    ++count;
-  }
-  return text;
-}
-
-// The text of detections.csv: the boxes of the chosen images. Prints how many they are.
-std::string BoxesText(const fs::path& path, const Chosen& chosen) {
-  std::vector<std::optional<int>> rows;
-  int row = 0;
-  for (const SourceFrame& frame : chosen.record.frames) {
-    rows.push_back(IsLeftOut(frame) ? std::nullopt : std::optional(row++));
-  }
-  const std::vector<LabelledBox> boxes = ReadDetectionsCsv(path);
-  const ChosenBoxes of_chosen = BoxesOfChosen(
-      boxes, rows, static_cast<double>(chosen.record.width) / chosen.source_size.width,
-      static_cast<double>(chosen.record.height) / chosen.source_size.height);
-  if (of_chosen.boxes.empty()) {
-    throw InputError(fmt::format(
-        "{}: none of its {} boxes is of a chosen image; expected as `frame` the number of the "
-        "image, from 0, in the order of their names or of the video",
-        path.string(), boxes.size()));
-  }
-  fmt::print("{}: {} boxes of chosen images, {} of images that were left out, {} of others\n",
-             path.filename().string(), of_chosen.boxes.size(), of_chosen.left_out,
-             of_chosen.unknown);
-  return fmt::format("{} from {}\n{}", kBoxesMark, OneLine(path.filename().string()),
-                     LabelledBoxesText(of_chosen.boxes));
 }
 
 std::string ReadmeText(const DatasetFolder& output) {
@@ -375,13 +277,12 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   DatasetFolder output(folder, "soslam-frames");
   RefuseFilesOfOthers(folder);
   std::vector<Photo> photos;
-  bool is_cut_short = false;
   const bool is_video = !IsFolder(images);
-  Chosen chosen = is_video ? ChooseFromVideo(options, images, &is_cut_short)
-                           : ChoosePhotos(options, images, threads, &photos);
+  ChosenFrames chosen =
+      is_video ? ChooseFromVideo(options, images) : ChoosePhotos(options, images, threads, &photos);
   const FramesRecord& record = chosen.record;
   CheckEnough(record, images);
-  const std::vector<Finding> findings = FindingsOf(record, is_cut_short);
+  const std::vector<Finding> findings = CheckFrames(chosen);
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
@@ -391,15 +292,15 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
     WritePhoto(photos[i], options.max_image_px, record.frames[i].image, output);
   });
   if (files.contains("detections")) {
-    output.Write("detections.csv", BoxesText(files.at("detections"), chosen));
+    output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen));
     chosen.inputs.push_back(files.at("detections"));
   }
   output.Write("README.md", ReadmeText(output));
-  output.Write("rgb.txt", ImageListText(record.frames));
+  output.Write("rgb.txt", FrameListText(record.frames));
   output.Write("frames.json", FramesText(folder / "frames.json", record,
                                          {OptionsToJson(options), chosen.inputs, findings}));
   output.Commit();
-  const auto counts = CountRejections(record.frames);
+  const auto counts = CountLeftOut(record.frames);
   const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   fmt::print("{}: {} of {} images chosen, {} x {} px; left out: {}\n", record.name,
              std::ssize(record.frames) - left_out, record.frames.size(), record.width,
