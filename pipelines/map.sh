@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # map.sh: what `make map` does once the programs are built. Environment: MAP_IMAGES, MAP_NETWORK, MAP_DETECTIONS,
-# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_ROOT, MAP_NAME, MAP_VARIANT, MAP_THREADS,
-# BIN and BUILD: names without spaces; MAKE. The steps and the files that tell that they are done are in map.mk.
+# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_ROOT, MAP_NAME, MAP_VARIANT,
+# MAP_THREADS, BIN and BUILD: names without spaces; MAKE. The steps and the files that tell that they are done are in map.mk.
 set -euo pipefail
 
 refuse() {
