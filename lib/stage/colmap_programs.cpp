@@ -81,7 +81,9 @@ class Session {
     return FollowProgram(words,
                          [&](const std::string& line) {
                            log_ << line << '\n' << std::flush;
-                           if (line.find_first_not_of(" \r") != line.npos) last_line_ = line;
+                           const bool is_error = Contains(line, "ERROR") || Contains(line, "Check failed");
+      if (is_error) error_ = line;
+      if (line.find_first_not_of(" \r") != line.npos) last_line_ = line;
                            use_line(line);
                          })
         .value_or(-1);
@@ -96,13 +98,16 @@ class Session {
 
   [[noreturn]] void Fail(const std::string& program, int exit_code) const {
     throw NothingUsableError(fmt::format("colmap {}: failed with exit code {}: {}; see {}", program,
-                                         exit_code, last_line_, log_path_.string()));
+                                         exit_code, error_.empty() ? last_line_ : error_,
+                                         log_path_.string()));
   }
+
+  const fs::path& log_path() const { return log_path_; }
 
  private:
   fs::path log_path_;
   std::ofstream log_;
-  std::string last_line_;
+  std::string last_line_, error_;
 };
 
 // Progress up to a count that lines state.
@@ -186,6 +191,8 @@ std::vector<std::string> MapperWords(const ColmapJob& job, const fs::path& works
                  {"--input_path", (workspace / "given").string(), "--clear_points", "1"});
   }
   if (!job.camera_is_fixed) return words;
+  // Images whose camera has a larger coefficient of distortion would be left out.
+  words.insert(words.end(), {"--Mapper.max_extra_param", "1e6"});
   for (const char* option : {"focal_length", "principal_point", "extra_params"}) {
     words.insert(words.end(), {fmt::format("--Mapper.ba_refine_{}", option), "0"});
   }
@@ -199,7 +206,13 @@ void Map(const ColmapJob& job, const std::vector<std::string>& words, Session* s
     if (Contains(line, "Registering image #")) follower.Reach(LastNumber(line));
     if (Contains(line, "Triangulating image #")) follower.Step();
   });
-  const bool may_have_found_nothing = exit_code == 1 && job.poses.empty();
+  if (exit_code != 0 && !job.poses.empty()) {
+    throw NothingUsableError(fmt::format(
+        "{}: colmap point_triangulator failed with exit code {}, as where no point is "
+        "triangulated; expected poses and a camera that fit the images; see {}",
+        job.dataset.string(), exit_code, session->log_path().string()));
+  }
+  const bool may_have_found_nothing = exit_code == 1;
   if (exit_code != 0 && !may_have_found_nothing) session->Fail(words.front(), exit_code);
 }
 
@@ -292,7 +305,8 @@ void Colmap::MakeModels(const ColmapJob& job, const fs::path& workspace) const {
   if (ColmapModelsIn(unfinished).empty()) {
     throw NumericalError(fmt::format(
         "{}: COLMAP found no two images to begin a model with; expected images that overlap, from "
-        "places apart: does the camera only turn, or are there too few images? See {}",
+        "places apart: where the camera only turns there is no baseline, and poses have to be "
+        "given (--poses given); see {}",
         job.dataset.string(), (workspace / kLog).string()));
   }
   fs::rename(unfinished, workspace / kModels);

@@ -75,7 +75,7 @@ class RunReconstructTest : public testing::Test {
     WriteBytes(model / "images.txt", lines);
     WriteBytes(model / "points3D.txt", "1 1 0 5 0 0 0 0.25" + track + "\n");
   }
-  // As COLMAP writes what it triangulates.
+  // A model in the output folder itself: COLMAP writes so what it triangulates.
   void WriteModelWithoutNumber() const {
     WriteModel("", 3);
     fs::remove_all(folder_ / "bin/models/0");
@@ -190,6 +190,7 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   const std::string calls = Calls();
   EXPECT_THAT(calls, HasSubstr("camera_model PINHOLE --ImageReader.camera_params 50,50,32,24"));
   EXPECT_THAT(calls, HasSubstr("--Mapper.ba_refine_focal_length 0"));
+  EXPECT_THAT(calls, HasSubstr("--Mapper.max_extra_param 1e6")) << "any distortion is taken";
   EXPECT_EQ(FileBytes(Output("camera.json")), camera);
   EXPECT_TRUE(ReadReconstruction(Output("reconstruction.json")).camera_is_given);
   options_.calibration = CalibrationChoice::kInitial;
@@ -226,6 +227,9 @@ TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
               HasSubstr("2 1 -0 -0 -0 -1 -0 -0 1 rgb/1.png\n\n"));
   WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n0.5 1.1 0 0 0 0 0 1\n");
   ExpectError<InputError>([&] { Run("data"); }, {"rgb/1.png", "another pose than odometry.txt"});
+  WriteBytes(folder_ / "bin/crash", "");
+  fs::remove_all(Dataset() / "colmap");
+  ExpectError<NothingUsableError>([&] { Run("data"); }, {"point_triangulator", "139", "fit"});
   WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n");
   ExpectError<InputError>([&] { Run("data"); }, {"odometry.txt", "1 of 3 images"});
   options_.calibration = CalibrationChoice::kEstimated;
