@@ -81,9 +81,10 @@ class Session {
     return FollowProgram(words,
                          [&](const std::string& line) {
                            log_ << line << '\n' << std::flush;
-                           const bool is_error = Contains(line, "ERROR") || Contains(line, "Check failed");
-      if (is_error) error_ = line;
-      if (line.find_first_not_of(" \r") != line.npos) last_line_ = line;
+                           const bool is_error =
+                               Contains(line, "ERROR") || Contains(line, "Check failed");
+                           if (is_error) error_ = line;
+                           if (line.find_first_not_of(" \r") != line.npos) last_line_ = line;
                            use_line(line);
                          })
         .value_or(-1);
@@ -207,10 +208,10 @@ void Map(const ColmapJob& job, const std::vector<std::string>& words, Session* s
     if (Contains(line, "Triangulating image #")) follower.Step();
   });
   if (exit_code != 0 && !job.poses.empty()) {
-    throw NothingUsableError(fmt::format(
-        "{}: colmap point_triangulator failed with exit code {}, as where no point is "
-        "triangulated; expected poses and a camera that fit the images; see {}",
-        job.dataset.string(), exit_code, session->log_path().string()));
+    throw NothingUsableError(
+        fmt::format("{}: colmap point_triangulator failed with exit code {}, as where no point is "
+                    "triangulated; expected poses and a camera that fit the images; see {}",
+                    job.dataset.string(), exit_code, session->log_path().string()));
   }
   const bool may_have_found_nothing = exit_code == 1;
   if (exit_code != 0 && !may_have_found_nothing) session->Fail(words.front(), exit_code);
