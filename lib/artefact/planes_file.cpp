@@ -33,7 +33,8 @@ json HoldingToJson(const PlanesEstimate& estimate) {
           {"tried", tried}};
 }
 
-// `tilt_variance` (rad^2) is added to the tilt of the covariance.
+}  // namespace
+
 json PlaneToJson(const EstimatedPlane& plane, double tilt_variance) {
   json covariance, tilt_sigma, height_sigma;
   if (plane.covariance) {
@@ -49,6 +50,8 @@ json PlaneToJson(const EstimatedPlane& plane, double tilt_variance) {
           {"tilt_sigma_deg", tilt_sigma},
           {"height_sigma_m", height_sigma}};
 }
+
+namespace {
 
 json SupportToJson(const ObjectSupport& support, const Object& object) {
   return {{"object", object.id},

@@ -9,6 +9,10 @@
 
 namespace soslam {
 
+// A plane as in planes.json, without its id and error. `tilt_variance` (rad^2) is added to the tilt
+// of the covariance.
+nlohmann::json PlaneToJson(const EstimatedPlane& plane, double tilt_variance);
+
 // Writes planes.json (kind "planes", schemas/planes.schema.json). `given`: the sequence that the
 // planes were estimated from, with its given planes. Errors as WriteArtefact.
 void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,

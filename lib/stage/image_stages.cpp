@@ -58,20 +58,6 @@ cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
   return undistorter_ ? undistorter_->Undistort(colour) : colour;
 }
 
-std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
-                                          const std::vector<FrameImage>& images,
-                                          double min_length_px, int threads) {
-  const FrameImageReader reader(sequence);
-  std::vector<SegmentView> views(images.size());
-  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
-    const FrameImage& image = images[static_cast<size_t>(i)];
-    views[static_cast<size_t>(i)] = {sequence.CameraOf(*image.frame),
-                                     FindLineSegments(reader.ReadGrey(image), min_length_px),
-                                     image.frame->world_from_camera};
-  });
-  return views;
-}
-
 namespace {
 
 // Checks the image size, as nearest edges are stored as 16-bit coordinates.

@@ -10,7 +10,6 @@
 #include "image/edge_maps.h"
 #include "image/read_image.h"
 #include "model/sequence.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -40,11 +39,6 @@ class FrameImageReader {
   const Sequence& sequence_;
   std::optional<ImageUndistorter> undistorter_;
 };
-
-// Straight edges of at least `min_length_px` in images of a sequence, with the frames' poses.
-std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
-                                          const std::vector<FrameImage>& images,
-                                          double min_length_px, int threads);
 
 // soslam-edges: computes the edge maps of the undistorted image of every frame. Files: "dataset",
 // the folder of the frames' images; "sequence", sequence.json; "output", edges.h5. Throws

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "geometry/angles.h"
 #include "planes/scene_axis.h"
-#include "stage/image_stages.h"
+#include "stage/segment_views.h"
 
 namespace soslam {
 namespace {

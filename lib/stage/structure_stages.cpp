@@ -12,17 +12,15 @@
 #include "artefact/sequence_file.h"
 #include "association/association.h"
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
-#include "image/edge_maps.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
 #include "planes/scene_axis.h"
-#include "stage/image_stages.h"
+#include "stage/segment_views.h"
 
 namespace soslam {
 namespace {
@@ -79,45 +77,6 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
 }
 
 namespace {
-
-// Line segments of the dataset's images, in the frames' order, if vertical edges are used and there
-// are images; the images are added to `inputs`.
-std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const PlanesOptions& options,
-                                         const StageFiles& files, int threads,
-                                         std::vector<std::filesystem::path>* inputs) {
-  const bool has_images =
-      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
-  if (!options.verticals || !has_images) return {};
-  if (files.count("dataset") == 0) {
-    throw SettingsError(
-        "verticals is true; expected --dataset with the images, or verticals = false");
-  }
-  const std::vector<FrameImage> images =
-      FrameImages(sequence, files.at("dataset"), files.at("sequence"));
-  for (const FrameImage& image : images) inputs->push_back(image.path);
-  const std::vector<SegmentView> of_images =
-      ReadSegmentViews(sequence, images, options.vertical_min_length_px, threads);
-  std::vector<SegmentView> views(sequence.frames.size());
-  for (size_t i = 0; i < views.size(); ++i) {
-    views[i] = {sequence.CameraOf(sequence.frames[i]), {}, sequence.frames[i].world_from_camera};
-  }
-  for (size_t i = 0; i < images.size(); ++i) {
-    views[static_cast<size_t>(images[i].frame - sequence.frames.data())] = of_images[i];
-  }
-  return views;
-}
-
-// Checks that there is one segment, as every segment has its own world, up direction and planes.
-void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
-  const int first = sequence.frames.front().segment;
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    if (sequence.frames[i].segment == first) continue;
-    throw InputError(fmt::format(
-        "{}: /frames/{} is of segment {}, the frames before of segment {}; expected one segment "
-        "where planes are estimated, or planes = given or camera_height",
-        path.string(), i, sequence.frames[i].segment, first));
-  }
-}
 
 struct Result {
   PlanesEstimate estimate;
@@ -191,7 +150,11 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   Result result;
   result.inputs = {files.at("table")};
   const SemanticTable table = ReadSemanticTable(files.at("table"));
-  const auto views = ViewsOfSegments(sequence, options, files, threads, &result.inputs);
+  std::vector<SegmentView> views;
+  if (options.verticals) {
+    views =
+        ViewsOfSegments(sequence, options.vertical_min_length_px, files, threads, &result.inputs);
+  }
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
   PlanesAndHolding held = EstimatePlanesAndHolding(sequence, views, priors, options, threads);
   if (options.refine_poses) {

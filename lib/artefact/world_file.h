@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "artefact/json_file.h"
+#include "ground/estimate_ground.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Writes world.json (kind "world", schemas/world.schema.json). Errors as WriteArtefact.
+void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimate,
+                const Sequence& input, const ArtefactInfo& info);
+
+}  // namespace soslam

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ground/estimate_ground.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/angles.h"
+#include "ground/group_boxes.h"
+#include "ground/horizontal_planes.h"
+
+namespace soslam {
+namespace {
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// To the frame of the first camera, in units of the median distance of points from the cameras that
+// observe them, or of the path's extent where there are no points.
+Similarity NormalisedFromInput(const Sequence& sequence, const std::vector<GroundPoint>& points) {
+  std::vector<double> distances;
+  for (const GroundPoint& point : points) {
+    for (const int index : point.frame_indices) {
+      const Frame& frame = sequence.frames[static_cast<size_t>(index)];
+      distances.push_back((frame.world_from_camera.translation - point.position_in_world).norm());
+    }
+  }
+  const Rigid3d& first = sequence.frames.front().world_from_camera;
+  if (distances.empty()) {
+    for (const Frame& frame : sequence.frames) {
+      distances.push_back((frame.world_from_camera.translation - first.translation).norm());
+    }
+  }
+  const double unit = Median(std::move(distances));
+  const double scale = unit > 0.0 ? 1.0 / unit : 1.0;
+  const Rigid3d inverse = first.Inverse();
+  return {scale, {inverse.rotation, scale * inverse.translation}};
+}
+
+// Rotations about the axes of UprightRotation(up, 0) move up by these columns.
+Eigen::Matrix<double, 3, 2> TurnsOf(const Eigen::Vector3d& up) {
+  const Eigen::Matrix3d level = UprightRotation(up, 0.0).toRotationMatrix();
+  Eigen::Matrix<double, 3, 2> d_turns;
+  d_turns << -level.col(1), level.col(0);
+  return d_turns;
+}
+
+Eigen::Matrix2d TiltCovariance(const UpPrior& attitude) {
+  const Eigen::Matrix<double, 3, 2> d_turns = TurnsOf(attitude.up_in_world);
+  return (d_turns.transpose() * attitude.information * d_turns).inverse();
+}
+
+// The attitude with an error that all cameras and edges share: edges that are taken for vertical
+// need not be.
+UpPrior WithCommonError(const UpPrior& attitude) {
+  constexpr double kCommonError = 1.0 * kRadPerDeg;
+  const Eigen::Matrix<double, 3, 2> d_turns = TurnsOf(attitude.up_in_world);
+  Eigen::Matrix2d covariance = TiltCovariance(attitude);
+  covariance.diagonal().array() += kCommonError * kCommonError;
+  return {d_turns * covariance.inverse() * d_turns.transpose(), attitude.up_in_world};
+}
+
+// All steps, in the normalised world.
+class Estimation {
+ public:
+  Estimation(const Sequence& sequence, const std::vector<GroundPoint>& points,
+             const SemanticTable& table, const GroundOptions& options, int threads)
+      : sequence_(sequence),
+        points_(points),
+        table_(table),
+        options_(options),
+        threads_(threads) {}
+
+  void Run(const std::vector<SegmentView>& views) {
+    FindAttitude(views);
+    planes = FindHorizontalPlanes(points_, attitude, 1.0);
+    planes_of_points = static_cast<int>(planes.planes.size());
+    const auto groups = GroupBoxes(sequence_, points_, planes);
+    Measure(groups);
+    if (DropPlanesWithoutObjects()) {
+      planes = Refined(planes, points_, attitude, 1.0);
+      Measure(groups);
+    }
+  }
+
+  double units_per_input = 1.0;  // units of the input in a normalised one
+  UpPrior attitude;              // from cameras and vertical edges
+  UpEstimate of_cameras;
+  HorizontalPlanes planes;
+  int planes_of_points = 0;
+  std::vector<MeasuredObject> objects;
+  std::optional<ScalePosterior> scale, scale_of_objects;
+
+ private:
+  void FindAttitude(const std::vector<SegmentView>& views) {
+    AssociateOptions associate;
+    associate.camera_roll_sigma_deg = options_.camera_roll_sigma_deg;
+    associate.camera_pitch_sigma_deg = options_.camera_pitch_sigma_deg;
+    associate.view_correlation_deg = options_.view_correlation_deg;
+    associate.box_sigma_fraction = options_.box_sigma_fraction;
+    of_cameras = UpOfSegments(sequence_, table_, associate).begin()->second;
+    std::vector<Rigid3d> poses;
+    for (const Frame& frame : sequence_.frames) poses.push_back(frame.world_from_camera);
+    const double correlation = options_.view_correlation_deg * kRadPerDeg;
+    attitude = UpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
+                                  options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
+                                  of_cameras.holding);
+    if (!views.empty()) {
+      constexpr double kMaxTilt = 12.0 * kRadPerDeg;
+      std::vector<SegmentView> in_world = views;
+      for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
+      attitude = WithVerticals(attitude, in_world, options_.vertical_sigma_deg * kRadPerDeg,
+                               correlation, kMaxTilt);
+    }
+    attitude = WithCommonError(attitude);
+  }
+
+  void Measure(const std::vector<std::vector<int>>& groups) {
+    UpEstimate up = of_cameras;
+    up.up_in_world = planes.up_in_world;
+    const Eigen::Matrix3d level = UprightRotation(up.up_in_world, 0.0).toRotationMatrix();
+    up.covariance = level.leftCols<2>() * planes.tilt_covariance * level.leftCols<2>().transpose();
+    objects = MeasureObjects(sequence_, groups, table_, planes, up, options_, threads_);
+    std::vector<ScaleEvidence> evidence;
+    for (const MeasuredObject& object : objects) evidence.push_back(object.evidence);
+    WeightSameLabels(options_.same_label_correlation, &evidence);
+    for (size_t i = 0; i < objects.size(); ++i) objects[i].evidence.weight = evidence[i].weight;
+    std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
+    scale_of_objects = EstimateScale(evidence, {}, options_.wrong_height_probability);
+    scale = EstimateScale(evidence, Known(), options_.wrong_height_probability);
+  }
+
+  std::vector<KnownScale> Known() const {
+    std::vector<KnownScale> known;
+    if (options_.scale > 0.0) {
+      known.push_back({std::log(options_.scale * units_per_input), options_.scale_log_sigma});
+    }
+    if (options_.camera_height_m > 0.0 && !planes.planes.empty()) {
+      std::vector<double> heights;
+      for (const Frame& frame : sequence_.frames) {
+        heights.push_back(planes.up_in_world.dot(frame.world_from_camera.translation) -
+                          planes.planes.front().height);
+      }
+      const double height = Median(std::move(heights));
+      if (height > 0.0) {
+        known.push_back(
+            {std::log(options_.camera_height_m / height), options_.camera_height_log_sigma});
+      }
+    }
+    return known;
+  }
+
+  // True if some planes are left out and others stay.
+  bool DropPlanesWithoutObjects() {
+    constexpr double kLeastObjects = 0.5;
+    std::vector<double> objects_on(planes.planes.size());
+    for (const MeasuredObject& object : objects) {
+      const auto& hypotheses = object.evidence.hypotheses;
+      const auto shares = HypothesisProbabilities(object.evidence, scale ? scale->log_scale : 0.0,
+                                                  options_.wrong_height_probability);
+      for (size_t i = 0; i < shares.size(); ++i) {
+        if (hypotheses[i].plane == kNoPlane) continue;
+        objects_on[static_cast<size_t>(hypotheses[i].plane)] += shares[i];
+      }
+    }
+    std::vector<PlaneOfPoints> kept;
+    for (size_t k = 0; k < objects_on.size(); ++k) {
+      if (objects_on[k] >= kLeastObjects) kept.push_back(planes.planes[k]);
+    }
+    const bool changes = kept.size() < planes.planes.size();
+    planes.planes = kept;
+    return changes;
+  }
+
+  const Sequence& sequence_;
+  const std::vector<GroundPoint>& points_;
+  const SemanticTable& table_;
+  const GroundOptions& options_;
+  int threads_;
+};
+
+ScalePosterior Shifted(ScalePosterior posterior, double log_factor) {
+  posterior.log_scale += log_factor;
+  posterior.low += log_factor;
+  posterior.high += log_factor;
+  return posterior;
+}
+
+// The output's world: z up, metres, its origin below the first camera on the lowest plane.
+// Where the scale is unknown, the unit is that of the input.
+Similarity OutputFromNormalised(const Estimation& estimation) {
+  Similarity output;
+  output.scale = estimation.scale ? std::exp(estimation.scale->log_scale)
+                                  : estimation.units_per_input;
+  output.rigid.rotation = UprightRotation(estimation.planes.up_in_world, 0.0).conjugate();
+  if (!estimation.planes.planes.empty()) {
+    output.rigid.translation.z() = -output.scale * estimation.planes.planes.front().height;
+  }
+  return output;
+}
+
+EstimatedPlane OutputPlane(const Similarity& output_from_normalised, const PlaneOfPoints& plane) {
+  EstimatedPlane result;
+  result.point_in_world = output_from_normalised * plane.centre_in_world;
+  result.point_in_world.z() =
+      output_from_normalised.scale * plane.height + output_from_normalised.rigid.translation.z();
+  result.plane_in_world = {Eigen::Vector3d::UnitZ(), -result.point_in_world.z()};
+  const Eigen::Vector3d units(1.0, 1.0, output_from_normalised.scale);
+  result.covariance = units.asDiagonal() * plane.covariance * units.asDiagonal();
+  return result;
+}
+
+GroundObject OutputObject(const Similarity& output_from_normalised, const MeasuredObject& object,
+                          double log_units, double log_scale, double wrong_probability) {
+  GroundObject result;
+  result.boxes = static_cast<int>(object.detections.size());
+  result.label = std::ranges::max_element(object.votes, {}, [](const auto& vote) {
+                   return vote.second;
+                 })->first;
+  if (object.evidence.hypotheses.empty()) return result;
+  const auto shares = HypothesisProbabilities(object.evidence, log_scale, wrong_probability);
+  const auto best = static_cast<size_t>(std::ranges::max_element(shares) - shares.begin());
+  const ScaleHypothesis& hypothesis = object.evidence.hypotheses[best];
+  const Landmark& landmark = object.landmarks[best];
+  result.label = hypothesis.label;
+  result.plane = hypothesis.plane;
+  result.centre_in_world = output_from_normalised * landmark.Centre();
+  result.height_m = 2.0 * output_from_normalised.scale * landmark.half_axes.z();
+  result.log_scale = hypothesis.log_scale - log_units;
+  result.log_sigma = hypothesis.log_sigma;
+  result.weight = object.evidence.weight;
+  for (const double share : shares) result.agreement += share;
+  return result;
+}
+
+}  // namespace
+
+GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoint>& points,
+                              const std::vector<SegmentView>& views, const SemanticTable& table,
+                              const GroundOptions& options, int threads) {
+  const Similarity normalised_from_input =
+      NormalisedFromInput(sequence, GroundPoints(sequence, points));
+  const Sequence normalised = Transformed(normalised_from_input, sequence);
+  const auto ground_points =
+      GroundPoints(normalised, Transformed(normalised_from_input, points));
+  Estimation estimation(normalised, ground_points, table, options, threads);
+  // The scale is that of the normalised world until the end.
+  const double log_units = -std::log(normalised_from_input.scale);
+  estimation.units_per_input = std::exp(log_units);
+  estimation.Run(views);
+
+  GroundEstimate result;
+  const Similarity output = OutputFromNormalised(estimation);
+  result.output_from_input = output * normalised_from_input;
+  result.up_in_input =
+      normalised_from_input.rigid.rotation.conjugate() * estimation.planes.up_in_world;
+  result.tilt_sigma = std::sqrt(estimation.planes.tilt_covariance.trace());
+  result.attitude_tilt_sigma = std::sqrt(TiltCovariance(estimation.attitude).trace());
+  result.attitude_tilt =
+      AngleBetween(estimation.attitude.up_in_world, estimation.planes.up_in_world);
+  result.attitude = estimation.of_cameras;
+  result.verticals = !views.empty();
+  if (estimation.scale) result.scale = Shifted(*estimation.scale, -log_units);
+  if (estimation.scale_of_objects) {
+    result.scale_of_objects = Shifted(*estimation.scale_of_objects, -log_units);
+  }
+  result.points = static_cast<int>(ground_points.size());
+  result.planes_of_points = estimation.planes_of_points;
+  for (const PlaneOfPoints& plane : estimation.planes.planes) {
+    result.planes.push_back(OutputPlane(output, plane));
+    result.points_on_planes.push_back(plane.points);
+  }
+  for (const MeasuredObject& object : estimation.objects) {
+    result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale),
+                                          options.wrong_height_probability));
+    result.independent_objects += result.objects.back().weight * result.objects.back().agreement;
+  }
+  return result;
+}
+
+Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
+  Sequence result = Transformed(estimate.output_from_input, sequence);
+  result.odometry_world = estimate.scale ? OdometryWorld::kOwn : OdometryWorld::kOwnWithScale;
+  for (const EstimatedPlane& plane : estimate.planes) {
+    result.planes.push_back({static_cast<int>(result.planes.size()), plane.plane_in_world});
+  }
+  return result;
+}
+
+}  // namespace soslam

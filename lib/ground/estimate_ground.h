@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ground/object_heights.h"
+#include "ground/options.h"
+#include "ground/scale_posterior.h"
+#include "ground/similarity.h"
+#include "initialisation/semantic_table.h"
+#include "model/map_points.h"
+#include "model/sequence.h"
+#include "planes/planes_estimate.h"
+#include "planes/up_prior.h"
+
+namespace soslam {
+
+// Result for one object: its most probable label and support.
+struct GroundObject {
+  std::string label;
+  int plane = kNoPlane;  // index in GroundEstimate::planes
+  int boxes = 0;
+  std::optional<Eigen::Vector3d> centre_in_world;  // of the output; none where no body fits
+  std::optional<double> height_m;
+  std::optional<double> log_scale;  // by its label's height, of metres per unit of the input
+  std::optional<double> log_sigma;
+  double weight = 0.0;     // below 1 where its height is correlated with that of others
+  double agreement = 0.0;  // probability that its height is right
+};
+
+// Up, scale and support planes of a world that has neither.
+struct GroundEstimate {
+  Similarity output_from_input;  // the output's world has z up, in metres
+  Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
+  double tilt_sigma = 0.0;            // of up, both tilts together (rad)
+  double attitude_tilt_sigma = 0.0;   // of up from the cameras and vertical edges alone (rad)
+  double attitude_tilt = 0.0;         // from that up to the final one (rad)
+  UpEstimate attitude;                // from the cameras alone
+  bool verticals = false;             // vertical edges were used
+  std::optional<ScalePosterior> scale;            // of metres per unit of the input
+  std::optional<ScalePosterior> scale_of_objects; // without `scale` and `camera_height_m`
+  double independent_objects = 0.0;  // sum of weight times agreement
+  std::vector<EstimatedPlane> planes;  // of the output
+  std::vector<int> points_on_planes;
+  int planes_of_points = 0;  // before planes without an object were dropped
+  int points = 0;
+  std::vector<GroundObject> objects;
+};
+
+// Estimates up, scale and support planes from sparse points, boxes and the way cameras are held.
+// The result does not depend on the frame and unit of the input. `views`: line segments per frame;
+// empty to not use vertical edges. At least one frame, all of one segment.
+GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoint>& points,
+                              const std::vector<SegmentView>& views, const SemanticTable& table,
+                              const GroundOptions& options, int threads);
+
+// The sequence in the output's world, with its planes. On which of them an object stands is not
+// known yet.
+Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate);
+
+}  // namespace soslam

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "ground/estimate_ground.h"
+#include "model/finding.h"
+
+namespace soslam {
+
+// A scale that cannot be told, is uncertain or that objects contradict; an up direction that is
+// uncertain; no support plane.
+std::vector<Finding> CheckGround(const GroundEstimate& estimate);
+
+}  // namespace soslam

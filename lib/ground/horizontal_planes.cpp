@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ground/horizontal_planes.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "constraints/loss.h"
+#include "geometry/angles.h"
+
+namespace soslam {
+namespace {
+
+// Lengths are fractions of the unit, the typical distance of the points.
+constexpr double kMaxPointSigma = 0.03;  // of points that are used
+constexpr double kRoughness = 0.003;     // deviation of surfaces from planes
+constexpr double kBin = 0.015;           // of the search over up
+constexpr double kTiltStep = 1.5 * kRadPerDeg;
+constexpr double kMaxTilt = 45.0 * kRadPerDeg;
+constexpr double kMaxSigmas = 2.5;     // of the attitude
+constexpr size_t kStarts = 6;          // directions that are refined
+constexpr double kBound = 3.0;         // inliers, standard deviations
+constexpr int kRounds = 10;
+constexpr size_t kMaxPlanes = 12;
+constexpr double kLeastShare = 0.01;   // of the points, on a plane
+constexpr double kLeastPoints = 15.0;
+constexpr double kLeastContrast = 2.0; // of the density on a plane, relative to its surroundings
+constexpr size_t kSectors = 8;         // parts of the planes whose scatter is measured
+
+struct WeightedPoint {
+  Eigen::Vector3d position;
+  Eigen::Matrix3d covariance;
+};
+
+// Standard deviation of a point's height.
+double Sigma(const WeightedPoint& point, const Eigen::Vector3d& up, double unit) {
+  return std::hypot(std::sqrt(up.dot(point.covariance * up)), kRoughness * unit);
+}
+
+std::vector<WeightedPoint> UsablePoints(const std::vector<GroundPoint>& points,
+                                        const Eigen::Vector3d& up, double unit) {
+  std::vector<WeightedPoint> usable;
+  for (const GroundPoint& point : points) {
+    if (up.dot(point.covariance * up) > std::pow(kMaxPointSigma * unit, 2.0)) continue;
+    usable.push_back({point.position_in_world, point.covariance});
+  }
+  return usable;
+}
+
+// Number of pairs of points at the same height, without those that an even distribution has.
+double Sharpness(const std::vector<WeightedPoint>& points, const Eigen::Vector3d& up, double unit) {
+  std::map<int, double> bins;
+  for (const WeightedPoint& point : points) {
+    const double position = up.dot(point.position) / (kBin * unit);
+    const int bin = static_cast<int>(std::floor(std::clamp(position, -1e6, 1e6)));
+    const double share = position - std::floor(position);
+    bins[bin] += 1.0 - share;
+    bins[bin + 1] += share;
+  }
+  double sum = 0.0;
+  for (const auto& [bin, count] : bins) sum += count * count;
+  return sum;
+}
+
+// Directions that the attitude allows, sharpest first.
+std::vector<Eigen::Vector3d> Starts(const std::vector<WeightedPoint>& points,
+                                    const UpPrior& attitude, double unit) {
+  const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
+  const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
+  const int steps = static_cast<int>(kMaxTilt / kTiltStep);
+  std::vector<std::pair<double, Eigen::Vector3d>> directions;
+  for (int i = -steps; i <= steps; ++i) {
+    for (int k = -steps; k <= steps; ++k) {
+      const Eigen::Vector3d turn(i * kTiltStep, k * kTiltStep, 0.0);
+      const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
+      const double cost = up.dot(attitude.information * up) - lowest;
+      if (turn.norm() > kMaxTilt || cost > kMaxSigmas * kMaxSigmas) continue;
+      directions.emplace_back(Sharpness(points, up, unit) * std::exp(-0.25 * cost), up);
+    }
+  }
+  std::ranges::stable_sort(directions, [](const auto& one, const auto& other) {
+    return one.first > other.first;
+  });
+  std::vector<Eigen::Vector3d> starts;
+  for (const auto& [sharpness, up] : directions) {
+    if (starts.size() < kStarts) starts.push_back(up);
+  }
+  return starts;
+}
+
+struct HeightReading {
+  double height;
+  double sigma;
+};
+
+// Number of readings within `bound` standard deviations.
+double CountNear(const std::vector<HeightReading>& readings, double height, double bound) {
+  return static_cast<double>(std::ranges::count_if(readings, [&](const HeightReading& reading) {
+    return std::abs(reading.height - height) < bound * reading.sigma;
+  }));
+}
+
+// The height to which most readings are near.
+double DensestHeight(const std::vector<HeightReading>& readings) {
+  constexpr double kNear = 1.5;  // standard deviations
+  std::vector<std::pair<double, int>> ends;
+  for (const HeightReading& reading : readings) {
+    ends.emplace_back(reading.height - kNear * reading.sigma, 1);
+    ends.emplace_back(reading.height + kNear * reading.sigma, -1);
+  }
+  std::ranges::sort(ends);
+  int count = 0, most = 0;
+  double height = 0.0;
+  for (size_t i = 0; i < ends.size(); ++i) {
+    count += ends[i].second;
+    if (count <= most) continue;
+    most = count;
+    height = 0.5 * (ends[i].first + ends[i + 1].first);
+  }
+  return height;
+}
+
+// Heights at which points lie much denser than around, most points first.
+std::vector<double> PeakHeights(const std::vector<WeightedPoint>& points, const Eigen::Vector3d& up,
+                                double unit) {
+  std::vector<HeightReading> readings;
+  for (const WeightedPoint& point : points) {
+    readings.push_back({up.dot(point.position), Sigma(point, up, unit)});
+  }
+  const double least = std::max(kLeastPoints, kLeastShare * static_cast<double>(points.size()));
+  std::vector<double> peaks;
+  while (peaks.size() < kMaxPlanes) {
+    const double height = DensestHeight(readings);
+    const double count = CountNear(readings, height, kBound);
+    if (count < least) break;
+    // Where points are evenly distributed, twice the width has twice as many.
+    const double around = CountNear(readings, height, 2.0 * kBound) - count;
+    if (count > kLeastContrast * around) peaks.push_back(height);
+    std::erase_if(readings, [&](const HeightReading& reading) {
+      return std::abs(reading.height - height) < kBound * reading.sigma;
+    });
+  }
+  return peaks;
+}
+
+// Normal equations in two tilts of up and the heights of all planes.
+struct Fit {
+  Eigen::Vector3d up;
+  std::vector<double> heights;
+  Eigen::MatrixXd covariance;  // of two rotations (rad) and the heights
+  double gain = 0.0;           // how much better points lie on planes than anywhere
+};
+
+// The plane of a point, or none where it is off all of them.
+std::optional<size_t> PlaneOfPoint(const Fit& fit, const WeightedPoint& point, double sigma) {
+  std::optional<size_t> best;
+  double nearest = kBound * sigma;
+  for (size_t k = 0; k < fit.heights.size(); ++k) {
+    const double distance = std::abs(fit.up.dot(point.position) - fit.heights[k]);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    best = k;
+  }
+  return best;
+}
+
+// One step of reweighted least squares.
+void Step(const std::vector<WeightedPoint>& points, const UpPrior& attitude, double unit,
+          Fit* fit) {
+  const auto count = static_cast<Eigen::Index>(2 + fit->heights.size());
+  const Eigen::Matrix3d level = UprightRotation(fit->up, 0.0).toRotationMatrix();
+  const Eigen::Vector3d x = level.col(0), y = level.col(1);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(count);
+  // Turns about x and y move up by -y and x.
+  Eigen::Matrix<double, 3, 2> d_turns;
+  d_turns << -y, x;
+  information.topLeftCorner<2, 2>() = d_turns.transpose() * attitude.information * d_turns;
+  gradient.head<2>() = d_turns.transpose() * attitude.information * fit->up;
+  const GemanMcClureLoss loss(kBound);
+  fit->gain = -0.5 * fit->up.dot(attitude.information * fit->up);
+  for (const WeightedPoint& point : points) {
+    const double sigma = Sigma(point, fit->up, unit);
+    const auto plane = PlaneOfPoint(*fit, point, sigma);
+    if (!plane) continue;
+    const double residual = (fit->up.dot(point.position) - fit->heights[*plane]) / sigma;
+    const double weight = EvaluateLoss(loss, residual).weight;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(count);
+    row.head<2>() = d_turns.transpose() * point.position / sigma;
+    row(static_cast<Eigen::Index>(2 + *plane)) = -1.0 / sigma;
+    information += weight * row * row.transpose();
+    gradient += weight * residual * row;
+    fit->gain += 0.5 * (kBound * kBound - residual * residual);
+  }
+  information.diagonal().tail(count - 2).array() += 1e-9 / (unit * unit);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  const Eigen::VectorXd change = -solver.solve(gradient);
+  fit->up = (fit->up + d_turns * change.head<2>()).normalized();
+  for (size_t k = 0; k < fit->heights.size(); ++k) {
+    fit->heights[k] += change(static_cast<Eigen::Index>(2 + k));
+  }
+  fit->covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
+}
+
+Fit FitPlanes(const std::vector<WeightedPoint>& points, const UpPrior& attitude, double unit,
+              Eigen::Vector3d up, std::vector<double> heights) {
+  Fit fit{std::move(up), std::move(heights), {}, 0.0};
+  for (int round = 0; round < kRounds; ++round) Step(points, attitude, unit, &fit);
+  return fit;
+}
+
+// The points on planes, in as many sectors around their common centre as are left out in turn.
+std::vector<std::vector<WeightedPoint>> WithoutSectors(const std::vector<WeightedPoint>& points,
+                                                       double unit, const Fit& fit) {
+  std::vector<WeightedPoint> inliers;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const WeightedPoint& point : points) {
+    if (!PlaneOfPoint(fit, point, Sigma(point, fit.up, unit))) continue;
+    inliers.push_back(point);
+    centre += point.position;
+  }
+  centre /= static_cast<double>(std::max<size_t>(1, inliers.size()));
+  const Eigen::Matrix3d level = UprightRotation(fit.up, 0.0).toRotationMatrix();
+  std::vector<std::vector<WeightedPoint>> others(kSectors);
+  for (const WeightedPoint& point : inliers) {
+    const Eigen::Vector3d from_centre = level.transpose() * (point.position - centre);
+    const double turns = std::atan2(from_centre.y(), from_centre.x()) / (2.0 * std::numbers::pi);
+    const auto own = static_cast<size_t>((turns + 0.5) * static_cast<double>(kSectors)) % kSectors;
+    for (size_t sector = 0; sector < kSectors; ++sector) {
+      if (sector != own) others[sector].push_back(point);
+    }
+  }
+  return others;
+}
+
+// The turns of up and the rise of a plane at its centre from one fit to another.
+Eigen::Vector3d Change(const Fit& from, const Fit& to, size_t plane,
+                       const Eigen::Vector3d& centre_in_world) {
+  const Eigen::Matrix3d level = UprightRotation(from.up, 0.0).toRotationMatrix();
+  const Eigen::Vector3d change = to.up - from.up;
+  return {-level.col(1).dot(change), level.col(0).dot(change),
+          to.heights[plane] - from.heights[plane] - change.dot(centre_in_world)};
+}
+
+Eigen::Matrix3d CovarianceOf(const Fit& fit, size_t plane, const Eigen::Vector3d& centre_in_world) {
+  const Eigen::Matrix3d level = UprightRotation(fit.up, 0.0).toRotationMatrix();
+  Eigen::MatrixXd d_fit = Eigen::MatrixXd::Zero(3, fit.covariance.cols());
+  d_fit.topLeftCorner<2, 2>().setIdentity();
+  d_fit.row(2).head<2>() << level.col(1).dot(centre_in_world), -level.col(0).dot(centre_in_world);
+  d_fit(2, static_cast<Eigen::Index>(2 + plane)) = 1.0;
+  return d_fit * fit.covariance * d_fit.transpose();
+}
+
+// Adds the scatter of fits that leave out one sector each (delete-a-block jackknife).
+void AddScatter(const std::vector<WeightedPoint>& points, const UpPrior& attitude, double unit,
+                const Fit& fit, HorizontalPlanes* result) {
+  constexpr double kShare = (kSectors - 1.0) / kSectors;
+  for (const auto& others : WithoutSectors(points, unit, fit)) {
+    const Fit without = FitPlanes(others, attitude, unit, fit.up, fit.heights);
+    for (size_t k = 0; k < result->planes.size(); ++k) {
+      PlaneOfPoints& plane = result->planes[k];
+      const Eigen::Vector3d change = Change(fit, without, k, plane.centre_in_world);
+      plane.covariance += kShare * change * change.transpose();
+    }
+  }
+}
+
+HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrior& attitude,
+                          double unit, const Fit& fit) {
+  HorizontalPlanes result;
+  result.up_in_world = fit.up;
+  result.planes.resize(fit.heights.size());
+  for (const WeightedPoint& point : points) {
+    const auto index = PlaneOfPoint(fit, point, Sigma(point, fit.up, unit));
+    if (!index) continue;
+    PlaneOfPoints& plane = result.planes[*index];
+    plane.centre_in_world += (point.position - plane.centre_in_world) / ++plane.points;
+  }
+  for (size_t k = 0; k < fit.heights.size(); ++k) {
+    PlaneOfPoints& plane = result.planes[k];
+    plane.height = fit.heights[k];
+    plane.covariance = CovarianceOf(fit, k, plane.centre_in_world);
+  }
+  AddScatter(points, attitude, unit, fit, &result);
+  result.tilt_covariance = result.planes.front().covariance.topLeftCorner<2, 2>();
+  std::ranges::sort(result.planes, {}, &PlaneOfPoints::height);
+  return result;
+}
+
+HorizontalPlanes WithoutPlanes(const UpPrior& attitude) {
+  HorizontalPlanes result;
+  result.up_in_world = attitude.up_in_world;
+  const Eigen::Matrix3d level = UprightRotation(attitude.up_in_world, 0.0).toRotationMatrix();
+  Eigen::Matrix<double, 3, 2> d_turns;
+  d_turns << -level.col(1), level.col(0);
+  result.tilt_covariance = (d_turns.transpose() * attitude.information * d_turns).inverse();
+  return result;
+}
+
+}  // namespace
+
+HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
+                                      const UpPrior& attitude, double unit) {
+  const std::vector<WeightedPoint> usable = UsablePoints(points, attitude.up_in_world, unit);
+  std::optional<Fit> best;
+  for (const Eigen::Vector3d& start : Starts(usable, attitude, unit)) {
+    Eigen::Vector3d up = start;
+    for (int round = 0; round < 2; ++round) {
+      const std::vector<double> heights = PeakHeights(usable, up, unit);
+      if (heights.empty()) break;
+      const Fit fit = FitPlanes(usable, attitude, unit, up, heights);
+      if (!best || fit.gain > best->gain) best = fit;
+      up = fit.up;
+    }
+  }
+  return best ? PlanesOf(usable, attitude, unit, *best) : WithoutPlanes(attitude);
+}
+
+HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<GroundPoint>& points,
+                         const UpPrior& attitude, double unit) {
+  if (planes.planes.empty()) return WithoutPlanes(attitude);
+  std::vector<double> heights;
+  for (const PlaneOfPoints& plane : planes.planes) heights.push_back(plane.height);
+  const std::vector<WeightedPoint> usable = UsablePoints(points, planes.up_in_world, unit);
+  return PlanesOf(usable, attitude, unit,
+                  FitPlanes(usable, attitude, unit, planes.up_in_world, heights));
+}
+
+}  // namespace soslam

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ground/ground_points.h"
+#include "planes/up_prior.h"
+
+namespace soslam {
+
+// One of several parallel planes, up . x = height.
+struct PlaneOfPoints {
+  double height = 0.0;
+  int points = 0;
+  Eigen::Vector3d centre_in_world = Eigen::Vector3d::Zero();  // of its points
+  // Covariance of turns (rad) about the x and y axes of UprightRotation(up, 0) through the centre,
+  // and of a rise along up.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+// Horizontal planes in sparse points and the up direction that they share.
+struct HorizontalPlanes {
+  Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
+  Eigen::Matrix2d tilt_covariance = Eigen::Matrix2d::Zero();  // of the two turns above (rad^2)
+  std::vector<PlaneOfPoints> planes;                          // ascending heights
+};
+
+// Finds the up direction, among those that the attitude of the cameras allows, in which most points
+// lie on few planes, by least squares over the points of all planes. `unit` is the typical distance
+// of the points from the cameras. Without planes, up is that of the attitude.
+HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
+                                      const UpPrior& attitude, double unit);
+
+// The up direction and the heights from the points of these planes only. The covariances include
+// the scatter over sectors of the planes, which shows planes that are not even or not parallel.
+HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<GroundPoint>& points,
+                         const UpPrior& attitude, double unit);
+
+}  // namespace soslam

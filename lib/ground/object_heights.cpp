@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ground/object_heights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "association/fit_object.h"
+#include "base/parallel.h"
+#include "model/label_groups.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kLeastVotes = 0.15;      // share of a label that is considered
+constexpr double kNoSupport = 0.1;        // prior probability of a free height
+constexpr double kEvidenceWeight = 0.5;   // see AssociateOptions::label_evidence_weight
+
+AssociateOptions FitOptions(const GroundOptions& options) {
+  AssociateOptions fit;
+  fit.box_sigma_fraction = options.box_sigma_fraction;
+  fit.view_correlation_deg = options.view_correlation_deg;
+  return fit;
+}
+
+std::map<std::string, double> VotesOf(const Sequence& sequence,
+                                      const std::vector<int>& detections) {
+  std::map<std::string, double> votes;
+  double sum = 0.0;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    votes[sequence.ObjectOf(detection).label] += detection.score;
+    sum += detection.score;
+  }
+  for (auto& [label, share] : votes) share = sum > 0.0 ? share / sum : 1.0;
+  return votes;
+}
+
+class Measurement {
+ public:
+  Measurement(const Sequence& sequence, const HorizontalPlanes& planes, const UpEstimate& up,
+              const GroundOptions& options, MeasuredObject* object)
+      : sequence_(sequence),
+        planes_(planes),
+        up_(up),
+        options_(FitOptions(options)),
+        object_(object) {}
+
+  // Adds the hypotheses of a label. `votes` is the prior probability.
+  void Add(const std::string& label, ShapePrior prior, double votes) {
+    const LogNormal height_m = *prior.height_m;
+    prior.height_m.reset();  // the world is not in metres
+    const double planes = std::max<double>(1.0, static_cast<double>(planes_.planes.size()));
+    if (prior.mount == Mount::kStanding) {
+      for (size_t k = 0; k < planes_.planes.size(); ++k) {
+        const Plane plane{planes_.up_in_world, -planes_.planes[k].height};
+        Try({label, static_cast<int>(k), 0.0, 0.0, votes * (1.0 - kNoSupport) / planes}, prior,
+            height_m, plane);
+      }
+    }
+    Try({label, kNoPlane, 0.0, 0.0, votes * kNoSupport}, prior, height_m, up_);
+  }
+
+  // Turns costs into probabilities.
+  void Finish() {
+    if (costs_.empty()) return;
+    const double lowest = std::ranges::min(costs_);
+    double sum = 0.0;
+    auto& hypotheses = object_->evidence.hypotheses;
+    for (size_t i = 0; i < costs_.size(); ++i) {
+      hypotheses[i].probability *= std::exp(kEvidenceWeight * (lowest - costs_[i]));
+      sum += hypotheses[i].probability;
+    }
+    for (ScaleHypothesis& one : hypotheses) one.probability /= sum;
+  }
+
+ private:
+  void Try(ScaleHypothesis hypothesis, const ShapePrior& prior, const LogNormal& height_m,
+           const std::variant<Plane, UpEstimate>& support) {
+    const auto fit = FitObject(sequence_, object_->detections, prior, options_, support);
+    if (!fit) return;
+    hypothesis.log_scale = std::log(height_m.median / (2.0 * fit->landmark_in_world.half_axes.z()));
+    hypothesis.log_sigma = std::hypot(height_m.log_sigma, std::sqrt(fit->covariance(8, 8)));
+    object_->evidence.hypotheses.push_back(hypothesis);
+    object_->landmarks.push_back(fit->landmark_in_world);
+    costs_.push_back(fit->cost);
+  }
+
+  const Sequence& sequence_;
+  const HorizontalPlanes& planes_;
+  const UpEstimate& up_;
+  AssociateOptions options_;
+  MeasuredObject* object_;
+  std::vector<double> costs_;  // one per hypothesis
+};
+
+std::set<std::string> MovingLabels(const GroundOptions& options) {
+  std::set<std::string> moving;
+  for (const auto& group : ParseLabelGroups("moving_labels", options.moving_labels)) {
+    for (const std::string& label : group) moving.insert(NormalisedLabel(label));
+  }
+  return moving;
+}
+
+}  // namespace
+
+std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
+                                           const std::vector<std::vector<int>>& groups,
+                                           const SemanticTable& table,
+                                           const HorizontalPlanes& planes, const UpEstimate& up,
+                                           const GroundOptions& options, int threads) {
+  const std::set<std::string> moving = MovingLabels(options);
+  std::vector<MeasuredObject> objects;
+  for (const std::vector<int>& group : groups) {
+    if (static_cast<int>(group.size()) < options.min_boxes) continue;
+    objects.push_back({group, VotesOf(sequence, group), {}, {}});
+  }
+  ParallelFor("objects", static_cast<int>(objects.size()), threads, [&](int i) {
+    MeasuredObject& object = objects[static_cast<size_t>(i)];
+    Measurement measurement(sequence, planes, up, options, &object);
+    for (const auto& [label, votes] : object.votes) {
+      if (votes < kLeastVotes || moving.contains(NormalisedLabel(label))) continue;
+      const auto prior = table.Contains(label) ? table.Find(label) : std::nullopt;
+      if (prior && prior->height_m) measurement.Add(label, *prior, votes);
+    }
+    measurement.Finish();
+  });
+  return objects;
+}
+
+}  // namespace soslam

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "association/up_estimate.h"
+#include "ground/horizontal_planes.h"
+#include "ground/options.h"
+#include "ground/scale_posterior.h"
+#include "initialisation/semantic_table.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// An object of one group of boxes, with the scale by its heights on each of the planes, and at a
+// free height, under each of its labels that has a height in the table.
+struct MeasuredObject {
+  std::vector<int> detections;          // indices in Sequence::detections
+  std::map<std::string, double> votes;  // share of each label in the scores
+  ScaleEvidence evidence;               // no hypotheses where no body fits the boxes
+  std::vector<Landmark> landmarks;      // in the world, one per hypothesis
+};
+
+// Fits an upright body to the boxes of each group, on each plane and at a free height.
+std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
+                                           const std::vector<std::vector<int>>& groups,
+                                           const SemanticTable& table,
+                                           const HorizontalPlanes& planes, const UpEstimate& up,
+                                           const GroundOptions& options, int threads);
+
+}  // namespace soslam

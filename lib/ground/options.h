@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "base/options.h"
+
+namespace soslam {
+
+struct GroundOptions {
+  double scale = 0.0;
+  double scale_log_sigma = 0.02;
+  double camera_height_m = 0.0;
+  double camera_height_log_sigma = 0.1;
+  double wrong_height_probability = 0.05;
+  double same_label_correlation = 0.5;
+  std::string moving_labels = "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
+  int min_boxes = 3;
+  double box_sigma_fraction = 0.05;
+  double view_correlation_deg = 20.0;
+  double camera_roll_sigma_deg = 5.0;
+  double camera_pitch_sigma_deg = 30.0;
+  bool verticals = true;
+  double vertical_sigma_deg = 1.0;
+  double vertical_min_length_px = 30.0;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Scale");
+    visit.Real("scale", &scale, {0.0, 1e9},
+               "metres per unit of the input's world, where it is known; 0: unknown. It is combined "
+               "with the heights of objects");
+    visit.Real("scale_log_sigma", &scale_log_sigma, {0.005, 10.0},
+               "standard deviation of the logarithm of `scale`; 0.02 is 2 %");
+    visit.Real("camera_height_m", &camera_height_m, {0.0, 1e3},
+               "median height of the cameras above the lowest support plane, where it is known; 0: "
+               "unknown. It is combined with the heights of objects");
+    visit.Real("camera_height_log_sigma", &camera_height_log_sigma, {0.005, 10.0},
+               "standard deviation of the logarithm of `camera_height_m`");
+    visit.Real("wrong_height_probability", &wrong_height_probability, {1e-6, 0.5},
+               "the share of objects whose height says nothing on the scale, because of a wrong "
+               "label or box");
+    visit.Real("same_label_correlation", &same_label_correlation, {0.0, 1.0},
+               "correlation of the heights of objects of one label beyond that of the table: chairs "
+               "in one room are often of one model; 1: together they count as one object");
+    visit.Text("moving_labels", &moving_labels,
+               "labels of things that move, separated by commas; they are not used");
+    visit.Group("Objects");
+    visit.Integer("min_boxes", &min_boxes, {1, 100000},
+                  "objects with fewer boxes are not used");
+    visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
+               "standard deviation of a box edge about that of the object's body, as a fraction of "
+               "the box's width or height, at least 1 px");
+    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+               "boxes from viewpoints closer than this angle at the object count as one; so do the "
+               "attitudes of cameras that look less than this apart");
+    visit.Group("Up");
+    visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
+               "standard deviation of the tilt of the cameras' x axes; large: unknown");
+    visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
+               "standard deviation of the tilt of the cameras' optical axes; large: unknown");
+    visit.Flag("verticals", &verticals,
+               "look for vertical edges in the images, where there are any");
+    visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
+               "standard deviation of the direction of a vertical edge; those off by more than "
+               "three are of other edges");
+    visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
+               "shorter edges are not used");
+  }
+};
+
+}  // namespace soslam

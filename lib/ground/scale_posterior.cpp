@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ground/scale_posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+namespace soslam {
+namespace {
+
+// Density of the log scale by an object of wrong height: uniform over a factor of about 50.
+constexpr double kWrongDensity = 0.25;
+constexpr double kGridStep = 0.002;
+constexpr double kReach = 4.0;           // standard deviations beyond the outermost hypotheses
+constexpr double kNegligible = 0.02;     // probability of hypotheses that do not extend the grid
+constexpr double kSpreadKnowledge = 10;  // objects that the stated standard deviations count for
+
+double NormalDensity(double deviation, double sigma) {
+  const double z = deviation / sigma;
+  return std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * std::numbers::pi));
+}
+
+double RightDensity(const ScaleEvidence& object, double log_scale) {
+  double density = 0.0;
+  for (const ScaleHypothesis& one : object.hypotheses) {
+    density += one.probability * NormalDensity(log_scale - one.log_scale, one.log_sigma);
+  }
+  return density;
+}
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  void Add(double log_scale, double log_sigma) {
+    low = std::min(low, log_scale - kReach * log_sigma);
+    high = std::max(high, log_scale + kReach * log_sigma);
+  }
+};
+
+Range RangeOf(const std::vector<ScaleEvidence>& objects, const std::vector<KnownScale>& known) {
+  Range range;
+  for (const ScaleEvidence& object : objects) {
+    for (const ScaleHypothesis& one : object.hypotheses) {
+      if (one.probability >= kNegligible) range.Add(one.log_scale, one.log_sigma);
+    }
+  }
+  for (const KnownScale& one : known) range.Add(one.log_scale, one.log_sigma);
+  return range;
+}
+
+// Logarithms to probabilities with the sum 1.
+std::vector<double> Normalised(std::vector<double> logs) {
+  const double highest = std::ranges::max(logs);
+  for (double& value : logs) value = std::exp(value - highest);
+  const double sum = std::accumulate(logs.begin(), logs.end(), 0.0);
+  for (double& value : logs) value /= sum;
+  return logs;
+}
+
+// Factor on the variance: the mean squared deviation of the objects, with a prior of 1 that has the
+// weight of kSpreadKnowledge objects; at least 1.
+double MisfitOf(const std::vector<ScaleEvidence>& objects, double log_scale,
+                double wrong_probability) {
+  double squares = 0.0;
+  double count = -1.0;  // one degree of freedom is the scale's
+  for (const ScaleEvidence& object : objects) {
+    const auto shares = HypothesisProbabilities(object, log_scale, wrong_probability);
+    for (size_t i = 0; i < shares.size(); ++i) {
+      const ScaleHypothesis& one = object.hypotheses[i];
+      const double z = (log_scale - one.log_scale) / one.log_sigma;
+      squares += object.weight * shares[i] * z * z;
+      count += object.weight * shares[i];
+    }
+  }
+  if (!(count > 0.0)) return 1.0;
+  return std::max(1.0, (kSpreadKnowledge + squares) / (kSpreadKnowledge + count));
+}
+
+// Moments and quantiles of probabilities on the grid.
+ScalePosterior Summary(double low, const std::vector<double>& probabilities) {
+  ScalePosterior posterior;
+  double mean = 0.0, square = 0.0, sum = 0.0;
+  const auto quantile = [&](double share, double before, double x, double probability,
+                            double* value) {
+    if (before < share && before + probability >= share) {
+      *value = x + kGridStep * ((share - before) / probability - 0.5);
+    }
+  };
+  for (size_t i = 0; i < probabilities.size(); ++i) {
+    const double x = low + kGridStep * static_cast<double>(i);
+    mean += probabilities[i] * x;
+    square += probabilities[i] * x * x;
+    quantile(0.025, sum, x, probabilities[i], &posterior.low);
+    quantile(0.5, sum, x, probabilities[i], &posterior.log_scale);
+    quantile(0.975, sum, x, probabilities[i], &posterior.high);
+    sum += probabilities[i];
+  }
+  posterior.log_sigma = std::sqrt(std::max(0.0, square - mean * mean));
+  return posterior;
+}
+
+// Probability of the grid's part beyond the valleys around its highest value.
+double ShareOfOtherModes(const std::vector<double>& probabilities) {
+  constexpr double kValley = 0.1;  // of the lower one of two modes
+  const auto best = std::ranges::max_element(probabilities);
+  double share = 0.0;
+  const auto add = [&](auto begin, auto end) {
+    double lowest = *best, beyond = 0.0, highest = 0.0;
+    for (auto i = begin; i != end; ++i) {
+      if (*i < lowest) {
+        lowest = *i;
+        beyond = highest = 0.0;
+      } else {
+        highest = std::max(highest, *i);
+        beyond += *i;
+      }
+      if (lowest < kValley * highest) share = std::max(share, beyond);
+    }
+  };
+  add(best, probabilities.end());
+  add(std::make_reverse_iterator(best), probabilities.rend());
+  return share;
+}
+
+}  // namespace
+
+std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double log_scale,
+                                            double wrong_probability) {
+  const double right = 1.0 - wrong_probability;
+  const double sum = right * RightDensity(object, log_scale) + wrong_probability * kWrongDensity;
+  std::vector<double> shares;
+  for (const ScaleHypothesis& one : object.hypotheses) {
+    shares.push_back(right * one.probability *
+                     NormalDensity(log_scale - one.log_scale, one.log_sigma) / sum);
+  }
+  return shares;
+}
+
+std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& objects,
+                                            const std::vector<KnownScale>& known,
+                                            double wrong_probability) {
+  const Range range = RangeOf(objects, known);
+  if (!(range.high > range.low)) return std::nullopt;
+  std::vector<double> logs(static_cast<size_t>((range.high - range.low) / kGridStep) + 1);
+  for (size_t i = 0; i < logs.size(); ++i) {
+    const double x = range.low + kGridStep * static_cast<double>(i);
+    for (const ScaleEvidence& object : objects) {
+      logs[i] += object.weight * std::log((1.0 - wrong_probability) * RightDensity(object, x) +
+                                          wrong_probability * kWrongDensity);
+    }
+    for (const KnownScale& one : known) {
+      const double z = (x - one.log_scale) / one.log_sigma;
+      logs[i] -= 0.5 * z * z;
+    }
+  }
+  const double mode =
+      range.low + kGridStep * static_cast<double>(std::ranges::max_element(logs) - logs.begin());
+  const double misfit = MisfitOf(objects, mode, wrong_probability);
+  for (double& value : logs) value /= misfit;
+  const std::vector<double> probabilities = Normalised(std::move(logs));
+  ScalePosterior posterior = Summary(range.low, probabilities);
+  posterior.misfit = misfit;
+  posterior.second_mode_share = ShareOfOtherModes(probabilities);
+  for (const ScaleEvidence& object : objects) {
+    const auto shares = HypothesisProbabilities(object, posterior.log_scale, wrong_probability);
+    posterior.agreement.push_back(std::accumulate(shares.begin(), shares.end(), 0.0));
+  }
+  return posterior;
+}
+
+void WeightSameLabels(double correlation, std::vector<ScaleEvidence>* objects) {
+  std::map<std::string, double> count;
+  for (const ScaleEvidence& object : *objects) {
+    for (const ScaleHypothesis& one : object.hypotheses) count[one.label] += one.probability;
+  }
+  for (ScaleEvidence& object : *objects) {
+    double others = 0.0;
+    for (const ScaleHypothesis& one : object.hypotheses) {
+      others += one.probability * std::max(0.0, count[one.label] - 1.0);
+    }
+    object.weight = 1.0 / (1.0 + correlation * others);
+  }
+}
+
+}  // namespace soslam

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/ground_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "artefact/points_file.h"
+#include "artefact/semantic_table_file.h"
+#include "artefact/sequence_file.h"
+#include "artefact/world_file.h"
+#include "base/error.h"
+#include "cli/command_line.h"
+#include "evaluation/result_checks.h"
+#include "geometry/angles.h"
+#include "ground/estimate_ground.h"
+#include "ground/ground_checks.h"
+#include "stage/segment_views.h"
+
+namespace soslam {
+namespace {
+
+void PrintSummary(const Sequence& sequence, const GroundEstimate& estimate) {
+  const std::string scale =
+      estimate.scale
+          ? fmt::format("scale +- {:.0f} % from {} objects",
+                        100.0 * std::expm1(0.5 * (estimate.scale->high - estimate.scale->low)),
+                        estimate.scale->agreement.size())
+          : "unknown scale";
+  fmt::print("{}: up +- {:.1f} degrees, {}, {} support planes\n", sequence.name,
+             kDegPerRad * estimate.tilt_sigma, scale, estimate.planes.size());
+}
+
+}  // namespace
+
+void RunGround(const GroundOptions& options, const StageFiles& files, int threads) {
+  const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
+  if (sequence.frames.empty()) {
+    throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
+  }
+  CheckOneSegment(sequence, files.at("sequence"));
+  ArtefactInfo info = {OptionsToJson(options),
+                       {files.at("sequence"), files.at("points"), files.at("table")}};
+  std::vector<SegmentView> views;
+  if (options.verticals) {
+    views = ViewsOfSegments(sequence, options.vertical_min_length_px, files, threads, &info.inputs);
+  }
+  const GroundEstimate estimate =
+      EstimateGround(sequence, ReadPoints(files.at("points")), views,
+                     ReadSemanticTable(files.at("table")), options, threads);
+  info.findings = CheckGround(estimate);
+  std::ranges::move(CheckUp(estimate.attitude.holding, estimate.attitude.holdings,
+                            estimate.attitude.holding_tilt_variance),
+                    std::back_inserter(info.findings));
+  ReportFindings("ground", info.findings);
+  WriteWorld(files.at("world"), estimate, sequence, info);
+  WriteSequence(files.at("output"), WithGround(sequence, estimate), info);
+  PrintSummary(sequence, estimate);
+}
+
+}  // namespace soslam

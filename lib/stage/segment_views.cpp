@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/segment_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "image/edge_maps.h"
+#include "stage/image_stages.h"
+
+namespace soslam {
+
+std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
+                                          const std::vector<FrameImage>& images,
+                                          double min_length_px, int threads) {
+  const FrameImageReader reader(sequence);
+  std::vector<SegmentView> views(images.size());
+  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
+    const FrameImage& image = images[static_cast<size_t>(i)];
+    views[static_cast<size_t>(i)] = {sequence.CameraOf(*image.frame),
+                                     FindLineSegments(reader.ReadGrey(image), min_length_px),
+                                     image.frame->world_from_camera};
+  });
+  return views;
+}
+
+std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
+                                         const StageFiles& files, int threads,
+                                         std::vector<std::filesystem::path>* inputs) {
+  const bool has_images =
+      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
+  if (!has_images) return {};
+  if (files.count("dataset") == 0) {
+    throw SettingsError(
+        "verticals is true; expected --dataset with the images, or verticals = false");
+  }
+  const std::vector<FrameImage> images =
+      FrameImages(sequence, files.at("dataset"), files.at("sequence"));
+  for (const FrameImage& image : images) inputs->push_back(image.path);
+  const std::vector<SegmentView> of_images =
+      ReadSegmentViews(sequence, images, min_length_px, threads);
+  std::vector<SegmentView> views(sequence.frames.size());
+  for (size_t i = 0; i < views.size(); ++i) {
+    views[i] = {sequence.CameraOf(sequence.frames[i]), {}, sequence.frames[i].world_from_camera};
+  }
+  for (size_t i = 0; i < images.size(); ++i) {
+    views[static_cast<size_t>(images[i].frame - sequence.frames.data())] = of_images[i];
+  }
+  return views;
+}
+
+void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
+  const int first = sequence.frames.front().segment;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    if (sequence.frames[i].segment == first) continue;
+    throw InputError(fmt::format(
+        "{}: /frames/{} is of segment {}, the frames before of segment {}; expected one segment "
+        "where planes are estimated, or planes = given or camera_height",
+        path.string(), i, sequence.frames[i].segment, first));
+  }
+}
+
+}  // namespace soslam

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/stage_files.h"
+#include "model/sequence.h"
+#include "planes/up_prior.h"
+#include "stage/image_stages.h"
+
+namespace soslam {
+
+// Straight edges of at least `min_length_px` in images of a sequence, with the frames' poses.
+std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
+                                          const std::vector<FrameImage>& images,
+                                          double min_length_px, int threads);
+
+// Line segments of at least `min_length_px` in the images of folder "dataset", per frame; none if
+// no frame has an image. The images are added to `inputs`. Throws SettingsError without a folder.
+std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
+                                         const StageFiles& files, int threads,
+                                         std::vector<std::filesystem::path>* inputs);
+
+// Throws InputError, naming the file, if there are several segments: every segment has its own
+// world, up direction and planes.
+void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path);
+
+}  // namespace soslam

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command_line.h"
+#include "stage/ground_stage.h"
+
+int main(int argc, char** argv) {
+  return soslam::StageMain<soslam::GroundOptions>(
+      argc, argv,
+      {.name = "soslam-ground",
+       .purpose = "Finds up, scale and the support planes of a world that has neither, from sparse "
+                  "points, boxes and the heights of their labels.",
+       .inputs = {{"sequence", "sequence.json of soslam-import"},
+                  {"points", "points.h5 in the world of its poses"},
+                  {"table", "semantic table with the height of each label"},
+                  {"dataset", "dataset folder with the images, where verticals are looked for",
+                   false}},
+       .outputs = {{"output", "sequence.json to write: z up, in metres, with support planes"},
+                   {"world", "world.json to write: what was found, how sure it is, and why"}},
+       .example = "soslam-ground --sequence sequence.json --points points.h5 --table "
+                  "pipelines/priors/semantic_table.json --dataset data/desk --output ground.json "
+                  "--world world.json"},
+      &soslam::RunGround);
+}
