@@ -40,9 +40,9 @@ json ScaleToJson(const GroundEstimate& estimate, const json& settings) {
           {"log_sigma", scale.log_sigma},
           {"interval_95", {std::exp(scale.low), std::exp(scale.high)}},
           {"found_by", found_by},
-          {"objects", std::ranges::count_if(estimate.objects, [](const GroundObject& object) {
-             return object.agreement >= 0.5;
-           })},
+          {"objects", std::ranges::count_if(
+                          estimate.objects,
+                          [](const GroundObject& object) { return object.agreement >= 0.5; })},
           {"independent_objects", estimate.independent_objects},
           {"labels", labels},
           {"misfit", scale.misfit},
@@ -68,17 +68,18 @@ json ObjectToJson(const GroundObject& object) {
 void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimate,
                 const Sequence& input, const ArtefactInfo& info) {
   const Eigen::Quaterniond& rotation = estimate.output_from_input.rigid.rotation;
-  json body = {{"dataset", input.name},
-               {"up", UpToJson(estimate)},
-               {"scale", ScaleToJson(estimate, info.settings)},
-               {"output_from_input",
-                {{"scale", estimate.output_from_input.scale},
-                 {"rotation_xyzw", std::vector<double>(rotation.coeffs().begin(), rotation.coeffs().end())},
-                 {"translation", VectorToJson(estimate.output_from_input.rigid.translation)}}},
-               {"planes", json::array()},
-               {"points", estimate.points},
-               {"planes_of_points", estimate.planes_of_points},
-               {"objects", json::array()}};
+  json body = {
+      {"dataset", input.name},
+      {"up", UpToJson(estimate)},
+      {"scale", ScaleToJson(estimate, info.settings)},
+      {"output_from_input",
+       {{"scale", estimate.output_from_input.scale},
+        {"rotation_xyzw", std::vector<double>(rotation.coeffs().begin(), rotation.coeffs().end())},
+        {"translation", VectorToJson(estimate.output_from_input.rigid.translation)}}},
+      {"planes", json::array()},
+      {"points", estimate.points},
+      {"planes_of_points", estimate.planes_of_points},
+      {"objects", json::array()}};
   for (size_t i = 0; i < estimate.planes.size(); ++i) {
     json plane = PlaneToJson(estimate.planes[i], 0.0);
     plane["plane"] = i;
@@ -88,7 +89,8 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
     });
     body["planes"].push_back(std::move(plane));
   }
-  for (const GroundObject& object : estimate.objects) body["objects"].push_back(ObjectToJson(object));
+  for (const GroundObject& object : estimate.objects)
+    body["objects"].push_back(ObjectToJson(object));
   WriteArtefact(path, "world", info, std::move(body));
 }
 

@@ -68,17 +68,13 @@ class Estimation {
  public:
   Estimation(const Sequence& sequence, const std::vector<GroundPoint>& points,
              const SemanticTable& table, const GroundOptions& options, int threads)
-      : sequence_(sequence),
-        points_(points),
-        table_(table),
-        options_(options),
-        threads_(threads) {}
+      : sequence_(sequence), points_(points), table_(table), options_(options), threads_(threads) {}
 
   void Run(const std::vector<SegmentView>& views) {
     FindAttitude(views);
     planes = FindHorizontalPlanes(points_, attitude, 1.0);
     planes_of_points = static_cast<int>(planes.planes.size());
-    const auto groups = GroupBoxes(sequence_, points_, planes);
+    const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
     Measure(groups);
     if (DropPlanesWithoutObjects()) {
       planes = Refined(planes, points_, attitude, 1.0);
@@ -193,8 +189,8 @@ ScalePosterior Shifted(ScalePosterior posterior, double log_factor) {
 // Where the scale is unknown, the unit is that of the input.
 Similarity OutputFromNormalised(const Estimation& estimation) {
   Similarity output;
-  output.scale = estimation.scale ? std::exp(estimation.scale->log_scale)
-                                  : estimation.units_per_input;
+  output.scale =
+      estimation.scale ? std::exp(estimation.scale->log_scale) : estimation.units_per_input;
   output.rigid.rotation = UprightRotation(estimation.planes.up_in_world, 0.0).conjugate();
   if (!estimation.planes.planes.empty()) {
     output.rigid.translation.z() = -output.scale * estimation.planes.planes.front().height;
@@ -244,8 +240,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   const Similarity normalised_from_input =
       NormalisedFromInput(sequence, GroundPoints(sequence, points));
   const Sequence normalised = Transformed(normalised_from_input, sequence);
-  const auto ground_points =
-      GroundPoints(normalised, Transformed(normalised_from_input, points));
+  const auto ground_points = GroundPoints(normalised, Transformed(normalised_from_input, points));
   Estimation estimation(normalised, ground_points, table, options, threads);
   // The scale is that of the normalised world until the end.
   const double log_units = -std::log(normalised_from_input.scale);

@@ -44,8 +44,8 @@ void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* f
   constexpr double kAgreement = 0.5;     // share of the objects
   if (!estimate.scale_of_objects) return;
   const ScalePosterior& scale = *estimate.scale_of_objects;
-  const auto agreeing = std::ranges::count_if(
-      scale.agreement, [](double probability) { return probability >= 0.5; });
+  const auto agreeing =
+      std::ranges::count_if(scale.agreement, [](double probability) { return probability >= 0.5; });
   const auto objects = static_cast<double>(scale.agreement.size());
   if (scale.second_mode_share < kOtherScales && scale.misfit < kMisfit &&
       static_cast<double>(agreeing) >= kAgreement * objects) {

@@ -24,8 +24,7 @@ std::optional<GroundPoint> GroundPointOf(const Sequence& sequence,
     const auto index = frame_index_of.find(observation.frame_id);
     if (index == frame_index_of.end()) continue;
     const Frame& frame = sequence.frames[static_cast<size_t>(index->second)];
-    const Eigen::Vector3d in_camera =
-        frame.world_from_camera.Inverse() * point.position_in_world;
+    const Eigen::Vector3d in_camera = frame.world_from_camera.Inverse() * point.position_in_world;
     if (!(in_camera.z() > 0.0)) return std::nullopt;
     const Eigen::Matrix<double, 2, 3> d_world =
         sequence.CameraOf(frame).ProjectionJacobian(in_camera) *

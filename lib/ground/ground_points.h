@@ -12,8 +12,8 @@ namespace soslam {
 // Sparse point with its uncertainty.
 struct GroundPoint {
   Eigen::Vector3d position_in_world;
-  Eigen::Matrix3d covariance;     // from its reprojection error and the cameras that observe it
-  std::vector<int> frame_indices; // of the frames that observe it
+  Eigen::Matrix3d covariance;      // from its reprojection error and the cameras that observe it
+  std::vector<int> frame_indices;  // of the frames that observe it
 };
 
 // Points that at least two frames of the sequence observe, in front of their cameras.

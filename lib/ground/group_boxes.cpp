@@ -6,16 +6,19 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
+
+#include "base/parallel.h"
 
 namespace soslam {
 namespace {
 
-constexpr size_t kLeastPoints = 3;    // in a box
-constexpr double kInnerShare = 0.7;   // of a box, that has fewer points of its surroundings
-constexpr double kNearQuantile = 0.3; // of the depths in a box: that of its own surface
-constexpr double kLeastOverlap = 0.35;
-constexpr double kMaxDepthRatio = 1.5;
-constexpr double kSameBox = 0.6;      // overlap of two boxes of one object in one frame
+constexpr size_t kLeastPoints = 3;      // in a box
+constexpr double kInnerShare = 0.7;     // of a box, that has fewer points of its surroundings
+constexpr double kNearQuantile = 0.3;   // of the depths in a box: that of its own surface
+constexpr double kLeastOverlap = 0.35;  // of boxes of one object and label
+constexpr double kLeastOverlapOfLabels = 0.5;  // of boxes of two labels
+constexpr double kSameBox = 0.6;               // overlap of two boxes of one object in one frame
 
 // Image point with its depth.
 struct DepthReading {
@@ -58,29 +61,32 @@ std::optional<double> DepthOfPoints(const std::vector<DepthReading>& readings, c
       if (inside.Contains(reading.pixel)) depths.push_back(reading.depth);
     }
     if (depths.size() < kLeastPoints) continue;
-    const auto near = depths.begin() +
-                      static_cast<std::ptrdiff_t>(kNearQuantile * static_cast<double>(depths.size()));
+    const auto near = depths.begin() + static_cast<std::ptrdiff_t>(
+                                           kNearQuantile * static_cast<double>(depths.size()));
     std::nth_element(depths.begin(), near, depths.end());
     return *near;
   }
   return std::nullopt;
 }
 
-// Depth of the highest plane below the camera under the lower edge of a box.
-std::optional<double> DepthOfPlane(const Sequence& sequence, const Detection& detection,
-                                   const HorizontalPlanes& planes) {
+// Depths at which an object with this box may be: those of the points in it, and of the planes
+// under its lower edge.
+std::vector<double> DepthsOf(const Sequence& sequence, const Detection& detection,
+                             const std::vector<DepthReading>& readings,
+                             const HorizontalPlanes& planes) {
+  std::vector<double> depths;
+  if (const auto depth = DepthOfPoints(readings, detection.box)) depths.push_back(*depth);
   const Frame& frame = sequence.FrameOf(detection);
   const Eigen::Vector2d foot(detection.box.Centre().x(), detection.box.y_max);
   const Eigen::Vector3d ray =
       frame.world_from_camera.rotation * sequence.CameraOf(detection).Ray(foot);
   const double slope = planes.up_in_world.dot(ray);
   const double camera = planes.up_in_world.dot(frame.world_from_camera.translation);
-  std::optional<double> depth;
   for (const PlaneOfPoints& plane : planes.planes) {
-    const double to_plane = (plane.height - camera) / slope;
-    if (plane.height < camera && to_plane > 0.0) depth = to_plane;
+    const double depth = (plane.height - camera) / slope;
+    if (plane.height < camera && depth > 0.0) depths.push_back(depth);
   }
-  return depth;
+  return depths;
 }
 
 std::vector<Place> PlacesOf(const Sequence& sequence, const std::vector<GroundPoint>& points,
@@ -89,67 +95,70 @@ std::vector<Place> PlacesOf(const Sequence& sequence, const std::vector<GroundPo
   std::vector<Place> places;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
-    auto depth =
-        DepthOfPoints(readings[static_cast<size_t>(detection.frame_index)], detection.box);
-    if (!depth) depth = DepthOfPlane(sequence, detection, planes);
-    if (!depth) continue;
     const Camera& camera = sequence.CameraOf(detection);
-    places.push_back({static_cast<int>(i),
-                      sequence.FrameOf(detection).world_from_camera *
-                          (*depth * camera.Ray(detection.box.Centre())),
-                      *depth * detection.box.Width() / camera.fx,
-                      *depth * detection.box.Height() / camera.fy});
+    const Eigen::Vector3d ray = camera.Ray(detection.box.Centre());
+    for (const double depth : DepthsOf(
+             sequence, detection, readings[static_cast<size_t>(detection.frame_index)], planes)) {
+      places.push_back(
+          {static_cast<int>(i), sequence.FrameOf(detection).world_from_camera * (depth * ray),
+           depth * detection.box.Width() / camera.fx, depth * detection.box.Height() / camera.fy});
+    }
   }
   return places;
 }
 
-// Overlap of a box with the rectangle of another one, seen from the same camera; 0 where their
-// depths differ.
-double Overlap(const Sequence& sequence, const Place& place, const Place& other) {
-  const Detection& detection = sequence.detections[static_cast<size_t>(place.detection)];
+// Overlap of a detection's box with the rectangle of another one, seen from the same camera; 0
+// where it is too small for boxes of one object.
+double Overlap(const Sequence& sequence, const Detection& detection, const Place& place) {
   const Camera& camera = sequence.CameraOf(detection);
-  const Rigid3d camera_from_world = sequence.FrameOf(detection).world_from_camera.Inverse();
-  const Eigen::Vector3d centre = camera_from_world * other.centre_in_world;
-  const double depth = (camera_from_world * place.centre_in_world).z();
+  const Eigen::Vector3d centre =
+      sequence.FrameOf(detection).world_from_camera.Inverse() * place.centre_in_world;
   const auto pixel = camera.Project(centre);
-  if (!pixel || std::max(depth / centre.z(), centre.z() / depth) > kMaxDepthRatio) return 0.0;
+  if (!pixel) return 0.0;
   const Eigen::Vector2d half =
-      0.5 * Eigen::Vector2d(camera.fx * other.width, camera.fy * other.height) / centre.z();
-  return BoxOverlap(detection.box, {pixel->x() - half.x(), pixel->y() - half.y(),
-                                    pixel->x() + half.x(), pixel->y() + half.y()});
+      0.5 * Eigen::Vector2d(camera.fx * place.width, camera.fy * place.height) / centre.z();
+  const double overlap = BoxOverlap(detection.box, {pixel->x() - half.x(), pixel->y() - half.y(),
+                                                    pixel->x() + half.x(), pixel->y() + half.y()});
+  const Detection& own = sequence.detections[static_cast<size_t>(place.detection)];
+  const bool is_same_label = sequence.ObjectOf(own).label == sequence.ObjectOf(detection).label;
+  return overlap < (is_same_label ? kLeastOverlap : kLeastOverlapOfLabels) ? 0.0 : overlap;
 }
 
-// Groups of places that grow box by box.
+// A detection that shows the same rectangle as a place.
+struct Supporter {
+  int detection;
+  double overlap;
+};
+
+// Groups of places: the rectangle that most boxes agree with is the first object, and so on with
+// the boxes that are left.
 class Grouping {
  public:
-  explicit Grouping(const Sequence& sequence) : sequence_(sequence) {}
-
-  void Add(const Place& place) {
-    std::vector<Place>* best = nullptr;
-    double highest = kLeastOverlap;
-    for (auto& group : groups_) {
-      const double overlap = OverlapWith(place, group);
-      if (overlap <= highest) continue;
-      highest = overlap;
-      best = &group;
-    }
-    if (best == nullptr) best = &groups_.emplace_back();
-    best->push_back(place);
+  Grouping(const Sequence& sequence, std::vector<Place> places, int threads)
+      : sequence_(sequence),
+        places_(std::move(places)),
+        is_taken_(sequence.detections.size()),
+        supporters_(places_.size()) {
+    ParallelFor(static_cast<int>(places_.size()), threads, [&](int i) {
+      const auto index = static_cast<size_t>(i);
+      supporters_[index] = SupportersOf(places_[index]);
+    });
   }
 
-  // Joins groups at the same place that are hardly ever seen apart in one frame.
-  void Join() {
-    for (size_t i = 0; i < groups_.size(); ++i) {
-      for (size_t k = i + 1; k < groups_.size();) {
-        if (!AreOne(groups_[i], groups_[k])) {
-          ++k;
-          continue;
-        }
-        groups_[i].insert(groups_[i].end(), groups_[k].begin(), groups_[k].end());
-        groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(k));
-        k = i + 1;
+  void Run() {
+    for (;;) {
+      const Place* best = nullptr;
+      double most = 0.0;
+      for (size_t i = 0; i < places_.size(); ++i) {
+        const double support = SupportOf(i);
+        if (support <= most) continue;
+        most = support;
+        best = &places_[i];
       }
+      if (best == nullptr) break;
+      Take(*best);
     }
+    Join();
   }
 
   std::vector<std::vector<int>> Detections() const {
@@ -171,24 +180,75 @@ class Grouping {
     return sequence_.detections[static_cast<size_t>(place.detection)].box;
   }
 
-  // Mean overlap with the members that are seen in the nearest frames; 0 if the object is seen
-  // elsewhere in the same frame.
-  double OverlapWith(const Place& place, const std::vector<Place>& group) const {
-    constexpr size_t kMembers = 5;
-    std::vector<const Place*> nearest;
-    for (const Place& member : group) {
-      if (FrameOf(member) == FrameOf(place) && BoxOverlap(BoxOf(member), BoxOf(place)) < kSameBox) {
-        return 0.0;
-      }
-      nearest.push_back(&member);
+  // Sorted by frame, those of most overlap first.
+  std::vector<Supporter> SupportersOf(const Place& place) const {
+    std::vector<Supporter> supporters;
+    for (size_t i = 0; i < sequence_.detections.size(); ++i) {
+      const double overlap = static_cast<int>(i) == place.detection
+                                 ? 1.0
+                                 : Overlap(sequence_, sequence_.detections[i], place);
+      if (overlap > 0.0) supporters.push_back({static_cast<int>(i), overlap});
     }
-    std::ranges::stable_sort(nearest, {}, [&](const Place* member) {
-      return std::abs(FrameOf(*member) - FrameOf(place));
+    std::ranges::stable_sort(supporters, {}, [&](const Supporter& one) {
+      return std::pair(sequence_.detections[static_cast<size_t>(one.detection)].frame_index,
+                       -one.overlap);
     });
-    nearest.resize(std::min(nearest.size(), kMembers));
+    return supporters;
+  }
+
+  // Calls `visit` with the supporters that are not taken: in each frame, the best one and those
+  // that nearly coincide with it.
+  template <typename Visit>
+  void VisitSupporters(size_t place, const Visit& visit) const {
+    const Detection* best = nullptr;
+    for (const Supporter& supporter : supporters_[place]) {
+      if (is_taken_[static_cast<size_t>(supporter.detection)]) continue;
+      const Detection& detection = sequence_.detections[static_cast<size_t>(supporter.detection)];
+      const bool is_first = best == nullptr || best->frame_index != detection.frame_index;
+      if (!is_first && BoxOverlap(best->box, detection.box) < kSameBox) continue;
+      if (is_first) best = &detection;
+      visit(supporter, is_first);
+    }
+  }
+
+  double SupportOf(size_t place) const {
+    if (is_taken_[static_cast<size_t>(places_[place].detection)]) return 0.0;
     double sum = 0.0;
-    for (const Place* member : nearest) sum += Overlap(sequence_, place, *member);
-    return sum / static_cast<double>(nearest.size());
+    VisitSupporters(place, [&](const Supporter& supporter, bool is_first) {
+      if (is_first) sum += supporter.overlap;
+    });
+    return sum;
+  }
+
+  void Take(const Place& best) {
+    const Eigen::Vector3d centre = best.centre_in_world;
+    std::vector<int> detections;
+    VisitSupporters(static_cast<size_t>(&best - places_.data()),
+                    [&](const Supporter& one, bool) { detections.push_back(one.detection); });
+    groups_.emplace_back();
+    for (const int index : detections) {
+      is_taken_[static_cast<size_t>(index)] = true;
+      const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
+      const Camera& camera = sequence_.CameraOf(detection);
+      const double depth = (sequence_.FrameOf(detection).world_from_camera.Inverse() * centre).z();
+      groups_.back().push_back({index, centre, depth * detection.box.Width() / camera.fx,
+                                depth * detection.box.Height() / camera.fy});
+    }
+  }
+
+  // Joins groups at the same place that are hardly ever seen apart in one frame.
+  void Join() {
+    for (size_t i = 0; i < groups_.size(); ++i) {
+      for (size_t k = i + 1; k < groups_.size();) {
+        if (!AreOne(groups_[i], groups_[k])) {
+          ++k;
+          continue;
+        }
+        groups_[i].insert(groups_[i].end(), groups_[k].begin(), groups_[k].end());
+        groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(k));
+        k = i + 1;
+      }
+    }
   }
 
   static Eigen::Vector4d MedianOf(const std::vector<Place>& group) {
@@ -198,7 +258,8 @@ class Grouping {
       for (const Place& place : group) {
         values.push_back(i < 3 ? place.centre_in_world(i) : std::max(place.width, place.height));
       }
-      std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+      std::ranges::nth_element(values,
+                               values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
       median(i) = values[values.size() / 2];
     }
     return median;
@@ -209,20 +270,23 @@ class Grouping {
     constexpr double kMaxShareApart = 0.1;  // of the smaller group
     const Eigen::Vector4d of_one = MedianOf(one), of_other = MedianOf(other);
     const auto [smaller, larger] = std::minmax(of_one(3), of_other(3));
-    if (larger > kMaxSizeRatio * smaller ||
-        (of_one - of_other).head<3>().norm() > 0.5 * smaller) {
+    if (larger > kMaxSizeRatio * smaller || (of_one - of_other).head<3>().norm() > 0.5 * smaller) {
       return false;
     }
     int apart = 0;
     for (const Place& place : one) {
       apart += static_cast<int>(std::ranges::count_if(other, [&](const Place& second) {
-        return FrameOf(second) == FrameOf(place) && BoxOverlap(BoxOf(second), BoxOf(place)) < kSameBox;
+        return FrameOf(second) == FrameOf(place) &&
+               BoxOverlap(BoxOf(second), BoxOf(place)) < kSameBox;
       }));
     }
     return apart <= kMaxShareApart * static_cast<double>(std::min(one.size(), other.size()));
   }
 
   const Sequence& sequence_;
+  std::vector<Place> places_;
+  std::vector<bool> is_taken_;                      // per detection
+  std::vector<std::vector<Supporter>> supporters_;  // per place
   std::vector<std::vector<Place>> groups_;
 };
 
@@ -230,10 +294,9 @@ class Grouping {
 
 std::vector<std::vector<int>> GroupBoxes(const Sequence& sequence,
                                          const std::vector<GroundPoint>& points,
-                                         const HorizontalPlanes& planes) {
-  Grouping grouping(sequence);
-  for (const Place& place : PlacesOf(sequence, points, planes)) grouping.Add(place);
-  grouping.Join();
+                                         const HorizontalPlanes& planes, int threads) {
+  Grouping grouping(sequence, PlacesOf(sequence, points, planes), threads);
+  grouping.Run();
   return grouping.Detections();
 }
 

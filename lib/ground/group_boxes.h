@@ -9,12 +9,13 @@
 
 namespace soslam {
 
-// Detections (indices in Sequence::detections) in groups, ascending, each of one object: their
-// boxes are at the same place and of the same size, whatever their labels. The place of a box is at
-// the depth of the points in it, those of the nearest surface, or, where there are none, at the
-// depth of the plane under its lower edge. Boxes whose depth is unknown are in no group.
+// Detections (indices in Sequence::detections) in groups, ascending, each of one object. The
+// upright rectangle that a box shows, at the depth of the points in it or of a plane under its
+// lower edge, predicts the boxes of its object in all other frames. Rectangles are chosen in the
+// order of how many boxes agree with them. Boxes whose depth is unknown and that agree with none
+// are in no group.
 std::vector<std::vector<int>> GroupBoxes(const Sequence& sequence,
                                          const std::vector<GroundPoint>& points,
-                                         const HorizontalPlanes& planes);
+                                         const HorizontalPlanes& planes, int threads);
 
 }  // namespace soslam

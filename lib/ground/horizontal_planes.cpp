@@ -21,15 +21,15 @@ constexpr double kRoughness = 0.003;     // deviation of surfaces from planes
 constexpr double kBin = 0.015;           // of the search over up
 constexpr double kTiltStep = 1.5 * kRadPerDeg;
 constexpr double kMaxTilt = 45.0 * kRadPerDeg;
-constexpr double kMaxSigmas = 2.5;     // of the attitude
-constexpr size_t kStarts = 6;          // directions that are refined
-constexpr double kBound = 3.0;         // inliers, standard deviations
+constexpr double kMaxSigmas = 2.5;  // of the attitude
+constexpr size_t kStarts = 6;       // directions that are refined
+constexpr double kBound = 3.0;      // inliers, standard deviations
 constexpr int kRounds = 10;
 constexpr size_t kMaxPlanes = 12;
-constexpr double kLeastShare = 0.01;   // of the points, on a plane
+constexpr double kLeastShare = 0.01;  // of the points, on a plane
 constexpr double kLeastPoints = 15.0;
-constexpr double kLeastContrast = 2.0; // of the density on a plane, relative to its surroundings
-constexpr size_t kSectors = 8;         // parts of the planes whose scatter is measured
+constexpr double kLeastContrast = 2.0;  // of the density on a plane, relative to its surroundings
+constexpr size_t kSectors = 8;          // parts of the planes whose scatter is measured
 
 struct WeightedPoint {
   Eigen::Vector3d position;
@@ -82,9 +82,8 @@ std::vector<Eigen::Vector3d> Starts(const std::vector<WeightedPoint>& points,
       directions.emplace_back(Sharpness(points, up, unit) * std::exp(-0.25 * cost), up);
     }
   }
-  std::ranges::stable_sort(directions, [](const auto& one, const auto& other) {
-    return one.first > other.first;
-  });
+  std::ranges::stable_sort(
+      directions, [](const auto& one, const auto& other) { return one.first > other.first; });
   std::vector<Eigen::Vector3d> starts;
   for (const auto& [sharpness, up] : directions) {
     if (starts.size() < kStarts) starts.push_back(up);
@@ -127,10 +126,11 @@ double DensestHeight(const std::vector<HeightReading>& readings) {
 // Heights at which points lie much denser than around, most points first.
 std::vector<double> PeakHeights(const std::vector<WeightedPoint>& points, const Eigen::Vector3d& up,
                                 double unit) {
-  std::vector<HeightReading> readings;
+  std::vector<HeightReading> all;
   for (const WeightedPoint& point : points) {
-    readings.push_back({up.dot(point.position), Sigma(point, up, unit)});
+    all.push_back({up.dot(point.position), Sigma(point, up, unit)});
   }
+  std::vector<HeightReading> readings = all;
   const double least = std::max(kLeastPoints, kLeastShare * static_cast<double>(points.size()));
   std::vector<double> peaks;
   while (peaks.size() < kMaxPlanes) {
@@ -138,7 +138,7 @@ std::vector<double> PeakHeights(const std::vector<WeightedPoint>& points, const 
     const double count = CountNear(readings, height, kBound);
     if (count < least) break;
     // Where points are evenly distributed, twice the width has twice as many.
-    const double around = CountNear(readings, height, 2.0 * kBound) - count;
+    const double around = CountNear(all, height, 2.0 * kBound) - CountNear(all, height, kBound);
     if (count > kLeastContrast * around) peaks.push_back(height);
     std::erase_if(readings, [&](const HeightReading& reading) {
       return std::abs(reading.height - height) < kBound * reading.sigma;

@@ -13,9 +13,9 @@
 namespace soslam {
 namespace {
 
-constexpr double kLeastVotes = 0.15;      // share of a label that is considered
-constexpr double kNoSupport = 0.1;        // prior probability of a free height
-constexpr double kEvidenceWeight = 0.5;   // see AssociateOptions::label_evidence_weight
+constexpr double kLeastVotes = 0.15;     // share of a label that is considered
+constexpr double kNoSupport = 0.1;       // prior probability of a free height
+constexpr double kEvidenceWeight = 0.5;  // see AssociateOptions::label_evidence_weight
 
 AssociateOptions FitOptions(const GroundOptions& options) {
   AssociateOptions fit;

@@ -16,8 +16,9 @@ struct Similarity {
 
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rigid * (scale * point); }
   Similarity operator*(const Similarity& other) const {
-    return {scale * other.scale,
-            {(rigid.rotation * other.rigid.rotation).normalized(), *this * other.rigid.translation}};
+    return {
+        scale * other.scale,
+        {(rigid.rotation * other.rigid.rotation).normalized(), *this * other.rigid.translation}};
   }
 };
 

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "artefact/semantic_table_file.h"
+#include "ground/ground_points.h"
+#include "ground/similarity.h"
+#include "synthesis/simulate.h"
+
+namespace soslam {
+
+// Room with objects whose labels and sizes are drawn from a semantic table, on its floor and on a
+// table, seen by a person who walks around them.
+struct PriorScene {
+  Sequence sequence;  // each box is of an object of its own; in a world of any frame and unit
+  std::vector<MapPoint> points;
+  double metres_per_unit = 1.0;
+  Eigen::Vector3d up_in_world;
+  Similarity world_from_room;           // the room has z up, metres, its floor at z = 0
+  std::vector<double> plane_heights_m;  // over the floor, ascending
+  int objects = 0;                      // with three boxes at least
+  double prior_log_sigma = 0.0;         // of the scale, by that many independent objects
+};
+
+struct PriorSceneOptions {
+  int objects = 8;  // in addition to the table
+  bool has_table = true;
+  int frames = 40;
+  double wrong_label_probability = 0.0;
+  double outlier_probability = 0.1;  // of points
+  double roll_sigma_deg = 2.0;
+};
+
+class PriorSceneBuilder {
+ public:
+  PriorSceneBuilder(const SemanticTable& table, std::vector<std::string> labels, unsigned seed,
+                    const PriorSceneOptions& options)
+      : table_(table), labels_(std::move(labels)), options_(options), random_(seed) {}
+
+  PriorScene Build() {
+    PlaceObjects();
+    MakePoses();
+    MakeBoxes();
+    MakePoints();
+    TurnWorld();
+    return std::move(scene_);
+  }
+
+ private:
+  double Uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  double Normal() { return normal_(random_); }
+
+  Eigen::Vector3d DrawHalfAxes(const ShapePrior& prior) {
+    const double half =
+        0.5 * prior.height_m->median * std::exp(prior.height_m->log_sigma * Normal());
+    const double first = Normal();
+    const double r = prior.log_correlation;
+    const double second = r * first + std::sqrt(1.0 - r * r) * Normal();
+    return {half * prior.ratio.x() * std::exp(prior.log_sigma.x() * first),
+            half * prior.ratio.y() * std::exp(prior.log_sigma.y() * second), half};
+  }
+
+  static Shape ShapeOf(double exponent) {
+    if (exponent < 1.25) return Shape::kBox;
+    return exponent < 1.7 ? Shape::kCylinder : Shape::kEllipsoid;
+  }
+
+  // False if there is no room.
+  bool Place(const std::string& label, const Eigen::Vector3d& half_axes, double plane_height,
+             double min_radius, double max_radius) {
+    const double size = half_axes.head<2>().norm();
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      const double angle = Uniform(-std::numbers::pi, std::numbers::pi);
+      const double radius = Uniform(min_radius, max_radius);
+      const Eigen::Vector2d at(radius * std::cos(angle), radius * std::sin(angle));
+      const bool is_free = std::ranges::none_of(bodies_, [&](const Body& other) {
+        const Landmark& body = other.landmark;
+        const double base = body.Centre().z() - body.half_axes.z();
+        return std::abs(base - plane_height) < 0.01 &&
+               (body.Centre().head<2>() - at).norm() < size + body.half_axes.head<2>().norm();
+      });
+      if (!is_free) continue;
+      Landmark landmark;
+      landmark.frame_from_object.rotation =
+          UprightRotation(Eigen::Vector3d::UnitZ(), Uniform(-std::numbers::pi, std::numbers::pi));
+      landmark.frame_from_object.translation << at, plane_height + half_axes.z();
+      landmark.half_axes = half_axes;
+      const ShapePrior prior = *table_.Find(label);
+      bodies_.push_back({ShapeOf(prior.shape_exponent), landmark});
+      body_labels_.push_back(label);
+      return true;
+    }
+    return false;
+  }
+
+  void PlaceObjects() {
+    scene_.plane_heights_m = {0.0};
+    if (options_.has_table) {
+      const Eigen::Vector3d half_axes = DrawHalfAxes(*table_.Find("dining table"));
+      Place("dining table", half_axes, 0.0, 0.0, 0.01);
+      table_height_ = 2.0 * half_axes.z();
+      table_radius_ = std::min(half_axes.x(), half_axes.y());
+      scene_.plane_heights_m.push_back(table_height_);
+    }
+    for (int i = 0; i < options_.objects; ++i) {
+      const auto index = static_cast<size_t>(Uniform(0.0, static_cast<double>(labels_.size())));
+      const std::string& label = labels_[std::min(index, labels_.size() - 1)];
+      const Eigen::Vector3d half_axes = DrawHalfAxes(*table_.Find(label));
+      const bool is_small = options_.has_table && half_axes.maxCoeff() < 0.25;
+      if (is_small) {
+        const double radius = table_radius_ - half_axes.head<2>().norm();
+        if (radius > 0.0) Place(label, half_axes, table_height_, 0.0, radius);
+      } else {
+        Place(label, half_axes, 0.0, 0.8, 2.5);
+      }
+    }
+  }
+
+  void MakePoses() {
+    const double begin = Uniform(0.0, 2.0 * std::numbers::pi);
+    const double extent = Uniform(1.0, 2.5);  // rad
+    const double eye = Uniform(1.2, 1.7);
+    for (int i = 0; i < options_.frames; ++i) {
+      const double angle = begin + extent * i / options_.frames;
+      const double radius = 4.0 + 0.5 * std::sin(3.0 * angle);
+      const Eigen::Vector3d position(radius * std::cos(angle), radius * std::sin(angle),
+                                     eye + 0.1 * std::sin(5.0 * angle));
+      const Eigen::Vector3d target(0.6 * std::cos(2.0 * angle), 0.6 * std::sin(3.0 * angle), 0.5);
+      const Eigen::Vector3d z = (target - position).normalized();
+      const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+      Eigen::Matrix3d rotation;
+      rotation << x, z.cross(x), z;
+      const double roll = options_.roll_sigma_deg * std::numbers::pi / 180.0 * Normal();
+      Frame frame;
+      frame.id = i;
+      frame.timestamp = 0.1 * i;
+      frame.world_from_camera = {
+          (Eigen::Quaterniond(rotation) * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()))
+              .normalized(),
+          position};
+      scene_.sequence.frames.push_back(frame);
+    }
+    scene_.sequence.name = "prior_scene";
+    scene_.sequence.camera = {640, 480, 500.0, 500.0, 319.5, 239.5};
+  }
+
+  // The nearest surface on a ray: depth along the direction.
+  std::optional<double> Cast(const Eigen::Vector3d& origin,
+                             const Eigen::Vector3d& direction) const {
+    constexpr double kWall = 5.0;
+    std::optional<double> nearest;
+    const auto add = [&](double depth) {
+      if (depth > 1e-6 && (!nearest || depth < *nearest)) nearest = depth;
+    };
+    if (direction.z() < 0.0) add(-origin.z() / direction.z());
+    for (int axis = 0; axis < 2; ++axis) {
+      add((kWall - origin(axis)) / direction(axis));
+      add((-kWall - origin(axis)) / direction(axis));
+    }
+    for (const Body& body : bodies_) {
+      const auto depth = NearestIntersection(body, origin, direction);
+      if (depth) add(*depth);
+    }
+    return nearest;
+  }
+
+  bool Sees(const Frame& frame, const Eigen::Vector3d& point) const {
+    const auto pixel = scene_.sequence.camera.Project(frame.world_from_camera.Inverse() * point);
+    if (!pixel || !scene_.sequence.camera.IsInside(*pixel)) return false;
+    const Eigen::Vector3d& origin = frame.world_from_camera.translation;
+    const auto depth = Cast(origin, point - origin);
+    return depth && *depth > 0.999;
+  }
+
+  std::optional<Box> DrawBox(const Frame& frame, size_t body) {
+    const Camera& camera = scene_.sequence.camera;
+    const auto exact =
+        OutlineBox(camera, Transform(frame.world_from_camera.Inverse(), bodies_[body]));
+    if (!exact || !(DistanceToBorder(*exact, camera.width, camera.height) > 3.0) ||
+        exact->Width() < 10.0 || exact->Height() < 10.0 ||
+        !CentreIsVisible(bodies_, static_cast<int>(body), frame.world_from_camera.translation)) {
+      return std::nullopt;
+    }
+    const double x = 0.015 * exact->Width() + 0.7, y = 0.015 * exact->Height() + 0.7;
+    return Box{exact->x_min + x * Normal(), exact->y_min + y * Normal(),
+               exact->x_max + x * Normal(), exact->y_max + y * Normal()};
+  }
+
+  void MakeBoxes() {
+    std::vector<int> boxes(bodies_.size());
+    Sequence& sequence = scene_.sequence;
+    for (size_t i = 0; i < sequence.frames.size(); ++i) {
+      for (size_t k = 0; k < bodies_.size(); ++k) {
+        const auto box = DrawBox(sequence.frames[i], k);
+        if (!box || Uniform(0.0, 1.0) < 0.2) continue;
+        std::string label = body_labels_[k];
+        if (Uniform(0.0, 1.0) < options_.wrong_label_probability) label = labels_.front();
+        Detection detection;
+        detection.frame_index = static_cast<int>(i);
+        detection.object_index = static_cast<int>(sequence.objects.size());
+        detection.score = Uniform(0.4, 0.95);
+        detection.box = *box;
+        sequence.objects.push_back({detection.object_index, label, kNoPlane, {}});
+        sequence.detections.push_back(detection);
+        ++boxes[k];
+      }
+    }
+    double information = 0.0;
+    for (size_t k = 0; k < bodies_.size(); ++k) {
+      if (boxes[k] < 3) continue;
+      ++scene_.objects;
+      information += std::pow(table_.Find(body_labels_[k])->height_m->log_sigma, -2.0);
+    }
+    scene_.prior_log_sigma = 1.0 / std::sqrt(information);
+  }
+
+  MapPoint Seen(const Eigen::Vector3d& point) const {
+    MapPoint result;
+    result.position_in_world = point;
+    result.reprojection_error_px = 0.7;
+    for (const Frame& frame : scene_.sequence.frames) {
+      if (!Sees(frame, point)) continue;
+      const auto pixel = scene_.sequence.camera.Project(frame.world_from_camera.Inverse() * point);
+      result.observations.push_back({frame.id, *pixel});
+    }
+    return result;
+  }
+
+  void MakePoints() {
+    constexpr int kPerFrame = 25;
+    const Camera& camera = scene_.sequence.camera;
+    std::vector<MapPoint> points;
+    for (const Frame& frame : scene_.sequence.frames) {
+      for (int i = 0; i < kPerFrame; ++i) {
+        const Eigen::Vector2d pixel(Uniform(0.0, 639.0), Uniform(0.0, 479.0));
+        const Eigen::Vector3d ray = frame.world_from_camera.rotation * camera.Ray(pixel);
+        const Eigen::Vector3d& origin = frame.world_from_camera.translation;
+        const auto depth = Cast(origin, ray);
+        if (!depth) continue;
+        MapPoint point = Seen(origin + *depth * ray);
+        if (point.observations.size() >= 3) points.push_back(std::move(point));
+      }
+    }
+    for (const GroundPoint& exact : GroundPoints(scene_.sequence, points)) {
+      const Eigen::Vector3d noise =
+          exact.covariance.llt().matrixL() * Eigen::Vector3d(Normal(), Normal(), Normal());
+      MapPoint point = Seen(exact.position_in_world);
+      point.position_in_world += noise;
+      if (Uniform(0.0, 1.0) < options_.outlier_probability) {
+        const Eigen::Vector3d& origin =
+            scene_.sequence.frames[static_cast<size_t>(exact.frame_indices.front())]
+                .world_from_camera.translation;
+        point.position_in_world = origin + Uniform(0.5, 1.5) * (point.position_in_world - origin);
+      }
+      scene_.points.push_back(std::move(point));
+    }
+  }
+
+  void TurnWorld() {
+    Similarity& world_from_room = scene_.world_from_room;
+    world_from_room.scale = std::exp(Uniform(-3.0, 3.0));
+    world_from_room.rigid.rotation =
+        Eigen::Quaterniond(Normal(), Normal(), Normal(), Normal()).normalized();
+    world_from_room.rigid.translation = {10.0 * Normal(), 10.0 * Normal(), 10.0 * Normal()};
+    scene_.sequence = Transformed(world_from_room, scene_.sequence);
+    scene_.points = Transformed(world_from_room, scene_.points);
+    scene_.metres_per_unit = 1.0 / world_from_room.scale;
+    scene_.up_in_world = world_from_room.rigid.rotation * Eigen::Vector3d::UnitZ();
+  }
+
+  const SemanticTable& table_;
+  std::vector<std::string> labels_;
+  PriorSceneOptions options_;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+  std::vector<Body> bodies_;
+  std::vector<std::string> body_labels_;
+  double table_height_ = 0.0, table_radius_ = 0.0;
+  PriorScene scene_;
+};
+
+}  // namespace soslam
