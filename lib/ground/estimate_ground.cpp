@@ -125,8 +125,8 @@ class Estimation {
     WeightSameLabels(options_.same_label_correlation, &evidence);
     for (size_t i = 0; i < objects.size(); ++i) objects[i].evidence.weight = evidence[i].weight;
     std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
-    scale_of_objects = EstimateScale(evidence, {}, options_.wrong_height_probability);
-    scale = EstimateScale(evidence, Known(), options_.wrong_height_probability);
+    scale_of_objects = EstimateScale(evidence, {});
+    scale = EstimateScale(evidence, Known());
   }
 
   std::vector<KnownScale> Known() const {
@@ -155,8 +155,7 @@ class Estimation {
     std::vector<double> objects_on(planes.planes.size());
     for (const MeasuredObject& object : objects) {
       const auto& hypotheses = object.evidence.hypotheses;
-      const auto shares = HypothesisProbabilities(object.evidence, scale ? scale->log_scale : 0.0,
-                                                  options_.wrong_height_probability);
+      const auto shares = HypothesisProbabilities(object.evidence, scale ? scale->log_scale : 0.0);
       for (size_t i = 0; i < shares.size(); ++i) {
         if (hypotheses[i].plane == kNoPlane) continue;
         objects_on[static_cast<size_t>(hypotheses[i].plane)] += shares[i];
@@ -210,14 +209,14 @@ EstimatedPlane OutputPlane(const Similarity& output_from_normalised, const Plane
 }
 
 GroundObject OutputObject(const Similarity& output_from_normalised, const MeasuredObject& object,
-                          double log_units, double log_scale, double wrong_probability) {
+                          double log_units, double log_scale) {
   GroundObject result;
   result.boxes = static_cast<int>(object.detections.size());
   result.label = std::ranges::max_element(object.votes, {}, [](const auto& vote) {
                    return vote.second;
                  })->first;
   if (object.evidence.hypotheses.empty()) return result;
-  const auto shares = HypothesisProbabilities(object.evidence, log_scale, wrong_probability);
+  const auto shares = HypothesisProbabilities(object.evidence, log_scale);
   const auto best = static_cast<size_t>(std::ranges::max_element(shares) - shares.begin());
   const ScaleHypothesis& hypothesis = object.evidence.hypotheses[best];
   const Landmark& landmark = object.landmarks[best];
@@ -269,8 +268,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
     result.points_on_planes.push_back(plane.points);
   }
   for (const MeasuredObject& object : estimation.objects) {
-    result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale),
-                                          options.wrong_height_probability));
+    result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale)));
     result.independent_objects += result.objects.back().weight * result.objects.back().agreement;
   }
   return result;

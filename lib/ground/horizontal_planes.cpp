@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -16,20 +15,21 @@ namespace soslam {
 namespace {
 
 // Lengths are fractions of the unit, the typical distance of the points.
-constexpr double kMaxPointSigma = 0.03;  // of points that are used
-constexpr double kRoughness = 0.003;     // deviation of surfaces from planes
-constexpr double kBin = 0.015;           // of the search over up
-constexpr double kTiltStep = 1.5 * kRadPerDeg;
+constexpr double kMaxPointSigma = 0.01;  // of points that are used
+constexpr double kRoughness = 0.0015;    // deviation of surfaces from planes
+constexpr double kBin = 0.008;           // of the search over up
+constexpr double kTiltStep = 1.0 * kRadPerDeg;
 constexpr double kMaxTilt = 45.0 * kRadPerDeg;
 constexpr double kMaxSigmas = 2.5;  // of the attitude
-constexpr size_t kStarts = 6;       // directions that are refined
+constexpr size_t kStarts = 12;      // directions that are refined
 constexpr double kBound = 3.0;      // inliers, standard deviations
 constexpr int kRounds = 10;
 constexpr size_t kMaxPlanes = 12;
 constexpr double kLeastShare = 0.01;  // of the points, on a plane
 constexpr double kLeastPoints = 15.0;
 constexpr double kLeastContrast = 2.0;  // of the density on a plane, relative to its surroundings
-constexpr size_t kSectors = 8;          // parts of the planes whose scatter is measured
+constexpr double kLyingThings = 0.2 * kRadPerDeg;  // error of a tilt by flat things on a plane
+constexpr size_t kSectors = 8;                     // parts of the planes whose scatter is measured
 
 struct WeightedPoint {
   Eigen::Vector3d position;
@@ -51,18 +51,20 @@ std::vector<WeightedPoint> UsablePoints(const std::vector<GroundPoint>& points,
   return usable;
 }
 
-// Number of pairs of points at the same height, without those that an even distribution has.
+// Number of pairs of points at the same height.
 double Sharpness(const std::vector<WeightedPoint>& points, const Eigen::Vector3d& up, double unit) {
-  std::map<int, double> bins;
+  constexpr double kReach = 10.0;  // farther points are in the outermost bins
+  std::vector<double> bins(static_cast<size_t>(2.0 * kReach / kBin) + 2);
   for (const WeightedPoint& point : points) {
-    const double position = up.dot(point.position) / (kBin * unit);
-    const int bin = static_cast<int>(std::floor(std::clamp(position, -1e6, 1e6)));
+    const double height = std::clamp(up.dot(point.position) / unit, -kReach, kReach);
+    const double position = (height + kReach) / kBin;
+    const auto bin = static_cast<size_t>(position);
     const double share = position - std::floor(position);
     bins[bin] += 1.0 - share;
     bins[bin + 1] += share;
   }
   double sum = 0.0;
-  for (const auto& [bin, count] : bins) sum += count * count;
+  for (const double count : bins) sum += count * count;
   return sum;
 }
 
@@ -286,6 +288,9 @@ HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrio
     plane.covariance = CovarianceOf(fit, k, plane.centre_in_world);
   }
   AddScatter(points, attitude, unit, fit, &result);
+  for (PlaneOfPoints& plane : result.planes) {
+    plane.covariance.diagonal().head<2>().array() += kLyingThings * kLyingThings;
+  }
   result.tilt_covariance = result.planes.front().covariance.topLeftCorner<2, 2>();
   std::ranges::sort(result.planes, {}, &PlaneOfPoints::height);
   return result;

@@ -95,6 +95,28 @@ class Measurement {
   std::vector<double> costs_;  // one per hypothesis
 };
 
+// Probability that an object is a false one or not what its boxes say: those that are detected in
+// few of the frames that show their place are seldom right.
+double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
+                        const GroundOptions& options) {
+  constexpr double kUsualShare = 0.3;
+  const auto& hypotheses = object.evidence.hypotheses;
+  const auto best = std::ranges::max_element(hypotheses, {}, &ScaleHypothesis::probability);
+  const Landmark& landmark = object.landmarks[static_cast<size_t>(best - hypotheses.begin())];
+  const auto in_view = std::ranges::count_if(sequence.frames, [&](const Frame& frame) {
+    const Camera& camera = sequence.CameraOf(frame);
+    const auto pixel = camera.Project(frame.world_from_camera.Inverse() * landmark.Centre());
+    return pixel && camera.IsInside(*pixel);
+  });
+  std::set<int> frames;
+  for (const int index : object.detections) {
+    frames.insert(sequence.detections[static_cast<size_t>(index)].frame_index);
+  }
+  const double share = static_cast<double>(frames.size()) /
+                       static_cast<double>(std::max<std::ptrdiff_t>(1, in_view));
+  return 1.0 - (1.0 - options.wrong_height_probability) * std::min(1.0, share / kUsualShare);
+}
+
 std::set<std::string> MovingLabels(const GroundOptions& options) {
   std::set<std::string> moving;
   for (const auto& group : ParseLabelGroups("moving_labels", options.moving_labels)) {
@@ -125,6 +147,8 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
       if (prior && prior->height_m) measurement.Add(label, *prior, votes);
     }
     measurement.Finish();
+    if (object.evidence.hypotheses.empty()) return;
+    object.evidence.wrong_probability = WrongProbability(sequence, object, options);
   });
   return objects;
 }

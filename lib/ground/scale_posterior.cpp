@@ -23,12 +23,12 @@ double NormalDensity(double deviation, double sigma) {
   return std::exp(-0.5 * z * z) / (sigma * std::sqrt(2.0 * std::numbers::pi));
 }
 
-double RightDensity(const ScaleEvidence& object, double log_scale) {
+double Density(const ScaleEvidence& object, double log_scale) {
   double density = 0.0;
   for (const ScaleHypothesis& one : object.hypotheses) {
     density += one.probability * NormalDensity(log_scale - one.log_scale, one.log_sigma);
   }
-  return density;
+  return (1.0 - object.wrong_probability) * density + object.wrong_probability * kWrongDensity;
 }
 
 struct Range {
@@ -62,12 +62,11 @@ std::vector<double> Normalised(std::vector<double> logs) {
 
 // Factor on the variance: the mean squared deviation of the objects, with a prior of 1 that has the
 // weight of kSpreadKnowledge objects; at least 1.
-double MisfitOf(const std::vector<ScaleEvidence>& objects, double log_scale,
-                double wrong_probability) {
+double MisfitOf(const std::vector<ScaleEvidence>& objects, double log_scale) {
   double squares = 0.0;
   double count = -1.0;  // one degree of freedom is the scale's
   for (const ScaleEvidence& object : objects) {
-    const auto shares = HypothesisProbabilities(object, log_scale, wrong_probability);
+    const auto shares = HypothesisProbabilities(object, log_scale);
     for (size_t i = 0; i < shares.size(); ++i) {
       const ScaleHypothesis& one = object.hypotheses[i];
       const double z = (log_scale - one.log_scale) / one.log_sigma;
@@ -127,10 +126,9 @@ double ShareOfOtherModes(const std::vector<double>& probabilities) {
 
 }  // namespace
 
-std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double log_scale,
-                                            double wrong_probability) {
-  const double right = 1.0 - wrong_probability;
-  const double sum = right * RightDensity(object, log_scale) + wrong_probability * kWrongDensity;
+std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double log_scale) {
+  const double right = 1.0 - object.wrong_probability;
+  const double sum = Density(object, log_scale);
   std::vector<double> shares;
   for (const ScaleHypothesis& one : object.hypotheses) {
     shares.push_back(right * one.probability *
@@ -140,16 +138,14 @@ std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double 
 }
 
 std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& objects,
-                                            const std::vector<KnownScale>& known,
-                                            double wrong_probability) {
+                                            const std::vector<KnownScale>& known) {
   const Range range = RangeOf(objects, known);
   if (!(range.high > range.low)) return std::nullopt;
   std::vector<double> logs(static_cast<size_t>((range.high - range.low) / kGridStep) + 1);
   for (size_t i = 0; i < logs.size(); ++i) {
     const double x = range.low + kGridStep * static_cast<double>(i);
     for (const ScaleEvidence& object : objects) {
-      logs[i] += object.weight * std::log((1.0 - wrong_probability) * RightDensity(object, x) +
-                                          wrong_probability * kWrongDensity);
+      logs[i] += object.weight * std::log(Density(object, x));
     }
     for (const KnownScale& one : known) {
       const double z = (x - one.log_scale) / one.log_sigma;
@@ -158,14 +154,14 @@ std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& ob
   }
   const double mode =
       range.low + kGridStep * static_cast<double>(std::ranges::max_element(logs) - logs.begin());
-  const double misfit = MisfitOf(objects, mode, wrong_probability);
+  const double misfit = MisfitOf(objects, mode);
   for (double& value : logs) value /= misfit;
   const std::vector<double> probabilities = Normalised(std::move(logs));
   ScalePosterior posterior = Summary(range.low, probabilities);
   posterior.misfit = misfit;
   posterior.second_mode_share = ShareOfOtherModes(probabilities);
   for (const ScaleEvidence& object : objects) {
-    const auto shares = HypothesisProbabilities(object, posterior.log_scale, wrong_probability);
+    const auto shares = HypothesisProbabilities(object, posterior.log_scale);
     posterior.agreement.push_back(std::accumulate(shares.begin(), shares.end(), 0.0));
   }
   return posterior;

@@ -19,7 +19,8 @@ struct ScaleHypothesis {
 // Evidence of one object; the probabilities of its hypotheses have the sum 1.
 struct ScaleEvidence {
   std::vector<ScaleHypothesis> hypotheses;
-  double weight = 1.0;  // below 1 where other objects have correlated heights
+  double weight = 1.0;              // below 1 where other objects have correlated heights
+  double wrong_probability = 0.05;  // that its height says nothing
 };
 
 // Direct knowledge of the logarithm of the scale.
@@ -38,16 +39,14 @@ struct ScalePosterior {
   std::vector<double> agreement;   // per object, the probability that its height is right
 };
 
-// Bayesian estimate: the height of each object is right under one of its hypotheses, or with
-// `wrong_probability` it says nothing. If the objects contradict one another more than their
+// Bayesian estimate: the height of each object is right under one of its hypotheses, or it says
+// nothing. If the objects contradict one another more than their
 // standard deviations allow, the distribution is widened. None without any evidence.
 std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& objects,
-                                            const std::vector<KnownScale>& known,
-                                            double wrong_probability);
+                                            const std::vector<KnownScale>& known);
 
 // Posterior probabilities of an object's hypotheses at a scale; the rest is that of a wrong height.
-std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double log_scale,
-                                            double wrong_probability);
+std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double log_scale);
 
 // Weights of objects whose heights are correlated because they have the same label.
 void WeightSameLabels(double correlation, std::vector<ScaleEvidence>* objects);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +27,7 @@ struct PriorScene {
   double metres_per_unit = 1.0;
   Eigen::Vector3d up_in_world;
   Similarity world_from_room;           // the room has z up, metres, its floor at z = 0
-  std::vector<double> plane_heights_m;  // over the floor, ascending
+  std::vector<double> plane_heights_m;  // of planes with such objects, ascending
   int objects = 0;                      // with three boxes at least
   double prior_log_sigma = 0.0;         // of the scale, by that many independent objects
 };
@@ -105,13 +106,11 @@ class PriorSceneBuilder {
   }
 
   void PlaceObjects() {
-    scene_.plane_heights_m = {0.0};
     if (options_.has_table) {
       const Eigen::Vector3d half_axes = DrawHalfAxes(*table_.Find("dining table"));
       Place("dining table", half_axes, 0.0, 0.0, 0.01);
       table_height_ = 2.0 * half_axes.z();
       table_radius_ = std::min(half_axes.x(), half_axes.y());
-      scene_.plane_heights_m.push_back(table_height_);
     }
     for (int i = 0; i < options_.objects; ++i) {
       const auto index = static_cast<size_t>(Uniform(0.0, static_cast<double>(labels_.size())));
@@ -217,11 +216,17 @@ class PriorSceneBuilder {
       }
     }
     double information = 0.0;
+    std::set<double> planes;
     for (size_t k = 0; k < bodies_.size(); ++k) {
       if (boxes[k] < 3) continue;
       ++scene_.objects;
+      const Landmark& landmark = bodies_[k].landmark;
+      planes.insert(landmark.Centre().z() - landmark.half_axes.z() > 0.5 * table_height_ && table_height_ > 0.0
+                        ? table_height_
+                        : 0.0);
       information += std::pow(table_.Find(body_labels_[k])->height_m->log_sigma, -2.0);
     }
+    scene_.plane_heights_m.assign(planes.begin(), planes.end());
     scene_.prior_log_sigma = 1.0 / std::sqrt(information);
   }
 
