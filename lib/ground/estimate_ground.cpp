@@ -265,7 +265,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   result.planes_of_points = estimation.planes_of_points;
   for (const PlaneOfPoints& plane : estimation.planes.planes) {
     result.planes.push_back(OutputPlane(output, plane));
-    result.points_on_planes.push_back(plane.points);
+    result.points_on_planes.push_back(static_cast<int>(plane.points_in_world.size()));
   }
   for (const MeasuredObject& object : estimation.objects) {
     result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale)));

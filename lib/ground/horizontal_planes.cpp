@@ -280,7 +280,9 @@ HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrio
     const auto index = PlaneOfPoint(fit, point, Sigma(point, fit.up, unit));
     if (!index) continue;
     PlaneOfPoints& plane = result.planes[*index];
-    plane.centre_in_world += (point.position - plane.centre_in_world) / ++plane.points;
+    plane.points_in_world.push_back(point.position);
+    plane.centre_in_world += (point.position - plane.centre_in_world) /
+                             static_cast<double>(plane.points_in_world.size());
   }
   for (size_t k = 0; k < fit.heights.size(); ++k) {
     PlaneOfPoints& plane = result.planes[k];

@@ -12,8 +12,8 @@ namespace soslam {
 // One of several parallel planes, up . x = height.
 struct PlaneOfPoints {
   double height = 0.0;
-  int points = 0;
-  Eigen::Vector3d centre_in_world = Eigen::Vector3d::Zero();  // of its points
+  std::vector<Eigen::Vector3d> points_in_world;
+  Eigen::Vector3d centre_in_world = Eigen::Vector3d::Zero();  // mean of the points
   // Covariance of turns (rad) about the x and y axes of UprightRotation(up, 0) through the centre,
   // and of a rise along up.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();

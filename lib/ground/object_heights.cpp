@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ground/object_heights.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double kLeastVotes = 0.15;     // share of a label that is considered
 constexpr double kNoSupport = 0.1;       // prior probability of a free height
+constexpr double kBesidePlane = 0.02;    // factor where a plane has no surface under the object
 constexpr double kEvidenceWeight = 0.5;  // see AssociateOptions::label_evidence_weight
 
 AssociateOptions FitOptions(const GroundOptions& options) {
@@ -35,6 +37,31 @@ std::map<std::string, double> VotesOf(const Sequence& sequence,
   }
   for (auto& [label, share] : votes) share = sum > 0.0 ? share / sum : 1.0;
   return votes;
+}
+
+// True if the plane has a surface under the object or beside it: points that are not on one line,
+// as those on a wall are.
+bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
+                   const Landmark& landmark) {
+  constexpr double kLeastWidth = 0.1;  // standard deviation, relative to the reach
+  constexpr int kLeastPoints = 3;
+  const double reach = 2.0 * landmark.half_axes.head<2>().norm();
+  const Eigen::Matrix3d level = UprightRotation(up, 0.0).toRotationMatrix();
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  int count = 0;
+  for (const Eigen::Vector3d& point : plane.points_in_world) {
+    const Eigen::Vector2d from_centre =
+        level.leftCols<2>().transpose() * (point - landmark.Centre());
+    if (from_centre.norm() > reach) continue;
+    sum += from_centre;
+    squares += from_centre * from_centre.transpose();
+    ++count;
+  }
+  if (count < kLeastPoints) return false;
+  const Eigen::Matrix2d spread = squares / count - sum * sum.transpose() / (count * count);
+  const double least = kLeastWidth * reach;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()(0) > least * least;
 }
 
 class Measurement {
@@ -80,6 +107,11 @@ class Measurement {
            const std::variant<Plane, UpEstimate>& support) {
     const auto fit = FitObject(sequence_, object_->detections, prior, options_, support);
     if (!fit) return;
+    if (hypothesis.plane != kNoPlane &&
+        !IsOverSurface(planes_.planes[static_cast<size_t>(hypothesis.plane)], planes_.up_in_world,
+                       fit->landmark_in_world)) {
+      hypothesis.probability *= kBesidePlane;
+    }
     hypothesis.log_scale = std::log(height_m.median / (2.0 * fit->landmark_in_world.half_axes.z()));
     hypothesis.log_sigma = std::hypot(height_m.log_sigma, std::sqrt(fit->covariance(8, 8)));
     object_->evidence.hypotheses.push_back(hypothesis);
@@ -99,7 +131,7 @@ class Measurement {
 // few of the frames that show their place are seldom right.
 double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
                         const GroundOptions& options) {
-  constexpr double kUsualShare = 0.3;
+  constexpr double kUsualShare = 0.2;
   const auto& hypotheses = object.evidence.hypotheses;
   const auto best = std::ranges::max_element(hypotheses, {}, &ScaleHypothesis::probability);
   const Landmark& landmark = object.landmarks[static_cast<size_t>(best - hypotheses.begin())];

@@ -13,7 +13,7 @@ struct GroundOptions {
   double camera_height_m = 0.0;
   double camera_height_log_sigma = 0.1;
   double wrong_height_probability = 0.05;
-  double same_label_correlation = 0.5;
+  double same_label_correlation = 0.3;
   std::string moving_labels = "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
   int min_boxes = 3;
   double box_sigma_fraction = 0.05;

@@ -21,6 +21,7 @@
 #include "dataset/import_options.h"
 #include "dataset/reconstruct_options.h"
 #include "evaluation/alignment.h"
+#include "ground/options.h"
 #include "image/edge_maps.h"
 #include "image/frame_choice.h"
 #include "initialisation/options.h"
@@ -57,7 +58,9 @@ const std::vector<Maker>& Makers() {
       {"sequence", "import", OptionsToJson(ImportOptions())},
       {"sequence", "associate", OptionsToJson(AssociateOptions())},
       {"sequence", "planes", OptionsToJson(PlanesOptions())},
-      {"symmetry", "refine", OptionsToJson(OrientationOptions())}};
+      {"sequence", "ground", OptionsToJson(GroundOptions())},
+      {"symmetry", "refine", OptionsToJson(OrientationOptions())},
+      {"world", "ground", OptionsToJson(GroundOptions())}};
   return makers;
 }
 
@@ -153,7 +156,9 @@ const std::vector<Kind>& Kinds() {
        WithoutSequence(&InspectReconstruction)},
       {"semantic_table", "sizes and shapes by label", WithoutSequence(&InspectSemanticTable)},
       {"sequence", "a dataset, checked and gated", WithoutSequence(&InspectSequence)},
-      {"symmetry", "what symmetry and edges say about the yaw of observations", &InspectSymmetry}};
+      {"symmetry", "what symmetry and edges say about the yaw of observations", &InspectSymmetry},
+      {"world", "up, scale and support planes of a world that had neither",
+       WithoutSequence(&InspectWorld)}};
   return kinds;
 }
 

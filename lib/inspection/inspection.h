@@ -52,6 +52,7 @@ Inspection InspectLandmarks(const std::filesystem::path& file,
 Inspection InspectMap(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
 Inspection InspectMetrics(const std::filesystem::path& file);
 Inspection InspectPlanes(const std::filesystem::path& file);
+Inspection InspectWorld(const std::filesystem::path& file);
 Inspection InspectPoints(const std::filesystem::path& file);
 Inspection InspectReconstruction(const std::filesystem::path& file);
 Inspection InspectSemanticTable(const std::filesystem::path& file);

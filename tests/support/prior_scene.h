@@ -28,24 +28,31 @@ struct PriorScene {
   Eigen::Vector3d up_in_world;
   Similarity world_from_room;           // the room has z up, metres, its floor at z = 0
   std::vector<double> plane_heights_m;  // of planes with such objects, ascending
-  int objects = 0;                      // with three boxes at least
-  double prior_log_sigma = 0.0;         // of the scale, by that many independent objects
+  double median_camera_height_m = 0.0;
+  int objects = 0;               // with three boxes at least
+  double prior_log_sigma = 0.0;  // of the scale, by that many independent objects
 };
 
 struct PriorSceneOptions {
   int objects = 8;  // in addition to the table
   bool has_table = true;
   int frames = 40;
-  double wrong_label_probability = 0.0;
   double outlier_probability = 0.1;  // of points
   double roll_sigma_deg = 2.0;
 };
 
+// Furniture and things of rooms.
+inline const std::vector<std::string> kPriorSceneLabels = {
+    "armchair", "chair",    "sofa",       "nightstand",      "stool",       "suitcase",
+    "trunk",    "backpack", "trash can",  "bookcase",        "crate",       "wardrobe",
+    "piano",    "cup",      "bottle",     "washing machine", "bowl",        "microwave",
+    "vase",     "speaker",  "teddy bear", "printer",         "milk carton", "radio",
+    "monitor",  "laptop",   "toaster",    "potted plant"};
+
 class PriorSceneBuilder {
  public:
-  PriorSceneBuilder(const SemanticTable& table, std::vector<std::string> labels, unsigned seed,
-                    const PriorSceneOptions& options)
-      : table_(table), labels_(std::move(labels)), options_(options), random_(seed) {}
+  PriorSceneBuilder(const SemanticTable& table, unsigned seed, const PriorSceneOptions& options)
+      : table_(table), options_(options), random_(seed) {}
 
   PriorScene Build() {
     PlaceObjects();
@@ -113,8 +120,9 @@ class PriorSceneBuilder {
       table_radius_ = std::min(half_axes.x(), half_axes.y());
     }
     for (int i = 0; i < options_.objects; ++i) {
-      const auto index = static_cast<size_t>(Uniform(0.0, static_cast<double>(labels_.size())));
-      const std::string& label = labels_[std::min(index, labels_.size() - 1)];
+      const auto index =
+          static_cast<size_t>(Uniform(0.0, static_cast<double>(kPriorSceneLabels.size())));
+      const std::string& label = kPriorSceneLabels[std::min(index, kPriorSceneLabels.size() - 1)];
       const Eigen::Vector3d half_axes = DrawHalfAxes(*table_.Find(label));
       const bool is_small = options_.has_table && half_axes.maxCoeff() < 0.25;
       if (is_small) {
@@ -150,6 +158,12 @@ class PriorSceneBuilder {
           position};
       scene_.sequence.frames.push_back(frame);
     }
+    std::vector<double> heights;
+    for (const Frame& frame : scene_.sequence.frames) {
+      heights.push_back(frame.world_from_camera.translation.z());
+    }
+    std::ranges::sort(heights);
+    scene_.median_camera_height_m = heights[heights.size() / 2];
     scene_.sequence.name = "prior_scene";
     scene_.sequence.camera = {640, 480, 500.0, 500.0, 319.5, 239.5};
   }
@@ -203,14 +217,13 @@ class PriorSceneBuilder {
       for (size_t k = 0; k < bodies_.size(); ++k) {
         const auto box = DrawBox(sequence.frames[i], k);
         if (!box || Uniform(0.0, 1.0) < 0.2) continue;
-        std::string label = body_labels_[k];
-        if (Uniform(0.0, 1.0) < options_.wrong_label_probability) label = labels_.front();
         Detection detection;
         detection.frame_index = static_cast<int>(i);
         detection.object_index = static_cast<int>(sequence.objects.size());
         detection.score = Uniform(0.4, 0.95);
         detection.box = *box;
-        sequence.objects.push_back({detection.object_index, label, kNoPlane, {}});
+        detection.true_object_id = static_cast<int>(k);
+        sequence.objects.push_back({detection.object_index, body_labels_[k], kNoPlane, {}});
         sequence.detections.push_back(detection);
         ++boxes[k];
       }
@@ -221,7 +234,8 @@ class PriorSceneBuilder {
       if (boxes[k] < 3) continue;
       ++scene_.objects;
       const Landmark& landmark = bodies_[k].landmark;
-      planes.insert(landmark.Centre().z() - landmark.half_axes.z() > 0.5 * table_height_ && table_height_ > 0.0
+      planes.insert(landmark.Centre().z() - landmark.half_axes.z() > 0.5 * table_height_ &&
+                            table_height_ > 0.0
                         ? table_height_
                         : 0.0);
       information += std::pow(table_.Find(body_labels_[k])->height_m->log_sigma, -2.0);
@@ -243,7 +257,7 @@ class PriorSceneBuilder {
   }
 
   void MakePoints() {
-    constexpr int kPerFrame = 25;
+    constexpr int kPerFrame = 50;
     const Camera& camera = scene_.sequence.camera;
     std::vector<MapPoint> points;
     for (const Frame& frame : scene_.sequence.frames) {
@@ -285,7 +299,6 @@ class PriorSceneBuilder {
   }
 
   const SemanticTable& table_;
-  std::vector<std::string> labels_;
   PriorSceneOptions options_;
   std::mt19937 random_;
   std::normal_distribution<double> normal_;
