@@ -153,9 +153,11 @@ class Estimation {
   bool DropPlanesWithoutObjects() {
     constexpr double kLeastObjects = 0.5;
     std::vector<double> objects_on(planes.planes.size());
+    const auto& at_scale = scale_of_objects ? scale_of_objects : scale;
     for (const MeasuredObject& object : objects) {
       const auto& hypotheses = object.evidence.hypotheses;
-      const auto shares = HypothesisProbabilities(object.evidence, scale ? scale->log_scale : 0.0);
+      const auto shares =
+          HypothesisProbabilities(object.evidence, at_scale ? at_scale->log_scale : 0.0);
       for (size_t i = 0; i < shares.size(); ++i) {
         if (hypotheses[i].plane == kNoPlane) continue;
         objects_on[static_cast<size_t>(hypotheses[i].plane)] += shares[i];

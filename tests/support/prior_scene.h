@@ -256,14 +256,24 @@ class PriorSceneBuilder {
     return result;
   }
 
+  // Directions in which a frame has points: anywhere, and on the table, whose top has texture.
+  Eigen::Vector3d DrawRay(const Frame& frame, bool on_table) {
+    if (!on_table) {
+      return frame.world_from_camera.rotation *
+             scene_.sequence.camera.Ray({Uniform(0.0, 639.0), Uniform(0.0, 479.0)});
+    }
+    const double x = Uniform(-table_radius_, table_radius_);
+    const double y = Uniform(-table_radius_, table_radius_);
+    return Eigen::Vector3d(x, y, table_height_) - frame.world_from_camera.translation;
+  }
+
   void MakePoints() {
-    constexpr int kPerFrame = 50;
-    const Camera& camera = scene_.sequence.camera;
+    constexpr int kPerFrame = 35;
+    const int on_table = options_.has_table ? 10 : 0;
     std::vector<MapPoint> points;
     for (const Frame& frame : scene_.sequence.frames) {
       for (int i = 0; i < kPerFrame; ++i) {
-        const Eigen::Vector2d pixel(Uniform(0.0, 639.0), Uniform(0.0, 479.0));
-        const Eigen::Vector3d ray = frame.world_from_camera.rotation * camera.Ray(pixel);
+        const Eigen::Vector3d ray = DrawRay(frame, i < on_table);
         const Eigen::Vector3d& origin = frame.world_from_camera.translation;
         const auto depth = Cast(origin, ray);
         if (!depth) continue;
