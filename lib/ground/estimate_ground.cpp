@@ -18,6 +18,22 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
+// Leaves out the boxes of some frames if very many have boxes.
+Sequence WithFewerBoxes(Sequence sequence) {
+  constexpr size_t kMaxFrames = 200;
+  std::vector<int> frames;  // with boxes, ascending
+  for (const Detection& detection : sequence.detections) {
+    if (frames.empty() || frames.back() != detection.frame_index) {
+      frames.push_back(detection.frame_index);
+    }
+  }
+  const std::vector<int> kept = SpreadOver(frames, kMaxFrames);
+  std::erase_if(sequence.detections, [&](const Detection& detection) {
+    return !std::ranges::binary_search(kept, detection.frame_index);
+  });
+  return sequence;
+}
+
 // To the frame of the first camera, in units of the median distance of points from the cameras that
 // observe them, or of the path's extent where there are no points.
 Similarity NormalisedFromInput(const Sequence& sequence, const std::vector<GroundPoint>& points) {
@@ -240,7 +256,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
                               const GroundOptions& options, int threads) {
   const Similarity normalised_from_input =
       NormalisedFromInput(sequence, GroundPoints(sequence, points));
-  const Sequence normalised = Transformed(normalised_from_input, sequence);
+  const Sequence normalised = WithFewerBoxes(Transformed(normalised_from_input, sequence));
   const auto ground_points = GroundPoints(normalised, Transformed(normalised_from_input, points));
   Estimation estimation(normalised, ground_points, table, options, threads);
   // The scale is that of the normalised world until the end.
@@ -278,7 +294,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
 
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
   Sequence result = Transformed(estimate.output_from_input, sequence);
-  result.odometry_world = estimate.scale ? OdometryWorld::kOwn : OdometryWorld::kOwnWithScale;
+  result.odometry_world = OdometryWorld::kOwnWithScale;
   for (const EstimatedPlane& plane : estimate.planes) {
     result.planes.push_back({static_cast<int>(result.planes.size()), plane.plane_in_world});
   }

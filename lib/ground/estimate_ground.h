@@ -57,7 +57,8 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
                               const GroundOptions& options, int threads);
 
 // The sequence in the output's world, with its planes. On which of them an object stands is not
-// known yet.
+// known yet. Its scale is an estimate, so that evaluation finds the true one apart from other
+// errors.
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate);
 
 }  // namespace soslam

@@ -148,7 +148,7 @@ class Grouping {
   void Run() {
     for (;;) {
       const Place* best = nullptr;
-      double most = 0.0;
+      double most = 1.0;  // of the box alone
       for (size_t i = 0; i < places_.size(); ++i) {
         const double support = SupportOf(i);
         if (support <= most) continue;

@@ -44,12 +44,12 @@ std::map<std::string, double> VotesOf(const Sequence& sequence,
 bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
                    const Landmark& landmark) {
   constexpr double kLeastWidth = 0.1;  // standard deviation, relative to the reach
-  constexpr int kLeastPoints = 3;
+  constexpr double kLeastPoints = 3.0;
   const double reach = 2.0 * landmark.half_axes.head<2>().norm();
   const Eigen::Matrix3d level = UprightRotation(up, 0.0).toRotationMatrix();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  int count = 0;
+  double count = 0.0;
   for (const Eigen::Vector3d& point : plane.points_in_world) {
     const Eigen::Vector2d from_centre =
         level.leftCols<2>().transpose() * (point - landmark.Centre());
@@ -135,7 +135,12 @@ double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
   const auto& hypotheses = object.evidence.hypotheses;
   const auto best = std::ranges::max_element(hypotheses, {}, &ScaleHypothesis::probability);
   const Landmark& landmark = object.landmarks[static_cast<size_t>(best - hypotheses.begin())];
-  const auto in_view = std::ranges::count_if(sequence.frames, [&](const Frame& frame) {
+  std::set<int> frames_with_boxes;
+  for (const Detection& detection : sequence.detections) {
+    frames_with_boxes.insert(detection.frame_index);
+  }
+  const auto in_view = std::ranges::count_if(frames_with_boxes, [&](int index) {
+    const Frame& frame = sequence.frames[static_cast<size_t>(index)];
     const Camera& camera = sequence.CameraOf(frame);
     const auto pixel = camera.Project(frame.world_from_camera.Inverse() * landmark.Centre());
     return pixel && camera.IsInside(*pixel);
