@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "artefact/semantic_table_file.h"
+#include "geometry/angles.h"
 #include "ground/ground_points.h"
 #include "ground/similarity.h"
 #include "synthesis/simulate.h"
@@ -148,7 +149,7 @@ class PriorSceneBuilder {
       const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
       Eigen::Matrix3d rotation;
       rotation << x, z.cross(x), z;
-      const double roll = options_.roll_sigma_deg * std::numbers::pi / 180.0 * Normal();
+      const double roll = options_.roll_sigma_deg * kRadPerDeg * Normal();
       Frame frame;
       frame.id = i;
       frame.timestamp = 0.1 * i;
