@@ -89,6 +89,7 @@ class Estimation {
   void Run(const std::vector<SegmentView>& views) {
     FindAttitude(views);
     planes = FindHorizontalPlanes(points_, attitude, 1.0);
+    CheckVerticals();
     planes_of_points = static_cast<int>(planes.planes.size());
     const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
     Measure(groups);
@@ -100,7 +101,9 @@ class Estimation {
 
   double units_per_input = 1.0;  // units of the input in a normalised one
   UpPrior attitude;              // from cameras and vertical edges
+  UpPrior without_verticals;
   UpEstimate of_cameras;
+  bool uses_verticals = false;
   HorizontalPlanes planes;
   int planes_of_points = 0;
   std::vector<MeasuredObject> objects;
@@ -120,7 +123,9 @@ class Estimation {
     attitude = UpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
                                   options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
                                   of_cameras.holding);
-    if (!views.empty()) {
+    without_verticals = WithCommonError(attitude);
+    uses_verticals = !views.empty();
+    if (uses_verticals) {
       constexpr double kMaxTilt = 12.0 * kRadPerDeg;
       std::vector<SegmentView> in_world = views;
       for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
@@ -128,6 +133,27 @@ class Estimation {
                                correlation, kMaxTilt);
     }
     attitude = WithCommonError(attitude);
+  }
+
+  // Cameras that all look in one direction do not tell vertical edges from others. Where more
+  // points lie on planes without them, they are ignored; where nearly as many do, up is ambiguous.
+  void CheckVerticals() {
+    constexpr double kRoughly = 10.0 * kRadPerDeg;
+    constexpr double kSameUp = 3.0 * kRadPerDeg;
+    constexpr double kShare = 0.1;  // as many fewer points make a direction e times less probable
+    if (!uses_verticals || std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly) return;
+    HorizontalPlanes other = FindHorizontalPlanes(points_, without_verticals, 1.0);
+    const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
+    if (angle < kSameUp || other.planes.empty()) return;
+    const double points = planes.PointCount(), other_points = other.PointCount();
+    if (other_points > points) {
+      std::swap(planes, other);
+      attitude = without_verticals;
+      uses_verticals = false;
+    }
+    const double weight =
+        std::exp(-std::abs(points - other_points) / (kShare * std::max(points, other_points)));
+    AddAmbiguity(weight / (1.0 + weight) * angle * angle, &planes);
   }
 
   void Measure(const std::vector<std::vector<int>>& groups) {
@@ -274,7 +300,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   result.attitude_tilt =
       AngleBetween(estimation.attitude.up_in_world, estimation.planes.up_in_world);
   result.attitude = estimation.of_cameras;
-  result.verticals = !views.empty();
+  result.verticals = estimation.uses_verticals;
   if (estimation.scale) result.scale = Shifted(*estimation.scale, -log_units);
   if (estimation.scale_of_objects) {
     result.scale_of_objects = Shifted(*estimation.scale_of_objects, -log_units);

@@ -3,7 +3,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -21,8 +23,9 @@ constexpr double kBin = 0.008;           // of the search over up
 constexpr double kTiltStep = 1.0 * kRadPerDeg;
 constexpr double kMaxTilt = 45.0 * kRadPerDeg;
 constexpr double kMaxSigmas = 2.5;  // of the attitude
-constexpr size_t kStarts = 12;      // directions that are refined
-constexpr double kBound = 3.0;      // inliers, standard deviations
+constexpr double kBetweenStarts = 1.2 * kTiltStep;
+constexpr size_t kStarts = 16;  // directions that are refined
+constexpr double kBound = 3.0;  // inliers, standard deviations
 constexpr int kRounds = 10;
 constexpr size_t kMaxPlanes = 12;
 constexpr double kLeastShare = 0.01;  // of the points, on a plane
@@ -88,7 +91,11 @@ std::vector<Eigen::Vector3d> Starts(const std::vector<WeightedPoint>& points,
       directions, [](const auto& one, const auto& other) { return one.first > other.first; });
   std::vector<Eigen::Vector3d> starts;
   for (const auto& [sharpness, up] : directions) {
-    if (starts.size() < kStarts) starts.push_back(up);
+    const bool is_apart = std::ranges::all_of(starts, [&, &up = up](const Eigen::Vector3d& other) {
+      return AngleBetween(up, other) > kBetweenStarts;
+    });
+    if (is_apart) starts.push_back(up);
+    if (starts.size() == kStarts) break;
   }
   return starts;
 }
@@ -191,11 +198,14 @@ void Step(const std::vector<WeightedPoint>& points, const UpPrior& attitude, dou
     if (!plane) continue;
     const double residual = (fit->up.dot(point.position) - fit->heights[*plane]) / sigma;
     const double weight = EvaluateLoss(loss, residual).weight;
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(count);
-    row.head<2>() = d_turns.transpose() * point.position / sigma;
-    row(static_cast<Eigen::Index>(2 + *plane)) = -1.0 / sigma;
-    information += weight * row * row.transpose();
-    gradient += weight * residual * row;
+    // The row of the Jacobian, which is zero for the other planes.
+    Eigen::Vector3d row;
+    row << d_turns.transpose() * point.position / sigma, -1.0 / sigma;
+    const std::array<Eigen::Index, 3> at = {0, 1, static_cast<Eigen::Index>(2 + *plane)};
+    for (int i = 0; i < 3; ++i) {
+      gradient(at[i]) += weight * residual * row(i);
+      for (int k = 0; k < 3; ++k) information(at[i], at[k]) += weight * row(i) * row(k);
+    }
     fit->gain += 0.5 * (kBound * kBound - residual * residual);
   }
   information.diagonal().tail(count - 2).array() += 1e-9 / (unit * unit);
@@ -272,8 +282,9 @@ void AddScatter(const std::vector<WeightedPoint>& points, const UpPrior& attitud
 }
 
 HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrior& attitude,
-                          double unit, const Fit& fit) {
+                          double unit, const Fit& fit, const Eigen::Matrix2d& ambiguity) {
   HorizontalPlanes result;
+  result.ambiguity = ambiguity;
   result.up_in_world = fit.up;
   result.planes.resize(fit.heights.size());
   for (const WeightedPoint& point : points) {
@@ -292,10 +303,34 @@ HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrio
   AddScatter(points, attitude, unit, fit, &result);
   for (PlaneOfPoints& plane : result.planes) {
     plane.covariance.diagonal().head<2>().array() += kLyingThings * kLyingThings;
+    plane.covariance.topLeftCorner<2, 2>() += ambiguity;
   }
   result.tilt_covariance = result.planes.front().covariance.topLeftCorner<2, 2>();
   std::ranges::sort(result.planes, {}, &PlaneOfPoints::height);
   return result;
+}
+
+// Mean squared turn from the best direction to others whose planes explain nearly as many points.
+Eigen::Matrix2d AmbiguityOf(std::vector<Fit> fits, const Fit& best) {
+  constexpr double kShare =
+      0.1;  // of the gain; as much less makes a direction e times less probable
+  constexpr double kSameUp = 0.3 * kRadPerDeg;
+  std::ranges::stable_sort(fits, std::ranges::greater(), &Fit::gain);
+  std::vector<Eigen::Vector3d> seen;
+  const Eigen::Matrix3d level = UprightRotation(best.up, 0.0).toRotationMatrix();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double sum = 0.0;
+  for (const Fit& fit : fits) {
+    const bool is_new = std::ranges::all_of(
+        seen, [&](const Eigen::Vector3d& other) { return AngleBetween(other, fit.up) > kSameUp; });
+    if (!is_new) continue;
+    seen.push_back(fit.up);
+    const double weight = std::exp((fit.gain - best.gain) / (kShare * std::max(1.0, best.gain)));
+    const Eigen::Vector2d turn(-level.col(1).dot(fit.up), level.col(0).dot(fit.up));
+    squares += weight * turn * turn.transpose();
+    sum += weight;
+  }
+  return squares / sum;
 }
 
 HorizontalPlanes WithoutPlanes(const UpPrior& attitude) {
@@ -313,18 +348,29 @@ HorizontalPlanes WithoutPlanes(const UpPrior& attitude) {
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
                                       const UpPrior& attitude, double unit) {
   const std::vector<WeightedPoint> usable = UsablePoints(points, attitude.up_in_world, unit);
-  std::optional<Fit> best;
+  std::vector<Fit> fits;
   for (const Eigen::Vector3d& start : Starts(usable, attitude, unit)) {
     Eigen::Vector3d up = start;
     for (int round = 0; round < 2; ++round) {
       const std::vector<double> heights = PeakHeights(usable, up, unit);
       if (heights.empty()) break;
-      const Fit fit = FitPlanes(usable, attitude, unit, up, heights);
-      if (!best || fit.gain > best->gain) best = fit;
-      up = fit.up;
+      fits.push_back(FitPlanes(usable, attitude, unit, up, heights));
+      up = fits.back().up;
     }
   }
-  return best ? PlanesOf(usable, attitude, unit, *best) : WithoutPlanes(attitude);
+  if (fits.empty()) return WithoutPlanes(attitude);
+  const Fit& best = *std::ranges::max_element(fits, {}, &Fit::gain);
+  const Eigen::Matrix2d ambiguity = AmbiguityOf(fits, best);
+  return PlanesOf(usable, attitude, unit, best, ambiguity);
+}
+
+void AddAmbiguity(double variance, HorizontalPlanes* planes) {
+  const Eigen::Matrix2d covariance = 0.5 * variance * Eigen::Matrix2d::Identity();
+  planes->ambiguity += covariance;
+  planes->tilt_covariance += covariance;
+  for (PlaneOfPoints& plane : planes->planes) {
+    plane.covariance.topLeftCorner<2, 2>() += covariance;
+  }
 }
 
 HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<GroundPoint>& points,
@@ -334,7 +380,7 @@ HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<Groun
   for (const PlaneOfPoints& plane : planes.planes) heights.push_back(plane.height);
   const std::vector<WeightedPoint> usable = UsablePoints(points, planes.up_in_world, unit);
   return PlanesOf(usable, attitude, unit,
-                  FitPlanes(usable, attitude, unit, planes.up_in_world, heights));
+                  FitPlanes(usable, attitude, unit, planes.up_in_world, heights), planes.ambiguity);
 }
 
 }  // namespace soslam

@@ -23,8 +23,22 @@ struct PlaneOfPoints {
 struct HorizontalPlanes {
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
   Eigen::Matrix2d tilt_covariance = Eigen::Matrix2d::Zero();  // of the two turns above (rad^2)
-  std::vector<PlaneOfPoints> planes;                          // ascending heights
+  // Part of it: the spread over other directions in which nearly as many points lie on planes.
+  Eigen::Matrix2d ambiguity = Eigen::Matrix2d::Zero();
+  std::vector<PlaneOfPoints> planes;  // ascending heights
+
+  // Number of points on all of them.
+  double PointCount() const {
+    double count = 0.0;
+    for (const PlaneOfPoints& plane : planes) {
+      count += static_cast<double>(plane.points_in_world.size());
+    }
+    return count;
+  }
 };
+
+// Adds a variance of up (rad^2).
+void AddAmbiguity(double variance, HorizontalPlanes* planes);
 
 // Finds the up direction, among those that the attitude of the cameras allows, in which most points
 // lie on few planes, by least squares over the points of all planes. `unit` is the typical distance

@@ -161,7 +161,8 @@ TEST(EstimateGroundTest, WithoutPointsThereAreNoPlanes) {
 
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {
   const PriorScene scene = SceneOf(5);
-  const HorizontalPlanes none{scene.up_in_world, Eigen::Matrix2d::Zero(), {}};
+  HorizontalPlanes none;
+  none.up_in_world = scene.up_in_world;
   const auto groups =
       GroupBoxes(scene.sequence, GroundPoints(scene.sequence, scene.points), none, 1);
   size_t in_largest = 0, mixed = 0;
