@@ -219,8 +219,8 @@ TEST(SlowGroundTest, TrueScalesAreWithinTheirIntervals) {
   EXPECT_GE(within, 0.9 * tried) << summary;
   EXPECT_LE(width, 1.3 * tried) << summary;
   EXPECT_LT(largest_up_error, 1.5) << summary;
-  EXPECT_LE(missed, 0.2 * planes) << summary;
-  EXPECT_LE(wrong, 0.2 * planes) << summary;
+  EXPECT_LE(missed, 0.05 * planes) << summary;
+  EXPECT_LE(wrong, 0.05 * planes) << summary;
 }
 
 }  // namespace
