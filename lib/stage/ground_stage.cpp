@@ -17,6 +17,7 @@
 #include "geometry/angles.h"
 #include "ground/estimate_ground.h"
 #include "ground/ground_checks.h"
+#include "planes/scene_axis.h"
 #include "stage/segment_views.h"
 
 namespace soslam {
@@ -56,7 +57,12 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                     std::back_inserter(info.findings));
   ReportFindings("ground", info.findings);
   WriteWorld(files.at("world"), estimate, sequence, info);
-  WriteSequence(files.at("output"), WithGround(sequence, estimate), info);
+  Sequence grounded = WithGround(sequence, estimate);
+  for (size_t i = 0; i < views.size(); ++i) {
+    views[i].world_from_camera = grounded.frames[i].world_from_camera;
+  }
+  SetSceneAxes(views, options.view_correlation_deg * kRadPerDeg, &grounded);
+  WriteSequence(files.at("output"), grounded, info);
   PrintSummary(sequence, estimate);
 }
 
