@@ -143,16 +143,18 @@ MAKEOVERRIDES :=
 MAKE_PROGRAM := $(MAKE)
 override NAME := $(or $(NAME),$(shell pipelines/map-name $(call shell-word,IMAGES)))
 $(call one-word,NAME,one name of letters and digits)
+$(if $(findstring /,$(NAME))$(filter .% -%,$(NAME)),$(error NAME: found '$(NAME)'; expected letters and digits, _ and -))
 $(if $(SCALE)$(CAMERA_HEIGHT),$(error map: found SCALE or CAMERA_HEIGHT; maps have the unit of COLMAP as yet))
 endif
 
 .PHONY: map
 map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.onnx>; see docs/photos-to-map.md
 	@$(MAKE) build BUILD=$(BUILD) CMAKE_ARGS='$(CMAKE_ARGS)'
-	$(if $(findstring n,$(firstword -$(MAKEFLAGS))),,+)@MAP_IMAGES=$(call shell-word,IMAGES) MAP_NETWORK=$(call shell-word,NETWORK) \
+	$(if $(findstring n,$(firstword -$(MAKEFLAGS))),,+)@MAP_IMAGES=$(call shell-word,IMAGES) \
+	  MAP_NETWORK=$(call shell-word,NETWORK) \
 	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
 	  MAP_MODEL=$(call shell-word,MODEL) MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
-	  MAP_VARIANT=$(VARIANT:all=OursS) BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
+	  MAP_VARIANT='$(patsubst all,OursS,$(VARIANT))' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)
@@ -233,11 +235,11 @@ report: build ## Make pages to look at: RESULTS/report.html, and one in the fold
 	@$(MAKE) tables
 
 # The shell finds them: folders in results of others may have any name.
-MAPS = $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT)))
+EXPORTED = $(patsubst %,$(RESULTS)/$(DATASET)/%/map.json,$(patsubst all,*,$(VARIANT)))
 
 .PHONY: export
 export: build ## Write the maps of DATASET=<name>, VARIANT=<name>|all in formats of other programs
-	@status=0; found=; for map in $(MAPS); do \
+	@status=0; found=; for map in $(EXPORTED); do \
 	  test -e "$$map" || continue; \
 	  found=yes; from=$${map%/map.json}; to=$$from/export; mkdir -p "$$to"; \
 	  evaluated=; test ! -e "$$from/metrics.json" || evaluated=yes; \

@@ -34,7 +34,7 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 # COLMAP's own files stay beside the dataset: it goes on from them.
 $(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt
 	$(call step,reconstruct,$(BIN)/soslam-reconstruct --dataset $(folder) --output $(MAP_ROOT)/reconstruction \
-	  $${MAP_MODEL:+--model "$$MAP_MODEL"} --threads $(MAP_THREADS) $(QUIET) && \
+	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} --threads $(MAP_THREADS) $(QUIET) && \
 	  cp $(addprefix $(MAP_ROOT)/reconstruction/,camera.json odometry.txt points.h5) $(folder))
 
 $(steps)/detected: $(steps)/dataset $(steps)/network.txt

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # map.sh: what `make map` does once the programs are built. Environment: MAP_IMAGES, MAP_NETWORK, MAP_DETECTIONS,
-# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_ROOT, MAP_NAME, MAP_VARIANT,
-# MAP_THREADS, BIN and BUILD: names without spaces; MAKE. The steps and the files that tell that they are done are in map.mk.
+# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_VARIANT: the variants; MAP_ROOT,
+# MAP_NAME, MAP_THREADS, BIN and BUILD: names without spaces; MAKE. The steps, and the files that tell that they are
+# done, are in map.mk.
 set -euo pipefail
 
 refuse() {
@@ -42,7 +43,7 @@ keep() {
 listed() {
   [[ -n $1 ]] || return 0
   realpath -- "$1"
-  find "$(realpath -- "$1")" -maxdepth 1 -type f -printf '%f %s %T@\n' | LC_ALL=C sort
+  find -L "$(realpath -- "$1")" -maxdepth 2 -type f -printf '%P %s %T@\n' | LC_ALL=C sort
 }
 
 # A model or camera of others refers to the images as they are; a model does so for all of them.

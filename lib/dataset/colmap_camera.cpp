@@ -24,7 +24,7 @@ const std::vector<ColmapCameraModel>& Models() {
   return models;
 }
 
-[[noreturn]] void RefuseModel(const std::string& model, const std::string& place) {
+[[noreturn]] void RefuseColmapModel(const std::string& model, const std::string& place) {
   std::vector<std::string> names;
   for (const ColmapCameraModel& known : Models()) names.emplace_back(known.name);
   throw InputError(fmt::format(
@@ -45,7 +45,7 @@ double ValueOf(const char* name, const ColmapCameraModel& model, std::span<const
 
 const ColmapCameraModel& FindColmapCameraModel(std::string_view name, const std::string& place) {
   const auto found = std::ranges::find(Models(), name, &ColmapCameraModel::name);
-  if (found == Models().end()) RefuseModel(fmt::format("'{}'", name), place);
+  if (found == Models().end()) RefuseColmapModel(fmt::format("'{}'", name), place);
   return *found;
 }
 
@@ -57,8 +57,8 @@ const ColmapCameraModel& FindColmapCameraModel(int id, const std::string& place)
       {8, "SIMPLE_RADIAL_FISHEYE"}, {9, "RADIAL_FISHEYE"},
       {10, "THIN_PRISM_FISHEYE"},   {11, "RAD_TAN_THIN_PRISM_FISHEYE"}};
   const auto other = std::ranges::find(others, id, &std::pair<int, const char*>::first);
-  RefuseModel(other != others.end() ? fmt::format("'{}'", other->second) : std::to_string(id),
-              place);
+  RefuseColmapModel(other != others.end() ? fmt::format("'{}'", other->second) : std::to_string(id),
+                    place);
 }
 
 LensCamera CameraOfColmap(const ColmapCameraModel& model, std::int64_t width, std::int64_t height,

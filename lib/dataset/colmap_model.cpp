@@ -111,7 +111,9 @@ ColmapPoint ParsePoint(const TextLine& line) {
   }
   ColmapPoint point;
   const int id = ParseInteger(words[0], line.place, "POINT3D_ID");
-  point.id = static_cast<std::uint64_t>(std::max(id, 0));
+  if (id < 0)
+    throw InputError(fmt::format("{}: POINT3D_ID is {}; expected 0 or more", line.place, id));
+  point.id = static_cast<std::uint64_t>(id);
   for (size_t i = 0; i < 3; ++i) {
     point.position_in_world[static_cast<int>(i)] = ParseReal(words[i + 1], line.place, "XYZ");
   }

@@ -83,7 +83,7 @@ struct FilesOfFolder {
   std::vector<std::string> others;
 };
 
-FilesOfFolder FilesIn(const fs::path& folder) {
+FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
   FilesOfFolder files;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -152,7 +152,7 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
   if (!IsFolder(folder)) {
     throw InputError(folder.string() + ": no such folder; expected a folder of photos");
   }
-  const FilesOfFolder files = FilesIn(folder);
+  const FilesOfFolder files = PhotosAndOthersIn(folder);
   if (files.images.size() < 2) RefuseFolder(folder, files);
   if (files.images.size() > kMaxPhotos) {
     throw InputError(fmt::format("{}: has {} images; expected at most {}: give a part of them",

@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-constexpr size_t kLeastPoints = 3;      // in a box
+constexpr size_t kLeastInBox = 3;       // in a box
 constexpr double kInnerShare = 0.7;     // of a box, that has fewer points of its surroundings
 constexpr double kNearQuantile = 0.3;   // of the depths in a box: that of its own surface
 constexpr double kLeastOverlap = 0.35;  // of boxes of one object and label
@@ -60,7 +60,7 @@ std::optional<double> DepthOfPoints(const std::vector<DepthReading>& readings, c
     for (const DepthReading& reading : readings) {
       if (inside.Contains(reading.pixel)) depths.push_back(reading.depth);
     }
-    if (depths.size() < kLeastPoints) continue;
+    if (depths.size() < kLeastInBox) continue;
     const auto near = depths.begin() + static_cast<std::ptrdiff_t>(
                                            kNearQuantile * static_cast<double>(depths.size()));
     std::nth_element(depths.begin(), near, depths.end());

@@ -29,7 +29,7 @@ constexpr double kBound = 3.0;  // inliers, standard deviations
 constexpr int kRounds = 10;
 constexpr size_t kMaxPlanes = 12;
 constexpr double kLeastShare = 0.01;  // of the points, on a plane
-constexpr double kLeastPoints = 15.0;
+constexpr double kLeastOnPlane = 15.0;
 constexpr double kLeastContrast = 2.0;  // of the density on a plane, relative to its surroundings
 constexpr double kLyingThings = 0.2 * kRadPerDeg;  // error of a tilt by flat things on a plane
 constexpr size_t kSectors = 8;                     // parts of the planes whose scatter is measured
@@ -140,7 +140,7 @@ std::vector<double> PeakHeights(const std::vector<WeightedPoint>& points, const 
     all.push_back({up.dot(point.position), Sigma(point, up, unit)});
   }
   std::vector<HeightReading> readings = all;
-  const double least = std::max(kLeastPoints, kLeastShare * static_cast<double>(points.size()));
+  const double least = std::max(kLeastOnPlane, kLeastShare * static_cast<double>(points.size()));
   std::vector<double> peaks;
   while (peaks.size() < kMaxPlanes) {
     const double height = DensestHeight(readings);

@@ -44,7 +44,7 @@ std::map<std::string, double> VotesOf(const Sequence& sequence,
 bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
                    const Landmark& landmark) {
   constexpr double kLeastWidth = 0.1;  // standard deviation, relative to the reach
-  constexpr double kLeastPoints = 3.0;
+  constexpr double kLeastAround = 3.0;
   const double reach = 2.0 * landmark.half_axes.head<2>().norm();
   const Eigen::Matrix3d level = UprightRotation(up, 0.0).toRotationMatrix();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -58,7 +58,7 @@ bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
     squares += from_centre * from_centre.transpose();
     ++count;
   }
-  if (count < kLeastPoints) return false;
+  if (count < kLeastAround) return false;
   const Eigen::Matrix2d spread = squares / count - sum * sum.transpose() / (count * count);
   const double least = kLeastWidth * reach;
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()(0) > least * least;
@@ -86,7 +86,8 @@ class Measurement {
             height_m, plane);
       }
     }
-    Try({label, kNoPlane, 0.0, 0.0, votes * kNoSupport}, prior, height_m, up_);
+    const double free = prior.mount == Mount::kStanding ? kNoSupport : 1.0;
+    Try({label, kNoPlane, 0.0, 0.0, votes * free}, prior, height_m, up_);
   }
 
   // Turns costs into probabilities.

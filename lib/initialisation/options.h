@@ -60,7 +60,7 @@ struct InitialiseOptions {
                "solutions whose outline fits the box as well as that of the best one, to this rms "
                "edge distance, count as equal; tie_break chooses among them");
     visit.Choice("tie_break", &tie_break, kTieBreakNames,
-                 "which yaw is chosen among equal solutions: nearest to the world's axes (modulo "
+                 "which yaw is chosen among equal solutions: nearest to the scene's axes (modulo "
                  "quarter turns), or with the front facing the camera most");
     variances.Describe(visit);
     upright.Describe(visit);  // the next two options belong to its group

@@ -13,12 +13,12 @@ namespace soslam {
 namespace {
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
-constexpr double kSpread = 2.0 * kRadPerDeg;       // of the edges of one direction
+constexpr double kAxisSpread = 2.0 * kRadPerDeg;   // of the edges of one direction
 constexpr double kAlongNormal = 5.0 * kRadPerDeg;  // edges closer to the normal are left out
-constexpr double kLeastShare = 0.3;  // of the edges, within kBound spreads of the axis
-constexpr double kBound = 2.5;
-constexpr int kMaxRounds = 100;
-constexpr double kTolerance = 1e-12;
+constexpr double kLeastShare = 0.3;  // of the edges, within kAxisBound spreads of the axis
+constexpr double kAxisBound = 2.5;
+constexpr int kMaxAxisRounds = 100;
+constexpr double kAxisTolerance = 1e-12;
 
 struct Direction {
   double yaw;  // rad, modulo a quarter turn
@@ -55,8 +55,9 @@ std::complex<double> Near(const std::vector<Direction>& directions, double yaw) 
   std::complex<double> sum = 0.0;
   for (const Direction& direction : directions) {
     const double off = std::remainder(direction.yaw - yaw, kQuarterTurn);
-    if (std::abs(off) > kBound * kSpread) continue;
-    const double weight = direction.weight * std::exp(-0.5 * off * off / (kSpread * kSpread));
+    if (std::abs(off) > kAxisBound * kAxisSpread) continue;
+    const double weight =
+        direction.weight * std::exp(-0.5 * off * off / (kAxisSpread * kAxisSpread));
     sum += weight * std::polar(1.0, 4.0 * off);
   }
   return sum;
@@ -68,7 +69,7 @@ double ShareNear(const std::vector<Direction>& directions, double yaw) {
   for (const Direction& direction : directions) {
     all += direction.weight;
     const double off = std::remainder(direction.yaw - yaw, kQuarterTurn);
-    if (std::abs(off) <= kBound * kSpread) near += direction.weight;
+    if (std::abs(off) <= kAxisBound * kAxisSpread) near += direction.weight;
   }
   return near / all;
 }
@@ -82,16 +83,16 @@ std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& normal_in_world,
   if (directions.empty()) return std::nullopt;
   double best = 0.0;
   double highest = 0.0;
-  for (double yaw = 0.0; yaw < kQuarterTurn; yaw += 0.5 * kSpread) {
+  for (double yaw = 0.0; yaw < kQuarterTurn; yaw += 0.5 * kAxisSpread) {
     const double density = std::abs(Near(directions, yaw));
     if (density <= highest) continue;
     highest = density;
     best = yaw;
   }
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxAxisRounds; ++round) {
     const double step = 0.25 * std::arg(Near(directions, best));
     best += step;
-    if (std::abs(step) < kTolerance) break;
+    if (std::abs(step) < kAxisTolerance) break;
   }
   if (ShareNear(directions, best) < kLeastShare) return std::nullopt;
   return UprightRotation(normal_in_world, best) * Eigen::Vector3d::UnitX();

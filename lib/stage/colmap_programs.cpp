@@ -316,7 +316,13 @@ void Colmap::MakeModels(const ColmapJob& job, const fs::path& workspace) const {
 std::vector<fs::path> Colmap::Run(const ColmapJob& job, const fs::path& workspace) const {
   const fs::path stamp = workspace / "job.txt";
   const std::string wanted = StampOf(job, version_);
-  if (FileText(stamp) != wanted) {
+  const std::string found = FileText(stamp);
+  if (found != wanted) {
+    if (IsFolder(workspace) && !fs::is_empty(workspace) && !found.starts_with("COLMAP ")) {
+      throw SettingsError(workspace.string() +
+                          ": has files that are not of soslam-reconstruct, which would be removed; "
+                          "expected another --output, or --model with a model of this folder");
+    }
     fs::remove_all(workspace);
     fs::create_directories(workspace);
     WriteTextFile(workspace / kImageList, fmt::format("{}\n", fmt::join(job.images, "\n")));

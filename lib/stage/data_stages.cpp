@@ -36,6 +36,9 @@ void WritePointsOfColmap(const std::filesystem::path& folder, const ImportOption
         "points: found trajectory_format other than colmap; expected colmap, as "
         "points are read from the model that has the poses");
   }
+  if (options.folder.align_odometry) {
+    throw SettingsError("points: found align_odometry true, which moves the poses alone");
+  }
   const DatasetFiles found = FindDatasetFiles(folder, options);
   const ColmapModel model = ReadColmapModel(found.trajectory.parent_path());
   const auto images = ListImages(folder, found, options, {});

@@ -93,6 +93,15 @@ void CheckReplaceable(const fs::path& odometry, const ReconstructOptions& option
       odometry.string()));
 }
 
+// Throws SettingsError if the output would replace a calibration of another source.
+void CheckReplaceable(const fs::path& camera, bool camera_is_fixed) {
+  if (camera_is_fixed || !IsFile(camera) || SourceOfCamera(camera) == kSource) return;
+  throw SettingsError(fmt::format(
+      "{}: has a calibration that is not of soslam-reconstruct, which would be replaced; expected "
+      "calibration given, to keep it, or another --output",
+      camera.string()));
+}
+
 // Throws InputError unless COLMAP can take the images for those of one camera, that of soslam.
 void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation read_as) {
   const std::string list = (dataset / "rgb.txt").string();
@@ -248,6 +257,7 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   const fs::path& output = files.at("output");
   const Given given = ReadGiven(dataset, options);
   CheckReplaceable(output / "odometry.txt", options);
+  CheckReplaceable(output / "camera.json", given.camera_is_fixed);
   CheckImages(dataset, given, options.image_orientation);
   std::error_code ignored;  // the first file that is written reports it
   fs::create_directories(output, ignored);

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/paths.h"
 #include "geometry/angles.h"
 #include "planes/scene_axis.h"
 #include "stage/segment_views.h"
@@ -22,7 +23,7 @@ std::vector<FrameImage> SomeImages(const Sequence& sequence, const std::filesyst
   if (std::ranges::all_of(sequence.frames, [](const Frame& frame) { return frame.image.empty(); }))
     return images;
   for (const FrameImage& image : FrameImages(sequence, folder, folder)) {
-    if (std::filesystem::exists(image.path)) images.push_back(image);
+    if (IsFile(image.path)) images.push_back(image);
   }
   const size_t step = images.size() / kMaxSceneImages + 1;
   std::vector<FrameImage> some;

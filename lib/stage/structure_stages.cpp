@@ -97,7 +97,7 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   if (options.odometry_rotation_sigma_deg > 0.0) {
     optimise.odometry_rotation_sigma_deg = options.odometry_rotation_sigma_deg;
   }
-  optimise.axes_weight = 0.0;  // the world's axes are arbitrary
+  optimise.axes_weight = 0.0;  // the planes of the scene's axes are not known yet
   optimise.misfit_sigma_fraction = 0.0;
   BackEndInput input{sequence, {}, priors, {}, {}};
   input.initial_landmarks = ChooseInitialUprightLandmarks(input, {}, optimise, threads);

@@ -18,6 +18,7 @@ namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 // Stands for COLMAP: copies a finished model to --output_path.
@@ -194,8 +195,19 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, "NETWORK=`touch " + marker + "`"}, "no such file");
   expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
   expect_refused({images, "NETWORK=x", "SCALE=2"}, "unit of COLMAP");
+  expect_refused({images, "NETWORK=x", "NAME=.."}, "expected letters and digits");
+  expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
   expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");
   EXPECT_FALSE(fs::exists(marker));
+}
+
+TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
+  std::vector<std::string> words =
+      Words({"IMAGES=" + photos_.string(), "NETWORK=x", "VARIANT=OursS OursSTE", "-n"});
+  std::erase(words, "MAPS=" + maps_.string());
+  const CommandResult run = Run(words);
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
 }
 
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
