@@ -137,12 +137,15 @@ Covariance9 CovarianceFromJson(const json& json) {
 json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
   const auto& landmark = estimate.landmark_in_world;
   const auto& covariance = estimate.covariance;
-  return {{"object", sequence.objects.at(static_cast<size_t>(estimate.object_index)).id},
-          {"observations", estimate.observations},
-          {"landmark", landmark ? LandmarkToJson(*landmark, "world") : json()},
-          {"covariance", covariance ? CovarianceToJson(*covariance) : json()},
-          {"failure", estimate.failure},
-          {"proper_ellipsoid", estimate.proper_ellipsoid}};
+  const Object& object = sequence.objects.at(static_cast<size_t>(estimate.object_index));
+  json row = {{"object", object.id},
+              {"observations", estimate.observations},
+              {"landmark", landmark ? LandmarkToJson(*landmark, "world") : json()},
+              {"covariance", covariance ? CovarianceToJson(*covariance) : json()},
+              {"failure", estimate.failure},
+              {"proper_ellipsoid", estimate.proper_ellipsoid}};
+  if (!object.labels.empty()) row["labels"] = LabelsToJson(object.labels);
+  return row;
 }
 
 }  // namespace
@@ -151,6 +154,14 @@ json CovarianceToJson(const Covariance9& covariance) {
   json rows = json::array();
   for (const auto& row : covariance.rowwise()) {
     rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+json LabelsToJson(const std::vector<LabelProbability>& labels) {
+  json rows = json::array();
+  for (const auto& [label, probability] : labels) {
+    rows.push_back({{"label", label}, {"probability", probability}});
   }
   return rows;
 }

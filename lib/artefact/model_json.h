@@ -98,6 +98,9 @@ Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
 // Covariance as nine rows of nine numbers.
 nlohmann::json CovarianceToJson(const Covariance9& covariance);
 
+// List of {"label", "probability"}.
+nlohmann::json LabelsToJson(const std::vector<LabelProbability>& labels);
+
 // The field "objects" of the artefacts "landmarks" and "map": the estimates of each object from all
 // its observations.
 nlohmann::json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates,

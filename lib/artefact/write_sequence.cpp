@@ -39,14 +39,6 @@ json SupportPlaneToJson(const SupportPlane& plane) {
   return fields;
 }
 
-json LabelsToJson(const std::vector<LabelProbability>& labels) {
-  json rows = json::array();
-  for (const auto& [label, probability] : labels) {
-    rows.push_back({{"label", label}, {"probability", probability}});
-  }
-  return rows;
-}
-
 json ObjectToJson(const Object& object, const Sequence& sequence) {
   json fields = {
       {"object", object.id},

@@ -59,6 +59,17 @@ TEST_F(ArtefactFilesTest, LabelsOfAnObjectComeBack) {
   EXPECT_EQ(labels[1].probability, 0.25);
 }
 
+TEST_F(ArtefactFilesTest, MapsSayWhatAnObjectMayBe) {
+  const MapEstimate map = RandomMap();
+  const auto index = static_cast<size_t>(map.objects.front().object_index);
+  sequence.objects[index].labels = {{"chair", 0.75}, {"armchair", 0.25}};
+  WriteMap(file, map, sequence, {});
+  const nlohmann::json row = nlohmann::json::parse(FileBytes(file)).at("objects").at(0);
+  EXPECT_EQ(row.at("labels"), nlohmann::json::parse(R"([{"label": "chair", "probability": 0.75},
+                                              {"label": "armchair", "probability": 0.25}])"));
+  EXPECT_EQ(ReadMap(file, sequence).objects.size(), map.objects.size());
+}
+
 TEST_F(ArtefactFilesTest, PlanesAreKnownForAllOrNone) {
   WriteSequence(file, sequence, {});
   nlohmann::json edited = ParseJsonFile(file);
