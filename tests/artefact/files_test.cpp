@@ -13,6 +13,7 @@
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
