@@ -56,7 +56,7 @@ class BinaryReader {
   std::string TakeText() {
     const size_t end = bytes_.find('\0', at_);
     if (end == bytes_.npos) Require(bytes_.size());
-    const std::string text = bytes_.substr(at_, end - at_);
+    std::string text = bytes_.substr(at_, end - at_);
     at_ = end + 1;
     return text;
   }
