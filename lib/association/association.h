@@ -50,10 +50,11 @@ enum class TrackFate {
   kNoSupport,         // its boxes fit better at a free height than on any support plane
   kMoves,             // its label is one of things that move
   kLowScores,         // false: none of its detections has min_best_score
+  kNeverWhole,        // false: none of its detections shows all edges
 };
 inline constexpr std::array kTrackFateNames = {
     "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
-    "no_support", "moves",  "low_scores"};
+    "no_support", "moves",  "low_scores",         "never_whole"};
 
 // Detections of one object, linked frame by frame.
 struct Track {

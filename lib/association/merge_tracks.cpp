@@ -69,6 +69,14 @@ int NumShowingThreeEdges(const AssociationModel& model, const Track& track) {
   }));
 }
 
+// True if at least one detection shows all edges of the object.
+bool IsSeenWhole(const AssociationModel& model, const Track& track) {
+  return std::ranges::any_of(track.detections, [&](int index) {
+    const auto& is_bound = model.sequence().detections[static_cast<size_t>(index)].is_bound;
+    return std::ranges::find(is_bound, true) == is_bound.end();
+  });
+}
+
 double BestScore(const AssociationModel& model, const Track& track) {
   double best = 0.0;
   for (const int index : track.detections) {
@@ -82,6 +90,7 @@ TrackFate FateOf(const AssociationModel& model, const Track& track) {
   if (NumShowingThreeEdges(model, track) < model.options().min_observations) {
     return TrackFate::kTooFewDetections;
   }
+  if (!IsSeenWhole(model, track)) return TrackFate::kNeverWhole;
   if (!track.fit) return TrackFate::kNoLandmark;
   if (!track.has_support) return TrackFate::kNoSupport;
   if (model.Moves(track)) return TrackFate::kMoves;

@@ -132,6 +132,18 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
   EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
 }
 
+TEST_F(TrackTest, WhatIsNeverSeenWholeIsNoObject) {
+  const int track = AddTrack(of_objects_[0]);
+  for (const int index : of_objects_[0]) {
+    sequence_.detections[static_cast<size_t>(index)].is_bound = {true, false, false, false};
+  }
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kNeverWhole);
+  sequence_.detections[static_cast<size_t>(of_objects_[0][2])].is_bound = {};
+  DropFalseTracks(Model(), 1, &association_);
+  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+}
+
 TEST_F(TrackTest, OneGoodScoreMakesAnObject) {
   const int track = AddTrack(of_objects_[0]);
   for (const int index : of_objects_[0]) {
