@@ -47,7 +47,7 @@ struct GroundOptions {
     visit.Text("moving_labels", &moving_labels,
                "labels of things that move, separated by commas; they are not used");
     visit.Group("Objects");
-    visit.Integer("min_boxes", &min_boxes, {1, 100000}, "objects with fewer boxes are not used");
+    visit.Integer("min_boxes", &min_boxes, {2, 100000}, "objects with fewer boxes are not used");
     visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
                "standard deviation of a box edge about that of the object's body, as a fraction of "
                "the box's width or height, at least 1 px");

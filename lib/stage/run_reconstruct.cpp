@@ -181,22 +181,40 @@ ColmapModel LargestModel(const std::vector<fs::path>& folders,
   return std::move(*largest);
 }
 
+// Largest difference of the distortion coefficients of two cameras.
+double DistortionDifference(const LensCamera& one, const LensCamera& other) {
+  const auto all = [](const LensCamera& camera) {
+    constexpr size_t kMost = 14;
+    std::vector<double> values = DistortionCoefficients(camera.distortion.value_or(Distortion()));
+    values.resize(kMost, 0.0);
+    return values;
+  };
+  const std::vector<double> a = all(one);
+  const std::vector<double> b = all(other);
+  double largest = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
 // Throws InputError unless the model has the camera that was given.
 void CheckCamera(const ColmapModel& model, const Given& given, const fs::path& dataset) {
   constexpr double kTolerancePx = 0.01;
+  constexpr double kDistortionTolerance = 1e-5;
   if (!given.camera_is_fixed) return;
   const Camera& found = model.camera.camera;
   const Camera& expected = given.camera->camera;
   const Eigen::Vector4d difference(found.fx - expected.fx, found.fy - expected.fy,
                                    found.cx - expected.cx, found.cy - expected.cy);
   if (difference.cwiseAbs().maxCoeff() < kTolerancePx && found.width == expected.width &&
-      found.height == expected.height) {
+      found.height == expected.height &&
+      DistortionDifference(model.camera, *given.camera) < kDistortionTolerance) {
     return;
   }
-  throw InputError(fmt::format(
-      "{}: is another camera than the model's (fx {:.2f}, not {:.2f}); expected a model of this "
-      "camera, or calibration estimated, which replaces the file by the model's camera",
-      (dataset / "camera.json").string(), found.fx, expected.fx));
+  throw InputError(
+      fmt::format("{}: is another camera than the model's (fx {:.2f}, not {:.2f}, or another "
+                  "distortion); expected a model of this "
+                  "camera, or calibration estimated, which replaces the file by the model's camera",
+                  (dataset / "camera.json").string(), found.fx, expected.fx));
 }
 
 // Throws InputError unless the model's poses are those that were given.

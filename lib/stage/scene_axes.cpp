@@ -34,11 +34,12 @@ std::vector<FrameImage> SomeImages(const Sequence& sequence, const std::filesyst
 // Straight edges of the images that can be read; soslam-edges says what is wrong with others.
 std::vector<SegmentView> SegmentsOf(const std::vector<FrameImage>& images, int threads,
                                     const Sequence& sequence) {
+  const FrameImageReader reader(sequence);
   std::vector<SegmentView> views(images.size());
   ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
     try {
-      views[index] = ReadSegmentViews(sequence, {images[index]}, kMinSegmentPx, 1).front();
+      views[index] = ReadSegmentView(sequence, reader, images[index], kMinSegmentPx);
     } catch (const InputError&) {
     }
   });

@@ -12,16 +12,20 @@
 
 namespace soslam {
 
+SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
+                            const FrameImage& image, double min_length_px) {
+  return {sequence.CameraOf(*image.frame), FindLineSegments(reader.ReadGrey(image), min_length_px),
+          image.frame->world_from_camera};
+}
+
 std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
                                           const std::vector<FrameImage>& images,
                                           double min_length_px, int threads) {
   const FrameImageReader reader(sequence);
   std::vector<SegmentView> views(images.size());
   ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
-    const FrameImage& image = images[static_cast<size_t>(i)];
-    views[static_cast<size_t>(i)] = {sequence.CameraOf(*image.frame),
-                                     FindLineSegments(reader.ReadGrey(image), min_length_px),
-                                     image.frame->world_from_camera};
+    const auto index = static_cast<size_t>(i);
+    views[index] = ReadSegmentView(sequence, reader, images[index], min_length_px);
   });
   return views;
 }

@@ -11,7 +11,11 @@
 
 namespace soslam {
 
-// Straight edges of at least `min_length_px` in images of a sequence, with the frames' poses.
+// Straight edges of at least `min_length_px` in an image of a sequence, with its frame's pose.
+SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
+                            const FrameImage& image, double min_length_px);
+
+// The same for several images.
 std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
                                           const std::vector<FrameImage>& images,
                                           double min_length_px, int threads);

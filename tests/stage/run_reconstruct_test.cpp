@@ -62,6 +62,7 @@ class RunReconstructTest : public testing::Test {
   fs::path Output(const std::string& file) const { return folder_ / "out" / file; }
   void Prints(const std::string& line) const { WriteBytes(folder_ / "bin/printed", line + "\n"); }
 
+  std::string camera_ = "SIMPLE_RADIAL 64 48 50 32 24 0.01";  // of the models
   // A model of so many images with one point (1, 0, 5).
   void WriteModel(const std::string& name, int images) const {
     const fs::path model = folder_ / "bin/models" / name;
@@ -71,7 +72,7 @@ class RunReconstructTest : public testing::Test {
       lines += fmt::format("{} 1 0 0 0 {} 0 0 1 rgb/{}.png\n{} 24.5 1\n", i + 1, -i, i, 10 + i);
       track += fmt::format(" {} 0", i + 1);
     }
-    WriteBytes(model / "cameras.txt", "1 SIMPLE_RADIAL 64 48 50 32 24 0.01\n");
+    WriteBytes(model / "cameras.txt", "1 " + camera_ + "\n");
     WriteBytes(model / "images.txt", lines);
     WriteBytes(model / "points3D.txt", "1 1 0 5 0 0 0 0.25" + track + "\n");
   }
@@ -186,6 +187,8 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   const std::string camera =
       R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})";
   WriteBytes(Dataset() / "camera.json", camera);
+  camera_ = "PINHOLE 64 48 50 50 32 24";
+  WriteModel("0", 3);
   Run();
   const std::string calls = Calls();
   EXPECT_THAT(calls, HasSubstr("camera_model PINHOLE --ImageReader.camera_params 50,50,32,24"));
@@ -194,6 +197,8 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   EXPECT_EQ(FileBytes(Output("camera.json")), camera);
   EXPECT_TRUE(ReadReconstruction(Output("reconstruction.json")).camera_is_given);
   options_.calibration = CalibrationChoice::kInitial;
+  camera_ = "SIMPLE_RADIAL 64 48 50 32 24 0.01";
+  WriteModel("0", 3);
   Run("refined");
   EXPECT_THAT(Calls(), Not(HasSubstr("ba_refine")));
   EXPECT_THAT(FileBytes(folder_ / "refined/camera.json"), HasSubstr("0.01"));
@@ -202,6 +207,10 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
              R"({"width": 64, "height": 48, "fx": 51, "fy": 50, "cx": 31.5, "cy": 23.5})");
   ExpectError<InputError>([&] { Run("other", "bin/models"); },
                           {"camera.json", "another camera than the model's", "fx 50.00"});
+  WriteBytes(Dataset() / "camera.json",
+             R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5,
+                 "distortion": [0.1, 0, 0, 0, 0]})");
+  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"another distortion"});
 }
 
 TEST_F(RunReconstructTest, FilesInTheDatasetThatAreOfThisStageAreNotGiven) {
@@ -217,6 +226,7 @@ TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
              R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})");
   const std::string odometry = "0 0 0 0 0 0 0 1\n0.5 1 0 0 0 0 0 1\n1.01 2 0 0 0 0 0 1\n";
   WriteBytes(Dataset() / "odometry.txt", odometry);
+  camera_ = "PINHOLE 64 48 50 50 32 24";
   WriteModelWithoutNumber();
   options_.poses = PoseChoice::kGiven;
   Run("data");
