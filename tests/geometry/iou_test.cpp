@@ -48,7 +48,7 @@ TEST(BoxIou, OfApartOrTouchingBoxesIsZero) {
 TEST(BoxIou, OfABoxInsideIsTheRatioOfVolumes) {
   for (int i = 0; i < 100; ++i) {
     const Landmark small{RandomRigid(0.1), RandomVector(0.05, 0.1)};
-    const Landmark large{Rigid3d{RandomRotation(), {}}, {1, 1, 1}};
+    const Landmark large{{RandomRotation(), Eigen::Vector3d::Zero()}, {1, 1, 1}};
     EXPECT_NEAR(BoxIou(small, large), small.half_axes.prod(), 1e-12);
   }
 }

@@ -194,7 +194,7 @@ TEST(Yaw, IsTheInverseOfUprightRotationAndTurned) {
     EXPECT_NEAR(Yaw(normal, rotation), yaw, 1e-9);
     EXPECT_LT((rotation * Eigen::Vector3d::UnitZ() - normal).norm(), 1e-12);
     const double turn = RandomUniform(-1.5, 1.5);
-    const Landmark turned = RotatedAboutZ({{rotation, {}}, {1, 2, 3}}, turn);
+    const Landmark turned = RotatedAboutZ({{rotation, Eigen::Vector3d::Zero()}, {1, 2, 3}}, turn);
     EXPECT_NEAR(YawDifferenceModuloPi(Yaw(normal, turned.frame_from_object.rotation), yaw), turn,
                 1e-9);
   }
