@@ -47,7 +47,7 @@ refuse-options = $(if $(filter -%,$(value $(1))),$(error $(1)='$(value $(1))': e
 one-word = $(if $(filter-out 1,$(words $(value $(1)))),$(error $(1)='$(value $(1))': expected $(2)))
 ONE_FOLDER = one folder without spaces in its path (a symbolic link to it will do)
 NAMES := DATASET VARIANT STAGE DATA_ROOT RESULTS PIPELINES THREADS BUILD DATASETS SCENES SEEDS
-NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MAPS NAME
+NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MAPS NAME SCALE CAMERA_HEIGHT
 $(foreach name,$(NAMES),$(call refuse-special,$(name))$(call refuse-options,$(name)))
 $(foreach name,DATA_ROOT RESULTS PIPELINES BUILD ANNOTATIONS NETWORKS MAPS,$(call one-word,$(name),$(ONE_FOLDER)))
 $(call one-word,DOWNLOADS,one file without spaces in its path)
@@ -144,7 +144,6 @@ MAKE_PROGRAM := $(MAKE)
 override NAME := $(or $(NAME),$(shell pipelines/map-name $(call shell-word,IMAGES)))
 $(call one-word,NAME,one name of letters and digits)
 $(if $(findstring /,$(NAME))$(filter .% -%,$(NAME)),$(error NAME: found '$(NAME)'; expected letters and digits, _ and -))
-$(if $(SCALE)$(CAMERA_HEIGHT),$(error map: found SCALE or CAMERA_HEIGHT; maps have the unit of COLMAP as yet))
 endif
 
 .PHONY: map
@@ -153,8 +152,9 @@ map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.o
 	$(if $(findstring n,$(firstword -$(MAKEFLAGS))),,+)@MAP_IMAGES=$(call shell-word,IMAGES) \
 	  MAP_NETWORK=$(call shell-word,NETWORK) \
 	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
-	  MAP_MODEL=$(call shell-word,MODEL) MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
-	  MAP_VARIANT='$(patsubst all,OursS,$(VARIANT))' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
+	  MAP_MODEL=$(call shell-word,MODEL) MAP_SCALE='$(SCALE)' \
+	  MAP_CAMERA_HEIGHT='$(CAMERA_HEIGHT)' MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
+	  MAP_VARIANT='$(patsubst all,OursSTE,$(VARIANT))' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # map.sh: what `make map` does once the programs are built. Environment: MAP_IMAGES, MAP_NETWORK, MAP_DETECTIONS,
-# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_VARIANT: the variants; MAP_ROOT,
-# MAP_NAME, MAP_THREADS, BIN and BUILD: names without spaces; MAKE. The steps, and the files that tell that they are
-# done, are in map.mk.
+# MAP_CAMERA, MAP_MODEL: paths, which may be empty and have any characters; MAP_SCALE, MAP_CAMERA_HEIGHT: numbers, which
+# may be empty; MAP_VARIANT: the variants; MAP_ROOT, MAP_NAME, MAP_THREADS, BIN and BUILD: names without spaces; MAKE.
+# The steps, and the files that tell that they are done, are in map.mk.
 set -euo pipefail
 
 refuse() {
@@ -20,6 +20,10 @@ for file in "$MAP_NETWORK" "$MAP_DETECTIONS" "$MAP_CAMERA"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
+
+for number in "$MAP_SCALE" "$MAP_CAMERA_HEIGHT"; do
+  [[ $number =~ ^([0-9]+\.?[0-9]*)?$ ]] || refuse "SCALE and CAMERA_HEIGHT: found '$number'; expected a number, as 1.6"
+done
 
 if [[ -z $MAP_MODEL ]] && ! command -v colmap > /dev/null; then
   pipelines/install-packages.sh pipelines/colmap-packages.txt ||
@@ -62,7 +66,8 @@ listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
 
 # The settings: those of all maps of photos.
 mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors}
-keep "$MAP_ROOT/pipelines/base.json" < pipelines/photos/base.json
+sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_m\": ${MAP_CAMERA_HEIGHT:-0}/" \
+  pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
 for file in variants/*.json priors/semantic_table.json; do
   for from in pipelines/$file; do keep "$MAP_ROOT/${from}" < "$from"; done
 done
@@ -75,4 +80,5 @@ $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/da
 map=$MAP_ROOT/results/$MAP_NAME/${MAP_VARIANT%% *}/map.json
 [[ -e $map ]] || refuse "VARIANT='$MAP_VARIANT' makes no map; expected one that does, as OursS" 4
 objects=$("$BIN/soslam-inspect" "$map" --csv - | tail -n +2 | wc -l)
-echo "$objects objects, scale unknown, page: $MAP_ROOT/results/$MAP_NAME/report.html"
+scale=$("$BIN/soslam-inspect" "${map%/*}/world.json" | sed -n 's/^ *scale .*(95 %, \(+- [0-9]* %\)).*/\1/p')
+echo "$objects objects, scale ${scale:-unknown}, page: $MAP_ROOT/results/$MAP_NAME/report.html"

@@ -24,13 +24,8 @@ json UpToJson(const GroundEstimate& estimate) {
           {"angle_to_cameras_deg", kDegPerRad * estimate.attitude_tilt}};
 }
 
-json ScaleToJson(const GroundEstimate& estimate, const json& settings) {
+json ScaleToJson(const GroundEstimate& estimate) {
   if (!estimate.scale) return {};
-  json found_by = json::array();
-  if (estimate.scale_of_objects) found_by.push_back("objects");
-  for (const char* known : {"scale", "camera_height_m"}) {
-    if (settings.at(known).get<double>() > 0.0) found_by.push_back(known);
-  }
   std::set<std::string> labels;
   for (const GroundObject& object : estimate.objects) {
     if (object.agreement >= 0.5) labels.insert(object.label);
@@ -39,7 +34,7 @@ json ScaleToJson(const GroundEstimate& estimate, const json& settings) {
   return {{"metres_per_unit", std::exp(scale.log_scale)},
           {"log_sigma", scale.log_sigma},
           {"interval_95", {std::exp(scale.low), std::exp(scale.high)}},
-          {"found_by", found_by},
+          {"found_by", estimate.scale_found_by},
           {"objects", std::ranges::count_if(
                           estimate.objects,
                           [](const GroundObject& object) { return object.agreement >= 0.5; })},
@@ -71,7 +66,7 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
   json body = {
       {"dataset", input.name},
       {"up", UpToJson(estimate)},
-      {"scale", ScaleToJson(estimate, info.settings)},
+      {"scale", ScaleToJson(estimate)},
       {"output_from_input",
        {{"scale", estimate.output_from_input.scale},
         {"rotation_xyzw", std::vector<double>(rotation.coeffs().begin(), rotation.coeffs().end())},

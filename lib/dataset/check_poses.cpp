@@ -288,6 +288,8 @@ void Explain(const std::vector<PosePair>& pairs, double extent_m, Finding* findi
 
 std::vector<Finding> CheckTruth(const ImportView& view) {
   constexpr size_t kFewest = 3;
+  // Their worlds differ by a similarity, which evaluation finds.
+  if (view.sequence.odometry_world == OdometryWorld::kOwnWithScale) return {};
   const std::vector<PosePair> pairs = Pairs(view);
   if (pairs.size() < kFewest) return {};
   const TrajectoryGap gap = GapOf(pairs);

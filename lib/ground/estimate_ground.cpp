@@ -108,6 +108,7 @@ class Estimation {
   int planes_of_points = 0;
   std::vector<MeasuredObject> objects;
   std::optional<ScalePosterior> scale, scale_of_objects;
+  std::vector<std::string> scale_found_by;
 
  private:
   void FindAttitude(const std::vector<SegmentView>& views) {
@@ -168,13 +169,16 @@ class Estimation {
     for (size_t i = 0; i < objects.size(); ++i) objects[i].evidence.weight = evidence[i].weight;
     std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
     scale_of_objects = EstimateScale(evidence, {});
+    scale_found_by.clear();
+    if (scale_of_objects) scale_found_by.emplace_back("objects");
     scale = EstimateScale(evidence, Known());
   }
 
-  std::vector<KnownScale> Known() const {
+  std::vector<KnownScale> Known() {
     std::vector<KnownScale> known;
     if (options_.scale > 0.0) {
       known.push_back({std::log(options_.scale * units_per_input), options_.scale_log_sigma});
+      scale_found_by.emplace_back("scale");
     }
     if (options_.camera_height_m > 0.0 && !planes.planes.empty()) {
       std::vector<double> heights;
@@ -186,6 +190,7 @@ class Estimation {
       if (height > 0.0) {
         known.push_back(
             {std::log(options_.camera_height_m / height), options_.camera_height_log_sigma});
+        scale_found_by.emplace_back("camera_height_m");
       }
     }
     return known;
@@ -305,6 +310,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   if (estimation.scale_of_objects) {
     result.scale_of_objects = Shifted(*estimation.scale_of_objects, -log_units);
   }
+  result.scale_found_by = estimation.scale_found_by;
   result.points = static_cast<int>(ground_points.size());
   result.planes_of_points = estimation.planes_of_points;
   for (const PlaneOfPoints& plane : estimation.planes.planes) {

@@ -34,12 +34,13 @@ struct GroundObject {
 struct GroundEstimate {
   Similarity output_from_input;  // the output's world has z up, in metres
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
-  double tilt_sigma = 0.0;              // of up, both tilts together (rad)
-  double attitude_tilt_sigma = 0.0;     // of up from the cameras and vertical edges alone (rad)
-  double attitude_tilt = 0.0;           // from that up to the final one (rad)
-  UpEstimate attitude;                  // from the cameras alone
-  bool verticals = false;               // vertical edges were used
-  std::optional<ScalePosterior> scale;  // of metres per unit of the input
+  double tilt_sigma = 0.0;                  // of up, both tilts together (rad)
+  double attitude_tilt_sigma = 0.0;         // of up from the cameras and vertical edges alone (rad)
+  double attitude_tilt = 0.0;               // from that up to the final one (rad)
+  UpEstimate attitude;                      // from the cameras alone
+  bool verticals = false;                   // vertical edges were used
+  std::optional<ScalePosterior> scale;      // of metres per unit of the input
+  std::vector<std::string> scale_found_by;  // "objects", and the options that it is known by
   std::optional<ScalePosterior> scale_of_objects;  // without `scale` and `camera_height_m`
   double independent_objects = 0.0;                // sum of weight times agreement
   std::vector<EstimatedPlane> planes;              // of the output

@@ -78,14 +78,28 @@ void CheckKnownScale(const GroundEstimate& estimate, std::vector<Finding>* findi
        "check scale and camera_height_m"});
 }
 
+void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
+                       std::vector<Finding>* findings) {
+  constexpr const char* kName = "camera_height_m";
+  if (options.camera_height_m <= 0.0 ||
+      std::ranges::find(estimate.scale_found_by, kName) != estimate.scale_found_by.end()) {
+    return;
+  }
+  findings->push_back({"camera_height_unused", Severity::kWarning,
+                       "camera_height_m is given, and no support plane below the cameras is found",
+                       "a plane that camera_height_m is the height above",
+                       "a floor without texture has no points", "give scale instead"});
+}
+
 }  // namespace
 
-std::vector<Finding> CheckGround(const GroundEstimate& estimate) {
+std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOptions& options) {
   constexpr double kUncertainUpDeg = 2.0;
   std::vector<Finding> findings;
   CheckScale(estimate, &findings);
   CheckContradictions(estimate, &findings);
   CheckKnownScale(estimate, &findings);
+  CheckCameraHeight(estimate, options, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,
                         fmt::format("no object stands on any of {} horizontal planes in {} points",

@@ -8,8 +8,8 @@
 
 namespace soslam {
 
-// A scale that cannot be told, is uncertain or that objects contradict; an up direction that is
-// uncertain; no support plane.
-std::vector<Finding> CheckGround(const GroundEstimate& estimate);
+// A scale that cannot be told, is uncertain or that objects contradict; a camera height that says
+// nothing; an up direction that is uncertain; no support plane.
+std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOptions& options);
 
 }  // namespace soslam

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "base/options.h"
 
 namespace soslam {
 
+enum class GroundSource {
+  kGiven,      // the dataset's world is upright and has its scale
+  kEstimated,  // it has neither, as that of structure from motion
+};
+inline constexpr std::array kGroundSourceNames = {"given", "estimated"};
+
 struct GroundOptions {
+  GroundSource ground = GroundSource::kGiven;
   double scale = 0.0;
   double scale_log_sigma = 0.02;
   double camera_height_m = 0.0;
@@ -25,6 +33,10 @@ struct GroundOptions {
   double vertical_min_length_px = 30.0;
 
   void Describe(OptionVisitor& visit) {
+    visit.Group("Ground");
+    visit.Choice("ground", &ground, kGroundSourceNames,
+                 "whether up, scale and support planes are those of the dataset, or this stage "
+                 "finds them out; the stage runs only in the latter case");
     visit.Group("Scale");
     visit.Real(
         "scale", &scale, {0.0, 1e9},

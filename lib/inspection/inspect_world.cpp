@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,11 @@ using nlohmann::json;
 
 std::string ScaleInWords(const json& scale) {
   if (scale.is_null()) return "unknown";
-  return fmt::format("{:.4g} m per unit, {:.4g} to {:.4g} (95 %), by {}",
-                     scale.at("metres_per_unit").get<double>(),
-                     scale.at("interval_95").at(0).get<double>(),
-                     scale.at("interval_95").at(1).get<double>(),
+  const double low = scale.at("interval_95").at(0).get<double>();
+  const double high = scale.at("interval_95").at(1).get<double>();
+  return fmt::format("{:.4g} m per unit, {:.4g} to {:.4g} (95 %, +- {:.0f} %), by {}",
+                     scale.at("metres_per_unit").get<double>(), low, high,
+                     100.0 * (std::sqrt(high / low) - 1.0),
                      fmt::join(scale.at("found_by").get<std::vector<std::string>>(), ", "));
 }
 

@@ -10,9 +10,11 @@ namespace soslam {
 enum class PlaneSource {
   kGiven,         // given by the dataset
   kEstimated,     // from the boxes of the objects that stand on them
+  kWhereMissing,  // given if there are any, otherwise estimated
   kCameraHeight,  // one ground plane per frame, at a known height below a level camera
 };
-inline constexpr std::array kPlaneSourceNames = {"given", "estimated", "camera_height"};
+inline constexpr std::array kPlaneSourceNames = {"given", "estimated", "where_missing",
+                                                 "camera_height"};
 
 struct PlanesOptions {
   PlaneSource planes = PlaneSource::kGiven;
@@ -38,13 +40,14 @@ struct PlanesOptions {
     visit.Choice(
         "planes", &planes, kPlaneSourceNames,
         "where the support planes come from: the dataset (given: the stage does not run); "
-        "the boxes of the objects that stand on them or hang from them (estimated); a level "
-        "camera at a known height above the ground (camera_height). What the table has on "
+        "the boxes of the objects that stand on them or hang from them (estimated); these boxes "
+        "where the sequence has no planes (where_missing); a level camera at a known height above "
+        "the ground (camera_height). What the table has on "
         "walls is left out");
     visit.Group("Ground below the camera (planes = camera_height)");
     visit.Real("camera_height_m", &camera_height_m, {1e-3, 1e3},
                "height of the camera above the ground");
-    visit.Group("Estimated planes (planes = estimated)");
+    visit.Group("Estimated planes (planes = estimated or where_missing)");
     visit.Flag("parallel", &parallel, "all planes have the same normal, as horizontal ones do");
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
                "standard deviation of a detector's box edge, as a fraction of the box's "

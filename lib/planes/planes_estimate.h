@@ -30,12 +30,13 @@ enum class SupportReason {
   kLowestCost,    // its views do not: the plane on which its boxes are fitted best
   kNoViews,       // it has no views: the plane of most objects
   kCameraHeight,  // the ground below the cameras that see it
+  kGiven,         // the sequence's own planes stay
   kNoBody,        // no body on any of the planes fits its boxes: the plane of most objects
   kMoving,        // it is not static: the plane of most objects
   kNone,          // no plane for its mount was found: its boxes cannot be used
 };
 inline constexpr std::array kSupportReasonNames = {
-    "own_height", "lowest_cost", "no_views", "camera_height", "no_body", "moving", "none"};
+    "own_height", "lowest_cost", "no_views", "camera_height", "given", "no_body", "moving", "none"};
 
 struct ObjectSupport {
   int plane_index = 0;

@@ -136,8 +136,8 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
 // Stages that any variant has, in the order of the pipeline.
 std::vector<std::string> StagesOf(const std::vector<DatasetResult>& datasets) {
   std::vector<std::string> stages;
-  for (const char* stage :
-       {"import", "associate", "planes", "edges", "initialise", "refine", "optimise", "evaluate"}) {
+  for (const char* stage : {"import", "ground", "associate", "planes", "edges", "initialise",
+                            "refine", "optimise", "evaluate"}) {
     const bool occurs = std::ranges::any_of(datasets, [&](const auto& dataset) {
       return std::ranges::any_of(dataset.variants, [&](const auto& variant) {
         return std::ranges::any_of(variant.stages,

@@ -37,6 +37,9 @@ void PrintSummary(const Sequence& sequence, const GroundEstimate& estimate) {
 }  // namespace
 
 void RunGround(const GroundOptions& options, const StageFiles& files, int threads) {
+  if (options.ground == GroundSource::kGiven) {
+    throw SettingsError("ground is given; expected estimated (a given world needs no stage)");
+  }
   const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
   if (sequence.frames.empty()) {
     throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
@@ -51,7 +54,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   const GroundEstimate estimate =
       EstimateGround(sequence, ReadPoints(files.at("points")), views,
                      ReadSemanticTable(files.at("table")), options, threads);
-  info.findings = CheckGround(estimate);
+  info.findings = CheckGround(estimate, options);
   std::ranges::move(CheckUp(estimate.attitude.holding, estimate.attitude.holdings,
                             estimate.attitude.holding_tilt_variance),
                     std::back_inserter(info.findings));

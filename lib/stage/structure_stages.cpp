@@ -140,6 +140,22 @@ void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
   estimate->cost = map.solver.final_cost;
 }
 
+// The sequence's own planes.
+Result FromSequence(const Sequence& sequence) {
+  Result result{{}, sequence, {}};
+  for (const SupportPlane& support : sequence.planes) {
+    const Plane& plane = support.plane_in_world;
+    result.estimate.planes.push_back(
+        {plane, -plane.offset * plane.normal, plane.normal.unitOrthogonal(), {}});
+  }
+  for (const Object& object : sequence.objects) {
+    ObjectSupport& given = result.estimate.objects.emplace_back();
+    given.plane_index = object.plane_index;
+    given.reason = object.plane_index == kNoPlane ? SupportReason::kNone : SupportReason::kGiven;
+  }
+  return result;
+}
+
 Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,
                  int threads) {
   CheckOneSegment(sequence, files.at("sequence"));
@@ -192,13 +208,16 @@ Result FromCameraHeight(const Sequence& sequence, const PlanesOptions& options,
 void RunPlanes(const PlanesOptions& options, const StageFiles& files, int threads) {
   if (options.planes == PlaneSource::kGiven) {
     throw SettingsError(
-        "planes is given; expected estimated or camera_height (given planes need no stage)");
+        "planes is given; expected estimated, where_missing or camera_height (given planes need no "
+        "stage)");
   }
   const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
   if (sequence.frames.empty()) {
     throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
   }
-  const Result result = options.planes == PlaneSource::kCameraHeight
+  const bool has_planes = options.planes == PlaneSource::kWhereMissing && !sequence.planes.empty();
+  const Result result = has_planes ? FromSequence(sequence)
+                        : options.planes == PlaneSource::kCameraHeight
                             ? FromCameraHeight(sequence, options, files)
                             : FromBoxes(sequence, options, files, threads);
   if (result.sequence.detections.empty()) {
@@ -208,7 +227,7 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   }
   ArtefactInfo info = {OptionsToJson(options), {files.at("sequence")}};
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
-  if (options.planes == PlaneSource::kEstimated) {
+  if (!has_planes && options.planes != PlaneSource::kCameraHeight) {
     info.findings = CheckPlaneCount(result.estimate.planes.size(), sequence.objects.size());
     std::ranges::move(CheckUp(result.estimate.holding, result.estimate.holdings,
                               result.estimate.holding_tilt_variance),

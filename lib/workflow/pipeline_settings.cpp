@@ -14,6 +14,7 @@
 #include "cli/command_line.h"
 #include "dataset/import_options.h"
 #include "evaluation/alignment.h"
+#include "ground/options.h"
 #include "image/edge_maps.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
@@ -42,6 +43,10 @@ struct PipelineStage {
   bool (*is_asked_for)(const json& settings) = nullptr;
 };
 
+bool AsksForGround(const json& settings) {
+  return settings.at("ground") != kGroundSourceNames[static_cast<size_t>(GroundSource::kGiven)];
+}
+
 bool AsksForPlanes(const json& settings) {
   return settings.at("planes") != kPlaneSourceNames[static_cast<size_t>(PlaneSource::kGiven)];
 }
@@ -51,9 +56,10 @@ bool AsksForAssociation(const json& settings) {
          kAssociationSourceNames[static_cast<size_t>(AssociationSource::kGiven)];
 }
 
-const std::array<PipelineStage, 8>& Stages() {
-  static const std::array<PipelineStage, 8> stages = {{
+const std::array<PipelineStage, 9>& Stages() {
+  static const std::array<PipelineStage, 9> stages = {{
       {"import", &Resolve<ImportOptions>, {}},
+      {"ground", &Resolve<GroundOptions>, {"import"}, &AsksForGround},
       {"associate", &Resolve<AssociateOptions>, {"import"}, &AsksForAssociation},
       {"planes", &Resolve<PlanesOptions>, {"import"}, &AsksForPlanes},
       {"edges", &Resolve<EdgesOptions>, {"import"}},

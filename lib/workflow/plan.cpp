@@ -34,8 +34,8 @@ class ChainBuilder {
     instance.stage = stage;
     instance.settings = settings_.options.at(stage);
     instance.inputs = Inputs(stage);
-    static const std::set<std::string> kReadTable = {"associate", "planes", "initialise", "refine",
-                                                     "optimise"};
+    static const std::set<std::string> kReadTable = {"ground",     "associate", "planes",
+                                                     "initialise", "refine",    "optimise"};
     if (kReadTable.contains(stage)) {
       instance.semantic_table = settings_.semantic_table;
     }
@@ -46,11 +46,12 @@ class ChainBuilder {
 
   std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
     if (stage == "import") return {};
-    // Edge maps and associations depend on the imported sequence only.
-    if (stage == "edges" || stage == "associate") return {{"sequence", Output("import")}};
-    std::map<std::string, ArtefactSource> inputs = {
-        {"sequence", stage == "planes" ? Latest({"associate", "import"})
-                                       : Latest({"planes", "associate", "import"})}};
+    // Edge maps depend on the imported sequence only.
+    if (stage == "edges") return {{"sequence", Output("import")}};
+    std::vector<std::string> makers = {"planes", "associate", "ground", "import"};
+    const auto same = std::ranges::find(makers, stage);
+    if (same != makers.end()) makers.erase(makers.begin(), std::next(same));
+    std::map<std::string, ArtefactSource> inputs = {{"sequence", Latest(makers)}};
     if (stage == "refine") {
       inputs["initial"] = Output("initialise");
       inputs["edges"] = Output("edges");
@@ -101,6 +102,7 @@ const StageInstance& Plan::Instance(const std::string& id) const {
 const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
   static const std::map<std::string, std::vector<StageOutput>> outputs = {
       {"import", {{"output", "sequence.json"}}},
+      {"ground", {{"output", "sequence.json"}, {"world", "world.json"}}},
       {"associate", {{"output", "sequence.json"}, {"associations", "associations.json"}}},
       {"planes", {{"output", "sequence.json"}, {"report", "planes.json"}}},
       {"edges", {{"output", "edges.h5"}}},
@@ -113,6 +115,11 @@ const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
   return found == outputs.end() ? none : found->second;
 }
 
+bool ReadsDataset(const std::string& stage) {
+  static const std::set<std::string> stages = {"import", "ground", "planes", "edges"};
+  return stages.contains(stage);
+}
+
 std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
   using Folder = Prerequisite::Folder;
   std::vector<Prerequisite> files = {
@@ -122,7 +129,7 @@ std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
     files.push_back({Folder::kResults, InstancePath(source.instance, source.file)});
   }
   if (instance.stage == "import") files.push_back({Folder::kResults, kDatasetListing});
-  if (instance.stage == "import" || instance.stage == "edges" || instance.stage == "planes") {
+  if (ReadsDataset(instance.stage)) {
     files.push_back({Folder::kResults, kImagesListing});
   }
   if (!instance.semantic_table.empty()) {

@@ -50,6 +50,9 @@ struct StageOutput {
 };
 const std::vector<StageOutput>& OutputsOfStage(const std::string& stage);
 
+// True for stages that get the dataset's folder.
+bool ReadsDataset(const std::string& stage);
+
 // A file that a stage instance depends on: executable, settings, input artefact, listing or
 // semantic table.
 struct Prerequisite {

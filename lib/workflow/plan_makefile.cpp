@@ -224,9 +224,8 @@ class Writer {
 
   static std::string Command(const StageInstance& instance) {
     std::string command = "soslam-" + instance.stage;
-    if (instance.stage == "import" || instance.stage == "planes" || instance.stage == "edges") {
-      command += " --dataset $(dataset)";
-    }
+    if (ReadsDataset(instance.stage)) command += " --dataset $(dataset)";
+    if (instance.stage == "ground") command += " --points $(dataset)/points.h5";
     for (const auto& [argument, source] : instance.inputs) {
       command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
     }

@@ -130,7 +130,7 @@ TEST(EstimateGroundTest, KnownValuesNarrowTheScale) {
   EXPECT_NEAR(with_height.scale->log_scale, std::log(scene.metres_per_unit), 0.03);
   EXPECT_LT(with_height.scale->log_sigma, 0.031);
   options.camera_height_m *= 100.0;  // centimetres
-  EXPECT_THAT(CheckGround(Estimate(scene.sequence, scene.points, options)),
+  EXPECT_THAT(CheckGround(Estimate(scene.sequence, scene.points, options), options),
               Contains(Field(&Finding::check, "scale_of_objects_differs")));
 }
 
@@ -139,7 +139,7 @@ TEST(EstimateGroundTest, AScaleThatCannotBeToldIsAFinding) {
   for (Object& object : scene.sequence.objects) object.label = "thing";
   const GroundEstimate estimate = Estimate(scene.sequence, scene.points);
   EXPECT_FALSE(estimate.scale);
-  EXPECT_THAT(CheckGround(estimate), Contains(Field(&Finding::check, "scale_unknown")));
+  EXPECT_THAT(CheckGround(estimate, {}), Contains(Field(&Finding::check, "scale_unknown")));
   EXPECT_NEAR(estimate.output_from_input.scale, 1.0, 1e-9);
 }
 
@@ -148,7 +148,7 @@ TEST(EstimateGroundTest, ContradictingHeightsAreAFinding) {
   for (Object& object : scene.sequence.objects) {
     if (object.label < "m") object.label = "bus";
   }
-  EXPECT_THAT(CheckGround(Estimate(scene.sequence, scene.points)),
+  EXPECT_THAT(CheckGround(Estimate(scene.sequence, scene.points), {}),
               Contains(Field(&Finding::check, "scale_contradicted")));
 }
 
@@ -156,7 +156,7 @@ TEST(EstimateGroundTest, WithoutPointsThereAreNoPlanes) {
   const PriorScene scene = SceneOf(1);
   const GroundEstimate estimate = Estimate(scene.sequence, {});
   EXPECT_THAT(estimate.planes, IsEmpty());
-  EXPECT_THAT(CheckGround(estimate), Contains(Field(&Finding::check, "no_support_plane")));
+  EXPECT_THAT(CheckGround(estimate, {}), Contains(Field(&Finding::check, "no_support_plane")));
 }
 
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {

@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::ContainsRegex;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 // Stands for COLMAP: copies a finished model to --output_path.
@@ -40,8 +42,9 @@ class ModelOfSmallScene {
     for (const TimedPose& pose : ReadTrajectory(dataset / "groundtruth.txt")) {
       camera_from_world_.push_back(pose.world_from_camera.Inverse());
     }
-    for (int i = 0; i < 40; ++i)
-      points_.emplace_back(2.5 + 0.1 * (i % 8), 0.1 * i - 2.0, 0.1 * (i % 3));
+    for (int i = 0; i < 120; ++i) {
+      points_.emplace_back(2.0 + 0.2 * (i % 12), 0.3 * (i / 12) - 1.5, i % 4 == 0 ? 0.3 : 0.0);
+    }
   }
 
   void Write(const fs::path& folder) const {
@@ -143,9 +146,8 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   const CommandResult first = Run(WordsForPhotos());
   ASSERT_EQ(first.exit_code, 0) << first.output << first.errors;
   const fs::path map = maps_ / "it_s_my_room_1";
-  EXPECT_THAT(first.output,
-              testing::EndsWith("3 objects, scale unknown, page: " +
-                                (map / "results/it_s_my_room_1/report.html").string() + "\n"));
+  EXPECT_THAT(first.output, ContainsRegex("\n3 objects, scale [+]- [0-9]+ %, page: "));
+  EXPECT_THAT(first.output, EndsWith((map / "results/it_s_my_room_1/report.html").string() + "\n"));
   EXPECT_TRUE(fs::exists(map / "results/it_s_my_room_1/report.html"));
   const auto made = Made();
 
@@ -169,10 +171,10 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
 TEST_F(SlowMapTest, TakesAFinishedModel) {
   fs::remove(programs_ / "colmap");
   std::vector<std::string> words = WordsForPhotos();
-  words.insert(words.end(), {"MODEL=" + (programs_ / "model").string(), "NAME=room"});
+  words.insert(words.end(), {"MODEL=" + (programs_ / "model").string(), "NAME=room", "SCALE=1"});
   const CommandResult run = Run(words);
   ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
-  EXPECT_THAT(run.output, HasSubstr("3 objects, scale unknown"));
+  EXPECT_THAT(run.output, HasSubstr("3 objects, scale +- 4 %"));
   EXPECT_THAT(Run(Words({"IMAGES=" + programs_.string(), "DETECTIONS=" + detections_.string(),
                          "NAME=room"}))
                   .errors,
@@ -194,7 +196,7 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, "NETWORK=$(shell touch " + marker + ")"}, "no such file");
   expect_refused({images, "NETWORK=`touch " + marker + "`"}, "no such file");
   expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
-  expect_refused({images, "NETWORK=x", "SCALE=2"}, "unit of COLMAP");
+  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2m"}, "expected a number");
   expect_refused({images, "NETWORK=x", "NAME=.."}, "expected letters and digits");
   expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
   expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");

@@ -22,6 +22,7 @@ using nlohmann::json;
 class RunGroundTest : public testing::Test {
  protected:
   RunGroundTest() {
+    options_.ground = GroundSource::kEstimated;
     options_.verticals = false;  // there are no images
     WriteSequence(files_.at("sequence"), scene_.sequence, {});
     WritePoints(files_.at("points"), scene_.points, {});
@@ -73,6 +74,22 @@ TEST_F(RunGroundTest, RefusesSeveralSegments) {
   scene_.sequence.frames.back().segment = 1;
   WriteSequence(files_.at("sequence"), scene_.sequence, {});
   ExpectError<InputError>([&] { RunGround(options_, files_, 1); }, {"segment 1", "one segment"});
+}
+
+TEST_F(RunGroundTest, RefusesAGivenWorld) {
+  options_.ground = GroundSource::kGiven;
+  ExpectError<SettingsError>([&] { RunGround(options_, files_, 1); },
+                             {"ground is given", "expected estimated"});
+}
+
+TEST_F(RunGroundTest, ACameraHeightAboveNoPlaneIsNotWhatTheScaleIsFoundBy) {
+  options_.scale = 1.0;
+  options_.camera_height_m = 1.5;
+  WritePoints(files_.at("points"), {}, {});
+  RunGround(options_, files_, 1);
+  const json world = ReadArtefact(files_.at("world"), "world");
+  EXPECT_THAT(world.at("scale").at("found_by"), testing::ElementsAre("scale"));
+  EXPECT_EQ(world.at("findings")[0].at("check"), "camera_height_unused");
 }
 
 TEST_F(RunGroundTest, FindingsAreInTheArtefact) {

@@ -216,7 +216,33 @@ TEST_F(RunPlanesTest, RefusesObjectsOfWhichNoneIsOnAPlane) {
 
 TEST_F(RunPlanesTest, RefusesGivenPlanes) {
   options_.planes = PlaneSource::kGiven;
-  ExpectError<SettingsError>([&] { Run(); }, {"given", "estimated or camera_height"});
+  ExpectError<SettingsError>([&] { Run(); },
+                             {"given", "estimated, where_missing or camera_height"});
+}
+
+TEST_F(RunPlanesTest, WhereMissingKeepsThePlanesThatAreThere) {
+  options_.planes = PlaneSource::kWhereMissing;
+  Run();
+  const Sequence output = ReadSequence(File("output"));
+  ASSERT_EQ(output.planes.size(), sequence_.planes.size());
+  for (size_t i = 0; i < output.planes.size(); ++i) {
+    EXPECT_EQ(output.planes[i].plane_in_world.Homogeneous(),
+              sequence_.planes[i].plane_in_world.Homogeneous());
+  }
+  const json report = ReadArtefact(File("report"), "planes");
+  EXPECT_EQ(report.at("objects").at(0).at("reason"), "given");
+}
+
+TEST_F(RunPlanesTest, WhereMissingEstimatesPlanesOfASequenceWithout) {
+  sequence_.planes.clear();
+  for (Object& object : sequence_.objects) object.plane_index = kNoPlane;
+  WriteSequence(File("sequence"), sequence_, {});
+  Run();
+  const json estimated = ReadArtefact(File("report"), "planes").at("planes");
+  options_.planes = PlaneSource::kWhereMissing;
+  Run();
+  EXPECT_EQ(ReadArtefact(File("report"), "planes").at("planes"), estimated);
+  EXPECT_FALSE(estimated.empty());
 }
 
 TEST_F(RunPlanesTest, VerticalsNeedImages) {

@@ -120,6 +120,20 @@ TEST_F(PlanTest, EstimatedAssociationReplacesTheObjectsOfTheImport) {
   }
 }
 
+TEST_F(PlanTest, AWorldWithoutUpAndScaleGetsThemBeforeAssociation) {
+  EXPECT_EQ(Id("Full", "ground"), "");
+  Write("pipelines/datasets/room.json",
+        R"({"ground": {"ground": "estimated"}, "associate": {"association": "estimated"}})");
+  const Plan plan = Make({"Full"});
+  const auto inputs_of = [&](const std::string& stage) {
+    return plan.Instance(Id("Full", stage)).inputs;
+  };
+  EXPECT_EQ(inputs_of("ground").at("sequence").instance, Id("Full", "import"));
+  EXPECT_EQ(inputs_of("associate").at("sequence").instance, Id("Full", "ground"));
+  EXPECT_EQ(inputs_of("initialise").at("sequence").instance, Id("Full", "associate"));
+  EXPECT_EQ(inputs_of("edges").at("sequence").instance, Id("Full", "import"));
+}
+
 TEST_F(PlanTest, SettingsOfAnAssociationThatDoesNotRunDoNotMatter) {
   const std::string initialise = Id("Plain", "initialise");
   Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 5}})");
@@ -160,7 +174,7 @@ TEST_F(PlanTest, PlanesAreOfTheObjectsThatAssociationFound) {
 }
 
 TEST_F(PlanTest, StagesThatASettingAsksForAreNotListed) {
-  for (const std::string stage : {"planes", "associate"}) {
+  for (const std::string stage : {"ground", "planes", "associate"}) {
     Write("pipelines/variants/Listed.json",
           R"({"stages": ["import", ")" + stage + R"(", "initialise", "evaluate"]})");
     ExpectRefused("Listed", {"Listed.json", stage, "expected one of import, edges"});
