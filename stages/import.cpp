@@ -8,10 +8,7 @@ int main(int argc, char** argv) {
       {.name = "soslam-import",
        .purpose = "Reads a dataset folder, checks it and keeps the usable detections.",
        .inputs = {{"dataset", "dataset folder, in the format that the settings name"}},
-       .outputs = {{"output", "sequence.json to write"},
-                   {"points",
-                    "points.h5 to write, where the poses are of a COLMAP model, which has points",
-                    false}},
+       .outputs = {{"output", "sequence.json to write"}},
        .example = "soslam-import --dataset data/room_a --output sequence.json"},
       &soslam::RunImport);
 }

@@ -45,6 +45,11 @@ SupportPlane SupportPlaneFromJson(const json& json) {
   if (json.contains("attitude_information")) {  // since version 1.3
     plane.attitude_information = MatrixFromJson(json["attitude_information"]);
   }
+  if (json.contains("height_prior")) {  // since version 1.7
+    const auto& prior = json["height_prior"];
+    plane.height_prior = {VectorFromJson(prior.at("point_in_world")),
+                          prior.at("sigma_m").get<double>()};
+  }
   if (json.contains("scene_axis")) {  // since version 1.7
     plane.scene_axis_in_world = VectorFromJson(json["scene_axis"]);
   }

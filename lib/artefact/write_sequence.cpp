@@ -35,6 +35,10 @@ json SupportPlaneToJson(const SupportPlane& plane) {
   if (plane.attitude_information) {
     fields["attitude_information"] = MatrixToJson(*plane.attitude_information);
   }
+  if (plane.height_prior) {
+    fields["height_prior"] = {{"point_in_world", VectorToJson(plane.height_prior->point_in_world)},
+                              {"sigma_m", plane.height_prior->sigma_m}};
+  }
   if (plane.scene_axis_in_world) fields["scene_axis"] = VectorToJson(*plane.scene_axis_in_world);
   return fields;
 }

@@ -327,8 +327,14 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
   Sequence result = Transformed(estimate.output_from_input, sequence);
   result.odometry_world = OdometryWorld::kOwnWithScale;
+  const Eigen::Matrix<double, 3, 2> d_turns = TurnsOf(Eigen::Vector3d::UnitZ());
   for (const EstimatedPlane& plane : estimate.planes) {
-    result.planes.push_back({static_cast<int>(result.planes.size()), plane.plane_in_world});
+    const Eigen::Matrix2d information = plane.covariance->topLeftCorner<2, 2>().inverse();
+    result.planes.push_back(
+        {.id = static_cast<int>(result.planes.size()),
+         .plane_in_world = plane.plane_in_world,
+         .attitude_information = d_turns * information * d_turns.transpose(),
+         .height_prior = HeightPrior{plane.point_in_world, std::sqrt((*plane.covariance)(2, 2))}});
   }
   return result;
 }

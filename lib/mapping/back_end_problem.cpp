@@ -11,6 +11,7 @@
 #include "constraints/detection.h"
 #include "constraints/manifolds.h"
 #include "constraints/odometry.h"
+#include "constraints/plane_height.h"
 #include "constraints/plane_normal.h"
 #include "constraints/scale_ratio.h"
 #include "constraints/support.h"
@@ -111,24 +112,32 @@ void BackEndProblem::AddOdometry() {
   }
 }
 
-// An estimated plane moves with the objects on it, under the prior of its normal. No loss: a body
-// that floats is not an outlier, but wrong.
+// An estimated plane moves with the objects on it, under the priors of its normal and height. No
+// loss: a body that floats is not an outlier, but wrong.
 void BackEndProblem::AddStanding(size_t object_index) {
   const auto plane_index = static_cast<size_t>(input_.sequence.objects[object_index].plane_index);
   double* normal = variables_.Normal(plane_index);
   double* offset = variables_.Offset(plane_index);
   const bool is_new_normal = !problem_.HasParameterBlock(normal);
+  const bool is_new_plane = !problem_.HasParameterBlock(offset);
+  const double side = variables_.NormalSide(plane_index);
   problem_.AddResidualBlock(
       new UprightOnPlaneResidual(options_.standing_angle_sigma_deg * kRadPerDeg,
-                                 options_.standing_height_sigma_m,
-                                 variables_.NormalSide(plane_index)),
+                                 options_.standing_height_sigma_m, side),
       nullptr, variables_.Landmark(object_index), normal, offset);
-  const auto& attitude = input_.sequence.planes[plane_index].attitude_information;
-  if (!attitude || !options_.refine_planes) {
+  const SupportPlane& plane = input_.sequence.planes[plane_index];
+  if (!plane.attitude_information || !options_.refine_planes) {
     problem_.SetParameterBlockConstant(normal);
     problem_.SetParameterBlockConstant(offset);
-  } else if (is_new_normal) {
-    problem_.AddResidualBlock(new PlaneNormalResidual(*attitude), nullptr, normal);
+    return;
+  }
+  if (is_new_normal) {
+    problem_.AddResidualBlock(new PlaneNormalResidual(*plane.attitude_information), nullptr,
+                              normal);
+  }
+  if (is_new_plane && plane.height_prior) {
+    problem_.AddResidualBlock(new PlaneHeightResidual(*plane.height_prior, side), nullptr, normal,
+                              offset);
   }
 }
 

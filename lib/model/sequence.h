@@ -40,6 +40,12 @@ struct Frame {
   std::vector<Box> boxes_in_view = {};
 };
 
+// Height of a plane at a point, zero with this standard deviation.
+struct HeightPrior {
+  Eigen::Vector3d point_in_world;
+  double sigma_m;
+};
+
 struct SupportPlane {
   int id = 0;
   Plane plane_in_world;
@@ -47,6 +53,8 @@ struct SupportPlane {
   // cost 0.5 n^T information n. None: the plane is given and exact. Estimated planes of one normal
   // are parallel.
   std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
+  // What is known of an estimated plane's height without boxes. None: nothing.
+  std::optional<HeightPrior> height_prior = std::nullopt;
   // Unit vector in the plane along which, modulo quarter turns, most straight edges of the scene
   // lie. None: unknown, or there is no such direction.
   std::optional<Eigen::Vector3d> scene_axis_in_world = std::nullopt;

@@ -6,17 +6,13 @@
 #include <cmath>
 #include <set>
 
-#include "artefact/points_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/run_log.h"
 #include "cli/command_line.h"
-#include "dataset/dataset_files.h"
-#include "dataset/folder_frames.h"
 #include "dataset/gate.h"
 #include "dataset/import.h"
-#include "dataset/reconstruction.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_edge_bias.h"
 #include "priors/learn_priors.h"
@@ -27,35 +23,12 @@
 
 namespace soslam {
 
-namespace {
-
-void WritePointsOfColmap(const std::filesystem::path& folder, const ImportOptions& options,
-                         const std::filesystem::path& output) {
-  if (options.folder.trajectory_format != TrajectoryFormat::kColmap) {
-    throw SettingsError(
-        "points: found trajectory_format other than colmap; expected colmap, as "
-        "points are read from the model that has the poses");
-  }
-  if (options.folder.align_odometry) {
-    throw SettingsError("points: found align_odometry true, which moves the poses alone");
-  }
-  const DatasetFiles found = FindDatasetFiles(folder, options);
-  const ColmapModel model = ReadColmapModel(found.trajectory.parent_path());
-  const auto images = ListImages(folder, found, options, {});
-  const std::vector<MapPoint> points = ReconstructionOf(model, images).points;
-  WritePoints(output, points, {OptionsToJson(options), model.files});
-  fmt::print("{}: {} points\n", output.filename().string(), points.size());
-}
-
-}  // namespace
-
 void RunImport(const ImportOptions& options, const StageFiles& files, int threads) {
   const auto& folder = files.at("dataset");
   std::vector<std::filesystem::path> inputs;
   Sequence sequence = ImportDataset(folder, options, &inputs);
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
   ReportFindings("import", sequence.findings);
-  if (files.contains("points")) WritePointsOfColmap(folder, options, files.at("points"));
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
              sequence.frames.size(), sequence.objects.size(), sequence.detections.size(),

@@ -9,9 +9,7 @@
 namespace soslam {
 
 // soslam-import: reads the folder "dataset", writes the sequence artefact "output" and prints a
-// one-line summary of how much is used; writes the points of the COLMAP model that the poses are of
-// to "points" (optional). Errors as ImportDataset and WriteSequence; SettingsError for points with
-// another trajectory_format.
+// one-line summary of how much is used. Errors as ImportDataset and WriteSequence.
 void RunImport(const ImportOptions& options, const StageFiles& files, int threads);
 
 struct SynthesiseOptions {

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
-#include "artefact/points_file.h"
 #include "artefact/sequence_file.h"
-#include "base/error.h"
 #include "base/hash.h"
 #include "stage/data_stages.h"
 #include "support/dataset_fixture.h"
@@ -39,27 +37,6 @@ TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(sequence.detections.size(), 4u);
   EXPECT_EQ(sequence.rejected_detections.at("too_few_observations"), 3);
-}
-
-TEST_F(RunImportTest, WritesThePointsOfTheModelThatHasThePoses) {
-  dataset.files["cameras.txt"] = "1 PINHOLE 640 480 500 510 320 240\n";
-  dataset.files["images.txt"] =
-      "1 1 0 0 0 0 0 0 1 rgb/0.jpg\n9 9 1\n2 1 0 0 0 -0.1 0 0 1 rgb/1.jpg\n8 9 1\n"
-      "3 1 0 0 0 -0.2 0 0 1 rgb/2.jpg\n\n4 1 0 0 0 -0.3 0 0 1 rgb/3.jpg\n\n";
-  dataset.files["points3D.txt"] = "1 0 0 5 0 0 0 0.5 2 0 1 0\n";
-  files["points"] = folder / "points.h5";
-  ExpectError<SettingsError>([&] { Run(); }, {"points", "trajectory_format", "colmap"});
-  ImportOptions options;
-  options.folder.odometry = "images.txt";
-  options.folder.trajectory_format = TrajectoryFormat::kColmap;
-  options.folder.groundtruth_format = TrajectoryFormat::kTum;
-  Run(options);
-  const auto points = ReadPoints(files.at("points"));
-  ASSERT_EQ(points.size(), 1u);
-  EXPECT_EQ(points[0].position_in_world, Eigen::Vector3d(0, 0, 5));
-  ASSERT_EQ(points[0].observations.size(), 2u);
-  EXPECT_EQ(points[0].observations[1].frame_id, 1);
-  EXPECT_EQ(points[0].observations[1].pixel, Eigen::Vector2d(7.5, 8.5));
 }
 
 TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {

@@ -18,8 +18,10 @@ inline Sequence RandomSequence() {
   Sequence sequence;
   sequence.name = "r\u00f6\u00f6m \"1\"\\";
   sequence.camera = TestCamera();
-  sequence.planes = {{-4, RandomPlane(), Eigen::Matrix3d::Random(), RandomVector(-1.0, 1.0)},
-                     {3, RandomPlane()}};
+  sequence.planes = {
+      {-4, RandomPlane(), Eigen::Matrix3d::Random(),
+       HeightPrior{RandomVector(-2.0, 2.0), RandomUniform(0.01, 1.0)}, RandomVector(-1.0, 1.0)},
+      {3, RandomPlane()}};
   for (int i = 0; i < 5; ++i) {
     Frame frame{10 + 5 * i, RandomUniform(1e9, 2e9), "rgb/a b.jpg", RandomRigid(), {}};
     if (i % 2 == 0) frame.true_world_from_camera = RandomRigid();
