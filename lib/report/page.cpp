@@ -15,6 +15,7 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "report/map_section.h"
 #include "report/page_curves.h"
 #include "report/page_html.h"
 #include "report/page_sequence.h"
@@ -88,12 +89,12 @@ constexpr double kLeastShareOfImages = 0.125;
 class DatasetPage {
  public:
   DatasetPage(const DatasetResult& dataset, const ImageSourceOf& images) : images_(images) {
-    data_ = {{"dataset", Utf8(dataset.name)},    {"url", UrlOf(dataset.name)},
-             {"images", json::object()},         {"sequences", json::array()},
-             {"symmetries", json::array()},      {"variants", json::array()},
-             {"unfinished", json::array()},      {"notes", json::array()},
-             {"problems", json::array()},        {"differences", PageDifferences(dataset)},
-             {"findings", PageFindings(dataset)}};
+    data_ = {{"dataset", Utf8(dataset.name)},     {"url", UrlOf(dataset.name)},
+             {"images", json::object()},          {"sequences", json::array()},
+             {"symmetries", json::array()},       {"variants", json::array()},
+             {"unfinished", json::array()},       {"notes", json::array()},
+             {"problems", json::array()},         {"differences", PageDifferences(dataset)},
+             {"findings", PageFindings(dataset)}, {"map_section", ""}};
     for (const VariantResult& variant : dataset.variants) Add(variant);
   }
 
@@ -102,12 +103,15 @@ class DatasetPage {
     const LoadedSequence& first = sequences_.front();
     const ImageSource source = images_(first.sequence);
     const bool has_images = std::ranges::any_of(first.selection.shown, source.has);
+    const std::string map_section = SectionOfBestMap(threads);
+    max_bytes -= std::min(max_bytes, map_section.size());
     const auto least = static_cast<size_t>(kLeastShareOfImages * static_cast<double>(max_bytes));
     FitPageData(max_bytes - (has_images ? least : 0), PageBytes, &data_);
     data_["detailed"] = DetailedVariants(data_);
     if (!data_["sequences"].front()["frames"].empty()) {
       AddImages(first, source, max_bytes, threads);
     }
+    data_["map_section"] = map_section;
     return data_;
   }
 
@@ -135,6 +139,21 @@ class DatasetPage {
         {{"name", Utf8(result.name)}, {"state", Utf8(state)}, {"is_shown", is_shown}});
   }
 
+  // The section of the map that is of most interest; empty without one.
+  std::string SectionOfBestMap(int threads) {
+    const size_t index = DetailedVariants(data_).front();
+    const json& variant = data_["variants"][index];
+    if (variant.at("kind") != "map") return "";
+    const Sequence& sequence = sequences_[variant.at("sequence").get<size_t>()].sequence;
+    try {
+      return MapSection(folders_[index], sequence, images_(sequence), threads);
+    } catch (const InputError& error) {
+      data_["problems"].push_back(
+          Utf8(fmt::format("the map from above cannot be shown: {}", error.what())));
+      return "";
+    }
+  }
+
   void AddEstimates(const VariantResult& result) {
     const size_t index = IndexOfSequence(result.folder / "sequence.json");
     const auto& [sequence, selection] = sequences_[index];
@@ -148,6 +167,7 @@ class DatasetPage {
       variant["symmetry"] = IndexOfSymmetry(symmetry, sequences_[index]);
     }
     data_["variants"].push_back(std::move(variant));
+    folders_.push_back(result.folder);
   }
 
   size_t IndexOfSequence(const fs::path& file) {
@@ -200,6 +220,7 @@ class DatasetPage {
   const ImageSourceOf& images_;
   json data_;
   std::deque<LoadedSequence> sequences_;  // a deque, as image sources refer to its elements
+  std::vector<fs::path> folders_;         // of data_["variants"]
   std::set<int> shown_ids_;
   std::map<fs::path, size_t> sequence_of_, symmetry_of_;  // by resolved path
 };

@@ -37,6 +37,8 @@ using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 //   notes: sentences on what was left out for lack of room
 //   problems: sentences on images that cannot be shown
 //   differences: see PageDifferences
+//   map_section: see MapSection, of the first map of DetailedVariants; empty without a map. It is
+//     part of DatasetTables and need not be stored with the page
 nlohmann::json PageData(const DatasetResult& dataset, const ImageSourceOf& images, size_t max_bytes,
                         int threads);
 

@@ -91,8 +91,8 @@ std::string PageHtml(const std::string& title, const std::string& content, const
   if (scripts == PageScripts::kDataset) {
     // Libraries first; of our files, those with functions that others use.
     for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js", "elements.js",
-                             "overlay.js", "charts.js", "yaw_curves.js", "above.js", "bodies.js",
-                             "map.js", "figures.js", "objects.js", "frames.js", "main.js"}) {
+                             "overlay.js", "charts.js", "yaw_curves.js", "bodies.js", "map.js",
+                             "figures.js", "objects.js", "frames.js", "main.js"}) {
       script_elements += fmt::format("<script>\n{}\n</script>\n", files.at(name));
     }
     licences = Filled(files.at("licences.html"),
@@ -111,9 +111,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Artefacts in the order in which stages write them.
-constexpr std::array kArtefacts = {"sequence.json", "associations.json", "planes.json",
-                                   "initial.json",  "refined.json",      "map.json",
-                                   "metrics.json"};
+constexpr std::array kArtefacts = {"sequence.json", "world.json",   "associations.json",
+                                   "planes.json",   "initial.json", "refined.json",
+                                   "map.json",      "metrics.json"};
 constexpr std::array kTexts = {"severity", "check", "found", "expected", "cause", "remedy"};
 
 // Empty for a file that cannot be read; the page lists such files elsewhere.

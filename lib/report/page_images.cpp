@@ -18,12 +18,17 @@ constexpr int kJpegQuality = 75;
 constexpr std::array kWidthsPx = {800, 640, 480, 320, 200};  // tried in turn
 constexpr size_t kBytesAround = 64;                          // bytes of the page around each image
 
-cv::Mat ScaledTo(const cv::Mat& image, int max_width) {
-  if (image.cols <= max_width) return image;
-  const double scale = static_cast<double>(max_width) / image.cols;
+// `size`: the width, or the larger of width and height.
+cv::Mat Scaled(const cv::Mat& image, int size, int max_size) {
+  if (size <= max_size) return image;
+  const double scale = static_cast<double>(max_size) / size;
   cv::Mat scaled;
   cv::resize(image, scaled, {}, scale, scale, cv::INTER_AREA);
   return scaled;
+}
+
+cv::Mat ScaledTo(const cv::Mat& image, int max_width) {
+  return Scaled(image, image.cols, max_width);
 }
 
 std::string EncodeJpeg(const cv::Mat& image) {
@@ -98,6 +103,24 @@ EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& so
   while (TotalBytes(encoded.images) > max_bytes) Halve(&encoded.images);
   encoded.left_out = read.frames.size() - encoded.images.size();
   encoded.failures = std::move(read.failures);
+  return encoded;
+}
+
+std::vector<std::string> EncodeCrops(const std::vector<Crop>& crops, const ImageSource& source,
+                                     int threads) {
+  std::vector<std::string> encoded(crops.size());
+  ParallelFor(static_cast<int>(crops.size()), threads, [&](int i) {
+    const auto& [frame_index, part] = crops[static_cast<size_t>(i)];
+    if (part.empty() || !source.has(frame_index)) return;
+    try {
+      const cv::Mat image = source.read(frame_index);
+      const cv::Mat crop = image(part & cv::Rect(0, 0, image.cols, image.rows));
+      if (crop.empty()) return;
+      encoded[static_cast<size_t>(i)] =
+          EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), kMaxCropPx));
+    } catch (const InputError&) {  // EncodeImages says which images cannot be read
+    }
+  });
   return encoded;
 }
 

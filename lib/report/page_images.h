@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,17 @@ struct EncodedImages {
 // necessary. If that is not enough, only some of them, evenly spaced.
 EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
                            size_t max_bytes, int threads);
+
+// A part of a frame's image, px.
+struct Crop {
+  int frame_index = 0;
+  cv::Rect part = {};
+};
+
+// JPEG files in base 64 of parts of images, in their order, at most kMaxCropPx wide and high; empty
+// where the part is empty, or the frame has no image that can be read.
+inline constexpr int kMaxCropPx = 160;
+std::vector<std::string> EncodeCrops(const std::vector<Crop>& crops, const ImageSource& source,
+                                     int threads);
 
 }  // namespace soslam

@@ -335,6 +335,13 @@ std::string Remarks(const json& page) {
   return remarks;
 }
 
+// Where findings are below a map that may need all of the screen.
+std::string LinkToFindings(const json& page) {
+  const size_t count = page.at("findings").size();
+  if (count == 0 || page.at("map_section") == "") return "";
+  return fmt::format("<p><a href=\"#remarks\">{}</a> below</p>\n", Counted(count, "finding"));
+}
+
 std::string CountsText(const json& counts) {
   return fmt::format("{}, {}, {} used", Counted(counts.at("frames"), "frame"),
                      Counted(counts.at("objects"), "object"),
@@ -354,9 +361,10 @@ std::string DatasetTables(const json& page) {
     counts += fmt::format("; {} frames are shown", shown);
   if (!sequence.at("rejected").empty()) counts += "; not used: " + ListOf(sequence.at("rejected"));
   return fmt::format("<h1>{}</h1>\n", HtmlText(page.at("dataset").get<std::string>())) +
-         Faint(counts) + Remarks(page) +
-         "<noscript><p class=\"faint\">Map, frames, charts and figures need JavaScript; all else "
-         "is here.</p></noscript>\n" +
+         Faint(counts) + LinkToFindings(page) + page.at("map_section").get<std::string>() +
+         "<div id=\"remarks\">\n" + Remarks(page) + "</div>\n" +
+         "<noscript><p class=\"faint\">The map in three dimensions, frames, charts and figures "
+         "need JavaScript; all else is here.</p></noscript>\n" +
          NumbersSection(page) + QualitySection(page) + ObjectsSection(page) +
          AblationSection(page) + StagesSection(page);
 }

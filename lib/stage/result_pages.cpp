@@ -128,7 +128,9 @@ nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& fol
       threads);
   PrintProblems(data);
   if (data["variants"].empty()) return data;
-  const std::string html = page_with(DatasetTables(data), data);
+  const std::string tables = DatasetTables(data);
+  data.erase("map_section");
+  const std::string html = page_with(tables, data);
   WriteTextFile(folder / "report.html", html);
   fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
              data["variants"].size(), data["images"].size(),

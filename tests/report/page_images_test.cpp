@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
 
@@ -62,6 +63,41 @@ TEST(EncodeImages, LeaveOutWhatIsNotThereAndNameWhatIsDamaged) {
   EXPECT_EQ(encoded.images[1].frame_index, 3);
   EXPECT_EQ(encoded.failures, std::vector<std::string>{"2.png: is empty"});
   EXPECT_EQ(encoded.left_out, 0u);
+}
+
+// The size of a JPEG file in base 64.
+cv::Size SizeOf(const std::string& base64) {
+  const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> bytes;
+  unsigned bits = 0, count = 0;
+  for (const char c : base64) {
+    const size_t digit = kDigits.find(c);
+    if (digit == std::string::npos) break;
+    bits = (bits << 6U) | static_cast<unsigned>(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<unsigned char>((bits >> count) & 0xFFU));
+  }
+  return cv::imdecode(bytes, cv::IMREAD_COLOR).size();
+}
+
+TEST(EncodeCrops, AreSmallAndInTheOrderOfTheCrops) {
+  const ImageSource source = {[](int frame) { return frame != 1; },
+                              [](int frame) {
+                                if (frame == 2) throw InputError("damaged");
+                                return Noise();
+                              }};
+  const cv::Rect large(0, 0, 320, 200), tall(600, 0, 100, 480), small(10, 10, 40, 30);
+  const std::vector<std::string> crops =
+      EncodeCrops({{0, large}, {1, large}, {2, large}, {3, tall}, {3, small}, {3, {}}}, source, 2);
+  ASSERT_EQ(crops.size(), 6u);
+  EXPECT_EQ(SizeOf(crops[0]), cv::Size(160, 100));
+  EXPECT_EQ(crops[1], "");
+  EXPECT_EQ(crops[2], "");
+  EXPECT_EQ(SizeOf(crops[3]), cv::Size(13, 160));  // 40 of its 100 columns are in the image
+  EXPECT_EQ(SizeOf(crops[4]), cv::Size(40, 30));
+  EXPECT_EQ(crops[5], "");
 }
 
 }  // namespace

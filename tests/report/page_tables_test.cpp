@@ -49,6 +49,7 @@ json Page() {
       {"notes", {"a note"}},
       {"problems", json::array()},
       {"differences", json::array()},
+      {"map_section", ""},
       {"sequences", {sequence}},
       {"variants",
        {Variant("InitP", "frames", 0.4, nullptr), ours, Variant("OursS", "map", 0.5, nullptr)}}};
@@ -85,6 +86,23 @@ TEST(DatasetTables, HaveWhatCameOutOfTheStages) {
       AllOf(HasSubstr("<td>OursP</td><td>1</td><td>1 too few views</td><td>12</td><td>yes</td>"
                       "<td>40 detection</td><td>2 behind camera</td>"),
             HasSubstr("<td>SVD</td><td>failed: &lt;x&gt;</td>"), HasSubstr("a note")));
+}
+
+TEST(DatasetTables, BeginWithTheMapAndLeadToTheFindingsBelow) {
+  json page = Page();
+  page["map_section"] = "<section>the map</section>\n";
+  page["findings"] = {{{"severity", "error"},
+                       {"check", "up"},
+                       {"found", "f"},
+                       {"expected", "e"},
+                       {"cause", "c"},
+                       {"remedy", "r"},
+                       {"where", "w"}}};
+  const std::string html = DatasetTables(page);
+  EXPECT_LT(html.find("<a href=\"#remarks\">1 finding</a>"), html.find("the map</section>"));
+  EXPECT_LT(html.find("the map</section>"), html.find("<div id=\"remarks\">\n<h3>Findings"));
+  EXPECT_LT(html.find("<h3>Findings"), html.find("<h2>Numbers"));
+  EXPECT_THAT(DatasetTables(Page()), Not(HasSubstr("#remarks")));
 }
 
 TEST(DetailedVariants, AreThoseWithMostToShowFirst) {

@@ -4,6 +4,7 @@
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
@@ -141,6 +142,85 @@ TEST_F(RunPagesTest, VariantsShareWhatIsTheSame) {
   EXPECT_EQ(page["variants"][1]["symmetry"], 0);
   EXPECT_EQ(page["notes"], json::array());
   EXPECT_EQ(page["sequences"][0]["counts"]["objects"], 4);
+}
+
+// The part of the page that needs no scripts.
+std::string MarkupOf(const fs::path& page) {
+  const std::string html = FileBytes(page);
+  return html.substr(0, html.find("<script"));
+}
+
+size_t CountOf(const std::string& words, const std::string& text) {
+  size_t count = 0;
+  for (size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(RunPagesTest, PagesBeginWithTheMapAndItsPictures) {
+  const std::string label = "<chair>";
+  sequence_.objects[0].label = label;
+  WriteOurs("OursS");
+  WriteOurs("OursST");
+  EXPECT_EQ(Run().errors, "");
+  const std::string html = MarkupOf(Page());
+  EXPECT_LT(html.find("<h2>Map</h2>"), html.find("<h2>Numbers</h2>"));
+  EXPECT_EQ(CountOf("<h2>Map</h2>", html), 1u);
+  EXPECT_THAT(html, HasSubstr("3 objects in 6 images."));
+  EXPECT_EQ(CountOf("<image ", html), 4u);  // of the objects, the one that is not placed included
+  // Each on both plans.
+  EXPECT_EQ(CountOf("<use href=\"#picture-0\"", html), 2u);
+  EXPECT_EQ(CountOf("id=\"picture-0\"", html), 1u);
+  EXPECT_THAT(html, HasSubstr("&lt;chair&gt; " + std::to_string(sequence_.objects[0].id)));
+  EXPECT_THAT(html, testing::Not(HasSubstr(label)));
+  EXPECT_FALSE(PageDataIn(Page()).contains("map_section"));
+}
+
+TEST_F(RunPagesTest, ObjectsWithoutALandmarkAreSeenButNotPlaced) {
+  // The back end had nothing to begin with, and the stage before says why.
+  WriteOurs("OursS");
+  std::vector<ObjectEstimate> initial = Estimates();
+  initial.push_back({static_cast<int>(initial.size()), 5, {}, {}, "not_determined_by_its_views"});
+  WriteLandmarks(Folder("OursS") / "initial.json", {{}, initial}, sequence_, {});
+  Run();
+  const std::string html = MarkupOf(Page());
+  const size_t begin = html.find("<h3>Seen but not placed</h3>");
+  ASSERT_NE(begin, html.npos);
+  const std::string list = html.substr(begin, html.find("</section>", begin) - begin);
+  EXPECT_EQ(CountOf("<li>", list), 1u);
+  EXPECT_THAT(list, AllOf(HasSubstr("<strong>" + sequence_.objects.back().label + "</strong>"),
+                          HasSubstr(" boxes"), HasSubstr("its views are too alike")));
+}
+
+TEST_F(RunPagesTest, ThingsInOneImageAreOnlyCounted) {
+  const int last = static_cast<int>(sequence_.objects.size()) - 1;
+  bool is_first = true;
+  std::erase_if(sequence_.detections, [&](const Detection& detection) {
+    return detection.object_index == last && !std::exchange(is_first, false);
+  });
+  WriteOurs("OursS");
+  Run();
+  const std::string html = MarkupOf(Page());
+  EXPECT_THAT(html, HasSubstr("One more thing was detected in one image only."));
+  EXPECT_THAT(html, testing::Not(HasSubstr("id=\"seen-0\"")));
+}
+
+TEST_F(RunPagesTest, TheMapIsShownWithoutImagesToo) {
+  WriteOurs("OursS");
+  fs::remove_all(Dataset());
+  EXPECT_EQ(Run().errors, "");
+  const std::string html = MarkupOf(Page());
+  EXPECT_EQ(CountOf("<image ", html), 0u);
+  EXPECT_EQ(CountOf("<use ", html), 0u);
+  EXPECT_EQ(CountOf("<polygon ", html), 2u * Estimates().size());
+}
+
+TEST_F(RunPagesTest, ADamagedWorldIsNamedAndTheRestIsShown) {
+  WriteOurs("OursS");
+  WriteBytes(Folder("OursS") / "world.json", "{");
+  EXPECT_THAT(Run().errors,
+              AllOf(HasSubstr("the map from above cannot be shown: "), HasSubstr("world.json")));
+  EXPECT_THAT(MarkupOf(Page()), testing::Not(HasSubstr("<h2>Map</h2>")));
+  EXPECT_EQ(PageDataIn(Page())["variants"].size(), 1u);
 }
 
 // Each damage leaves the other variant as it is.

@@ -24,17 +24,17 @@ function walkByKeys(canvas, said) {
     if (!step || !shown) return;
     event.preventDefault();
     at.datasetIndex = wrapped(at.datasetIndex + step[0], shown.data.datasets.length);
-    const { label, object, data } = shown.data.datasets[at.datasetIndex];
+    const { label, data } = shown.data.datasets[at.datasetIndex];
     at.index = wrapped(Math.min(at.index, data.length - 1) + step[1], data.length);
     shown.setActiveElements([at]);
     shown.tooltip.setActiveElements([at], { x: 0, y: 0 });
     shown.update("none");
-    said.textContent = `${object ? object + ", " : ""}${label}: ${number(data[at.index].x, 2)}, ${number(data[at.index].y, 2)}`;
+    said.textContent = `${label}: ${number(data[at.index].x, 2)}, ${number(data[at.index].y, 2)}`;
   });
 }
 
 // A chart, what the keyboard leads to in it, and its numbers as a table.
-function chart(label, size, config, numbers) {
+function chart(label, size, config) {
   const canvas = element("canvas", { role: "application", tabindex: 0, "aria-roledescription": "chart",
     "aria-label": `${label}; arrow keys lead along the curves, the table below has the numbers` });
   const said = element("output", { class: "faint" });
@@ -44,7 +44,7 @@ function chart(label, size, config, numbers) {
   walkByKeys(canvas, said);
   return element("div", {}, element("div", { class: "chart", style: size }, canvas), said,
     element("details", {}, element("summary", {}, "the numbers of this chart"),
-      numbers || numbersOfCurves(config.options.scales.x.title.text, config.data.datasets)));
+      numbersOfCurves(config.options.scales.x.title.text, config.data.datasets)));
 }
 
 function axis(title, more) {
@@ -56,8 +56,8 @@ function axis(title, more) {
   }, more);
 }
 
-function legend(filter) {
-  return { labels: { color: colour("ink"), usePointStyle: true, pointStyle: "line", filter: filter || (() => true) } };
+function legend() {
+  return { labels: { color: colour("ink"), usePointStyle: true, pointStyle: "line" } };
 }
 
 function curve(label, points, lineColour, more) {

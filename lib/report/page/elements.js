@@ -57,15 +57,6 @@ function slider(label, onchange) {
   return { input, setCount };
 }
 
-// Charts draw on until they are told that they are gone.
-function replaceContent(holder, ...children) {
-  for (const canvas of holder.querySelectorAll("canvas")) {
-    const chart = Chart.getChart(canvas);
-    if (chart) chart.destroy();
-  }
-  holder.replaceChildren(...children);
-}
-
 // rows: arrays of cells, each a text or {text, best}.
 function table(header, rows, attributesOfRow) {
   const cell = (content) => typeof content === "object" && content !== null && !(content instanceof Node)

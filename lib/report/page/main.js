@@ -17,7 +17,7 @@ function showDataset(page) {
     const maps = detailed.filter(({ solver }) => solver);
     if (maps.length > 0) added("stages").append(convergenceChart(maps));
   }
-  added("numbers").before(contents([...document.querySelectorAll("main > section")]));
+  document.querySelector("main > section").before(contents([...document.querySelectorAll("main > section")]));
 }
 
 showDataset(JSON.parse(document.getElementById("data").textContent));

@@ -252,15 +252,11 @@ function mapWithPanel(page) {
 
 function mapSection(page, variants) {
   const made = mapWithPanel(page);
-  if (!made) return section("map", "Map", element("p", {}, "This browser has no WebGL, which the map needs."));
+  if (!made) return section("map", "Map in three dimensions", element("p", {}, "This browser has no WebGL, which the map needs."));
   const { view, panel, explain } = made;
   let variant = variants[0], frame = 0;
-  const above = element("div"), caption = element("span", { class: "faint" });
+  const caption = element("span", { class: "faint" });
   const framesOf = () => page.sequences[variant.sequence].frames;
-  const drawAll = () => {
-    view.show(variant, frame);
-    replaceContent(above, topDownChart(page, variant, view.segment));
-  };
   const say = () => {
     const { id, segment } = framesOf()[frame];
     const { segments } = page.sequences[variant.sequence];
@@ -269,7 +265,7 @@ function mapSection(page, variants) {
   const { input, setCount } = slider("camera", (i) => {
     frame = i;
     if (framesOf()[frame].segment === view.segment) view.moveTo(frame);
-    else drawAll();
+    else view.show(variant, frame);
     say();
   });
   const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => {
@@ -278,15 +274,14 @@ function mapSection(page, variants) {
     setCount(framesOf().length, frame);
     view.picked = null;
     explain();
-    drawAll();
+    view.show(variant, frame);
     say();
   });
   const toggle = (label, key, name) =>
     checkbox(label, key, true, (on) => { view.shows[name] = on; view.show(variant, frame); });
-  return section("map", "Map",
+  return section("map", "Map in three dimensions",
     element("div", { class: "bar" }, choose, toggle("ground truth", "truth", "truth"), toggle("planes", "faint", "grid"),
       toggle("camera", "detection", "trajectory")),
     element("div", { class: "bar" }, input, caption),
-    element("div", { class: "map" }, view.canvas, panel), mapRemarks(page.sequences[variant.sequence]),
-    element("h3", {}, "From above"), above);
+    element("div", { class: "map" }, view.canvas, panel), mapRemarks(page.sequences[variant.sequence]));
 }

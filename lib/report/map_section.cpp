@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/map_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "artefact/json_file.h"
+#include "artefact/landmarks_file.h"
+#include "base/paths.h"
+#include "inspection/projection.h"
+#include "report/map_words.h"
+#include "report/not_placed.h"
+#include "report/page_geometry.h"
+#include "report/page_html.h"
+#include "report/plan_view.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr size_t kMaxPlaced = 100, kMaxNotPlaced = 40;
+
+// What is drawn of a thing: its best box, with the outline of its body or the box.
+struct Picture {
+  Crop crop;
+  Polygon outline;
+  bool is_body = false;   // the outline is that of the landmark
+  std::string jpeg = {};  // base 64; empty where there is none
+};
+
+Polygon Corners(const Box& box) {
+  return {{box.x_min, box.y_min},
+          {box.x_max, box.y_min},
+          {box.x_max, box.y_max},
+          {box.x_min, box.y_max}};
+}
+
+// The part of the image around a box, no flatter or slimmer than a picture should be.
+cv::Rect Around(const Box& box, const Camera& camera) {
+  constexpr double kMargin = 0.15, kMaxAspect = 1.6, kMinAspect = 0.6;
+  const double margin = kMargin * std::max(box.Width(), box.Height());
+  double width = box.Width() + 2.0 * margin, height = box.Height() + 2.0 * margin;
+  height = std::max(height, width / kMaxAspect);
+  width = std::max(width, height * kMinAspect);
+  const Eigen::Vector2d centre = box.Centre();
+  const auto inside = [](double pixel, int size) {
+    return static_cast<int>(std::clamp(std::round(pixel), 0.0, static_cast<double>(size)));
+  };
+  return {cv::Point(inside(centre.x() - 0.5 * width, camera.width),
+                    inside(centre.y() - 0.5 * height, camera.height)),
+          cv::Point(inside(centre.x() + 0.5 * width, camera.width),
+                    inside(centre.y() + 0.5 * height, camera.height))};
+}
+
+// The largest box that is whole, or else the largest, among the frames with an image.
+const SeenBox* BestBox(const std::vector<SeenBox>& boxes, const ImageSource& images) {
+  const auto rank = [](const SeenBox& seen) {
+    return std::pair(seen.is_whole, seen.box.Width() * seen.box.Height());
+  };
+  const SeenBox* best = nullptr;
+  for (const SeenBox& seen : boxes) {
+    if (!images.has(seen.frame_index)) continue;
+    if (best == nullptr || rank(seen) > rank(*best)) best = &seen;
+  }
+  return best;
+}
+
+Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
+                  const Sequence& sequence) {
+  const SeenBox* best = BestBox(boxes, images);
+  if (best == nullptr) return {};
+  const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(best->frame_index)]);
+  return {{best->frame_index, Around(best->box, camera)}, Corners(best->box)};
+}
+
+// A thing in one of the section's lists.
+struct Entry {
+  std::string id;  // of its picture
+  std::string name;
+  std::vector<std::string> lines;
+  Picture picture;
+};
+
+std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
+  const Picture& picture = entry.picture;
+  if (picture.jpeg.empty()) return "<span class=\"picture\"></span>";
+  const cv::Rect& part = picture.crop.part;
+  std::string points;
+  for (const Eigen::Vector2d& pixel : picture.outline) {
+    points += fmt::format("{:.1f},{:.1f} ", pixel.x() + 0.5 - part.x, pixel.y() + 0.5 - part.y);
+  }
+  // The inner element is what plans show as well.
+  return fmt::format(
+      "<svg class=\"picture\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2} in frame {3}\">"
+      "<svg id=\"{4}\" class=\"on-image\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">"
+      "<image width=\"{0}\" height=\"{1}\" href=\"data:image/jpeg;base64,{5}\"/>"
+      "<polygon class=\"{6}\" points=\"{7}\"/></svg></svg>",
+      part.width, part.height, HtmlText(entry.name),
+      sequence.frames[static_cast<size_t>(picture.crop.frame_index)].id, entry.id, picture.jpeg,
+      picture.is_body ? "estimate" : "detection", points);
+}
+
+std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& sequence) {
+  std::string html = "<ul class=\"things\">\n";
+  for (const Entry& entry : entries) {
+    html += fmt::format("<li>{}<div><strong>{}</strong>", PictureSvg(entry, sequence),
+                        HtmlText(entry.name));
+    for (const std::string& line : entry.lines) {
+      if (!line.empty()) html += "<br>" + HtmlText(line);
+    }
+    html += "</div></li>\n";
+  }
+  return html + "</ul>\n";
+}
+
+void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* entries) {
+  std::vector<Crop> crops;
+  for (const Entry& entry : *entries) crops.push_back(entry.picture.crop);
+  std::vector<std::string> jpegs = EncodeCrops(crops, images, threads);
+  for (size_t i = 0; i < jpegs.size(); ++i) (*entries)[i].picture.jpeg = std::move(jpegs[i]);
+}
+
+std::string AndMore(size_t more) {
+  return more == 0 ? "" : fmt::format("<p class=\"faint\">And {} more.</p>\n", more);
+}
+
+// What the section is made of.
+class MapOfVariant {
+ public:
+  MapOfVariant(const fs::path& folder, const Sequence& sequence, const ImageSource& images)
+      : folder_(folder), sequence_(sequence), images_(images) {
+    map_ = ReadMap(folder / "map.json", sequence);
+    json world;
+    if (Exists(folder / "world.json")) world = ReadArtefact(folder / "world.json", "world");
+    scale_ = ScaleFromWorld(world, sequence);
+    for (const ObjectEstimate& estimate : map_.objects) {
+      if (estimate.landmark_in_world) placed_.push_back(&estimate);
+    }
+  }
+
+  std::string Html(int threads) {
+    std::vector<Entry> entries = PlacedEntries();
+    AddPictures(images_, threads, &entries);
+    std::string html = "<section id=\"overview\">\n<h2>Map</h2>\n<p>";
+    html += fmt::format("{} in {}.", Counted(placed_.size(), "object"),
+                        Counted(sequence_.frames.size(), "image"));
+    if (!scale_.sentence.empty()) html += " " + HtmlText(scale_.sentence);
+    html += "</p>\n";
+    if (!placed_.empty()) {
+      html += PlanHtml(entries) +
+              "<h3>Objects</h3>\n<p class=\"faint\">Width × depth × height, and by how "
+              "much each may be off (95 %) if the label is right.</p>\n" +
+              EntriesHtml(entries, sequence_);
+      html += AndMore(placed_.size() - entries.size());
+    }
+    return html + NotPlacedHtml(threads) + "</section>\n";
+  }
+
+ private:
+  std::vector<Entry> PlacedEntries() const {
+    const auto detections = DetectionsByObject(sequence_);
+    std::vector<Entry> entries;
+    for (const ObjectEstimate* estimate : placed_) {
+      if (entries.size() == kMaxPlaced) break;
+      const auto index = static_cast<size_t>(estimate->object_index);
+      const Object& object = sequence_.objects[index];
+      Entry entry{fmt::format("picture-{}", entries.size()),
+                  fmt::format("{} {}", object.label, object.id),
+                  {LabelsInWords(object), SizeInWords(*estimate, scale_),
+                   fmt::format("{}; {}", SupportInWords(*estimate, sequence_, map_, scale_),
+                               Counted(static_cast<size_t>(estimate->observations), "view"))},
+                  PictureOf(BoxesOf(sequence_, detections[index]), images_, sequence_)};
+      DrawBody(*estimate, &entry.picture);
+      entries.push_back(std::move(entry));
+    }
+    return entries;
+  }
+
+  // The outline of the body in place of the box, if the camera sees all of it.
+  void DrawBody(const ObjectEstimate& estimate, Picture* picture) const {
+    if (picture->crop.part.empty()) return;
+    const auto frame = static_cast<size_t>(picture->crop.frame_index);
+    Polygon outline = OutlinePolygon(
+        sequence_.CameraOf(sequence_.frames[frame]),
+        Transform(map_.world_from_camera[frame].Inverse(), *estimate.landmark_in_world));
+    if (outline.empty()) return;
+    picture->outline = std::move(outline);
+    picture->is_body = true;
+  }
+
+  // Of the segment of the first object.
+  std::string PlanHtml(const std::vector<Entry>& entries) const {
+    const int segment = SegmentOf(sequence_, placed_.front()->object_index);
+    const Eigen::Vector3d up = UpOfSegment(sequence_, segment);
+    std::vector<Eigen::Vector3d> centres, cameras;
+    std::vector<size_t> shown;
+    for (size_t i = 0; i < entries.size(); ++i) {
+      if (SegmentOf(sequence_, placed_[i]->object_index) != segment) continue;
+      shown.push_back(i);
+      centres.push_back(placed_[i]->landmark_in_world->Centre());
+    }
+    for (size_t i = 0; i < sequence_.frames.size(); ++i) {
+      if (sequence_.frames[i].segment != segment) continue;
+      cameras.push_back(map_.world_from_camera[i].translation);
+    }
+    const PlanAxes axes = AxesOfPlan(up, SceneAxis(up), centres, cameras);
+    Plan plan;
+    plan.in_metres = scale_.in_metres;
+    for (const Eigen::Vector3d& camera : cameras) plan.cameras.push_back(axes.Place(camera));
+    for (const size_t i : shown) plan.objects.push_back(OnPlan(entries[i], *placed_[i], axes, up));
+    return PlanFigure(plan);
+  }
+
+  std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& up) const {
+    for (const SupportPlane& plane : sequence_.planes) {
+      if (plane.scene_axis_in_world && plane.plane_in_world.normal.dot(up) > kLevel) {
+        return plane.scene_axis_in_world;
+      }
+    }
+    return std::nullopt;
+  }
+
+  static PlanObject OnPlan(const Entry& entry, const ObjectEstimate& estimate, const PlanAxes& axes,
+                           const Eigen::Vector3d& up) {
+    const Landmark& landmark = *estimate.landmark_in_world;
+    PlanObject object{entry.name, Footprint(landmark, axes),
+                      up.dot(FindSupportPoint(landmark, up).point)};
+    if (entry.picture.jpeg.empty()) return object;
+    object.picture = entry.id;
+    const cv::Rect& part = entry.picture.crop.part;
+    object.picture_aspect = static_cast<double>(part.width) / part.height;
+    return object;
+  }
+
+  static std::string PlanFigure(const Plan& plan) {
+    return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) +
+           "<figcaption>Seen from above. <span class=\"key\" style=\"background: "
+           "var(--estimate)\"></span> objects, <span class=\"key\" style=\"background: "
+           "var(--detection)\"></span> path of the camera from its first place "
+           "(dot).</figcaption>\n</figure>\n";
+  }
+
+  std::string NotPlacedHtml(int threads) const {
+    std::vector<Entry> entries;
+    size_t single = 0, more = 0;
+    for (const NotPlaced& thing : ThingsNotPlaced(folder_, map_, sequence_)) {
+      if (thing.boxes.size() < 2) {
+        ++single;
+      } else if (entries.size() == kMaxNotPlaced) {
+        ++more;
+      } else {
+        entries.push_back({fmt::format("seen-{}", entries.size()),
+                           thing.label,
+                           {fmt::format("{} boxes", thing.boxes.size()), thing.reason},
+                           PictureOf(thing.boxes, images_, sequence_)});
+      }
+    }
+    if (entries.empty() && single == 0) return "";
+    AddPictures(images_, threads, &entries);
+    std::string html = "<h3>Seen but not placed</h3>\n";
+    if (!entries.empty()) html += EntriesHtml(entries, sequence_);
+    html += AndMore(more);
+    if (single > 0) {
+      html += fmt::format(
+          "<p class=\"faint\">{} detected in one image only.</p>\n",
+          single == 1 ? "One more thing was" : fmt::format("{} more things were", single));
+    }
+    return html;
+  }
+
+  const fs::path& folder_;
+  const Sequence& sequence_;
+  const ImageSource& images_;
+  MapEstimate map_;
+  ScaleOfMap scale_;
+  std::vector<const ObjectEstimate*> placed_;
+};
+
+}  // namespace
+
+std::string MapSection(const fs::path& folder, const Sequence& sequence, const ImageSource& images,
+                       int threads) {
+  return MapOfVariant(folder, sequence, images).Html(threads);
+}
+
+}  // namespace soslam

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/map_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "report/page_geometry.h"
+#include "report/plan_view.h"
+
+namespace soslam {
+
+using nlohmann::json;
+
+std::string Counted(size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+double HalfInterval95(double log_sigma) { return std::expm1(1.96 * log_sigma); }
+
+namespace {
+
+std::vector<std::string> SourcesOfScale(const json& scale) {
+  std::vector<std::string> sources;
+  for (const json& source : scale.at("found_by")) {
+    if (source == "objects") {
+      sources.push_back("the usual heights of " +
+                        Counted(scale.at("objects").get<size_t>(), "object"));
+    } else {
+      sources.emplace_back(source == "scale" ? "the scale given" : "the camera's height given");
+    }
+  }
+  return sources;
+}
+
+}  // namespace
+
+ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
+  constexpr const char* kNoUnit =
+      "Nothing tells the scale of this map: lengths have no unit, only their proportions count.";
+  ScaleOfMap scale;
+  if (world.is_null()) {
+    scale.in_metres = sequence.odometry_world != OdometryWorld::kOwnWithScale;
+    if (!scale.in_metres) scale.sentence = kNoUnit;
+    return scale;
+  }
+  const json& found = world.at("scale");
+  scale.in_metres = !found.is_null();
+  scale.sentence = kNoUnit;
+  if (scale.in_metres) {
+    scale.log_sigma = found.at("log_sigma").get<double>();
+    const auto low = found.at("interval_95").at(0).get<double>();
+    const auto high = found.at("interval_95").at(1).get<double>();
+    scale.sentence =
+        fmt::format("Scale ± {:.0f} % (95 %), from {}.", 100.0 * (std::sqrt(high / low) - 1.0),
+                    fmt::join(SourcesOfScale(found), " and "));
+  }
+  scale.sentence += fmt::format(" Up ± {:.1f}° (one standard deviation).",
+                                world.at("up").at("sigma_deg").get<double>());
+  return scale;
+}
+
+int SegmentOf(const Sequence& sequence, int object_index) {
+  for (const Detection& detection : sequence.detections) {
+    if (detection.object_index == object_index) return sequence.FrameOf(detection).segment;
+  }
+  return 0;
+}
+
+std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale) {
+  std::string sizes, intervals;
+  for (const int axis : {1, 0, 2}) {  // width, depth, height
+    const double size = 2.0 * estimate.landmark_in_world->half_axes[axis];
+    const double shown = scale.in_metres ? 100.0 * size : size;
+    const int decimals = !scale.in_metres ? 2 : shown < 10.0 ? 1 : 0;
+    const char* separator = sizes.empty() ? "" : "\u00a0×\u00a0";
+    sizes += fmt::format("{}{:.{}f}", separator, shown, decimals);
+    if (!estimate.covariance) continue;
+    const double variance = (*estimate.covariance)(6 + axis, 6 + axis);
+    const double log_sigma = std::sqrt(variance + scale.log_sigma * scale.log_sigma);
+    intervals += fmt::format("{}{:.{}f}", separator, shown * HalfInterval95(log_sigma), decimals);
+  }
+  if (scale.in_metres) sizes += "\u00a0cm";
+  return intervals.empty() ? sizes : fmt::format("{} (±\u00a0{})", sizes, intervals);
+}
+
+std::string LabelsInWords(const Object& object) {
+  constexpr double kLeast = 0.1, kCertain = 0.995;
+  std::string own, others;
+  for (const auto& [label, probability] : object.labels) {
+    if (label == object.label && probability < kCertain) {
+      own = fmt::format("{} {:.0f} %", label, 100.0 * probability);
+    } else if (label != object.label && probability >= kLeast) {
+      others += fmt::format(", or {} {:.0f} %", label, 100.0 * probability);
+    }
+  }
+  return own + others;
+}
+
+namespace {
+
+// Height of things that stand on floors but hardly on tables.
+constexpr double kStandsOnFloorM = 0.65;
+
+// The level planes on which there are objects in a segment, as indices.
+std::set<int> LevelPlanesOf(const Sequence& sequence, const MapEstimate& map, int segment) {
+  const Eigen::Vector3d up = UpOfSegment(sequence, segment);
+  std::set<int> planes;
+  for (const Detection& detection : sequence.detections) {
+    const int plane = sequence.ObjectOf(detection).plane_index;
+    if (plane == kNoPlane || sequence.FrameOf(detection).segment != segment) continue;
+    if (map.planes_in_world[static_cast<size_t>(plane)].normal.dot(up) > kLevel) {
+      planes.insert(plane);
+    }
+  }
+  return planes;
+}
+
+bool HasTallObject(const Sequence& sequence, const MapEstimate& map, int plane) {
+  return std::ranges::any_of(map.objects, [&](const ObjectEstimate& estimate) {
+    return estimate.landmark_in_world &&
+           sequence.objects[static_cast<size_t>(estimate.object_index)].plane_index == plane &&
+           2.0 * estimate.landmark_in_world->half_axes.z() > kStandsOnFloorM;
+  });
+}
+
+}  // namespace
+
+std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
+                           const MapEstimate& map, const ScaleOfMap& scale) {
+  const int own = sequence.objects[static_cast<size_t>(estimate.object_index)].plane_index;
+  if (own == kNoPlane) return "support unknown";
+  const int segment = SegmentOf(sequence, estimate.object_index);
+  const std::set<int> level = LevelPlanesOf(sequence, map, segment);
+  if (!level.contains(own)) return "on a wall or ceiling";
+  const auto height_above = [&](int plane) {
+    return map.planes_in_world[static_cast<size_t>(plane)].SignedDistance(
+        estimate.landmark_in_world->Centre());
+  };
+  const int lowest = *std::ranges::max_element(level, {}, height_above);
+  const bool is_floor = scale.in_metres && HasTallObject(sequence, map, lowest);
+  const std::string name = is_floor           ? "the floor"
+                           : level.size() > 1 ? "the lowest plane"
+                                              : "the support plane";
+  if (lowest == own) return "on " + name;
+  double height = height_above(lowest) - height_above(own);
+  if (scale.in_metres) height = std::round(100.0 * height) / 100.0;
+  return fmt::format("on plane {}, {} above {}", sequence.planes[static_cast<size_t>(own)].id,
+                     LengthInWords(height, scale.in_metres), name);
+}
+
+}  // namespace soslam

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// What a map says of an object, in words.
+
+// "1 object", "2 objects"
+std::string Counted(size_t count, const char* what);
+
+// The scale of a map's world.
+struct ScaleOfMap {
+  bool in_metres = true;
+  double log_sigma = 0.0;  // standard deviation of the logarithm of the scale; 0: exact
+  std::string sentence;    // empty where scale and up are given
+};
+
+// `world`: world.json, or null without it.
+ScaleOfMap ScaleFromWorld(const nlohmann::json& world, const Sequence& sequence);
+
+// Half the 95 % interval of a quantity, as a part of it, by the standard deviation of its
+// logarithm: exp(1.96 sigma) - 1, the longer of its two sides.
+double HalfInterval95(double log_sigma);
+
+// Width, depth and height with their 95 % intervals: "52 × 61 × 86 cm (± 5 × 6 × 8)". The
+// covariance of a map is for the scale that it has; the error of the scale is independent.
+std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale);
+
+// "chair 62 %, or sofa 21 %": alternatives of at least 10 %; empty where the label is certain.
+std::string LabelsInWords(const Object& object);
+
+// The segment in which an object was detected.
+int SegmentOf(const Sequence& sequence, int object_index);
+
+// Least cosine of the angle between up and the normal of a plane that is no wall.
+inline constexpr double kLevel = 0.7;
+
+// "on the floor", "on plane 2, 72 cm above the floor", ... The lowest plane is called the floor if
+// one of its objects is too tall for a table.
+std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
+                           const MapEstimate& map, const ScaleOfMap& scale);
+
+}  // namespace soslam

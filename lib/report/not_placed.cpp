@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/not_placed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "artefact/json_file.h"
+#include "artefact/landmarks_file.h"
+#include "base/error.h"
+#include "base/paths.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string WithBlanks(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+const json& TrackAt(const json& tracks, const json& index) {
+  if (index.is_number() && index.get<size_t>() < tracks.size()) return tracks[index.get<size_t>()];
+  throw InputError(fmt::format("associations.json: found track {} of {}; expected one in the list",
+                               index.dump(), tracks.size()));
+}
+
+// The row of the track that has the boxes of this one after merging.
+const json& AfterMerging(const json& tracks, const json& index) {
+  const json* row = &TrackAt(tracks, index);
+  for (size_t merges = 0; merges < tracks.size() && row->at("merge").is_object(); ++merges) {
+    row = &TrackAt(tracks, row->at("merge").at("into_track"));
+  }
+  return *row;
+}
+
+std::string MostFrequent(const std::map<std::string, int>& counts) {
+  return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
+}
+
+int FrameIdOf(const Sequence& sequence, const RejectedDetection& rejected) {
+  return sequence.frames[static_cast<size_t>(rejected.frame_index)].id;
+}
+
+// Rejected detections have no record of the edges that are cut off.
+SeenBox BoxOf(const Sequence& sequence, const RejectedDetection& rejected) {
+  const Camera& camera =
+      sequence.CameraOf(sequence.frames[static_cast<size_t>(rejected.frame_index)]);
+  constexpr double kMarginPx = 2.0;
+  return {rejected.frame_index, rejected.box,
+          DistanceToBorder(rejected.box, camera.width, camera.height) > kMarginPx};
+}
+
+}  // namespace
+
+std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& detections) {
+  std::vector<SeenBox> boxes;
+  for (const int index : detections) {
+    const Detection& seen = sequence.detections[static_cast<size_t>(index)];
+    boxes.push_back({seen.frame_index, seen.box, std::ranges::count(seen.is_bound, true) == 0});
+  }
+  return boxes;
+}
+
+std::string FateInWords(const json& track, const json& settings) {
+  const auto fate = track.at("fate").get<std::string>();
+  if (fate == "too_few_detections") {
+    return fmt::format("seen too rarely: fewer than {} boxes show three of its edges",
+                       settings.value("min_observations", json()).dump());
+  }
+  if (fate == "rarely_detected") {
+    return fmt::format("detected in only {} of the {} images that should show it",
+                       track.at("detections").dump(), track.at("frames_in_sight").dump());
+  }
+  const std::map<std::string, std::string> words = {
+      {"never_whole", "no image shows it whole"},
+      {"no_landmark", "its boxes do not agree on one body"},
+      {"no_support", "it fits better above or below all support planes: it may hang on a wall"},
+      {"moves", "things of this kind move"},
+      {"low_scores", "the detector was never sure of it"}};
+  const auto found = words.find(fate);
+  return found == words.end() ? WithBlanks(fate) : found->second;
+}
+
+std::string FailureInWords(const std::string& failure) {
+  const std::map<std::string, std::string> words = {
+      {kMovingObject, "it moves, or may move"},
+      {"collapsed", "its size vanished in the optimisation"},
+      {"not_determined_by_its_views", "its views are too alike to tell how far away it is"},
+      {"fewer_than_three_views", "seen in fewer than three images"},
+      {"fewer_than_three_measured_edges", "too many of its edges are cut off"},
+      {"no_ratio_for_label", "the semantic table does not have its label"},
+      {"no_finite_quadric", "its boxes do not agree on one body"},
+      {"no_solution", "its boxes do not agree on one body"}};
+  const auto found = words.find(failure);
+  if (found != words.end()) return found->second;
+  return failure.empty() || failure == "no_start" ? "no initial estimate" : WithBlanks(failure);
+}
+
+std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& sequence) {
+  std::vector<const RejectedDetection*> rejected;
+  for (const RejectedDetection& detection : sequence.rejected) {
+    if (detection.stage == RejectingStage::kAssociate) rejected.push_back(&detection);
+  }
+  if (rejected.empty()) return {};
+  std::map<const json*, NotPlaced> left_out;  // by row of the track, in the order of the list
+  std::map<const json*, std::map<std::string, int>> labels;
+  auto next = rejected.begin();  // unused detections are in the same order in both files
+  const InputError other("associations.json: its unused detections are not those of sequence.json");
+  for (const json& detection : associations.at("detections")) {
+    if (!detection.at("object").is_null()) continue;
+    if (next == rejected.end() || detection.at("frame") != FrameIdOf(sequence, **next)) throw other;
+    const RejectedDetection& seen = **next++;
+    if (detection.at("track").is_null()) continue;  // a second box of something
+    const json* track = &AfterMerging(associations.at("tracks"), detection.at("track"));
+    if (track->at("fate") == "object") continue;
+    left_out[track].boxes.push_back(BoxOf(sequence, seen));
+    ++labels[track][seen.label];
+  }
+  if (next != rejected.end()) throw other;
+  std::vector<NotPlaced> things;
+  for (auto& [track, thing] : left_out) {
+    thing.label = MostFrequent(labels[track]);
+    thing.reason = FateInWords(*track, associations.at("artefact").at("settings"));
+    things.push_back(std::move(thing));
+  }
+  return things;
+}
+
+namespace {
+
+// Why objects have no initial estimate, by their index in the sequence: the reason of the object,
+// or the most frequent one of its observations.
+std::map<int, std::string> InitialFailures(const fs::path& folder, const Sequence& sequence) {
+  std::map<int, std::string> failures;
+  const char* file = Exists(folder / "refined.json") ? "refined.json" : "initial.json";
+  if (!Exists(folder / file)) return failures;
+  const LandmarkEstimates initial = ReadLandmarks(folder / file, sequence);
+  std::map<int, std::map<std::string, int>> counts;
+  for (const ObservationEstimate& estimate : initial.observations) {
+    if (estimate.failure.empty()) continue;
+    const Detection& seen = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+    ++counts[seen.object_index][estimate.failure];
+  }
+  for (const auto& [object, reasons] : counts) failures[object] = MostFrequent(reasons);
+  for (const ObjectEstimate& estimate : initial.objects) {
+    if (!estimate.failure.empty()) failures[estimate.object_index] = estimate.failure;
+  }
+  return failures;
+}
+
+std::vector<NotPlaced> ObjectsLeftOut(const fs::path& folder, const MapEstimate& map,
+                                      const Sequence& sequence) {
+  std::vector<std::string> failures(sequence.objects.size());
+  std::vector<bool> is_placed(sequence.objects.size());
+  for (const ObjectEstimate& estimate : map.objects) {
+    const auto index = static_cast<size_t>(estimate.object_index);
+    is_placed[index] = estimate.landmark_in_world.has_value();
+    failures[index] = estimate.failure;
+  }
+  const std::map<int, std::string> initial = InitialFailures(folder, sequence);
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<NotPlaced> things;
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    if (is_placed[i] || detections[i].empty()) continue;
+    NotPlaced thing{sequence.objects[i].label, {}, {}};
+    const auto found = initial.find(static_cast<int>(i));
+    const bool is_initial =
+        found != initial.end() && (failures[i].empty() || failures[i] == "no_start");
+    thing.reason = FailureInWords(is_initial ? found->second : failures[i]);
+    thing.boxes = BoxesOf(sequence, detections[i]);
+    things.push_back(std::move(thing));
+  }
+  return things;
+}
+
+}  // namespace
+
+std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate& map,
+                                       const Sequence& sequence) {
+  std::vector<NotPlaced> things = ObjectsLeftOut(folder, map, sequence);
+  if (Exists(folder / "associations.json")) {
+    const json associations = ReadArtefact(folder / "associations.json", "associations");
+    for (NotPlaced& thing : TracksLeftOut(associations, sequence)) {
+      things.push_back(std::move(thing));
+    }
+  }
+  std::ranges::stable_sort(things, std::greater<>(),
+                           [](const NotPlaced& thing) { return thing.boxes.size(); });
+  return things;
+}
+
+}  // namespace soslam

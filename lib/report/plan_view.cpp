@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/plan_view.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <opencv2/core/types.hpp>
+
+#include "report/page_html.h"
+
+namespace soslam {
+namespace {
+
+using Points = std::vector<Eigen::Vector2d>;
+using Rectangle = cv::Rect2d;  // px
+
+Eigen::AlignedBox2d BoundsOf(const Points& points) {
+  Eigen::AlignedBox2d bounds;
+  for (const Eigen::Vector2d& point : points) bounds.extend(point);
+  return bounds;
+}
+
+Points Placed(const PlanAxes& axes, const std::vector<Eigen::Vector3d>& points) {
+  Points placed;
+  for (const Eigen::Vector3d& point : points) placed.push_back(axes.Place(point));
+  return placed;
+}
+
+double MeanAway(const Points& points) {
+  double sum = 0.0;
+  for (const Eigen::Vector2d& point : points) sum += point.y();
+  return sum / static_cast<double>(points.size());
+}
+
+}  // namespace
+
+PlanAxes AxesOfPlan(const Eigen::Vector3d& up, const std::optional<Eigen::Vector3d>& scene_axis,
+                    const std::vector<Eigen::Vector3d>& objects,
+                    const std::vector<Eigen::Vector3d>& cameras) {
+  Eigen::Index level = 0;
+  up.cwiseAbs().minCoeff(&level);
+  const Eigen::Vector3d axis = scene_axis.value_or(Eigen::Vector3d::Unit(level));
+  PlanAxes axes;
+  axes.right = (axis - up.dot(axis) * up).normalized();
+  axes.away = up.cross(axes.right);
+  Points all = Placed(axes, objects);
+  const Points path = Placed(axes, cameras);
+  all.insert(all.end(), path.begin(), path.end());
+  if (all.empty()) return axes;
+  const Eigen::Vector2d extent = BoundsOf(all).sizes();
+  if (extent.y() > extent.x()) axes = {axes.away, -axes.right};
+  if (objects.empty() || cameras.empty()) return axes;
+  if (MeanAway(Placed(axes, cameras)) > MeanAway(Placed(axes, objects))) {
+    axes = {-axes.right, -axes.away};
+  }
+  return axes;
+}
+
+Points Footprint(const Landmark& landmark_in_world, const PlanAxes& axes) {
+  constexpr int kDirections = 72;
+  constexpr double kSame = 0.004;  // of the longest half axis; corners are not quite sharp
+  const double same = kSame * landmark_in_world.half_axes.maxCoeff();
+  Points footprint;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = 2.0 * std::numbers::pi * (i + 0.5) / kDirections;
+    const Eigen::Vector3d direction = std::cos(angle) * axes.right + std::sin(angle) * axes.away;
+    const Eigen::Vector2d point = axes.Place(FindSupportPoint(landmark_in_world, direction).point);
+    if (footprint.empty() || (point - footprint.back()).norm() > same) footprint.push_back(point);
+  }
+  if ((footprint.front() - footprint.back()).norm() <= same) footprint.pop_back();
+  return footprint;
+}
+
+double RoundLength(double length) {
+  const double power = std::pow(10.0, std::floor(std::log10(length) + 1e-9));
+  for (const double digit : {5.0, 2.0}) {
+    if (digit * power <= length * (1.0 + 1e-9)) return digit * power;
+  }
+  return power;
+}
+
+std::string LengthInWords(double length, bool in_metres) {
+  if (!in_metres) return fmt::format("{:.3g}", length);
+  if (length >= 100.0) return fmt::format("{:.0f} m", length);
+  return length < 1.0 ? fmt::format("{:.3g} cm", 100.0 * length) : fmt::format("{:.3g} m", length);
+}
+
+namespace {
+
+// From the plan to the screen.
+struct Screen {
+  double scale = 1.0;  // px per unit of the world
+  Eigen::Vector2d top_left = Eigen::Vector2d::Zero();
+  double width = 0.0, height = 0.0;
+
+  Eigen::Vector2d Place(const Eigen::Vector2d& point) const {
+    return {scale * (point.x() - top_left.x()), scale * (top_left.y() - point.y())};
+  }
+  Points Place(const Points& points) const {
+    Points placed;
+    for (const Eigen::Vector2d& point : points) placed.push_back(Place(point));
+    return placed;
+  }
+};
+
+Screen ScreenOf(const Plan& plan, const PlanFormat& format) {
+  Points all = plan.cameras;
+  for (const PlanObject& object : plan.objects) {
+    all.insert(all.end(), object.footprint.begin(), object.footprint.end());
+  }
+  const Eigen::AlignedBox2d bounds = BoundsOf(all);
+  const Eigen::Vector2d size = bounds.sizes().cwiseMax(1e-9);
+  const Eigen::Vector2d room =
+      Eigen::Vector2d(format.width, format.max_height).array() - 2.0 * format.margin;
+  Screen screen;
+  screen.scale = (room.array() / size.array()).minCoeff();
+  screen.width = format.width;
+  // Not much flatter than a strip, so that there is room for names.
+  screen.height = std::max(screen.scale * size.y() + 2.0 * format.margin, 0.35 * format.width);
+  screen.top_left = bounds.center() + Eigen::Vector2d(-0.5 * screen.width / screen.scale,
+                                                      0.5 * screen.height / screen.scale);
+  return screen;
+}
+
+std::string PointsText(const Points& points) {
+  std::string text;
+  for (const Eigen::Vector2d& point : points) {
+    text += fmt::format("{}{:.1f},{:.1f}", text.empty() ? "" : " ", point.x(), point.y());
+  }
+  return text;
+}
+
+std::string GridLines(const Screen& screen) {
+  const double step = RoundLength(std::max(0.09 * screen.width, 60.0) / screen.scale);
+  std::string path;
+  const double right = screen.top_left.x() + screen.width / screen.scale;
+  const double bottom = screen.top_left.y() - screen.height / screen.scale;
+  for (double x = std::ceil(screen.top_left.x() / step) * step; x <= right; x += step) {
+    path +=
+        fmt::format("M{:.1f} 0V{:.1f}", screen.scale * (x - screen.top_left.x()), screen.height);
+  }
+  for (double y = std::ceil(bottom / step) * step; y <= screen.top_left.y(); y += step) {
+    path += fmt::format("M0 {:.1f}H{:.1f}", screen.scale * (screen.top_left.y() - y), screen.width);
+  }
+  return fmt::format("<path class=\"grid-lines\" d=\"{}\"/>\n", path);
+}
+
+std::string ScaleBar(const Plan& plan, const Screen& screen, const PlanFormat& format) {
+  const double length = RoundLength(0.25 * screen.width / screen.scale);
+  const double x = format.font, y = screen.height - 0.8 * format.font;
+  return fmt::format(
+      "<path class=\"bar-line\" d=\"M{:.1f} {:.1f}v-6m0 3h{:.1f}m0 -3v6\"/>\n"
+      "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+      x, y + 3.0, screen.scale * length, x + 5.0, y - 5.0,
+      HtmlText(LengthInWords(length, plan.in_metres)));
+}
+
+std::string CameraPath(const Plan& plan, const Screen& screen) {
+  if (plan.cameras.empty()) return "";
+  const Points path = screen.Place(plan.cameras);
+  return fmt::format(
+      "<polyline class=\"path\" points=\"{}\"/>\n"
+      "<circle class=\"path\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>\n",
+      PointsText(path), path.front().x(), path.front().y());
+}
+
+// The indices of the objects, the lowest first.
+std::vector<size_t> LowestFirst(const std::vector<PlanObject>& objects) {
+  std::vector<size_t> order(objects.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {}, [&](size_t i) { return objects[i].top; });
+  return order;
+}
+
+// At most as many characters as fit beside others.
+std::string Shortened(const std::string& name) {
+  constexpr size_t kMaxBytes = 22;
+  if (name.size() <= kMaxBytes) return name;
+  size_t end = kMaxBytes - 3;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0U) == 0x80U) --end;
+  return name.substr(0, end) + "…";
+}
+
+Rectangle AsRectangle(const Eigen::AlignedBox2d& box) {
+  return {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()};
+}
+
+// A name with its picture above it.
+struct Card {
+  Rectangle place;
+  double picture_height = 0.0;
+};
+
+// Sum of the areas that the rectangle shares with others, px^2.
+double SharedArea(const Rectangle& one, const std::vector<Rectangle>& others) {
+  double area = 0.0;
+  for (const Rectangle& other : others) area += (one & other).area();
+  return area;
+}
+
+// Sum of the parts of others that the rectangle covers.
+double SharesCovered(const Rectangle& one, const std::vector<Rectangle>& others) {
+  double shares = 0.0;
+  for (const Rectangle& other : others) shares += (one & other).area() / other.area();
+  return shares;
+}
+
+// The place near the footprint at which a card of this size covers least.
+Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Screen& screen,
+                    const std::vector<Rectangle>& cards, const std::vector<Rectangle>& footprints) {
+  constexpr int kDirections = 16;
+  constexpr double kStep = 9.0, kPerFootprint = 150.0, kPerPixel = 10.0;
+  const Rectangle whole(2.0, 2.0, screen.width - 4.0, screen.height - 4.0);
+  const double farthest = std::max(screen.width, screen.height);
+  Rectangle best;
+  double least = std::numeric_limits<double>::infinity();
+  for (double distance = 0.0; distance < std::min(farthest, least); distance += kStep) {
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kDirections;
+      Rectangle place(footprint.x + 0.5 * (footprint.width - size.width),
+                      footprint.y + 0.5 * (footprint.height - size.height), size.width,
+                      size.height);
+      place.x = std::clamp(place.x + distance * std::cos(angle), whole.x,
+                           std::max(whole.x, whole.br().x - size.width));
+      place.y = std::clamp(place.y + distance * std::sin(angle), whole.y,
+                           std::max(whole.y, whole.br().y - size.height));
+      const double cost = distance + kPerPixel * SharedArea(place, cards) +
+                          kPerFootprint * SharesCovered(place, footprints);
+      if (cost < least) {
+        least = cost;
+        best = place;
+      }
+    }
+  }
+  return best;
+}
+
+// Cards of all objects with pictures of this height, their area, and the area that two share.
+struct Layout {
+  std::vector<Card> cards;
+  double area = 0.0;
+  double overlap = 0.0;
+};
+
+Layout LayOut(const Plan& plan, const Screen& screen, const PlanFormat& format,
+              double picture_height) {
+  constexpr double kWidthOfLetter = 0.58, kGap = 3.0;
+  Rectangle corner(0.0, screen.height - 3.0 * format.font, 0.0, 3.0 * format.font);
+  corner.width = screen.scale * RoundLength(0.25 * screen.width / screen.scale) + 2.0 * format.font;
+  std::vector<Rectangle> taken = {corner}, footprints;
+  for (const PlanObject& object : plan.objects) {
+    footprints.push_back(AsRectangle(BoundsOf(screen.Place(object.footprint))));
+  }
+  Layout layout;
+  for (size_t i = 0; i < plan.objects.size(); ++i) {
+    const PlanObject& object = plan.objects[i];
+    const double text =
+        kWidthOfLetter * format.font * static_cast<double>(Shortened(object.name).size());
+    Card card;
+    card.picture_height = object.picture.empty() ? 0.0 : picture_height;
+    const double aspect = std::clamp(object.picture_aspect, 0.5, 1.6);
+    const cv::Size2d size(std::max(text, card.picture_height * aspect) + kGap,
+                          card.picture_height + 1.3 * format.font + kGap);
+    card.place = FreePlace(footprints[i], size, screen, taken, footprints);
+    layout.area += card.place.area();
+    layout.overlap += SharedArea(card.place, taken);
+    taken.push_back(card.place);
+    layout.cards.push_back(card);
+  }
+  return layout;
+}
+
+// The line from an object to its card, unless the card is on the object.
+std::string Leader(const Eigen::Vector2d& centre, const Rectangle& card) {
+  const Eigen::Vector2d end(std::clamp(centre.x(), card.x, card.br().x),
+                            std::clamp(centre.y(), card.y, card.br().y));
+  if ((end - centre).norm() < 1.0) return "";
+  return fmt::format(
+      "<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n"
+      "<circle class=\"leader\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>\n",
+      centre.x(), centre.y(), end.x(), end.y(), centre.x(), centre.y());
+}
+
+std::string CardSvg(const PlanObject& object, const Card& card, const PlanFormat& format) {
+  const double middle = card.place.x + 0.5 * card.place.width;
+  std::string svg;
+  if (card.picture_height > 0.0) {
+    const double aspect = std::clamp(object.picture_aspect, 0.5, 1.6);
+    const double width = card.picture_height * aspect;
+    svg += fmt::format(
+        "<use href=\"#{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
+        object.picture, middle - 0.5 * width, card.place.y, width, card.picture_height);
+  }
+  return svg + fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", middle,
+                           card.place.y + card.picture_height + format.font,
+                           HtmlText(Shortened(object.name)));
+}
+
+}  // namespace
+
+std::string PlanSvg(const Plan& plan, const PlanFormat& format) {
+  const Screen screen = ScreenOf(plan, format);
+  constexpr double kMaxShareOfCards = 0.3;  // of the plan, which is to be seen as well
+  Layout layout;
+  for (const double height : format.picture_heights) {
+    layout = LayOut(plan, screen, format, height);
+    const double share = layout.area / (screen.width * screen.height);
+    if (layout.overlap <= 0.0 && share < kMaxShareOfCards) break;
+  }
+  std::string shapes, leaders, cards;
+  for (const size_t i : LowestFirst(plan.objects)) {
+    const Points footprint = screen.Place(plan.objects[i].footprint);
+    shapes += fmt::format("<polygon points=\"{}\"/>\n", PointsText(footprint));
+    leaders += Leader(BoundsOf(footprint).center(), layout.cards[i].place);
+    cards += CardSvg(plan.objects[i], layout.cards[i], format);
+  }
+  return fmt::format(
+             "<svg class=\"plan {}\" viewBox=\"0 0 {:.0f} {:.0f}\" font-size=\"{:.0f}\" "
+             "role=\"img\" aria-label=\"{} objects from above\">\n",
+             format.name, screen.width, screen.height, format.font, plan.objects.size()) +
+         GridLines(screen) + CameraPath(plan, screen) + shapes + leaders + cards +
+         ScaleBar(plan, screen, format) + "</svg>\n";
+}
+
+}  // namespace soslam

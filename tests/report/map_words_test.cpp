@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/map_words.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scene.h"
+
+namespace soslam {
+namespace {
+
+using nlohmann::json;
+
+json World(const json& scale) { return {{"scale", scale}, {"up", {{"sigma_deg", 0.44}}}}; }
+
+json Scale(const json& found_by) {
+  return {
+      {"log_sigma", 0.05}, {"interval_95", {0.25, 0.36}}, {"found_by", found_by}, {"objects", 7}};
+}
+
+TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
+  const ScaleOfMap scale = ScaleFromWorld(World(Scale({"objects"})), {});
+  EXPECT_TRUE(scale.in_metres);
+  EXPECT_EQ(scale.log_sigma, 0.05);
+  // 0.30 is the middle: from 0.25 to 0.36 is a factor of 1.2 to both sides.
+  EXPECT_EQ(scale.sentence,
+            "Scale ± 20 % (95 %), from the usual heights of 7 objects. Up ± 0.4° (one standard "
+            "deviation).");
+  EXPECT_NE(ScaleFromWorld(World(Scale({"objects", "camera_height_m"})), {})
+                .sentence.find("of 7 objects and the camera's height given. Up"),
+            std::string::npos);
+}
+
+TEST(ScaleFromWorld, SaysPlainlyThatItIsUnknown) {
+  const ScaleOfMap scale = ScaleFromWorld(World({}), {});
+  EXPECT_FALSE(scale.in_metres);
+  EXPECT_NE(scale.sentence.find("no unit"), std::string::npos);
+  EXPECT_NE(scale.sentence.find("Up ± 0.4°"), std::string::npos);
+}
+
+TEST(ScaleFromWorld, WithoutTheFileIsThatOfTheSequence) {
+  Sequence sequence;
+  EXPECT_TRUE(ScaleFromWorld({}, sequence).in_metres);
+  EXPECT_EQ(ScaleFromWorld({}, sequence).sentence, "");
+  sequence.odometry_world = OdometryWorld::kOwnWithScale;
+  EXPECT_FALSE(ScaleFromWorld({}, sequence).in_metres);
+  EXPECT_NE(ScaleFromWorld({}, sequence).sentence, "");
+}
+
+// Half axes 0.25, 0.5, 0.03 m, whose logarithms have standard deviations of 0.03, 0.12, 0.04.
+ObjectEstimate Estimate() {
+  ObjectEstimate estimate;
+  estimate.landmark_in_world = Landmark{{}, {0.25, 0.5, 0.03}, kCuboidExponent};
+  Covariance9 covariance = Covariance9::Zero();
+  covariance.diagonal().tail<3>() = Eigen::Vector3d(0.03, 0.12, 0.04).cwiseAbs2();
+  estimate.covariance = covariance;
+  return estimate;
+}
+
+// Without the blanks at which no line may break.
+std::string Plain(std::string text) {
+  for (size_t at = text.find("\u00a0"); at != text.npos; at = text.find("\u00a0")) {
+    text.replace(at, 2, " ");
+  }
+  return text;
+}
+
+TEST(SizeInWords, IsWidthDepthHeightWithTheirIntervals) {
+  // exp(1.96 * 0.12) - 1 = 0.2652, of 0.03: 0.0606, of 0.04: 0.0816.
+  EXPECT_EQ(Plain(SizeInWords(Estimate(), {})), "100 × 50 × 6.0 cm (± 27 × 3 × 0.5)");
+}
+
+TEST(SizeInWords, AddsTheVarianceOfTheScale) {
+  // sqrt(0.12^2 + 0.05^2) = 0.13: 0.2902; sqrt(0.03^2 + 0.05^2) = 0.0583: 0.1211;
+  // sqrt(0.04^2 + 0.05^2) = 0.0640: 0.1337.
+  EXPECT_EQ(Plain(SizeInWords(Estimate(), {true, 0.05, ""})), "100 × 50 × 6.0 cm (± 29 × 6 × 0.8)");
+}
+
+TEST(SizeInWords, HasNoUnitWithoutScaleAndNoIntervalsWithoutCovariance) {
+  EXPECT_EQ(Plain(SizeInWords(Estimate(), {false, 0.0, ""})),
+            "1.00 × 0.50 × 0.06 (± 0.27 × 0.03 × 0.00)");
+  ObjectEstimate without = Estimate();
+  without.covariance.reset();
+  EXPECT_EQ(Plain(SizeInWords(without, {true, 0.05, ""})), "100 × 50 × 6.0 cm");
+}
+
+TEST(LabelsInWords, HasAlternativesOfATenthAndMore) {
+  Object object;
+  object.label = "chair";
+  EXPECT_EQ(LabelsInWords(object), "");
+  object.labels = {{"chair", 1.0}};
+  EXPECT_EQ(LabelsInWords(object), "");
+  object.labels = {{"chair", 0.93}, {"stool", 0.07}};
+  EXPECT_EQ(LabelsInWords(object), "chair 93 %");
+  object.labels = {{"sofa", 0.5}, {"chair", 0.38}, {"bench", 0.12}};
+  EXPECT_EQ(LabelsInWords(object), "chair 38 %, or sofa 50 %, or bench 12 %");
+}
+
+// Three objects, the first on the floor, the second on a shelf, the third on a wall.
+class SupportInWordsTest : public testing::Test {
+ protected:
+  SupportInWordsTest() {
+    const Plane floor = sequence_.planes[0].plane_in_world;
+    sequence_.planes.push_back({7, {floor.normal, floor.offset - 0.724}});
+    sequence_.planes.push_back({8, {floor.normal.unitOrthogonal(), 3.0}});
+    for (const SupportPlane& plane : sequence_.planes) {
+      map_.planes_in_world.push_back(plane.plane_in_world);
+    }
+    for (int i = 0; i < 3; ++i) {
+      Object& object = sequence_.objects[static_cast<size_t>(i)];
+      object.plane_index = i;
+      map_.objects.push_back({i, 3, object.ground_truth->landmark_in_world, {}, ""});
+      map_.objects.back().landmark_in_world->half_axes.z() = 0.2;
+    }
+  }
+  std::string Words(size_t object, const ScaleOfMap& scale = {}) const {
+    return SupportInWords(map_.objects[object], sequence_, map_, scale);
+  }
+
+  Sequence sequence_ = CuboidSequence(3, 6);
+  MapEstimate map_;
+};
+
+TEST_F(SupportInWordsTest, IsThePlaneAndItsHeight) {
+  EXPECT_EQ(Words(0), "on the lowest plane");
+  EXPECT_EQ(Words(1), "on plane 7, 72 cm above the lowest plane");
+  EXPECT_EQ(Words(1, {false, 0.0, ""}), "on plane 7, 0.724 above the lowest plane");
+  EXPECT_EQ(Words(2), "on a wall or ceiling");
+  sequence_.objects[0].plane_index = kNoPlane;
+  EXPECT_EQ(Words(0), "support unknown");
+  EXPECT_EQ(Words(1), "on the support plane");  // there is no other level one
+}
+
+TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {
+  map_.objects[0].landmark_in_world->half_axes.z() = 0.4;
+  EXPECT_EQ(Words(0), "on the floor");
+  EXPECT_EQ(Words(1), "on plane 7, 72 cm above the floor");
+  EXPECT_EQ(Words(0, {false, 0.0, ""}), "on the lowest plane");
+}
+
+}  // namespace
+}  // namespace soslam
