@@ -89,7 +89,7 @@ struct Entry {
 
 std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
   const Picture& picture = entry.picture;
-  if (picture.jpeg.empty()) return "<span class=\"picture\"></span>";
+  if (picture.jpeg.empty()) return "";
   const cv::Rect& part = picture.crop.part;
   std::string points;
   for (const Eigen::Vector2d& pixel : picture.outline) {
@@ -144,12 +144,13 @@ class MapOfVariant {
     }
   }
 
-  std::string Html(int threads) {
+  std::string Html(const std::string& title, int threads) {
     std::vector<Entry> entries = PlacedEntries();
     AddPictures(images_, threads, &entries);
-    std::string html = "<section id=\"overview\">\n<h2>Map</h2>\n<p>";
-    html += fmt::format("{} in {}.", Counted(placed_.size(), "object"),
-                        Counted(sequence_.frames.size(), "image"));
+    std::string html = "<section id=\"overview\">\n";
+    html +=
+        fmt::format("<h2>{}</h2>\n<p>{} in {}.", HtmlText(title), Counted(placed_.size(), "object"),
+                    Counted(sequence_.frames.size(), "image"));
     if (!scale_.sentence.empty()) html += " " + HtmlText(scale_.sentence);
     html += "</p>\n";
     if (!placed_.empty()) {
@@ -214,7 +215,7 @@ class MapOfVariant {
     plan.in_metres = scale_.in_metres;
     for (const Eigen::Vector3d& camera : cameras) plan.cameras.push_back(axes.Place(camera));
     for (const size_t i : shown) plan.objects.push_back(OnPlan(entries[i], *placed_[i], axes, up));
-    return PlanFigure(plan);
+    return PlanFigure(plan, segment);
   }
 
   std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& up) const {
@@ -238,12 +239,14 @@ class MapOfVariant {
     return object;
   }
 
-  static std::string PlanFigure(const Plan& plan) {
+  std::string PlanFigure(const Plan& plan, int segment) const {
+    const int segments = sequence_.frames.back().segment + 1;
     return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) +
            "<figcaption>Seen from above. <span class=\"key\" style=\"background: "
            "var(--estimate)\"></span> objects, <span class=\"key\" style=\"background: "
-           "var(--detection)\"></span> path of the camera from its first place "
-           "(dot).</figcaption>\n</figure>\n";
+           "var(--detection)\"></span> path of the camera from its first place (dot)." +
+           (segments > 1 ? fmt::format(" Part {} of {}.", segment + 1, segments) : "") +
+           "</figcaption>\n</figure>\n";
   }
 
   std::string NotPlacedHtml(int threads) const {
@@ -284,9 +287,9 @@ class MapOfVariant {
 
 }  // namespace
 
-std::string MapSection(const fs::path& folder, const Sequence& sequence, const ImageSource& images,
-                       int threads) {
-  return MapOfVariant(folder, sequence, images).Html(threads);
+std::string MapSection(const std::string& title, const fs::path& folder, const Sequence& sequence,
+                       const ImageSource& images, int threads) {
+  return MapOfVariant(folder, sequence, images).Html(title, threads);
 }
 
 }  // namespace soslam

@@ -76,7 +76,7 @@ std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale)
   for (const int axis : {1, 0, 2}) {  // width, depth, height
     const double size = 2.0 * estimate.landmark_in_world->half_axes[axis];
     const double shown = scale.in_metres ? 100.0 * size : size;
-    const int decimals = !scale.in_metres ? 2 : shown < 10.0 ? 1 : 0;
+    const int decimals = !scale.in_metres ? 2 : shown < 9.95 ? 1 : 0;
     const char* separator = sizes.empty() ? "" : "\u00a0×\u00a0";
     sizes += fmt::format("{}{:.{}f}", separator, shown, decimals);
     if (!estimate.covariance) continue;
@@ -90,15 +90,14 @@ std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale)
 
 std::string LabelsInWords(const Object& object) {
   constexpr double kLeast = 0.1, kCertain = 0.995;
-  std::string own, others;
+  std::vector<std::string> labels;
   for (const auto& [label, probability] : object.labels) {
-    if (label == object.label && probability < kCertain) {
-      own = fmt::format("{} {:.0f} %", label, 100.0 * probability);
-    } else if (label != object.label && probability >= kLeast) {
-      others += fmt::format(", or {} {:.0f} %", label, 100.0 * probability);
-    }
+    const bool is_own = label == object.label;
+    if (is_own ? probability >= kCertain : probability < kLeast) continue;
+    labels.insert(is_own ? labels.begin() : labels.end(),
+                  fmt::format("{} {:.0f} %", label, 100.0 * probability));
   }
-  return own + others;
+  return fmt::format("{}", fmt::join(labels, ", or "));
 }
 
 namespace {
@@ -134,6 +133,9 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
                            const MapEstimate& map, const ScaleOfMap& scale) {
   const int own = sequence.objects[static_cast<size_t>(estimate.object_index)].plane_index;
   if (own == kNoPlane) return "support unknown";
+  // Datasets with more planes have one for each object, all of one ground.
+  constexpr size_t kMaxPlanesOfRoom = 8;
+  if (sequence.planes.size() > kMaxPlanesOfRoom) return "on the ground";
   const int segment = SegmentOf(sequence, estimate.object_index);
   const std::set<int> level = LevelPlanesOf(sequence, map, segment);
   if (!level.contains(own)) return "on a wall or ceiling";

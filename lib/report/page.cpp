@@ -145,8 +145,10 @@ class DatasetPage {
     const json& variant = data_["variants"][index];
     if (variant.at("kind") != "map") return "";
     const Sequence& sequence = sequences_[variant.at("sequence").get<size_t>()].sequence;
+    const bool is_only = folders_.size() == 1;
+    const std::string title = is_only ? "Map" : "Map of " + variant.at("name").get<std::string>();
     try {
-      return MapSection(folders_[index], sequence, images_(sequence), threads);
+      return MapSection(title, folders_[index], sequence, images_(sequence), threads);
     } catch (const InputError& error) {
       data_["problems"].push_back(
           Utf8(fmt::format("the map from above cannot be shown: {}", error.what())));

@@ -95,6 +95,8 @@ TEST(LabelsInWords, HasAlternativesOfATenthAndMore) {
   EXPECT_EQ(LabelsInWords(object), "chair 93 %");
   object.labels = {{"sofa", 0.5}, {"chair", 0.38}, {"bench", 0.12}};
   EXPECT_EQ(LabelsInWords(object), "chair 38 %, or sofa 50 %, or bench 12 %");
+  object.labels = {{"sofa", 0.8}, {"bench", 0.2}};  // its own has hardly any
+  EXPECT_EQ(LabelsInWords(object), "sofa 80 %, or bench 20 %");
 }
 
 // Three objects, the first on the floor, the second on a shelf, the third on a wall.
@@ -130,6 +132,11 @@ TEST_F(SupportInWordsTest, IsThePlaneAndItsHeight) {
   sequence_.objects[0].plane_index = kNoPlane;
   EXPECT_EQ(Words(0), "support unknown");
   EXPECT_EQ(Words(1), "on the support plane");  // there is no other level one
+}
+
+TEST_F(SupportInWordsTest, IsTheGroundWhereEachObjectHasAPlane) {
+  while (sequence_.planes.size() < 9) sequence_.planes.push_back(sequence_.planes.back());
+  EXPECT_EQ(Words(1), "on the ground");
 }
 
 TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {

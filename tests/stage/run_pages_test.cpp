@@ -163,8 +163,8 @@ TEST_F(RunPagesTest, PagesBeginWithTheMapAndItsPictures) {
   WriteOurs("OursST");
   EXPECT_EQ(Run().errors, "");
   const std::string html = MarkupOf(Page());
-  EXPECT_LT(html.find("<h2>Map</h2>"), html.find("<h2>Numbers</h2>"));
-  EXPECT_EQ(CountOf("<h2>Map</h2>", html), 1u);
+  EXPECT_LT(html.find("<h2>Map of OursST</h2>"), html.find("<h2>Numbers</h2>"));
+  EXPECT_EQ(CountOf("<h2>Map ", html), 1u);
   EXPECT_THAT(html, HasSubstr("3 objects in 6 images."));
   EXPECT_EQ(CountOf("<image ", html), 4u);  // of the objects, the one that is not placed included
   // Each on both plans.
