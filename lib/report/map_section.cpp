@@ -195,7 +195,7 @@ class MapOfVariant {
     picture->is_body = true;
   }
 
-  // Of the segment of the first object.
+  // The plan of the segment of the first object.
   std::string PlanHtml(const std::vector<Entry>& entries) const {
     const int segment = SegmentOf(sequence_, placed_.front()->object_index);
     const Eigen::Vector3d up = UpOfSegment(sequence_, segment);
@@ -211,10 +211,11 @@ class MapOfVariant {
       cameras.push_back(map_.world_from_camera[i].translation);
     }
     const PlanAxes axes = AxesOfPlan(up, SceneAxis(up), centres, cameras);
-    Plan plan;
+    PlanView plan;
     plan.in_metres = scale_.in_metres;
     for (const Eigen::Vector3d& camera : cameras) plan.cameras.push_back(axes.Place(camera));
     for (const size_t i : shown) plan.objects.push_back(OnPlan(entries[i], *placed_[i], axes, up));
+    std::ranges::stable_sort(plan.objects, {}, &PlanObject::top);
     return PlanFigure(plan, segment);
   }
 
@@ -239,7 +240,7 @@ class MapOfVariant {
     return object;
   }
 
-  std::string PlanFigure(const Plan& plan, int segment) const {
+  std::string PlanFigure(const PlanView& plan, int segment) const {
     const int segments = sequence_.frames.back().segment + 1;
     return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) +
            "<figcaption>Seen from above. <span class=\"key\" style=\"background: "

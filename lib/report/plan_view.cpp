@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <opencv2/core/types.hpp>
 
 #include "report/page_html.h"
@@ -25,18 +24,6 @@ Eigen::AlignedBox2d BoundsOf(const Points& points) {
   return bounds;
 }
 
-Points Placed(const PlanAxes& axes, const std::vector<Eigen::Vector3d>& points) {
-  Points placed;
-  for (const Eigen::Vector3d& point : points) placed.push_back(axes.Place(point));
-  return placed;
-}
-
-double MeanAway(const Points& points) {
-  double sum = 0.0;
-  for (const Eigen::Vector2d& point : points) sum += point.y();
-  return sum / static_cast<double>(points.size());
-}
-
 }  // namespace
 
 PlanAxes AxesOfPlan(const Eigen::Vector3d& up, const std::optional<Eigen::Vector3d>& scene_axis,
@@ -48,14 +35,15 @@ PlanAxes AxesOfPlan(const Eigen::Vector3d& up, const std::optional<Eigen::Vector
   PlanAxes axes;
   axes.right = (axis - up.dot(axis) * up).normalized();
   axes.away = up.cross(axes.right);
-  Points all = Placed(axes, objects);
-  const Points path = Placed(axes, cameras);
-  all.insert(all.end(), path.begin(), path.end());
-  if (all.empty()) return axes;
-  const Eigen::Vector2d extent = BoundsOf(all).sizes();
-  if (extent.y() > extent.x()) axes = {axes.away, -axes.right};
   if (objects.empty() || cameras.empty()) return axes;
-  if (MeanAway(Placed(axes, cameras)) > MeanAway(Placed(axes, objects))) {
+  const auto bounds = [&](const std::vector<Eigen::Vector3d>& points) {
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector3d& point : points) box.extend(axes.Place(point));
+    return box;
+  };
+  const Eigen::Vector2d extent = bounds(objects).merged(bounds(cameras)).sizes();
+  if (extent.y() > extent.x()) axes = {axes.away, -axes.right};
+  if (bounds(cameras).center().y() > bounds(objects).center().y()) {
     axes = {-axes.right, -axes.away};
   }
   return axes;
@@ -108,7 +96,7 @@ struct Screen {
   }
 };
 
-Screen ScreenOf(const Plan& plan, const PlanFormat& format) {
+Screen ScreenOf(const PlanView& plan, const PlanFormat& format) {
   Points all = plan.cameras;
   for (const PlanObject& object : plan.objects) {
     all.insert(all.end(), object.footprint.begin(), object.footprint.end());
@@ -150,7 +138,7 @@ std::string GridLines(const Screen& screen) {
   return fmt::format("<path class=\"grid-lines\" d=\"{}\"/>\n", path);
 }
 
-std::string ScaleBar(const Plan& plan, const Screen& screen, const PlanFormat& format) {
+std::string ScaleBar(const PlanView& plan, const Screen& screen, const PlanFormat& format) {
   const double length = RoundLength(0.25 * screen.width / screen.scale);
   const double x = format.font, y = screen.height - 0.8 * format.font;
   return fmt::format(
@@ -160,21 +148,13 @@ std::string ScaleBar(const Plan& plan, const Screen& screen, const PlanFormat& f
       HtmlText(LengthInWords(length, plan.in_metres)));
 }
 
-std::string CameraPath(const Plan& plan, const Screen& screen) {
+std::string CameraPath(const PlanView& plan, const Screen& screen) {
   if (plan.cameras.empty()) return "";
   const Points path = screen.Place(plan.cameras);
   return fmt::format(
       "<polyline class=\"path\" points=\"{}\"/>\n"
       "<circle class=\"path\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/>\n",
       PointsText(path), path.front().x(), path.front().y());
-}
-
-// The indices of the objects, the lowest first.
-std::vector<size_t> LowestFirst(const std::vector<PlanObject>& objects) {
-  std::vector<size_t> order(objects.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, {}, [&](size_t i) { return objects[i].top; });
-  return order;
 }
 
 // At most as many characters as fit beside others.
@@ -189,12 +169,6 @@ std::string Shortened(const std::string& name) {
 Rectangle AsRectangle(const Eigen::AlignedBox2d& box) {
   return {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()};
 }
-
-// A name with its picture above it.
-struct Card {
-  Rectangle place;
-  double picture_height = 0.0;
-};
 
 // Sum of the areas that the rectangle shares with others, px^2.
 double SharedArea(const Rectangle& one, const std::vector<Rectangle>& others) {
@@ -240,37 +214,44 @@ Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Sc
   return best;
 }
 
-// Cards of all objects with pictures of this height, their area, and the area that two share.
+// Width by height of the picture on a card.
+double AspectOf(const PlanObject& object) { return std::clamp(object.picture_aspect, 0.5, 1.6); }
+
+// Cards of all objects, names with pictures of this height above them; the area of the cards, and
+// that which two of them share.
 struct Layout {
-  std::vector<Card> cards;
+  double picture_height = 0.0;
+  std::vector<Rectangle> cards = {};
   double area = 0.0;
   double overlap = 0.0;
+
+  double HeightOn(const PlanObject& object) const {
+    return object.picture.empty() ? 0.0 : picture_height;
+  }
 };
 
-Layout LayOut(const Plan& plan, const Screen& screen, const PlanFormat& format,
+Layout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& format,
               double picture_height) {
   constexpr double kWidthOfLetter = 0.58, kGap = 3.0;
-  Rectangle corner(0.0, screen.height - 3.0 * format.font, 0.0, 3.0 * format.font);
-  corner.width = screen.scale * RoundLength(0.25 * screen.width / screen.scale) + 2.0 * format.font;
-  std::vector<Rectangle> taken = {corner}, footprints;
+  const double bar = screen.scale * RoundLength(0.25 * screen.width / screen.scale);
+  std::vector<Rectangle> footprints, taken = {{0.0, screen.height - 3.0 * format.font,
+                                               bar + 2.0 * format.font, 3.0 * format.font}};
   for (const PlanObject& object : plan.objects) {
     footprints.push_back(AsRectangle(BoundsOf(screen.Place(object.footprint))));
   }
-  Layout layout;
+  Layout layout{picture_height};
   for (size_t i = 0; i < plan.objects.size(); ++i) {
     const PlanObject& object = plan.objects[i];
+    const double height = layout.HeightOn(object);
     const double text =
         kWidthOfLetter * format.font * static_cast<double>(Shortened(object.name).size());
-    Card card;
-    card.picture_height = object.picture.empty() ? 0.0 : picture_height;
-    const double aspect = std::clamp(object.picture_aspect, 0.5, 1.6);
-    const cv::Size2d size(std::max(text, card.picture_height * aspect) + kGap,
-                          card.picture_height + 1.3 * format.font + kGap);
-    card.place = FreePlace(footprints[i], size, screen, taken, footprints);
-    layout.area += card.place.area();
-    layout.overlap += SharedArea(card.place, taken);
-    taken.push_back(card.place);
+    const cv::Size2d size(std::max(text, height * AspectOf(object)) + kGap,
+                          height + 1.3 * format.font + kGap);
+    const Rectangle card = FreePlace(footprints[i], size, screen, taken, footprints);
+    layout.area += card.area();
+    layout.overlap += SharedArea(card, taken);
     layout.cards.push_back(card);
+    taken.push_back(card);
   }
   return layout;
 }
@@ -286,24 +267,23 @@ std::string Leader(const Eigen::Vector2d& centre, const Rectangle& card) {
       centre.x(), centre.y(), end.x(), end.y(), centre.x(), centre.y());
 }
 
-std::string CardSvg(const PlanObject& object, const Card& card, const PlanFormat& format) {
-  const double middle = card.place.x + 0.5 * card.place.width;
+std::string CardSvg(const PlanObject& object, const Rectangle& card, double picture_height,
+                    double font) {
+  const double middle = card.x + 0.5 * card.width;
   std::string svg;
-  if (card.picture_height > 0.0) {
-    const double aspect = std::clamp(object.picture_aspect, 0.5, 1.6);
-    const double width = card.picture_height * aspect;
+  if (picture_height > 0.0) {
+    const double width = picture_height * AspectOf(object);
     svg += fmt::format(
         "<use href=\"#{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
-        object.picture, middle - 0.5 * width, card.place.y, width, card.picture_height);
+        object.picture, middle - 0.5 * width, card.y, width, picture_height);
   }
   return svg + fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", middle,
-                           card.place.y + card.picture_height + format.font,
-                           HtmlText(Shortened(object.name)));
+                           card.y + picture_height + font, HtmlText(Shortened(object.name)));
 }
 
 }  // namespace
 
-std::string PlanSvg(const Plan& plan, const PlanFormat& format) {
+std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
   const Screen screen = ScreenOf(plan, format);
   constexpr double kMaxShareOfCards = 0.3;  // of the plan, which is to be seen as well
   Layout layout;
@@ -313,11 +293,12 @@ std::string PlanSvg(const Plan& plan, const PlanFormat& format) {
     if (layout.overlap <= 0.0 && share < kMaxShareOfCards) break;
   }
   std::string shapes, leaders, cards;
-  for (const size_t i : LowestFirst(plan.objects)) {
-    const Points footprint = screen.Place(plan.objects[i].footprint);
+  for (size_t i = 0; i < plan.objects.size(); ++i) {
+    const PlanObject& object = plan.objects[i];
+    const Points footprint = screen.Place(object.footprint);
     shapes += fmt::format("<polygon points=\"{}\"/>\n", PointsText(footprint));
-    leaders += Leader(BoundsOf(footprint).center(), layout.cards[i].place);
-    cards += CardSvg(plan.objects[i], layout.cards[i], format);
+    leaders += Leader(BoundsOf(footprint).center(), layout.cards[i]);
+    cards += CardSvg(object, layout.cards[i], layout.HeightOn(object), format.font);
   }
   return fmt::format(
              "<svg class=\"plan {}\" viewBox=\"0 0 {:.0f} {:.0f}\" font-size=\"{:.0f}\" "

@@ -40,14 +40,14 @@ std::string LengthInWords(double length, bool in_metres);
 struct PlanObject {
   std::string name;
   std::vector<Eigen::Vector2d> footprint;
-  double top = 0.0;  // height: what is higher is drawn above what is lower
+  double top = 0.0;  // its height
   // The id of an SVG element with the picture, empty without one, and its width by its height.
   std::string picture = {};
   double picture_aspect = 1.0;
 };
 
-struct Plan {
-  std::vector<PlanObject> objects;
+struct PlanView {
+  std::vector<PlanObject> objects;       // the lowest first, as later ones are drawn above
   std::vector<Eigen::Vector2d> cameras;  // in the order of their frames
   bool in_metres = true;
 };
@@ -68,6 +68,6 @@ inline const PlanFormat kNarrowPlan = {"for-narrow", 358.0, 420.0,
 
 // The plan as an SVG element: a grid with a scale bar, the cameras' path, the objects with their
 // names and pictures.
-std::string PlanSvg(const Plan& plan, const PlanFormat& format);
+std::string PlanSvg(const PlanView& plan, const PlanFormat& format);
 
 }  // namespace soslam

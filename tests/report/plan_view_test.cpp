@@ -73,7 +73,7 @@ TEST(AxesOfPlan, TurnTheSceneAxisLevelAndTheLongSideToTheRight) {
       const PlanAxes axes = AxesOfPlan(kUp, axis, objects, {side * across});
       EXPECT_NEAR(std::abs(axes.right.dot(along)), 1.0, 1e-12);
       EXPECT_NEAR(axes.away.dot(across), -side, 1e-12);
-      // As seen from above, not from below.
+      // The view is from above, not from below.
       EXPECT_NEAR(axes.right.cross(axes.away).dot(kUp), 1.0, 1e-12);
     }
   }
@@ -103,8 +103,8 @@ TEST(LengthInWords, HasTheUnitThatPeopleUse) {
 }
 
 // Objects at random places, close together where there are many.
-Plan PlanOf(int count) {
-  Plan plan;
+PlanView PlanOf(int count) {
+  PlanView plan;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d centre(std::fmod(0.618 * i, 1.0) * 5.0, std::fmod(0.414 * i, 1.0) * 3.0,
                                  0.3);
@@ -131,7 +131,7 @@ std::vector<Eigen::AlignedBox2d> NamesIn(const std::string& svg, double font) {
 class PlanSvgTest : public testing::TestWithParam<int> {};
 
 TEST_P(PlanSvgTest, NamesAllObjectsInsideThePlanAndApart) {
-  const Plan plan = PlanOf(GetParam());
+  const PlanView plan = PlanOf(GetParam());
   for (const PlanFormat& format : {kWidePlan, kNarrowPlan}) {
     const std::string svg = PlanSvg(plan, format);
     const auto names = NamesIn(svg, format.font);
@@ -150,7 +150,7 @@ TEST_P(PlanSvgTest, NamesAllObjectsInsideThePlanAndApart) {
 INSTANTIATE_TEST_SUITE_P(Counts, PlanSvgTest, testing::Values(1, 2, 7, 15, 25, 40));
 
 TEST(PlanSvg, IsToScale) {
-  const Plan plan = PlanOf(7);
+  const PlanView plan = PlanOf(7);
   const std::string svg = PlanSvg(plan, kWidePlan);
   std::smatch bar, path;
   ASSERT_TRUE(std::regex_search(svg, bar, std::regex("bar-line.*m0 3h([0-9.]+)m0")));
@@ -162,7 +162,7 @@ TEST(PlanSvg, IsToScale) {
 }
 
 TEST(PlanSvg, HasNamesAsTextAndShortensLongOnes) {
-  Plan plan = PlanOf(1);
+  PlanView plan = PlanOf(1);
   plan.objects[0].name = "<b>&";
   EXPECT_THAT(PlanSvg(plan, kWidePlan), HasSubstr(">&lt;b&gt;&amp;</text>"));
   plan.objects[0].name = std::string(17, 'x') + "ééé" + std::string(400, 'y');
@@ -170,7 +170,7 @@ TEST(PlanSvg, HasNamesAsTextAndShortensLongOnes) {
 }
 
 TEST(PlanSvg, HasPicturesWhereThereAreSome) {
-  Plan plan = PlanOf(2);
+  PlanView plan = PlanOf(2);
   plan.objects[1].picture = "";
   const std::string svg = PlanSvg(plan, kWidePlan);
   EXPECT_THAT(svg, HasSubstr("<use href=\"#p0\""));
