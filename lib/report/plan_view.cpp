@@ -188,7 +188,7 @@ double SharesCovered(const Rectangle& one, const std::vector<Rectangle>& others)
 Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Screen& screen,
                     const std::vector<Rectangle>& cards, const std::vector<Rectangle>& footprints) {
   constexpr int kDirections = 16;
-  constexpr double kStep = 9.0, kPerFootprint = 150.0, kPerPixel = 10.0;
+  constexpr double kStep = 9.0, kPerFootprint = 150.0, kOverlap = 600.0;
   const Rectangle whole(2.0, 2.0, screen.width - 4.0, screen.height - 4.0);
   const double farthest = std::max(screen.width, screen.height);
   Rectangle best;
@@ -203,7 +203,8 @@ Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Sc
                            std::max(whole.x, whole.br().x - size.width));
       place.y = std::clamp(place.y + distance * std::sin(angle), whole.y,
                            std::max(whole.y, whole.br().y - size.height));
-      const double cost = distance + kPerPixel * SharedArea(place, cards) +
+      const double overlap = SharedArea(place, cards);
+      const double cost = distance + overlap + (overlap > 0.0 ? kOverlap : 0.0) +
                           kPerFootprint * SharesCovered(place, footprints);
       if (cost < least) {
         least = cost;
