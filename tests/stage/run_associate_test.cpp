@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "report/not_placed.h"
 #include "stage/structure_stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
@@ -68,6 +71,25 @@ TEST_F(RunAssociateTest, SaysWhatItDecided) {
     EXPECT_EQ(object["label_votes"].value(object["label"].get<std::string>(), 0.0),
               object["detections"].get<double>());
     EXPECT_EQ(associations["tracks"][object["track"].get<size_t>()]["fate"], "object");
+  }
+}
+
+TEST_F(RunAssociateTest, PagesFindTheBoxesOfWhatItLeftOut) {
+  options_.moving_labels = "other";
+  Run();
+  const std::vector<NotPlaced> things = TracksLeftOut(Associations(), ReadSequence(File("output")));
+  ASSERT_EQ(things.size(), 2u);  // every other one of four objects
+  const auto detections = DetectionsByObject(sequence_);
+  for (size_t i = 0; i < things.size(); ++i) {
+    EXPECT_EQ(things[i].label, "other");
+    EXPECT_EQ(things[i].reason, "things of this kind move");
+    const auto is_of = [&](const std::vector<int>& of_object) {
+      return std::ranges::equal(of_object, things[i].boxes, [&](int index, const SeenBox& seen) {
+        const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
+        return detection.frame_index == seen.frame_index && detection.box == seen.box;
+      });
+    };
+    EXPECT_EQ(std::ranges::count_if(detections, is_of), 1);
   }
 }
 

@@ -9,7 +9,11 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
+#include "artefact/world_file.h"
 #include "base/error.h"
+#include "base/options.h"
+#include "geometry/angles.h"
+#include "ground/options.h"
 #include "report/page_html.h"
 #include "stage/result_pages.h"
 #include "support/expect_error.h"
@@ -212,6 +216,35 @@ TEST_F(RunPagesTest, TheMapIsShownWithoutImagesToo) {
   EXPECT_EQ(CountOf("<image ", html), 0u);
   EXPECT_EQ(CountOf("<use ", html), 0u);
   EXPECT_EQ(CountOf("<polygon ", html), 2u * Estimates().size());
+}
+
+TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
+  WriteOurs("OursS");
+  ScalePosterior scale;
+  scale.log_sigma = 0.05;
+  scale.low = -0.1;
+  scale.high = 0.1;
+  GroundObject object;
+  object.label = "chair";
+  object.boxes = 4;
+  object.agreement = 0.9;
+  GroundEstimate estimate;
+  estimate.tilt_sigma = 0.4 * kRadPerDeg;
+  estimate.scale = estimate.scale_of_objects = scale;
+  estimate.objects.assign(3, object);
+  const auto section = [&] {
+    WriteWorld(Folder("OursS") / "world.json", estimate, sequence_,
+               {OptionsToJson(GroundOptions()), {}});
+    Run();
+    const std::string html = MarkupOf(Page());
+    return html.substr(0, html.find("</section>"));
+  };
+  EXPECT_THAT(section(),
+              AllOf(HasSubstr("Scale ± 11 % (95 %), from the usual heights of 3 objects."),
+                    HasSubstr("Up ± 0.4°"), HasSubstr("cm ("), HasSubstr(" m</text>")));
+  estimate.scale.reset();
+  EXPECT_THAT(section(), AllOf(HasSubstr("lengths have no unit"), HasSubstr("Up ± 0.4°"),
+                               testing::Not(HasSubstr("cm ("))));
 }
 
 TEST_F(RunPagesTest, ADamagedWorldIsNamedAndTheRestIsShown) {
