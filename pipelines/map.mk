@@ -35,7 +35,7 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 $(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt
 	$(call step,reconstruct,$(BIN)/soslam-reconstruct --dataset $(folder) --output $(MAP_ROOT)/reconstruction \
 	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} --threads $(MAP_THREADS) $(QUIET) && \
-	  cp $(addprefix $(MAP_ROOT)/reconstruction/,camera.json odometry.txt points.h5) $(folder))
+	  cp $(addprefix $(MAP_ROOT)/reconstruction/,camera.json odometry.txt points.h5 reconstruction.json) $(folder))
 
 $(steps)/detected: $(steps)/dataset $(steps)/network.txt
 	@mkdir -p $(MAP_ROOT)/detections

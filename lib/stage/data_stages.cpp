@@ -3,12 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
+#include "artefact/json_file.h"
+#include "artefact/model_json.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
+#include "base/paths.h"
 #include "base/run_log.h"
 #include "cli/command_line.h"
 #include "dataset/gate.h"
@@ -23,11 +28,27 @@
 
 namespace soslam {
 
+namespace {
+
+// Adds what soslam-reconstruct found when it made the poses of the dataset.
+void AddFindingsOfReconstruction(const std::filesystem::path& folder, Sequence* sequence,
+                                 std::vector<std::filesystem::path>* inputs) {
+  const std::filesystem::path path = folder / "reconstruction.json";
+  if (!Exists(path)) return;
+  std::ranges::move(FindingsFromJson(ReadArtefact(path, "reconstruction")),
+                    std::back_inserter(sequence->findings));
+  sequence->findings = WorstFirst(std::move(sequence->findings));
+  inputs->push_back(path);
+}
+
+}  // namespace
+
 void RunImport(const ImportOptions& options, const StageFiles& files, int threads) {
   const auto& folder = files.at("dataset");
   std::vector<std::filesystem::path> inputs;
   Sequence sequence = ImportDataset(folder, options, &inputs);
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
+  AddFindingsOfReconstruction(folder, &sequence, &inputs);
   ReportFindings("import", sequence.findings);
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
+#include "artefact/reconstruction_file.h"
 #include "artefact/sequence_file.h"
 #include "base/hash.h"
 #include "stage/data_stages.h"
@@ -37,6 +38,16 @@ TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(sequence.detections.size(), 4u);
   EXPECT_EQ(sequence.rejected_detections.at("too_few_observations"), 3);
+}
+
+TEST_F(RunImportTest, PassesOnWhatTheReconstructionOfItsPosesFound) {
+  dataset.Write(files.at("dataset"));
+  ArtefactInfo info;
+  info.findings = {{"no_baseline", Severity::kWarning, "found", "expected", "cause", "remedy"}};
+  WriteReconstruction(files.at("dataset") / "reconstruction.json", {}, info);
+  RunImport({}, files, 1);
+  const Sequence sequence = ReadSequence(files.at("output"));
+  EXPECT_EQ(std::ranges::count(sequence.findings, "no_baseline", &Finding::check), 1);
 }
 
 TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {
