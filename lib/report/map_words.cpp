@@ -94,8 +94,7 @@ std::string LabelsInWords(const Object& object) {
   for (const auto& [label, probability] : object.labels) {
     const bool is_own = label == object.label;
     if (is_own ? probability >= kCertain : probability < kLeast) continue;
-    labels.insert(is_own ? labels.begin() : labels.end(),
-                  fmt::format("{} {:.0f} %", label, 100.0 * probability));
+    labels.push_back(fmt::format("{} {:.0f}\u00a0%", label, 100.0 * probability));
   }
   return fmt::format("{}", fmt::join(labels, ", or "));
 }

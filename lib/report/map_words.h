@@ -32,7 +32,8 @@ double HalfInterval95(double log_sigma);
 // covariance of a map is for the scale that it has; the error of the scale is independent.
 std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale);
 
-// "chair 62 %, or sofa 21 %": alternatives of at least 10 %; empty where the label is certain.
+// "chair 62 %, or sofa 21 %": the most probable first, alternatives of at least 10 %; empty where
+// the label is certain.
 std::string LabelsInWords(const Object& object);
 
 // The segment in which an object was detected.
