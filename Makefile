@@ -154,7 +154,7 @@ map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.o
 	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
 	  MAP_MODEL=$(call shell-word,MODEL) MAP_SCALE='$(SCALE)' \
 	  MAP_CAMERA_HEIGHT='$(CAMERA_HEIGHT)' MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
-	  MAP_VARIANT='$(patsubst all,OursSTE,$(VARIANT))' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
+	  MAP_VARIANT='$(patsubst all,OursS,$(VARIANT))' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)

@@ -44,7 +44,9 @@ TEST_F(RunImportTest, PassesOnWhatTheReconstructionOfItsPosesFound) {
   dataset.Write(files.at("dataset"));
   ArtefactInfo info;
   info.findings = {{"no_baseline", Severity::kWarning, "found", "expected", "cause", "remedy"}};
-  WriteReconstruction(files.at("dataset") / "reconstruction.json", {}, info);
+  ReconstructionSummary summary;
+  summary.components = {{4, 100}};
+  WriteReconstruction(files.at("dataset") / "reconstruction.json", summary, info);
   RunImport({}, files, 1);
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(std::ranges::count(sequence.findings, "no_baseline", &Finding::check), 1);

@@ -231,6 +231,7 @@ TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
   GroundEstimate estimate;
   estimate.tilt_sigma = 0.4 * kRadPerDeg;
   estimate.scale = estimate.scale_of_objects = scale;
+  estimate.scale_found_by = {"objects"};
   estimate.objects.assign(3, object);
   const auto section = [&] {
     WriteWorld(Folder("OursS") / "world.json", estimate, sequence_,
