@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/angles.h"
 #include "ground/group_boxes.h"
@@ -86,7 +87,9 @@ class Estimation {
              const SemanticTable& table, const GroundOptions& options, int threads)
       : sequence_(sequence), points_(points), table_(table), options_(options), threads_(threads) {}
 
-  void Run(const std::vector<SegmentView>& views) {
+  // With the cameras held so.
+  void Run(const UpEstimate& held, const std::vector<SegmentView>& views) {
+    of_cameras = held;
     FindAttitude(views);
     planes = FindHorizontalPlanes(points_, attitude, 1.0);
     CheckVerticals();
@@ -97,6 +100,12 @@ class Estimation {
       planes = Refined(planes, points_, attitude, 1.0);
       Measure(groups);
     }
+  }
+
+  // Sum of the probabilities of objects to stand on planes.
+  double StandingObjects() const {
+    const std::vector<double> on_planes = ObjectsOnPlanes();
+    return std::accumulate(on_planes.begin(), on_planes.end(), 0.0);
   }
 
   double units_per_input = 1.0;  // units of the input in a normalised one
@@ -112,18 +121,12 @@ class Estimation {
 
  private:
   void FindAttitude(const std::vector<SegmentView>& views) {
-    AssociateOptions associate;
-    associate.camera_roll_sigma_deg = options_.camera_roll_sigma_deg;
-    associate.camera_pitch_sigma_deg = options_.camera_pitch_sigma_deg;
-    associate.view_correlation_deg = options_.view_correlation_deg;
-    associate.box_sigma_fraction = options_.box_sigma_fraction;
-    of_cameras = UpOfSegments(sequence_, table_, associate).begin()->second;
     std::vector<Rigid3d> poses;
     for (const Frame& frame : sequence_.frames) poses.push_back(frame.world_from_camera);
     const double correlation = options_.view_correlation_deg * kRadPerDeg;
-    attitude = UpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
-                                  options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
-                                  of_cameras.holding);
+    attitude = RobustUpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
+                                        options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
+                                        of_cameras.holding);
     without_verticals = WithCommonError(attitude);
     uses_verticals = !views.empty();
     if (uses_verticals) {
@@ -196,9 +199,8 @@ class Estimation {
     return known;
   }
 
-  // True if some planes are left out and others stay.
-  bool DropPlanesWithoutObjects() {
-    constexpr double kLeastObjects = 0.5;
+  // For each plane, the sum of the probabilities of objects to stand on it.
+  std::vector<double> ObjectsOnPlanes() const {
     std::vector<double> objects_on(planes.planes.size());
     const auto& at_scale = scale_of_objects ? scale_of_objects : scale;
     for (const MeasuredObject& object : objects) {
@@ -210,6 +212,13 @@ class Estimation {
         objects_on[static_cast<size_t>(hypotheses[i].plane)] += shares[i];
       }
     }
+    return objects_on;
+  }
+
+  // True if some planes are left out and others stay.
+  bool DropPlanesWithoutObjects() {
+    constexpr double kLeastObjects = 0.5;
+    const std::vector<double> objects_on = ObjectsOnPlanes();
     std::vector<PlaneOfPoints> kept;
     for (size_t k = 0; k < objects_on.size(); ++k) {
       if (objects_on[k] >= kLeastObjects) kept.push_back(planes.planes[k]);
@@ -225,6 +234,39 @@ class Estimation {
   const GroundOptions& options_;
   int threads_;
 };
+
+// With the cameras held as their boxes say. Where fewer than half of the objects then stand on
+// planes, other ways to hold them are tried: one in which twice as many stand, on planes of twice
+// as many points, is better.
+Estimation BestHeld(const Estimation& none, const UpEstimate& of_cameras,
+                    const std::vector<SegmentView>& views) {
+  constexpr double kMost = 0.5, kClearly = 2.0;
+  std::optional<Estimation> best(none);
+  best->Run(of_cameras, views);
+  for (const CameraHolding holding : kCameraHoldings) {
+    if (best->StandingObjects() >= kMost * static_cast<double>(best->objects.size())) break;
+    if (holding == of_cameras.holding) continue;
+    UpEstimate held = of_cameras;
+    held.holding = holding;
+    Estimation other = none;
+    other.Run(held, views);
+    if (other.StandingObjects() > kClearly * best->StandingObjects() &&
+        other.planes.PointCount() > kClearly * best->planes.PointCount()) {
+      best.emplace(std::move(other));
+    }
+  }
+  return *std::move(best);
+}
+
+UpEstimate UpOfCameras(const Sequence& sequence, const SemanticTable& table,
+                       const GroundOptions& options) {
+  AssociateOptions associate;
+  associate.camera_roll_sigma_deg = options.camera_roll_sigma_deg;
+  associate.camera_pitch_sigma_deg = options.camera_pitch_sigma_deg;
+  associate.view_correlation_deg = options.view_correlation_deg;
+  associate.box_sigma_fraction = options.box_sigma_fraction;
+  return UpOfSegments(sequence, table, associate).begin()->second;
+}
 
 ScalePosterior Shifted(ScalePosterior posterior, double log_factor) {
   posterior.log_scale += log_factor;
@@ -289,11 +331,11 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
       NormalisedFromInput(sequence, GroundPoints(sequence, points));
   const Sequence normalised = WithFewerBoxes(Transformed(normalised_from_input, sequence));
   const auto ground_points = GroundPoints(normalised, Transformed(normalised_from_input, points));
-  Estimation estimation(normalised, ground_points, table, options, threads);
   // The scale is that of the normalised world until the end.
   const double log_units = -std::log(normalised_from_input.scale);
-  estimation.units_per_input = std::exp(log_units);
-  estimation.Run(views);
+  Estimation none(normalised, ground_points, table, options, threads);
+  none.units_per_input = std::exp(log_units);
+  const Estimation estimation = BestHeld(none, UpOfCameras(normalised, table, options), views);
 
   GroundEstimate result;
   const Similarity output = OutputFromNormalised(estimation);

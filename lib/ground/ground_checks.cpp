@@ -78,6 +78,25 @@ void CheckKnownScale(const GroundEstimate& estimate, std::vector<Finding>* findi
        "check scale and camera_height_m"});
 }
 
+// A wrong up direction has few objects on its planes.
+void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+  constexpr size_t kFewest = 5;
+  constexpr double kFew = 0.25;
+  const auto on_planes = std::ranges::count_if(
+      estimate.objects, [](const GroundObject& object) { return object.plane != kNoPlane; });
+  if (estimate.objects.size() < kFewest || estimate.planes.empty() ||
+      static_cast<double>(on_planes) >= kFew * static_cast<double>(estimate.objects.size())) {
+    return;
+  }
+  findings->push_back({"few_objects_on_planes", Severity::kWarning,
+                       fmt::format("{} of {} objects stand on the support planes that were found",
+                                   on_planes, estimate.objects.size()),
+                       fmt::format("at least {:.0f} %", 100.0 * kFew),
+                       "a wrong up direction, as of cameras that were turned in many ways, or "
+                       "surfaces without texture",
+                       "look at the map from the side; more images of the ground"});
+}
+
 void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
                        std::vector<Finding>* findings) {
   constexpr const char* kName = "camera_height_m";
@@ -100,6 +119,7 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   CheckContradictions(estimate, &findings);
   CheckKnownScale(estimate, &findings);
   CheckCameraHeight(estimate, options, &findings);
+  CheckSupport(estimate, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,
                         fmt::format("no object stands on any of {} horizontal planes in {} points",

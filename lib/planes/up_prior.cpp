@@ -30,24 +30,6 @@ std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
   return DirectionWeights(optical_axes, correlation_rad);
 }
 
-UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                           double pitch_sigma, double correlation_rad, CameraHolding holding) {
-  const HeldAxes held = AxesOf(holding);
-  UpPrior attitude;
-  Eigen::Vector3d above = Eigen::Vector3d::Zero();
-  const std::vector<double> shares = CameraWeights(world_from_camera, correlation_rad);
-  for (size_t i = 0; i < shares.size(); ++i) {
-    const Eigen::Matrix3d rotation = world_from_camera[i].rotation.toRotationMatrix();
-    const Eigen::Vector3d level = rotation * held.level;
-    const Eigen::Vector3d third = rotation * held.up.cross(held.level);
-    attitude.information += shares[i] * (level * level.transpose() / (roll_sigma * roll_sigma) +
-                                         third * third.transpose() / (pitch_sigma * pitch_sigma));
-    above += rotation * held.up;
-  }
-  attitude.up_in_world = LowestCostUp(attitude.information, above);
-  return attitude;
-}
-
 namespace {
 
 constexpr double kBound = 3.0;         // standard deviations
@@ -56,41 +38,24 @@ constexpr int kUpSteps = 32;           // of the search, in either direction
 constexpr int kMaxUpRounds = 50;
 constexpr double kUpTolerance = 1e-9;  // rad
 
-// Plane through a camera's centre and a segment.
-struct SegmentPlane {
-  Eigen::Vector3d normal_in_world;
-  double weight;  // already divided by the variance of the angle to up (1 / rad^2)
+// A direction that is level, if it is what it is taken for.
+struct LevelDirection {
+  Eigen::Vector3d in_world;
+  double sigma;  // of its angle to the horizontal (rad)
+  double share;  // how many independent ones it counts as
 };
 
-std::vector<SegmentPlane> PlanesOf(const std::vector<SegmentView>& views, double sigma,
-                                   double correlation_rad) {
-  std::vector<Rigid3d> poses;
-  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const std::vector<double> shares = CameraWeights(poses, correlation_rad);
-  std::vector<SegmentPlane> planes;
-  for (size_t i = 0; i < views.size(); ++i) {
-    const Camera& camera = views[i].camera;
-    for (const LineSegment& segment : views[i].segments) {
-      const Eigen::Vector3d normal = camera.Ray(segment.begin).cross(camera.Ray(segment.end));
-      const double length = (segment.end - segment.begin).norm();
-      const double count = length / (kUnitOfHeight * camera.height);
-      planes.push_back({views[i].world_from_camera.rotation * normal.normalized(),
-                        shares[i] * count / (sigma * sigma)});
-    }
-  }
-  return planes;
-}
-
-// Geman-McClure loss of the angle between up and the segments' planes.
-class Verticals {
+// Geman-McClure loss of up over level directions: those that are off by more than kBound standard
+// deviations are something else, and have little influence.
+class LevelDirections {
  public:
-  Verticals(std::vector<SegmentPlane> planes, double sigma)
-      : planes_(std::move(planes)), loss_(kBound * sigma) {}
+  explicit LevelDirections(std::vector<LevelDirection> directions)
+      : directions_(std::move(directions)) {}
 
   double Cost(const Eigen::Vector3d& up) const {
     double cost = 0.0;
-    for (const SegmentPlane& plane : planes_) {
-      cost += plane.weight * EvaluateLoss(loss_, plane.normal_in_world.dot(up)).cost;
+    for (const LevelDirection& one : directions_) {
+      cost += one.share * EvaluateLoss(loss_, one.in_world.dot(up) / one.sigma).cost;
     }
     return cost;
   }
@@ -98,34 +63,131 @@ class Verticals {
   // Information with the loss's IRLS weights at `up`.
   Eigen::Matrix3d Information(const Eigen::Vector3d& up) const {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    for (const SegmentPlane& plane : planes_) {
-      const double robust = EvaluateLoss(loss_, plane.normal_in_world.dot(up)).weight;
+    for (const LevelDirection& one : directions_) {
+      const double robust = EvaluateLoss(loss_, one.in_world.dot(up) / one.sigma).weight;
       information +=
-          robust * plane.weight * plane.normal_in_world * plane.normal_in_world.transpose();
+          robust * one.share / (one.sigma * one.sigma) * one.in_world * one.in_world.transpose();
     }
     return information;
   }
 
+  // Descends from `up` with another information added.
+  UpPrior Descend(const Eigen::Matrix3d& added, const Eigen::Vector3d& up) const {
+    UpPrior prior{added, up};
+    for (int round = 0; round < kMaxUpRounds; ++round) {
+      const Eigen::Vector3d before = prior.up_in_world;
+      prior.information = added + Information(before);
+      prior.up_in_world = LowestCostUp(prior.information, before);
+      if ((prior.up_in_world - before).norm() < kUpTolerance) break;
+    }
+    return prior;
+  }
+
  private:
-  std::vector<SegmentPlane> planes_;
-  GemanMcClureLoss loss_;  // rad
+  std::vector<LevelDirection> directions_;
+  GemanMcClureLoss loss_{kBound};
 };
+
+// Planes through cameras' centres and segments; their normals are level where the edges are
+// vertical.
+LevelDirections NormalsOf(const std::vector<SegmentView>& views, double sigma,
+                          double correlation_rad) {
+  std::vector<Rigid3d> poses;
+  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
+  const std::vector<double> shares = CameraWeights(poses, correlation_rad);
+  std::vector<LevelDirection> normals;
+  for (size_t i = 0; i < views.size(); ++i) {
+    const Camera& camera = views[i].camera;
+    for (const LineSegment& segment : views[i].segments) {
+      const Eigen::Vector3d normal = camera.Ray(segment.begin).cross(camera.Ray(segment.end));
+      const double length = (segment.end - segment.begin).norm();
+      const double count = length / (kUnitOfHeight * camera.height);
+      normals.push_back(
+          {views[i].world_from_camera.rotation * normal.normalized(), sigma, shares[i] * count});
+    }
+  }
+  return LevelDirections(std::move(normals));
+}
+
+// Directions of a half of the sphere, about three degrees apart.
+std::vector<Eigen::Vector3d> HalfSphere() {
+  constexpr int kDirections = 2400;
+  constexpr double kGoldenAngle = 2.399963229728653;
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = (i + 0.5) / kDirections;
+    const double radius = std::sqrt(1.0 - z * z);
+    directions.emplace_back(radius * std::cos(i * kGoldenAngle),
+                            radius * std::sin(i * kGoldenAngle), z);
+  }
+  return directions;
+}
 
 }  // namespace
 
+namespace {
+
+// The axes of all cameras that are level when they are held so.
+LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
+                              double pitch_sigma, double correlation_rad, CameraHolding holding) {
+  const HeldAxes held = AxesOf(holding);
+  const std::vector<double> shares = CameraWeights(world_from_camera, correlation_rad);
+  std::vector<LevelDirection> axes;
+  for (size_t i = 0; i < shares.size(); ++i) {
+    const Eigen::Quaterniond& rotation = world_from_camera[i].rotation;
+    axes.push_back({rotation * held.level, roll_sigma, shares[i]});
+    axes.push_back({rotation * held.up.cross(held.level), pitch_sigma, shares[i]});
+  }
+  return LevelDirections(std::move(axes));
+}
+
+// Sum of the directions that are up in each camera.
+Eigen::Vector3d AboveCameras(const std::vector<Rigid3d>& world_from_camera, CameraHolding holding) {
+  Eigen::Vector3d above = Eigen::Vector3d::Zero();
+  for (const Rigid3d& pose : world_from_camera) above += pose.rotation * AxesOf(holding).up;
+  return above;
+}
+
+}  // namespace
+
+UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
+                           double pitch_sigma, double correlation_rad, CameraHolding holding) {
+  // Without the loss, which has no effect at zero.
+  const Eigen::Matrix3d information =
+      AxesOfCameras(world_from_camera, roll_sigma, pitch_sigma, correlation_rad, holding)
+          .Information(Eigen::Vector3d::Zero());
+  return {information, LowestCostUp(information, AboveCameras(world_from_camera, holding))};
+}
+
+UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
+                                 double pitch_sigma, double correlation_rad,
+                                 CameraHolding holding) {
+  const LevelDirections axes =
+      AxesOfCameras(world_from_camera, roll_sigma, pitch_sigma, correlation_rad, holding);
+  const std::vector<Eigen::Vector3d> half = HalfSphere();
+  Eigen::Vector3d lowest =
+      *std::ranges::min_element(half, {}, [&](const Eigen::Vector3d& up) { return axes.Cost(up); });
+  if (lowest.dot(AboveCameras(world_from_camera, holding)) < 0.0) lowest = -lowest;
+  UpPrior prior = axes.Descend(Eigen::Matrix3d::Zero(), lowest);
+  const std::vector<double> shares = CameraWeights(world_from_camera, correlation_rad);
+  const double count = std::accumulate(shares.begin(), shares.end(), 0.0);
+  prior.information /= std::max(1.0, axes.Cost(prior.up_in_world) / count);
+  return prior;
+}
+
 Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
                                        const Eigen::Vector3d& up_in_world) {
-  return Verticals(PlanesOf({view}, sigma, 0.0), sigma).Information(up_in_world);
+  return NormalsOf({view}, sigma, 0.0).Information(up_in_world);
 }
 
 UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
                       double correlation_rad, double max_tilt) {
-  const Verticals verticals(PlanesOf(views, sigma, correlation_rad), sigma);
+  const LevelDirections normals = NormalsOf(views, sigma, correlation_rad);
   const auto cost = [&](const Eigen::Vector3d& up) {
-    return 0.5 * up.dot(attitude.information * up) + verticals.Cost(up);
+    return 0.5 * up.dot(attitude.information * up) + normals.Cost(up);
   };
-  UpPrior best = attitude;
-  double lowest = cost(attitude.up_in_world);
+  Eigen::Vector3d best = attitude.up_in_world;
+  double lowest = cost(best);
   const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
   for (int i = -kUpSteps; i <= kUpSteps; ++i) {
     for (int k = -kUpSteps; k <= kUpSteps; ++k) {
@@ -133,16 +195,10 @@ UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& v
       const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
       if (cost(up) >= lowest) continue;
       lowest = cost(up);
-      best.up_in_world = up;
+      best = up;
     }
   }
-  for (int round = 0; round < kMaxUpRounds; ++round) {
-    const Eigen::Vector3d before = best.up_in_world;
-    best.information = attitude.information + verticals.Information(before);
-    best.up_in_world = LowestCostUp(best.information, before);
-    if ((best.up_in_world - before).norm() < kUpTolerance) break;
-  }
-  return best;
+  return normals.Descend(attitude.information, best);
 }
 
 namespace {

@@ -36,6 +36,11 @@ UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double
                            double pitch_sigma, double correlation_rad,
                            CameraHolding holding = CameraHolding::kLevel);
 
+// The same where some cameras may be turned in any way: their axes have a bounded loss
+// (Geman-McClure). Where most are held less evenly than the sigmas say, the information is smaller.
+UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
+                                 double pitch_sigma, double correlation_rad, CameraHolding holding);
+
 // Straight edges in one image.
 struct SegmentView {
   Camera camera;

@@ -159,6 +159,20 @@ TEST(EstimateGroundTest, WithoutPointsThereAreNoPlanes) {
   EXPECT_THAT(CheckGround(estimate, {}), Contains(Field(&Finding::check, "no_support_plane")));
 }
 
+TEST(CheckGroundTest, FewObjectsOnPlanesAreAFinding) {
+  GroundEstimate estimate;
+  estimate.planes.resize(1);
+  estimate.objects.resize(8);
+  const auto is_found = [&] {
+    const auto findings = CheckGround(estimate, {});
+    return std::ranges::count(findings, "few_objects_on_planes", &Finding::check) == 1;
+  };
+  estimate.objects[0].plane = 0;
+  EXPECT_TRUE(is_found());
+  estimate.objects[1].plane = 0;
+  EXPECT_FALSE(is_found());
+}
+
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {
   const PriorScene scene = SceneOf(5);
   HorizontalPlanes none;

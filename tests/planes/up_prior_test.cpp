@@ -59,6 +59,31 @@ TEST(UpPriorFromCameras, ManyCamerasInOneDirectionCountAsOne) {
   EXPECT_LT((information(7, 0.0) - 7.0 * information(1, 0.0)).norm(), 1e-9);
 }
 
+// A third of the cameras are rolled by 30 to 60 degrees.
+TEST(RobustUpPriorFromCameras, SomeCamerasMayBeTurnedInAnyWay) {
+  double plain_tilts = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Rigid3d> even, turned;
+    for (int k = 0; k < 24; ++k) {
+      even.push_back(LevelCamera(RandomUniform(-3.1, 3.1), RandomUniform(0.1, 0.7)));
+      turned.push_back(even.back());
+      if (k % 3 != 0) continue;
+      turned.back().rotation *=
+          Eigen::Quaterniond(Eigen::AngleAxisd(RandomUniform(0.5, 1.0), Eigen::Vector3d::UnitZ()));
+    }
+    const auto robust = [](const std::vector<Rigid3d>& poses) {
+      return RobustUpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation,
+                                      CameraHolding::kLevel);
+    };
+    const UpPrior up = robust(turned);
+    EXPECT_GT(up.up_in_world.z(), std::cos(3.0 * kRadPerDeg));
+    plain_tilts += AngleToUp(turned);
+    EXPECT_GT(robust(even).up_in_world.z(), std::cos(0.5 * kRadPerDeg));
+    EXPECT_LT(up.information.trace(), robust(even).information.trace());
+  }
+  EXPECT_GT(plain_tilts / 20, 5.0 * kRadPerDeg) << "where the loss matters";
+}
+
 // RotatedAboutZ about their optical axes, cameras that are held so have the up that they had
 // before.
 TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
