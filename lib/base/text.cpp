@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <vector>
 
@@ -24,6 +25,11 @@ std::string WithoutMiddle(const std::string& text) {
 }
 
 }  // namespace
+
+std::string LowerCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 std::string OneLine(const std::string& message) {
   const std::string text = message.substr(0, message.find_last_not_of('\n') + 1);

@@ -13,6 +13,9 @@ namespace soslam {
 // of the error and what was expected.
 std::string OneLine(const std::string& message);
 
+// The text with capitals of ASCII as small letters.
+std::string LowerCase(std::string text);
+
 // Number of characters of a text in UTF-8.
 size_t WidthOf(const std::string& text);
 

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <initializer_list>
 #include <map>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "dataset/colmap_model.h"
 #include "dataset/dataset_json.h"
 #include "dataset/nerfstudio.h"
@@ -54,10 +54,8 @@ const std::vector<LensModel>& LensModels() {
 // Normalised model name: lower case, without word separators.
 std::string PlainName(const std::string& model) {
   std::string name;
-  for (const char c : model) {
-    if (c == '_' || c == '-' || c == ' ') continue;
-    name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::ranges::copy_if(LowerCase(model), std::back_inserter(name),
+                       [](char c) { return c != '_' && c != '-' && c != ' '; });
   return name;
 }
 
@@ -111,10 +109,8 @@ namespace {
 // Normalised key: lower case, without underscores and without Kalibr's and ORB-SLAM3's prefix of
 // the first camera.
 std::string PlainKey(const std::string& key) {
-  std::string plain;
-  for (const char c : key) {
-    if (c != '_') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
+  std::string plain = LowerCase(key);
+  std::erase(plain, '_');
   if (plain.starts_with("cam0.")) return plain.substr(5);
   return plain.starts_with("camera1.") ? "camera." + plain.substr(8) : plain;
 }

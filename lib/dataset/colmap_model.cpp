@@ -5,18 +5,153 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <map>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/paths.h"
-#include "dataset/colmap_binary.h"
 #include "dataset/colmap_camera.h"
 #include "dataset/text_file.h"
 
 namespace soslam {
 namespace {
+
+// The pose of an image from a quaternion and a translation of camera_from_world. Throws InputError,
+// naming `place`, for a quaternion that is not of unit length.
+NamedPose PoseOfColmapImage(const Eigen::Vector4d& xyzw, const Eigen::Vector3d& translation,
+                            std::string name, const std::string& place) {
+  const Rigid3d camera_from_world{UnitQuaternion(xyzw, place), translation};
+  return {place, std::move(name), camera_from_world.Inverse()};
+}
+
+static_assert(std::endian::native == std::endian::little);
+
+// The bytes of a file, taken from its beginning on.
+class BinaryReader {
+ public:
+  explicit BinaryReader(const std::filesystem::path& path)
+      : path_(path.string()), bytes_(ReadWholeFile(path, "binary file of COLMAP")) {}
+
+  template <typename Number>
+  Number Take() {
+    Require(sizeof(Number));
+    Number number;
+    std::memcpy(&number, bytes_.data() + at_, sizeof(Number));
+    at_ += sizeof(Number);
+    return number;
+  }
+
+  double TakeReal(const std::string& place) {
+    const auto number = Take<double>();
+    if (!std::isfinite(number)) {
+      throw InputError(fmt::format("{}: has the number {}; expected finite ones", place, number));
+    }
+    return number;
+  }
+
+  // A number of entries that have at least so many bytes each.
+  size_t TakeCount(size_t bytes_each, const std::string& what) {
+    const auto count = Take<std::uint64_t>();
+    if (count > (bytes_.size() - at_) / bytes_each) {
+      throw InputError(
+          fmt::format("{}: byte {}: says {} {}; expected no more than its {} bytes can "
+                      "hold: the file is cut short or damaged",
+                      path_, at_, count, what, bytes_.size()));
+    }
+    return static_cast<size_t>(count);
+  }
+
+  // The text up to the next zero byte.
+  std::string TakeText() {
+    const size_t end = bytes_.find('\0', at_);
+    if (end == bytes_.npos) Require(bytes_.size());
+    std::string text = bytes_.substr(at_, end - at_);
+    at_ = end + 1;
+    return text;
+  }
+
+  void RequireEnd() const {
+    if (at_ == bytes_.size()) return;
+    throw InputError(fmt::format("{}: has {} bytes after its last entry; expected none", path_,
+                                 bytes_.size() - at_));
+  }
+
+ private:
+  void Require(size_t count) const {
+    if (bytes_.size() - at_ >= count) return;
+    throw InputError(fmt::format("{}: ends within an entry, at byte {}; expected a whole file",
+                                 path_, bytes_.size()));
+  }
+
+  std::string path_;
+  std::string bytes_;
+  size_t at_ = 0;
+};
+
+LensCamera TakeCamera(BinaryReader* reader, const std::string& place) {
+  reader->Take<std::uint32_t>();  // id
+  const ColmapCameraModel& model = FindColmapCameraModel(reader->Take<std::int32_t>(), place);
+  const auto width = reader->Take<std::int64_t>(), height = reader->Take<std::int64_t>();
+  std::vector<double> parameters(model.parameters.size());
+  for (double& value : parameters) value = reader->TakeReal(place);
+  return CameraOfColmap(model, width, height, parameters, place);
+}
+
+ColmapImage TakeImage(BinaryReader* reader, const std::string& place) {
+  constexpr size_t kBytesOfPixel = 24;
+  ColmapImage image;
+  image.id = reader->Take<std::uint32_t>();
+  double q[4], t[3];
+  for (double& value : q) value = reader->TakeReal(place);
+  for (double& value : t) value = reader->TakeReal(place);
+  reader->Take<std::uint32_t>();  // id of its camera; all are the same
+  const std::string name = reader->TakeText();
+  image.pose = PoseOfColmapImage({q[1], q[2], q[3], q[0]}, {t[0], t[1], t[2]}, name, place);
+  const size_t count = reader->TakeCount(kBytesOfPixel, "image points");
+  image.pixels.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const double x = reader->TakeReal(place), y = reader->TakeReal(place);
+    reader->Take<std::uint64_t>();  // id of its point; the points list their image points
+    image.pixels.emplace_back(x - 0.5, y - 0.5);
+  }
+  return image;
+}
+
+ColmapPoint TakePoint(BinaryReader* reader, const std::string& place) {
+  constexpr size_t kBytesOfObservation = 8;
+  ColmapPoint point;
+  point.id = reader->Take<std::uint64_t>();
+  for (double& value : point.position_in_world) value = reader->TakeReal(place);
+  for (int i = 0; i < 3; ++i) reader->Take<std::uint8_t>();  // colour
+  point.reprojection_error_px = reader->TakeReal(place);
+  const size_t count = reader->TakeCount(kBytesOfObservation, "observations");
+  point.track.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const auto image = reader->Take<std::uint32_t>();
+    point.track.push_back({image, reader->Take<std::uint32_t>()});
+  }
+  return point;
+}
+
+// The entries of a binary file, of `least_bytes` each at least: "camera", "image" or "point".
+template <typename Entry>
+std::vector<Entry> ReadBinary(const std::filesystem::path& path, const std::string& name,
+                              size_t least_bytes,
+                              Entry (*take)(BinaryReader*, const std::string& place)) {
+  BinaryReader reader(path);
+  const size_t count = reader.TakeCount(least_bytes, name + "s");
+  std::vector<Entry> entries;
+  entries.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    entries.push_back(take(&reader, fmt::format("{}: {} {}", path.string(), name, i + 1)));
+  }
+  reader.RequireEnd();
+  return entries;
+}
 
 bool IsBinary(const std::filesystem::path& path) { return path.extension() == ".bin"; }
 
@@ -94,7 +229,9 @@ std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path, Image
 }
 
 std::vector<ColmapImage> ReadImages(const std::filesystem::path& path, ImagePoints points) {
-  auto images = IsBinary(path) ? ReadColmapImagesBinary(path) : ReadImagesText(path, points);
+  constexpr size_t kLeastBytes = 73;
+  auto images = IsBinary(path) ? ReadBinary(path, "image", kLeastBytes, &TakeImage)
+                               : ReadImagesText(path, points);
   if (images.empty())
     throw InputError(path.string() + ": has no pose; expected COLMAP's images.txt or images.bin");
   return images;
@@ -123,12 +260,6 @@ ColmapPoint ParsePoint(const TextLine& line) {
                            ParseInteger(words[i + 1], line.place, "POINT2D_IDX")});
   }
   return point;
-}
-
-std::vector<ColmapPoint> ReadPointsText(const std::filesystem::path& path) {
-  std::vector<ColmapPoint> points;
-  for (const TextLine& line : ReadTextLines(path)) points.push_back(ParsePoint(line));
-  return points;
 }
 
 // Throws InputError unless ids are unique, and tracks refer to existing image points.
@@ -162,17 +293,12 @@ void CheckTracks(const ColmapModel& model) {
 
 }  // namespace
 
-NamedPose PoseOfColmapImage(const Eigen::Vector4d& xyzw, const Eigen::Vector3d& translation,
-                            std::string name, const std::string& place) {
-  const Rigid3d camera_from_world{UnitQuaternion(xyzw, place), translation};
-  return {place, std::move(name), camera_from_world.Inverse()};
-}
-
 LensCamera ReadColmapCamera(const std::filesystem::path& path) {
   std::vector<LensCamera> cameras;
   std::vector<std::string> places;
   if (IsBinary(path)) {
-    cameras = ReadColmapCamerasBinary(path);
+    constexpr size_t kLeastBytes = 24;
+    cameras = ReadBinary(path, "camera", kLeastBytes, &TakeCamera);
     places.assign(cameras.size(), path.string());
   } else {
     for (const TextLine& line : ReadTextLines(path)) {
@@ -204,6 +330,14 @@ std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
   return poses;
 }
 
+std::vector<ColmapPoint> ReadColmapPoints(const std::filesystem::path& path) {
+  constexpr size_t kLeastBytes = 51;
+  if (IsBinary(path)) return ReadBinary(path, "point", kLeastBytes, &TakePoint);
+  std::vector<ColmapPoint> points;
+  for (const TextLine& line : ReadTextLines(path)) points.push_back(ParsePoint(line));
+  return points;
+}
+
 bool IsColmapModel(const std::filesystem::path& folder) {
   return IsFile(folder / "cameras.bin") || IsFile(folder / "cameras.txt");
 }
@@ -216,8 +350,7 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   }
   model.camera = ReadColmapCamera(model.files[0]);
   model.images = ReadImages(model.files[1], ImagePoints::kRead);
-  const std::filesystem::path& points = model.files[2];
-  model.points = IsBinary(points) ? ReadColmapPointsBinary(points) : ReadPointsText(points);
+  model.points = ReadColmapPoints(model.files[2]);
   std::ranges::sort(model.points, {}, &ColmapPoint::id);
   CheckTracks(model);
   return model;

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "dataset/calibration_file.h"
@@ -13,7 +12,9 @@
 namespace soslam {
 
 // Finished models of COLMAP, text (.txt) or binary (.bin); the format follows from the name. The
-// readers throw InputError naming the line, or the entry of a binary file.
+// readers throw InputError naming the line, or the entry of a binary file; also for a binary file
+// of more than 1 GiB, or that ends too early or too late, a number that is not finite, and counts
+// beyond what the file can hold.
 //
 // COLMAP's pixel (0, 0) is the outer corner of the top-left one: half a pixel is subtracted
 // everywhere. Its poses are camera_from_world; they are inverted here.
@@ -25,11 +26,6 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path);
 // Reads the poses of images.txt or images.bin, without their image points. In file order; at least
 // one.
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path);
-
-// The pose of an image from a quaternion and a translation of camera_from_world. Throws InputError,
-// naming `place`, for a quaternion that is not of unit length.
-NamedPose PoseOfColmapImage(const Eigen::Vector4d& xyzw, const Eigen::Vector3d& translation,
-                            std::string name, const std::string& place);
 
 struct ColmapImage {
   std::int64_t id = 0;
@@ -54,6 +50,9 @@ struct ColmapModel {
   std::vector<ColmapPoint> points;  // sorted by id
   std::vector<std::filesystem::path> files;
 };
+
+// Reads points3D.txt or points3D.bin, in file order.
+std::vector<ColmapPoint> ReadColmapPoints(const std::filesystem::path& path);
 
 // True if a folder has the camera file of a model.
 bool IsColmapModel(const std::filesystem::path& folder);

@@ -122,28 +122,14 @@ ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const Impo
 
 ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named,
                        const std::vector<ListedImage>& images) {
-  FrameLookup lookup(images);
   ImagePoses poses(images.size());
-  size_t matched = 0;
-  for (const NamedPose& pose : named) {
-    const auto row = lookup.Find(pose.image, pose.place);
-    if (!row) continue;
-    auto& found = poses[static_cast<size_t>(*row)];
-    if (found) {
-      throw InputError(fmt::format("{}: is the second pose of image '{}'; expected one", pose.place,
-                                   pose.image));
-    }
-    found = pose.world_from_camera;
-    ++matched;
+  const auto rows = RowsOfPoses(named, images);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i]) poses[static_cast<size_t>(*rows[i])] = named[i].world_from_camera;
   }
-  if (matched == 0) {
-    throw InputError(
-        fmt::format("{}: image '{}' is not listed, nor that of any other pose; expected names of "
-                    "the listed images",
-                    named.front().place, named.front().image));
-  }
+  const auto unlisted = std::ranges::count_if(rows, [](const auto& row) { return !row; });
   fmt::print("{}: {} of {} images have a pose; {} poses are of images that are not listed\n",
-             path.filename().string(), matched, images.size(), named.size() - matched);
+             path.filename().string(), std::ssize(rows) - unlisted, images.size(), unlisted);
   return poses;
 }
 

@@ -153,4 +153,25 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   return row;
 }
 
+std::vector<std::optional<int>> RowsOfPoses(const std::vector<NamedPose>& poses,
+                                            const std::vector<ListedImage>& images) {
+  FrameLookup lookup(images);
+  std::vector<std::optional<int>> rows;
+  std::set<int> found;
+  for (const NamedPose& pose : poses) {
+    rows.push_back(lookup.Find(pose.image, pose.place));
+    if (rows.back() && !found.insert(*rows.back()).second) {
+      throw InputError(fmt::format("{}: is the second pose of image '{}'; expected one", pose.place,
+                                   pose.image));
+    }
+  }
+  if (found.empty()) {
+    throw InputError(
+        fmt::format("{}: image '{}' is not listed, nor that of any other pose; expected names of "
+                    "the listed images",
+                    poses.front().place, poses.front().image));
+  }
+  return rows;
+}
+
 }  // namespace soslam

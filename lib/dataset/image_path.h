@@ -45,4 +45,9 @@ class FrameLookup {
   std::map<int, std::filesystem::path> named_folders_;
 };
 
+// The row of the image of each pose, at least one; none for images that are not listed. Throws
+// InputError for the second pose of an image, and when no image is listed.
+std::vector<std::optional<int>> RowsOfPoses(const std::vector<NamedPose>& poses,
+                                            const std::vector<ListedImage>& images);
+
 }  // namespace soslam

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct KnownKeys {
   std::vector<const char*> keys;
   std::vector<KeyHint> hints = {};
 };
+
+// The matrix of 4 rows of 4 numbers; none for anything else.
+std::optional<Eigen::Matrix4d> Matrix4FromJson(const nlohmann::json& rows);
 
 // Checked access to an object of an external JSON file. It refers to the document, which must
 // outlive it. All functions throw InputError, naming place and field, when the field is missing or

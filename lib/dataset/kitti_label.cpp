@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <span>
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "dataset/text_file.h"
 #include "dataset/trajectories.h"
 #include "geometry/image_size.h"
@@ -225,13 +225,6 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
   return camera;
 }
 
-std::string LabelOfType(const std::string& type) {
-  std::string label = type;
-  std::transform(label.begin(), label.end(), label.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return label;
-}
-
 Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration) {
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
   const Eigen::Vector3d front(std::cos(label.rotation_y), 0.0, -std::sin(label.rotation_y));
@@ -249,15 +242,14 @@ Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calib
 DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,
                         const KittiCalibration& calibration, const Camera& camera) {
   const Landmark landmark = LandmarkInCamera(label, calibration);
-  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
-  DetectionRow row{label.place, 0, 0, LabelOfType(label.type), score, box};
+  DetectionRow row{label.place, 0, 0, LowerCase(label.type), score, box};
   const double right = camera.width - 0.5;
   const double bottom = camera.height - 0.5;
   row.box = {std::clamp(box.x_min, -0.5, right), std::clamp(box.y_min, -0.5, bottom),
              std::clamp(box.x_max, -0.5, right), std::clamp(box.y_max, -0.5, bottom)};
   row.truncation = label.truncated;
   row.occlusion = label.occluded;
-  row.plane_in_camera = Plane{up, landmark.half_axes.z() - up.dot(landmark.Centre())};
+  row.plane_in_camera = SupportPlaneOf(landmark);
   row.true_landmark_in_camera = landmark;
   return row;
 }

@@ -96,9 +96,6 @@ Camera WithImageSize(Camera camera, const std::optional<std::filesystem::path>& 
                      ImageOrientation orientation, const RecordingValues& image_size,
                      int recording);
 
-// Label of a type, in lower case: KITTI's Car is the label car.
-std::string LabelOfType(const std::string& type);
-
 // The labelled cuboid in the frame of camera 2: x along the length, z up.
 Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration);
 

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/text_file.h"
@@ -92,7 +93,7 @@ Frame ReadFrame(const fs::path& folder, const NumberedPath& labels) {
 void AddObject(const KittiLabel& label, const DetectionRow& row, DatasetContent* content) {
   Object object;
   object.id = row.object_id;
-  object.label = LabelOfType(label.type);
+  object.label = LowerCase(label.type);
   object.plane_index = static_cast<int>(content->planes.size());
   object.ground_truth.emplace().landmark_in_world = *row.true_landmark_in_camera;
   content->planes.push_back({object.id, *row.plane_in_camera});

@@ -8,10 +8,10 @@
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/kitti_object.h"
-#include "dataset/text_file.h"
 #include "dataset/trajectories.h"
 
 namespace soslam {
@@ -64,24 +64,14 @@ bool IsStatic(const std::vector<Landmark>& landmarks, const Eigen::Vector3d& med
          static_cast<double>(near) >= options.static_share * views;
 }
 
-}  // namespace
-
-TrackTruth SummariseTrack(const std::vector<LabelledView>& views, const KittiOptions& options) {
-  std::vector<Landmark> in_world;
-  for (const LabelledView& view : views) {
-    in_world.push_back(Transform(view.world_from_camera, view.landmark_in_camera));
-  }
-  TrackTruth truth;
-  truth.landmark_in_world = MedianLandmark(in_world);
-  truth.is_static = IsStatic(in_world, truth.landmark_in_world.Centre(), options);
-  if (!truth.is_static) truth.landmark_in_world = in_world.front();
-  const Landmark& landmark = truth.landmark_in_world;
-  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
-  truth.plane_in_world = {up, landmark.half_axes.z() - up.dot(landmark.Centre())};
-  return truth;
+// Sets the truth of an object from its labelled landmarks, at least one, in temporal order: their
+// median, or the first if they say that it moves.
+void SetTruth(const std::vector<Landmark>& in_world, const KittiOptions& options, Object* object) {
+  Landmark& truth = object->ground_truth.emplace().landmark_in_world;
+  truth = MedianLandmark(in_world);
+  object->is_static = IsStatic(in_world, truth.Centre(), options);
+  if (!object->is_static) truth = in_world.front();
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -176,24 +166,24 @@ class Recording {
     for (auto& [track, labels] : tracks) {
       std::ranges::stable_sort(
           labels, [](const KittiLabel* a, const KittiLabel* b) { return a->frame < b->frame; });
-      std::vector<LabelledView> views;
+      std::vector<Landmark> in_world;
       for (const KittiLabel* label : labels) {
         if (label->type != labels.front()->type) {
           throw InputError(fmt::format("{}: type of track {} is '{}'; expected '{}', as before",
                                        label->place, track, label->type, labels.front()->type));
         }
         const Landmark landmark_in_camera = LandmarkInCamera(*label, calibration_);
-        views.push_back({poses_[static_cast<size_t>(label->frame)], landmark_in_camera});
+        in_world.push_back(
+            Transform(poses_[static_cast<size_t>(label->frame)], landmark_in_camera));
         content_->labels_in_frames.push_back({Id(label->frame), Id(track), landmark_in_camera});
       }
-      const TrackTruth truth = SummariseTrack(views, options_);
       Object object;
       object.id = Id(track);
-      object.label = LabelOfType(labels.front()->type);
+      object.label = LowerCase(labels.front()->type);
       object.plane_index = static_cast<int>(content_->planes.size());
-      object.ground_truth.emplace().landmark_in_world = truth.landmark_in_world;
-      object.is_static = truth.is_static;
-      content_->planes.push_back({object.id, truth.plane_in_world});
+      SetTruth(in_world, options_, &object);
+      content_->planes.push_back(
+          {object.id, SupportPlaneOf(object.ground_truth->landmark_in_world)});
       content_->true_objects.push_back(
           {object.id, object.label, *object.ground_truth, number_, object.is_static});
       content_->objects.push_back(object);
@@ -233,7 +223,7 @@ class Recording {
       if (label.type == type) labels_by_frame[label.frame].push_back(&label);
     }
     for (const auto& [frame, found] : found_by_frame) {
-      AddMatches(LabelOfType(type), found, labels_by_frame[frame]);
+      AddMatches(LowerCase(type), found, labels_by_frame[frame]);
     }
   }
 

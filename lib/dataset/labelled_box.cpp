@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/table.h"
+#include "base/text.h"
 #include "dataset/class_names.h"
 #include "dataset/json_entry.h"
 #include "dataset/text_file.h"
@@ -27,11 +27,10 @@ constexpr std::array kBoxColumns = {"frame", "label", "score", "x1", "y1", "x2",
 constexpr const char* kIdColumn = "object_id";
 
 // Normalised column name: lower case, underscores instead of blanks.
-std::string ColumnName(std::string field) {
-  for (char& c : field) {
-    c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return field;
+std::string ColumnName(const std::string& field) {
+  std::string name = LowerCase(field);
+  std::ranges::replace(name, ' ', '_');
+  return name;
 }
 
 // Table format given by the first line.

@@ -85,18 +85,9 @@ void RefuseOtherCameras(const JsonEntry& all) {
 }
 
 NamedPose ParsePose(const JsonEntry& frame) {
-  const json& rows = frame.List("transform_matrix");
-  Eigen::Matrix4d matrix;
-  for (size_t r = 0; r < 4; ++r) {
-    for (size_t c = 0; c < 4; ++c) {
-      if (rows.size() != 4 || !rows[r].is_array() || rows[r].size() != 4 ||
-          !rows[r][c].is_number()) {
-        frame.Refuse("transform_matrix", "4 rows of 4 numbers");
-      }
-      matrix(static_cast<int>(r), static_cast<int>(c)) = rows[r][c].get<double>();
-    }
-  }
-  const Rigid3d world_from_opengl = RigidMotion(matrix, frame.place());
+  const auto matrix = Matrix4FromJson(frame.Field("transform_matrix"));
+  if (!matrix) frame.Refuse("transform_matrix", "4 rows of 4 numbers");
+  const Rigid3d world_from_opengl = RigidMotion(*matrix, frame.place());
   const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
   return {frame.place(),
           frame.Text("file_path"),

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "base/error.h"
 #include "dataset/image_path.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
@@ -31,38 +30,8 @@ MapPoint PointOf(const ColmapPoint& point, const ColmapModel& model,
   return read;
 }
 
-}  // namespace
-
-Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images) {
-  Reconstruction reconstruction;
-  reconstruction.world_from_camera.resize(images.size());
-  FrameLookup lookup(images);
-  std::map<std::int64_t, std::pair<size_t, int>> frames;  // index in the model, and frame, by id
-  for (size_t i = 0; i < model.images.size(); ++i) {
-    const NamedPose& pose = model.images[i].pose;
-    const auto row = lookup.Find(pose.image, pose.place);
-    if (!row) continue;
-    auto& found = reconstruction.world_from_camera[static_cast<size_t>(*row)];
-    if (found) {
-      throw InputError(fmt::format("{}: is the second pose of image '{}'; expected one", pose.place,
-                                   pose.image));
-    }
-    found = pose.world_from_camera;
-    frames[model.images[i].id] = {i, *row};
-  }
-  if (frames.empty()) {
-    const NamedPose& first = model.images.front().pose;
-    throw InputError(fmt::format(
-        "{}: image '{}' is not listed, nor is any other; expected a model of the listed images",
-        first.place, first.image));
-  }
-  for (const ColmapPoint& point : model.points) {
-    MapPoint read = PointOf(point, model, frames);
-    if (!read.observations.empty()) reconstruction.points.push_back(std::move(read));
-  }
-  return reconstruction;
-}
-
+// The largest angle between rays from two of the cameras that see a point, rad; of tracks longer
+// than 50 views, of 50 that are evenly spread.
 double TriangulationAngle(const MapPoint& point,
                           const std::vector<std::optional<Rigid3d>>& world_from_camera) {
   constexpr size_t kMostViews = 50;
@@ -80,6 +49,27 @@ double TriangulationAngle(const MapPoint& point,
     }
   }
   return largest;
+}
+
+}  // namespace
+
+Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images) {
+  Reconstruction reconstruction;
+  reconstruction.world_from_camera.resize(images.size());
+  std::vector<NamedPose> poses;
+  for (const ColmapImage& image : model.images) poses.push_back(image.pose);
+  const auto rows = RowsOfPoses(poses, images);
+  std::map<std::int64_t, std::pair<size_t, int>> frames;  // index in the model, and frame, by id
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i]) continue;
+    reconstruction.world_from_camera[static_cast<size_t>(*rows[i])] = poses[i].world_from_camera;
+    frames[model.images[i].id] = {i, *rows[i]};
+  }
+  for (const ColmapPoint& point : model.points) {
+    MapPoint read = PointOf(point, model, frames);
+    if (!read.observations.empty()) reconstruction.points.push_back(std::move(read));
+  }
+  return reconstruction;
 }
 
 void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summary) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "dataset/colmap_model.h"
@@ -24,11 +23,6 @@ struct Reconstruction {
 // Observations are sorted by frame. Throws InputError when an image has two poses, and when none is
 // listed.
 Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images);
-
-// The largest angle between rays from two of the cameras that see a point, rad; of tracks longer
-// than 50 views, of 50 that are evenly spread.
-double TriangulationAngle(const MapPoint& point,
-                          const std::vector<std::optional<Rigid3d>>& world_from_camera);
 
 // Numbers of images and points, and medians; the rest is left as it is.
 void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summary);

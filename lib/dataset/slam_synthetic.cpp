@@ -24,16 +24,9 @@ constexpr int kIdsPerProblem = 10000;
 constexpr const char* kLabel = "ellipsoid";
 
 Rigid3d ParsePose(const json& rows, const std::string& place) {
-  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix;
-  const auto is_row = [](const json& row) {
-    return row.is_array() && row.size() == 4 &&
-           std::ranges::all_of(row, [](const json& x) { return x.is_number(); });
-  };
-  if (!rows.is_array() || rows.size() != 4 || !std::ranges::all_of(rows, is_row)) {
-    throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
-  }
-  for (size_t i = 0; i < 16; ++i) matrix.data()[i] = rows[i / 4][i % 4].get<double>();
-  return {NearestRotation(matrix.topLeftCorner<3, 3>(), place), matrix.topRightCorner<3, 1>()};
+  const auto matrix = Matrix4FromJson(rows);
+  if (!matrix) throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
+  return {NearestRotation(matrix->topLeftCorner<3, 3>(), place), matrix->topRightCorner<3, 1>()};
 }
 
 // Reads one problem into the content.

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "dataset/text_file.h"
 
 namespace soslam {
@@ -61,10 +61,7 @@ double HalfAxis(const std::string& text, const std::string& place, const char* c
 }
 
 bool SameText(const std::string& one, const std::string& other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(), [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) ==
-           std::tolower(static_cast<unsigned char>(b));
-  });
+  return LowerCase(one) == LowerCase(other);
 }
 
 CatalogueName NameFromJson(const nlohmann::json& json) {

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
+#include <variant>
 
 #include "base/error.h"
 #include "base/text.h"
-#include "dataset/chosen_boxes.h"
 #include "dataset/labelled_box.h"
 
 namespace soslam {
@@ -29,6 +31,9 @@ constexpr std::array kAdvice = {
            "take all photos with one lens, without zoom"},
     Advice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
            "move more slowly, with more light; or lower min_sharpness"}};
+
+// Coordinate of a pixel after scaling; both count from the centre of the first pixel.
+double Scaled(double coordinate, double scale) { return (coordinate + 0.5) * scale - 0.5; }
 
 }  // namespace
 
@@ -80,21 +85,36 @@ std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames
   for (const SourceFrame& frame : chosen.record.frames) {
     rows.push_back(IsLeftOut(frame) ? std::nullopt : std::optional(row++));
   }
+  const double scale_x = static_cast<double>(chosen.record.width) / chosen.source_size.width;
+  const double scale_y = static_cast<double>(chosen.record.height) / chosen.source_size.height;
   const std::vector<LabelledBox> boxes = ReadDetectionsCsv(path);
-  const ChosenBoxes of_chosen = BoxesOfChosen(
-      boxes, rows, static_cast<double>(chosen.record.width) / chosen.source_size.width,
-      static_cast<double>(chosen.record.height) / chosen.source_size.height);
-  if (of_chosen.boxes.empty()) {
+  std::vector<LabelledBox> of_chosen;
+  int left_out = 0, unknown = 0;
+  for (LabelledBox box : boxes) {
+    const int number = std::get<int>(box.frame);
+    const bool is_known = number >= 0 && number < std::ssize(rows);
+    const auto of_frame = is_known ? rows[static_cast<size_t>(number)] : std::nullopt;
+    if (!of_frame) {
+      ++(is_known ? left_out : unknown);
+      continue;
+    }
+    box.frame = *of_frame;
+    box.box = {Scaled(box.box.x_min, scale_x), Scaled(box.box.y_min, scale_y),
+               Scaled(box.box.x_max, scale_x), Scaled(box.box.y_max, scale_y)};
+    of_chosen.push_back(std::move(box));
+  }
+  if (of_chosen.empty()) {
     throw InputError(fmt::format(
         "{}: none of its {} boxes is of a chosen image; expected as `frame` the number of the "
         "image, from 0, in the order of their names or of the video",
         path.string(), boxes.size()));
   }
   fmt::print("{}: {} boxes of chosen images, {} of images that were left out, {} of others\n",
-             path.filename().string(), of_chosen.boxes.size(), of_chosen.left_out,
-             of_chosen.unknown);
+             path.filename().string(), of_chosen.size(), left_out, unknown);
+  std::ranges::stable_sort(of_chosen, {},
+                           [](const LabelledBox& box) { return std::get<int>(box.frame); });
   return fmt::format("{} from {}\n{}", kFrameBoxesMark, OneLine(path.filename().string()),
-                     LabelledBoxesText(of_chosen.boxes));
+                     LabelledBoxesText(of_chosen));
 }
 
 }  // namespace soslam

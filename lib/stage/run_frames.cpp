@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -26,6 +25,7 @@
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "dataset/photo_folder.h"
+#include "dataset/text_file.h"
 #include "image/exif_focal_length.h"
 #include "image/read_image.h"
 #include "image/video_file.h"
@@ -159,10 +159,7 @@ bool IsCopied(const Photo& photo, int max_image_px) {
 
 std::string ExtensionOf(const Photo& photo, int max_image_px) {
   if (!IsCopied(photo, max_image_px)) return ".jpg";
-  std::string extension = photo.path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return LowerCase(photo.path.extension().string());
 }
 
 void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
@@ -171,10 +168,7 @@ void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
     return WriteJpeg(ReadColourImage(photo.path), max_image_px, photo.header.focal_over_diagonal,
                      name, output);
   }
-  std::ifstream stream(photo.path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw InputError(photo.path.string() + ": cannot be read");
-  output.Write(name, bytes);
+  output.Write(name, ReadWholeFile(photo.path, "photo"));
 }
 
 std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& record,

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <set>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
 #include "workflow/plan_makefile.h"
@@ -94,10 +94,7 @@ FoundFiles FindFiles(const fs::path& dataset) {
 
 bool IsImage(const std::string& file) {
   static const std::set<std::string> kExtensions = {".png", ".jpg", ".jpeg"};
-  std::string extension = fs::path(file).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return kExtensions.contains(extension);
+  return kExtensions.contains(LowerCase(fs::path(file).extension().string()));
 }
 
 // Fingerprint of what imports depend on: the content of tables, and the existence of images.

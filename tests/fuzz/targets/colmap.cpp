@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/colmap_binary.h"
 #include "dataset/colmap_model.h"
 #include "fuzz/fuzz_target.h"
 
@@ -13,7 +12,7 @@ const FuzzTarget kColmap("colmap", [](const HostileInput& input) {
   const auto file = input.AsFile("model.bin");
   IsAccepted(file, [&] { ReadColmapCamera(file); });
   IsAccepted(file, [&] { ReadColmapPoses(file); });
-  IsAccepted(file, [&] { ReadColmapPointsBinary(file); });
+  IsAccepted(file, [&] { ReadColmapPoints(file); });
 });
 
 }  // namespace
