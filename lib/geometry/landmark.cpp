@@ -38,13 +38,6 @@ Eigen::Matrix4d DualQuadric(const Landmark& landmark) {
   return pose * diagonal.asDiagonal() * pose.transpose();
 }
 
-Eigen::Matrix4d Quadric(const Landmark& landmark) {
-  const Eigen::Matrix4d inverse_pose = landmark.frame_from_object.Inverse().Matrix();
-  Eigen::Vector4d diagonal;
-  diagonal << landmark.half_axes.cwiseAbs2().cwiseInverse(), -1.0;
-  return inverse_pose.transpose() * diagonal.asDiagonal() * inverse_pose;
-}
-
 std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d& dual_quadric) {
   if (!dual_quadric.allFinite() || dual_quadric(3, 3) == 0.0) return std::nullopt;
   const Eigen::Matrix4d scaled = dual_quadric / -dual_quadric(3, 3);
@@ -138,11 +131,6 @@ std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen:
   const Eigen::Quaterniond object_from_frame = landmark.frame_from_object.rotation.conjugate();
   return BodySurface(landmark.half_axes, landmark.shape_exponent)
       .Entry(object_from_frame * (origin - landmark.Centre()), object_from_frame * direction);
-}
-
-Eigen::Vector3d Mirror(const Landmark& landmark, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d y_axis = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitY();
-  return point - 2.0 * y_axis.dot(point - landmark.Centre()) * y_axis;
 }
 
 Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& support_normal, double yaw) {

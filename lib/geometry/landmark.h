@@ -32,10 +32,6 @@ Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_i
 // diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object; pi^T Q* pi = 0 iff the plane pi is tangent.
 Eigen::Matrix4d DualQuadric(const Landmark& landmark);
 
-// Quadric Q of the same ellipsoid: x^T Q x = 0 on the surface, < 0 inside, > 0 outside (the paper's
-// Theta).
-Eigen::Matrix4d Quadric(const Landmark& landmark);
-
 // The landmark of a dual quadric (any scale and sign). Half axes come in ascending order along x,
 // y, z of a right-handed frame. `proper` is false when the quadric is not an ellipsoid; the
 // absolute values of its squared half axes are then used (Nicholson et al. 2019). None when centre
@@ -88,9 +84,6 @@ double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, 
 // None when the ray misses the surface, or the surface is behind the origin or around it.
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction);
-
-// The mirror image S(v, Q) of a point in the landmark's xz plane.
-Eigen::Vector3d Mirror(const Landmark& landmark, const Eigen::Vector3d& point);
 
 // Upright orientations: z along the support normal. Yaw is the angle (rad) of the object's x axis
 // about that normal, counted from a horizontal direction fixed by the normal alone.

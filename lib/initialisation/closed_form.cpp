@@ -88,11 +88,4 @@ std::optional<ClosedFormSolution> ClosedForm::At(double yaw) const {
   }
 }
 
-std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {
-  const auto solution = ClosedForm(observation).At(yaw);
-  if (!solution) return std::nullopt;
-  return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(solution->parameters, observation.prior.shape_exponent);
-}
-
 }  // namespace soslam

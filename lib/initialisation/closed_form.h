@@ -87,7 +87,4 @@ class ClosedForm {
   Eigen::Matrix<double, 2, 4> foot_by_b_;     // pseudo-inverse of F
 };
 
-// ClosedForm::At for a single yaw, as a landmark in the camera frame.
-std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw);
-
 }  // namespace soslam

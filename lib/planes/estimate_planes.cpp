@@ -349,14 +349,6 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
   return estimate;
 }
 
-PlanesEstimate EstimatePlanes(const Sequence& sequence,
-                              const std::vector<std::optional<ShapePrior>>& priors,
-                              const UpPrior& attitude, const PlanesOptions& options, int threads) {
-  auto estimate = FindPlanes(sequence, priors, attitude, options, threads);
-  if (!estimate) ThrowNoPlanes(sequence);
-  return std::move(*estimate);
-}
-
 void ThrowNoPlanes(const Sequence& sequence) {
   throw NothingUsableError(fmt::format(
       "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "

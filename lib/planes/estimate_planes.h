@@ -27,17 +27,12 @@ BodyCosts CostsOfUprightBodies(const Sequence& sequence,
 // Throws NothingUsableError: no object's views determine the height of its base.
 [[noreturn]] void ThrowNoPlanes(const Sequence& sequence);
 
-// EstimatePlanes, or none when no object's views determine the height of its base.
+// Estimates the planes that the sequence's upright objects stand on, from their boxes in several
+// frames, the trajectory, the objects' priors and the prior on up. None when no object's views
+// determine the height of its base (one view, or all from the same place).
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
                                          const UpPrior& attitude, const PlanesOptions& options,
                                          int threads);
-
-// Estimates the planes that the sequence's upright objects stand on, from their boxes in several
-// frames, the trajectory, the objects' priors and the prior on up. Throws NothingUsableError when
-// no object's views determine the height of its base (one view, or all from the same place).
-PlanesEstimate EstimatePlanes(const Sequence& sequence,
-                              const std::vector<std::optional<ShapePrior>>& priors,
-                              const UpPrior& attitude, const PlanesOptions& options, int threads);
 
 }  // namespace soslam

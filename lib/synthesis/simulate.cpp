@@ -125,38 +125,4 @@ GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object) {
 
 std::string ImageName(int frame_index) { return fmt::format("rgb/{:06}.png", frame_index); }
 
-Sequence SyntheticSequence(const Scene& scene, bool noise) {
-  const Simulation simulation = Simulate(scene, noise);
-  Sequence sequence;
-  sequence.name = scene.name;
-  sequence.camera = scene.camera;
-  for (int i = 0; i < scene.trajectory.frames; ++i) {
-    sequence.frames.push_back({i, i * scene.trajectory.frame_interval, ImageName(i),
-                               simulation.odometry_world_from_camera[i],
-                               simulation.true_world_from_camera[i]});
-  }
-  for (const ScenePlane& plane : scene.planes) {
-    sequence.planes.push_back({plane.id, plane.plane_in_world});
-  }
-  for (const SceneObject& object : scene.objects) {
-    sequence.objects.push_back(
-        {object.id, object.label, object.plane_index, ObjectGroundTruth(scene, object)});
-    sequence.true_objects.push_back({object.id, object.label, ObjectGroundTruth(scene, object)});
-  }
-  for (const SimulatedBox& detection : simulation.detections) {
-    const int plane_index = scene.objects[detection.object_index].plane_index;
-    const Rigid3d& world_from_camera = simulation.true_world_from_camera[detection.frame_index];
-    sequence.detections.push_back(
-        {detection.frame_index,
-         detection.object_index,
-         1.0,
-         detection.box,
-         Transform(world_from_camera.Inverse(), scene.planes[plane_index].plane_in_world),
-         {},
-         {}});
-    sequence.detections.back().true_object_id = scene.objects[detection.object_index].id;
-  }
-  return sequence;
-}
-
 }  // namespace soslam

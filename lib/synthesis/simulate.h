@@ -58,8 +58,4 @@ GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object);
 // The path of a frame's image in its dataset folder.
 std::string ImageName(int frame_index);
 
-// The simulation as a sequence in memory, with ground truth and without images on disk. Each
-// detection has its support plane as the true camera sees it.
-Sequence SyntheticSequence(const Scene& scene, bool noise);
-
 }  // namespace soslam

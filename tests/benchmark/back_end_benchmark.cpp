@@ -6,7 +6,7 @@
 #include "benchmark/inputs.h"
 #include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"
-#include "synthesis/simulate.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

@@ -12,8 +12,8 @@
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "image/read_image.h"
+#include "support/scene.h"
 #include "synthesis/render.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

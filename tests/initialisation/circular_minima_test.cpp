@@ -2,13 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "initialisation/yaw_sweep.h"
-#include "support/random.h"
 
 namespace soslam {
 namespace {
@@ -17,27 +13,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-TEST(CircularMinima, OfAWaveAreItsTroughsLowestFirst) {
-  for (int i = 0; i < 50; ++i) {
-    // Troughs at quarter, three quarters, ... of a period, lowered by their index.
-    const int troughs = 2 + i % 4;
-    const double phase = RandomUniform(0.0, 1.0);
-    constexpr int kPoints = 240;
-    std::vector<double> values;
-    for (int k = 0; k < kPoints; ++k) {
-      const double turn = (k + phase) / kPoints;
-      values.push_back(-std::cos(2.0 * std::numbers::pi * troughs * turn) +
-                       0.1 * std::sin(2.0 * std::numbers::pi * turn));
-    }
-    const auto minima = CircularMinima(values);
-    ASSERT_EQ(minima.size(), static_cast<size_t>(troughs));
-    EXPECT_EQ(values[minima.front()], *std::min_element(values.begin(), values.end()));
-    for (size_t k = 1; k < minima.size(); ++k) {
-      EXPECT_LE(values[minima[k - 1]], values[minima[k]]);
-    }
-  }
-}
 
 TEST(CircularMinima, GoRoundTheEnds) {
   EXPECT_THAT(CircularMinima({0, 1, 2, 1}), ElementsAre(0));

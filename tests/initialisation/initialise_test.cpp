@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "support/level_sequence.h"
+#include "support/scene.h"
 #include "support/upright_bodies.h"
-#include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
@@ -38,23 +38,6 @@ UprightOptions WithoutAxes() {
   UprightOptions options;
   options.axes_weight = 0.0;
   return options;
-}
-
-void ExpectEqual(const LandmarkEstimates& one, const LandmarkEstimates& other) {
-  ASSERT_EQ(one.observations.size(), other.observations.size());
-  for (size_t i = 0; i < one.observations.size(); ++i) {
-    const auto& hypotheses = one.observations[i].hypotheses;
-    const auto& others = other.observations[i].hypotheses;
-    EXPECT_EQ(one.observations[i].detection_index, other.observations[i].detection_index);
-    EXPECT_EQ(one.observations[i].failure, other.observations[i].failure);
-    ASSERT_EQ(hypotheses.size(), others.size());
-    for (size_t k = 0; k < hypotheses.size(); ++k) {
-      EXPECT_EQ(hypotheses[k].cost, others[k].cost);
-      EXPECT_EQ(hypotheses[k].landmark_in_camera.half_axes, others[k].landmark_in_camera.half_axes);
-      EXPECT_EQ(hypotheses[k].landmark_in_camera.frame_from_object.Matrix(),
-                others[k].landmark_in_camera.frame_from_object.Matrix());
-    }
-  }
 }
 
 TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
@@ -144,15 +127,6 @@ TEST(InitialiseUpright, NamesDetectionsThatAreCutOnTwoSides) {
   EXPECT_EQ(estimates.observations[0].failure, "");
   EXPECT_EQ(estimates.observations[1].failure, "fewer_than_three_measured_edges");
   EXPECT_TRUE(estimates.observations[1].hypotheses.empty());
-}
-
-TEST(InitialiseUpright, DoesNotDependOnTheNumberOfThreads) {
-  const Sequence sequence = Bodies();
-  const auto priors = TruePriors(sequence);
-  const LandmarkEstimates alone = InitialiseUpright(sequence, priors, UprightOptions(), 1);
-  for (const int threads : {2, 5}) {
-    ExpectEqual(InitialiseUpright(sequence, priors, UprightOptions(), threads), alone);
-  }
 }
 
 // Hypotheses are in the camera frame, and the world's horizontal axes are alike.

@@ -155,35 +155,6 @@ TEST(LocalOptima, FewAreTheBestOfAll) {
   }
 }
 
-TEST(LocalOptima, OfAFootprintWithEqualSidesAreEquallyGoodAfterAQuarterTurn) {
-  int ties = 0;
-  for (const double p : {1.0, 1.1, 1.5}) {
-    for (int i = 0; i < 10; ++i) {
-      StandingBody body(p);
-      body.truth.half_axes.y() = body.truth.half_axes.x();
-      UprightObservation observation = body.Observe(*OutlineBox(TestCamera(), body.truth));
-      observation.prior = PriorOf(body.truth, 0.05);
-      observation.axes_weight = 1.0;
-      const auto optima = Optima(observation);
-      ASSERT_FALSE(optima.empty());
-      const UprightSolution& best = optima.front();
-      const Landmark turned = WithAxesExchanged(best.landmark);
-      const auto other = std::find_if(optima.begin(), optima.end(), [&](const auto& optimum) {
-        return IsSameBody(optimum.landmark, turned, 0.02);
-      });
-      ASSERT_NE(other, optima.end()) << "body " << i << ", p " << p;
-      EXPECT_NEAR(other->cost, best.cost, 1e-3);
-      if (std::abs(other->cost - best.cost) > 1e-9) continue;
-      ++ties;
-      const auto yaw = [&](const Landmark& landmark) {
-        return Yaw(body.plane.normal, landmark.frame_from_object.rotation);
-      };
-      EXPECT_LT(yaw(best.landmark), yaw(other->landmark));
-    }
-  }
-  EXPECT_GT(ties, 15);
-}
-
 // A cost on top that only one yaw is spared, between the points of the grid.
 TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
   for (int i = 0; i < 20; ++i) {

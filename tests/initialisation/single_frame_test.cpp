@@ -7,7 +7,7 @@
 #include "geometry/iou.h"
 #include "initialisation/initialise.h"
 #include "support/random.h"
-#include "synthesis/random_scene.h"
+#include "support/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

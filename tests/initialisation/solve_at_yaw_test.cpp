@@ -109,36 +109,5 @@ TEST(SolveAtYaw, IsTheSameBodyAfterAHalfTurnAndAfterAQuarterTurnWithTheAxesExcha
   }
 }
 
-Eigen::Vector3d Mirrored(const Eigen::Vector3d& vector) {
-  return {-vector.x(), vector.y(), vector.z()};
-}
-
-// What a mirror at x = 0 of the camera frame shows: left and right exchange.
-TEST(SolveAtYaw, MirrorsWithTheScene) {
-  for (int i = 0; i < 50; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
-    const std::array<bool, 4> is_bound = {i % 3 == 0, false, false, false};
-    const Box box = Disturbed(body.box, 0.05);
-    const double yaw = RandomYaw();
-    const auto landmark = SolveAtYaw(body.Observe(box, is_bound), yaw);
-    UprightObservation mirrored = body.observation;
-    mirrored.camera.cx = -mirrored.camera.cx;
-    mirrored.plane_in_camera.normal = Mirrored(body.plane.normal);
-    mirrored.edges =
-        BoxEdges(mirrored.camera, {-box.x_max, box.y_min, -box.x_min, box.y_max},
-                 {is_bound[2], is_bound[1], is_bound[0], is_bound[3]}, kDetectionSigmaFraction);
-    const Eigen::Vector3d front =
-        Mirrored(UprightRotation(body.plane.normal, yaw) * Eigen::Vector3d::UnitX());
-    const double mirrored_yaw =
-        Yaw(mirrored.plane_in_camera.normal,
-            Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), front));
-    const auto found = SolveAtYaw(mirrored, mirrored_yaw);
-    ASSERT_TRUE(landmark && found);
-    const double size = landmark->half_axes.maxCoeff();
-    EXPECT_LT((found->Centre() - Mirrored(landmark->Centre())).norm(), 1e-8 * size);
-    EXPECT_LT((found->half_axes - landmark->half_axes).norm(), 1e-8 * size);
-  }
-}
-
 }  // namespace
 }  // namespace soslam

@@ -38,23 +38,6 @@ struct Circle {
   std::vector<int> detections;
 };
 
-TEST(ViewWeights, ViewsFromOnePlaceCountAsOne) {
-  const Circle circle(RandomVector(-2, 2), std::vector<double>(17, 0.3));
-  for (const double weight : circle.Weights(10 * kRadPerDeg)) EXPECT_NEAR(weight, 1.0 / 17, 1e-12);
-}
-
-TEST(ViewWeights, ViewsFromDifferentSidesCountFully) {
-  const Circle circle(RandomVector(-2, 2), {0.0, 0.5 * std::numbers::pi, std::numbers::pi});
-  for (const double weight : circle.Weights(10 * kRadPerDeg)) EXPECT_NEAR(weight, 1.0, 1e-9);
-}
-
-TEST(ViewWeights, TwoViewsAtTheCorrelationAngle) {
-  const Circle circle({1, 2, 3}, {0.7, 0.7 + 15 * kRadPerDeg});
-  for (const double weight : circle.Weights(15 * kRadPerDeg)) {
-    EXPECT_NEAR(weight, 1.0 / (1.0 + std::exp(-0.5)), 1e-12);
-  }
-}
-
 // Weights as defined in the header. The number of views is not a multiple of four; two of them are
 // opposite to each other.
 TEST(ViewWeights, OfAllAnglesAreThoseOfTheDefinition) {

@@ -6,9 +6,7 @@
 
 #include <cmath>
 
-#include "base/error.h"
 #include "geometry/angles.h"
-#include "support/expect_error.h"
 #include "support/random.h"
 #include "support/scene.h"
 
@@ -39,8 +37,8 @@ UpPrior Attitude(const Sequence& sequence) {
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {
-  return EstimatePlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), Attitude(sequence),
-                        options, 2);
+  return FindPlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), Attitude(sequence), options, 2)
+      .value();
 }
 
 void ExpectGiven(const Sequence& sequence, const PlanesEstimate& estimate, double angle,
@@ -102,8 +100,9 @@ TEST(EstimatePlanes, WhatHangsHasCeilings) {
     SCOPED_TRACE(seed);
     const Sequence sequence = SyntheticSequence(WithCeiling(CuboidScene(seed, 8), 1.15), false);
     const PlanesEstimate estimate =
-        EstimatePlanes(sequence, WithHanging(TrueCuboidPriors(sequence, kLogSigma)),
-                       Attitude(sequence), ModelOptions(), 2);
+        FindPlanes(sequence, WithHanging(TrueCuboidPriors(sequence, kLogSigma)), Attitude(sequence),
+                   ModelOptions(), 2)
+            .value();
     ASSERT_EQ(estimate.planes.size(), 2u);
     ExpectGiven(sequence, estimate, 0.2 * kRadPerDeg, 0.005);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
@@ -123,7 +122,7 @@ TEST(EstimatePlanes, WhatHasNoPlaneToBeMountedOnHasNoSupport) {
     return detection.object_index == 1 && detection.frame_index != frame;
   });
   const PlanesEstimate estimate =
-      EstimatePlanes(sequence, priors, Attitude(sequence), ModelOptions(), 2);
+      FindPlanes(sequence, priors, Attitude(sequence), ModelOptions(), 2).value();
   EXPECT_EQ(estimate.planes.size(), 1u);
   EXPECT_EQ(estimate.objects[0].reason, SupportReason::kNone);
   EXPECT_EQ(estimate.objects[1].reason, SupportReason::kNone);
@@ -203,7 +202,7 @@ PlanesEstimate EstimateWithHeights(const Sequence& sequence, double log_sigma, b
   }
   PlanesOptions options = ModelOptions();
   options.size_prior = size_prior;
-  return EstimatePlanes(sequence, priors, Attitude(sequence), options, 2);
+  return FindPlanes(sequence, priors, Attitude(sequence), options, 2).value();
 }
 
 // From places so near to each other that rays hardly cross, only known heights say how far the
@@ -235,15 +234,6 @@ TEST(EstimatePlanes, HeightsCountOnlyWithSizePrior) {
     return std::sqrt((*estimate.planes[0].covariance)(2, 2));
   };
   EXPECT_LT(rise_sigma(with), rise_sigma(without));
-}
-
-TEST(EstimatePlanes, RefusesWhatOneViewCannotTell) {
-  Sequence sequence = SyntheticSequence(CuboidScene(1, 3), false);
-  std::erase_if(sequence.detections, [&](const Detection& detection) {
-    return detection.frame_index != sequence.detections.front().frame_index;
-  });
-  ExpectError<NothingUsableError>([&] { Estimate(sequence); },
-                                  {"height of the plane", "several places", "planes = given"});
 }
 
 // One box fits a body on any plane, nearer and smaller or farther and larger: only the height of

@@ -124,24 +124,5 @@ TEST(Level, TakesExactOdometryAsItIs) {
   }
 }
 
-// The world's axes mean nothing.
-TEST(Level, MovesWithTheWorld) {
-  const std::vector<Rigid3d> truth = TrueTrajectory();
-  std::vector<SegmentView> views = ViewsOf(truth, Drifted(truth, kDrift));
-  const LevelTrajectory here = Level(views, RoomOptions());
-  const Rigid3d motion = RandomRigid();
-  for (SegmentView& view : views) view.world_from_camera = motion * view.world_from_camera;
-  const LevelTrajectory there = Level(views, RoomOptions());
-  // The search of up and the iteration stop within 1e-7 rad of the optimum.
-  EXPECT_LT((there.attitude.up_in_world - motion.rotation * here.attitude.up_in_world).norm(),
-            1e-5);
-  for (size_t i = 0; i < here.world_from_camera.size(); ++i) {
-    EXPECT_LT(
-        (motion * here.world_from_camera[i].translation - there.world_from_camera[i].translation)
-            .norm(),
-        1e-4);
-  }
-}
-
 }  // namespace
 }  // namespace soslam

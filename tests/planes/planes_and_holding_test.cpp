@@ -69,7 +69,8 @@ TEST(EstimatePlanesAndHolding, LevelCamerasHaveThePlanesOfTheirAttitude) {
                                               options.camera_pitch_sigma_deg * kRadPerDeg,
                                               options.view_correlation_deg * kRadPerDeg);
   const PlanesEstimate expected =
-      EstimatePlanes(sequence, TrueCuboidPriors(sequence, kRatioLogSigma), attitude, options, 2);
+      FindPlanes(sequence, TrueCuboidPriors(sequence, kRatioLogSigma), attitude, options, 2)
+          .value();
   const PlanesEstimate found = EstimateHeld(sequence).estimate;
   EXPECT_EQ(found.holding, CameraHolding::kLevel);
   ASSERT_EQ(found.planes.size(), expected.planes.size());

@@ -49,20 +49,6 @@ TEST(SceneAxis, IsTheDirectionOfMostEdges) {
   }
 }
 
-TEST(SceneAxis, TurnsWithTheWorld) {
-  for (int i = 0; i < 20; ++i) {
-    std::vector<SegmentView> views = Room(RandomUniform(-3.0, 3.0), 8);
-    const auto before = SceneAxis(kZ, views, kCorrelation);
-    const Rigid3d motion = RandomRigid();
-    for (SegmentView& view : views) view.world_from_camera = motion * view.world_from_camera;
-    const auto after = SceneAxis(motion.rotation * kZ, views, kCorrelation);
-    ASSERT_TRUE(before && after);
-    const Eigen::Vector3d expected = motion.rotation * *before;
-    const Eigen::Vector3d across = (motion.rotation * kZ).cross(expected);
-    EXPECT_LT(std::min(std::abs(after->dot(expected)), std::abs(after->dot(across))), 1e-8);
-  }
-}
-
 TEST(SceneAxis, IsNoneWhereEdgesHaveNoCommonDirection) {
   EXPECT_FALSE(SceneAxis(kZ, {}, kCorrelation));
   for (int i = 0; i < 20; ++i) {

@@ -113,17 +113,5 @@ TEST(UpPriorFromCameras, CamerasThatLookDownHaveUpBehindThem) {
   }
 }
 
-TEST(UpPriorFromCameras, TurnsWithTheWorld) {
-  std::vector<Rigid3d> poses, turned;
-  const Rigid3d motion = RandomRigid();
-  for (int i = 0; i < 5; ++i) {
-    poses.push_back(LevelCamera(RandomUniform(-1, 1), RandomUniform(-0.2, 0.6)));
-    turned.push_back(motion * poses.back());
-  }
-  const auto here = UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation);
-  const auto there = UpPriorFromCameras(turned, kRollSigma, kPitchSigma, kCorrelation);
-  EXPECT_LT((there.up_in_world - motion.rotation * here.up_in_world).norm(), 1e-9);
-}
-
 }  // namespace
 }  // namespace soslam

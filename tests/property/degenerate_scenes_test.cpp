@@ -148,10 +148,11 @@ TEST_P(DegenerateTest, SupportPlanes) {
       [](const Sequence& sequence, const Priors& priors) {
         std::vector<Rigid3d> poses;
         for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-        const PlanesEstimate estimate =
-            EstimatePlanes(sequence, priors, UpPriorFromCameras(poses, 0.1, 0.5, 0.3),
-                           PlanesOptions(), /*threads=*/1);
-        for (const EstimatedPlane& plane : estimate.planes) {
+        const auto estimate =
+            FindPlanes(sequence, priors, UpPriorFromCameras(poses, 0.1, 0.5, 0.3), PlanesOptions(),
+                       /*threads=*/1);
+        if (!estimate) ThrowNoPlanes(sequence);
+        for (const EstimatedPlane& plane : estimate->planes) {
           EXPECT_TRUE(plane.plane_in_world.normal.allFinite());
           EXPECT_TRUE(std::isfinite(plane.plane_in_world.offset));
         }

@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
+
+#include "support/temporary_folder.h"
 
 namespace soslam {
 
@@ -20,13 +21,6 @@ inline std::filesystem::path FreshTestFolder() {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
-}
-
-inline std::string ReadText(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
 }
 
 // The text files of a small valid dataset, for a test to change before writing them: four images,

@@ -31,4 +31,17 @@ class FinishedRun {
   std::optional<SavedFolder> saved_;
 };
 
+// Tests of what two variants of single frames left, which are run once for all of them.
+class FinishedRunTest : public testing::Test {
+ protected:
+  static constexpr const char* kVariants = "InitP InitPT";
+
+  static const SmallPipeline& Finished() {
+    static const FinishedRun run(kVariants);
+    return run.Restored();
+  }
+
+  const SmallPipeline& pipeline_ = Finished();
+};
+
 }  // namespace soslam

@@ -8,10 +8,20 @@
 
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
-#include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
+
+// A robot's drive over a level floor, forward with gentle turns, past `objects` solids of random
+// size, position and yaw, with shapes drawn from `shapes`. Objects do not touch; each has its own
+// label and is in sight in at least three frames (in all, if there are fewer). Without noise; the
+// caller may set it. The same arguments give the same scene.
+Scene RandomScene(int seed, int objects, int frames,
+                  const std::vector<Shape>& shapes = {Shape::kEllipsoid});
+
+// The simulation as a sequence in memory, with ground truth and without images on disk. Each
+// detection has its support plane as the true camera sees it.
+Sequence SyntheticSequence(const Scene& scene, bool noise);
 
 // Cuboids on a floor of any yaw that a robot drives past, with exact boxes and true poses.
 Sequence CuboidSequence(int objects, int frames);

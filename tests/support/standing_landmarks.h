@@ -50,12 +50,4 @@ inline void ExpectZeroForStandingLandmarks(const PlaneResiduals& residuals) {
   }
 }
 
-inline void ExpectNoChangeWithTheWorld(const PlaneResiduals& residuals) {
-  const Plane plane = RandomPlane();
-  const Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0)};
-  const Rigid3d motion = RandomRigid(10.0);
-  const Eigen::Vector3d moved = residuals(Transform(motion, plane), Transform(motion, landmark));
-  EXPECT_LT((moved - residuals(plane, landmark)).norm(), 1e-9);
-}
-
 }  // namespace soslam

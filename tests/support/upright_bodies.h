@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
@@ -90,6 +91,14 @@ struct StandingBody {
   Box box;
   UprightObservation observation;
 };
+
+// ClosedForm::At for a single yaw, as a landmark in the camera frame.
+inline std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {
+  const auto solution = ClosedForm(observation).At(yaw);
+  if (!solution) return std::nullopt;
+  return UprightGround(observation.plane_in_camera)
+      .LandmarkAt(solution->parameters, observation.prior.shape_exponent);
+}
 
 // Each edge moved by up to `fraction` of the box's width or height.
 inline Box Disturbed(const Box& box, double fraction) {

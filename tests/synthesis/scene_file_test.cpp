@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "support/expect_error.h"
+#include "support/scene.h"
 #include "synthesis/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

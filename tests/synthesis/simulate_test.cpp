@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "synthesis/random_scene.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "dataset/import.h"
+#include "support/scene.h"
 #include "support/temporary_folder.h"
-#include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

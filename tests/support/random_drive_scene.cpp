@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/random_scene.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 
-#include "base/error.h"
-#include "synthesis/simulate.h"
+#include "support/scene.h"
 
 namespace soslam {
 namespace {
@@ -57,10 +55,7 @@ class Placement {
       Draw(&object);
       if (HasRoom(object) && TryAdd(object)) return;
     }
-    throw SettingsError(fmt::format(
-        "random scene: no place for object {} in sight of {} of {} frames; expected fewer objects "
-        "or more frames",
-        object.id, min_views_, poses_.size()));
+    throw std::runtime_error("random scene: no place for an object");
   }
 
  private:
@@ -131,11 +126,6 @@ class Placement {
 }  // namespace
 
 Scene RandomScene(int seed, int objects, int frames, const std::vector<Shape>& shapes) {
-  if (objects < 1 || frames < 1 || shapes.empty()) {
-    throw SettingsError(fmt::format(
-        "random scene: found {} objects, {} frames and {} shapes; expected at least one of each",
-        objects, frames, shapes.size()));
-  }
   constexpr double kMetresPerFrame = 0.12;
   constexpr double kMetresPerObject = 0.4;
   std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
@@ -156,6 +146,40 @@ Scene RandomScene(int seed, int objects, int frames, const std::vector<Shape>& s
     placement.Place(object);
   }
   return scene;
+}
+
+Sequence SyntheticSequence(const Scene& scene, bool noise) {
+  const Simulation simulation = Simulate(scene, noise);
+  Sequence sequence;
+  sequence.name = scene.name;
+  sequence.camera = scene.camera;
+  for (int i = 0; i < scene.trajectory.frames; ++i) {
+    sequence.frames.push_back({i, i * scene.trajectory.frame_interval, ImageName(i),
+                               simulation.odometry_world_from_camera[i],
+                               simulation.true_world_from_camera[i]});
+  }
+  for (const ScenePlane& plane : scene.planes) {
+    sequence.planes.push_back({plane.id, plane.plane_in_world});
+  }
+  for (const SceneObject& object : scene.objects) {
+    sequence.objects.push_back(
+        {object.id, object.label, object.plane_index, ObjectGroundTruth(scene, object)});
+    sequence.true_objects.push_back({object.id, object.label, ObjectGroundTruth(scene, object)});
+  }
+  for (const SimulatedBox& detection : simulation.detections) {
+    const int plane_index = scene.objects[detection.object_index].plane_index;
+    const Rigid3d& world_from_camera = simulation.true_world_from_camera[detection.frame_index];
+    sequence.detections.push_back(
+        {detection.frame_index,
+         detection.object_index,
+         1.0,
+         detection.box,
+         Transform(world_from_camera.Inverse(), scene.planes[plane_index].plane_in_world),
+         {},
+         {}});
+    sequence.detections.back().true_object_id = scene.objects[detection.object_index].id;
+  }
+  return sequence;
 }
 
 }  // namespace soslam
