@@ -53,7 +53,7 @@ TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
     EXPECT_FALSE(fs::exists(file));
     atomic.Commit();
   }
-  EXPECT_EQ(ReadText(file), "new");
+  EXPECT_EQ(FileBytes(file), "new");
   EXPECT_EQ(FilesInFolder(), 1);
 }
 
@@ -63,16 +63,16 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldFileStays) {
     AtomicFile atomic(file);
     std::ofstream(atomic.TemporaryPath()) << "half-wri";
   }
-  EXPECT_EQ(ReadText(file), "old");
+  EXPECT_EQ(FileBytes(file), "old");
   EXPECT_EQ(FilesInFolder(), 1);
 }
 
 TEST_F(AtomicFileTest, ReplacesOtherContent) {
   WriteTextFile(file, "old and longer");
   WriteTextFile(file, "new");
-  EXPECT_EQ(ReadText(file), "new");
+  EXPECT_EQ(FileBytes(file), "new");
   WriteTextFile(file, "");
-  EXPECT_EQ(ReadText(file), "");
+  EXPECT_EQ(FileBytes(file), "");
 }
 
 TEST_F(AtomicFileTest, IdenticalContentKeepsItsTime) {
@@ -99,7 +99,7 @@ TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   }
   EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("result.txt: cannot be written"),
                                       testing::HasSubstr("File too large")));
-  EXPECT_EQ(ReadText(file), "old");
+  EXPECT_EQ(FileBytes(file), "old");
   EXPECT_EQ(FilesInFolder(), 1);
 }
 

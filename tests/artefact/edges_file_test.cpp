@@ -88,11 +88,6 @@ TEST_F(EdgesFileTest, ThreadsReadSideBySide) {
   for (size_t i = 0; i < maps.size(); ++i) ExpectSame(read[i], maps[i]);
 }
 
-TEST_F(EdgesFileTest, ImageWithoutEdgesComesBack) {
-  const EdgeMaps maps = ComputeEdgeMaps(cv::Mat(5, 6, CV_8UC1, cv::Scalar(9)), {});
-  ExpectSame(EdgesReader(Write("edges.h5", maps)).Read(12), maps);
-}
-
 TEST_F(EdgesFileTest, NearestEdgesOutsideTheImageAreRefused) {
   for (const cv::Vec2s& outside : {cv::Vec2s(-1, 3), cv::Vec2s(3, -7), cv::Vec2s(3, 32000)}) {
     EdgeMaps maps = MapsOfRandomRectangles();

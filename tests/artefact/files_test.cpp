@@ -127,7 +127,7 @@ TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
   WriteSequence(file, sequence, {});
   const Sequence read = ReadSequence(file);
   WriteSequence(again, read, {});
-  EXPECT_EQ(ReadText(file), ReadText(again));
+  EXPECT_EQ(FileBytes(file), FileBytes(again));
   EXPECT_TRUE(read.true_objects.at(0).is_ignored);
   EXPECT_EQ(read.truth_in_frames.at(0).frame_index, 1);
   EXPECT_EQ(read.rejected.at(2).stage, RejectingStage::kPlanes);
@@ -165,7 +165,7 @@ TEST_F(ArtefactFilesTest, BeforeVersion17ObjectsSaidWhatIsTrue) {
 
 // Files of older versions have values that the golden tests compare one by one.
 TEST_F(ArtefactFilesTest, WhatIsReadIsWrittenAgainBitForBit) {
-  const auto expect_same = [&] { EXPECT_EQ(ReadText(file), ReadText(again)); };
+  const auto expect_same = [&] { EXPECT_EQ(FileBytes(file), FileBytes(again)); };
   WriteSequence(file, sequence, {});
   WriteSequence(again, ReadSequence(file), {});
   expect_same();

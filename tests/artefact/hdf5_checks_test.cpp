@@ -204,12 +204,6 @@ TEST_F(Hdf5ChecksTest, AnyThreadFailsWithoutTextOfTheLibrary) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(Hdf5ChecksTest, WhatIsWrittenIsWalkable) {
-  Write("good.h5");
-  EXPECT_NO_THROW(Hdf5File::Open(folder_ / "good.h5").RequireWalkable());
-  H5Fclose(file_);
-}
-
 TEST_F(Hdf5ChecksTest, NestedHeader) {
   H5Fclose(file_);
   Hdf5File file = Hdf5File::Create(path_);

@@ -65,13 +65,6 @@ TEST_F(Hdf5FileTest, AnyReaderOfHdf5ReadsTheNumbers) {
   }
 }
 
-TEST_F(Hdf5FileTest, PartOfAMatrixIsWrittenAsIfItWereAWhole) {
-  const cv::Mat part = RandomMatrix(9, 9, CV_32FC1)(cv::Rect(2, 3, 4, 5));
-  const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/part", part); });
-  const cv::Mat read = Hdf5File::Open(path).ReadMatrix("/part", CV_32FC1, 5, 4);
-  EXPECT_EQ(cv::norm(read, part, cv::NORM_INF), 0.0);
-}
-
 TEST_F(Hdf5FileTest, VectorsComeBackExactly) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> doubles = {1.0 / 3.0, -infinity, 5e-324, -0.0};

@@ -61,17 +61,6 @@ TEST_F(PointsFileTest, PointsComeBack) {
   }
 }
 
-TEST_F(PointsFileTest, TheSameBytesAgain) {
-  WritePoints(folder_ / "one.h5", TwoPoints(), {});
-  WritePoints(folder_ / "two.h5", TwoPoints(), {});
-  EXPECT_EQ(FileBytes(folder_ / "one.h5"), FileBytes(folder_ / "two.h5"));
-}
-
-TEST_F(PointsFileTest, NoPointsAreNoError) {
-  WritePoints(folder_ / "points.h5", {}, {});
-  EXPECT_TRUE(ReadPoints(folder_ / "points.h5").empty());
-}
-
 TEST_F(PointsFileTest, ImpossibleNumbersAreRefused) {
   ExpectRefused([](auto* points) { (*points)[1].position_in_world.y() = std::nan(""); },
                 {"points.h5", "/position", "row 1", "nan", "finite"});

@@ -83,11 +83,6 @@ TEST_F(SymmetryFileTest, RefusesAnImpossibleNumberOfMirrorPlanes) {
                           {"symmetry.h5", "mirror_planes", "7", "0, 1 or 2"});
 }
 
-TEST_F(SymmetryFileTest, NoRecordsAreNoError) {
-  WriteSymmetry(folder_ / "symmetry.h5", {}, {});
-  EXPECT_TRUE(ReadSymmetry(folder_ / "symmetry.h5").empty());
-}
-
 TEST_F(SymmetryFileTest, BadFilesAreNamed) {
   EdgesWriter(folder_ / "edges.h5", {}).Commit();
   ExpectError<InputError>([&] { ReadSymmetry(folder_ / "edges.h5"); },

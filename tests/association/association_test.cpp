@@ -162,11 +162,6 @@ TEST(AssociateTest, ObjectsAreFoundAgainAfterTheyWereOutOfSight) {
   }
 }
 
-TEST(AssociateTest, IdsOfTheInputDoNotMatter) {
-  const Sequence sequence = NoisySequence(1, {"thing"});
-  EXPECT_EQ(Partition(AssociateAll(sequence)), Partition(AssociateAll(WithoutIds(sequence))));
-}
-
 TEST(AssociateTest, TheOrderWithinAFrameDoesNotMatter) {
   const Sequence sequence = WithoutIds(NoisySequence(2, {"thing"}));
   Sequence reversed = sequence;
@@ -201,19 +196,6 @@ TEST(AssociateTest, AMovedWorldChangesNoDecision) {
     plane.plane_in_world = Transform(motion, plane.plane_in_world);
   }
   EXPECT_EQ(Partition(AssociateAll(sequence)), Partition(AssociateAll(moved)));
-}
-
-TEST(AssociateTest, ThreadsDoNotMatter) {
-  const Sequence sequence = NoisySequence(4, {"thing"});
-  const Association one = AssociateAll(sequence, 1);
-  const Association many = AssociateAll(sequence, 4);
-  ASSERT_EQ(one.tracks.size(), many.tracks.size());
-  for (size_t i = 0; i < one.tracks.size(); ++i) {
-    EXPECT_EQ(one.tracks[i].detections, many.tracks[i].detections);
-    ASSERT_EQ(one.tracks[i].fit.has_value(), many.tracks[i].fit.has_value());
-    if (!one.tracks[i].fit) continue;
-    EXPECT_EQ(one.tracks[i].fit->covariance, many.tracks[i].fit->covariance);
-  }
 }
 
 TEST(AssociateTest, OfTwoBoxesAtOnePlaceTheBetterIsUsed) {

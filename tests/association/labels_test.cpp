@@ -55,25 +55,12 @@ TEST(LabelConfusionTest, InterchangeableLabelsCountAsOne) {
   EXPECT_NEAR(confusion.CostOfAnyLabel(), 2.0 * std::log(3.0), 1e-12);
 }
 
-TEST(LabelConfusionTest, ASingleLabelIsCertain) {
-  const LabelConfusion confusion({"cup"}, Confusing(0.0, ""));
-  EXPECT_EQ(confusion.Probability("cup", "cup"), 1.0);
-  EXPECT_EQ(confusion.CostOfAnyLabel(), 0.0);
-}
-
 TEST(LabelConfusionTest, SimilarLabelsAreCandidatesAndCostMoreThanTheVotes) {
   const LabelConfusion confusion(kLabels, Confusing(0.05, "", 0.1, "cup, mug, bowl; tv, laptop"));
   const LabelVotes votes = {{"cup", 3.0}, {"mouse", 0.5}};
   EXPECT_EQ(confusion.Candidates(votes), std::vector<std::string>({"bowl", "cup", "mouse", "mug"}));
   EXPECT_LT(confusion.CostOfVotes(votes, "cup"), confusion.CostOfVotes(votes, "mug"));
   EXPECT_LT(confusion.CostOfVotes(votes, "mug"), confusion.CostOfVotes(votes, "tv"));
-}
-
-// Repeated votes are no more evidence than one.
-TEST(LabelConfusionTest, CostsOfVotesDependOnSharesOnly) {
-  const LabelConfusion confusion(kLabels, Confusing(0.05, ""));
-  EXPECT_NEAR(confusion.CostOfVotes({{"cup", 1.0}, {"bowl", 2.0}}, "cup"),
-              confusion.CostOfVotes({{"cup", 10.0}, {"bowl", 20.0}}, "cup"), 1e-12);
 }
 
 TEST(LabelConfusionTest, AnUncertainObjectHasTheMeanProbability) {
@@ -87,14 +74,6 @@ TEST(LabelConfusionTest, MalformedGroupsAreRefused) {
     ExpectError<SettingsError>([&] { LabelConfusion(kLabels, Confusing(0.1, groups)); },
                                {"interchangeable_labels", groups});
   }
-}
-
-TEST(ProbabilitiesOfLabelsTest, AreThoseOfTheCosts) {
-  const auto labels = ProbabilitiesOfLabels({{"cup", 2.0}, {"bowl", 1.0}, {"tv", 30.0}});
-  ASSERT_EQ(labels.size(), 3U);
-  EXPECT_EQ(labels[0].label, "bowl");
-  EXPECT_NEAR(labels[0].probability / labels[1].probability, std::exp(1.0), 1e-12);
-  EXPECT_NEAR(labels[0].probability + labels[1].probability + labels[2].probability, 1.0, 1e-12);
 }
 
 }  // namespace

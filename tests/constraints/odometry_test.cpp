@@ -58,15 +58,5 @@ TEST(OdometryResidual, JacobiansAgreeWithNumbers) {
   }
 }
 
-TEST(OdometryResidual, DoesNotChangeWithTheWorld) {
-  const Rigid3d first = RandomRigid();
-  const Rigid3d second = RandomRigid();
-  const Rigid3d motion = RandomRigid(10.0);
-  const OdometryResidual residual(RandomRigid(), {.rotation_rad = 0.5, .translation_m = 0.3});
-  EXPECT_LT(
-      (residual.Values(first, second) - residual.Values(motion * first, motion * second)).norm(),
-      1e-8);
-}
-
 }  // namespace
 }  // namespace soslam

@@ -24,22 +24,12 @@ TEST(SupportResidual, WorkedByHand) {
   EXPECT_LT((SupportResiduals(Plane(), LyingLandmark()) - expected).norm(), 1e-12);
 }
 
-TEST(SupportResidual, TangencyEqualsTheDualQuadricForm) {
-  const Plane plane = RandomPlane();
-  const Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0)};
-  const Eigen::Vector4d pi = plane.Homogeneous();
-  EXPECT_NEAR(3.0 * SupportResiduals(plane, landmark).z(), pi.dot(DualQuadric(landmark) * pi),
-              1e-9);
-}
-
 TEST(SupportResidual, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 50; ++i) {
     const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
     ExpectCorrectJacobians(SupportResidual(RandomPlane(), 0.2, 0.5), {block.data()});
   }
 }
-
-TEST(SupportResidual, DoesNotChangeWithTheWorld) { ExpectNoChangeWithTheWorld(SupportResiduals); }
 
 }  // namespace
 }  // namespace soslam

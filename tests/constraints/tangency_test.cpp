@@ -113,45 +113,6 @@ TEST(OutlineExcess, HasExactDerivatives) {
   }
 }
 
-// pi^T Q* pi = h^2 - (n . c + d)^2, so that both vanish together (h + n . c + d > 0 for planes
-// that do not pass the ellipsoid on the wrong side).
-TEST(Tangency, OfAnEllipsoidIsTheDualQuadricForm) {
-  for (int i = 0; i < 100; ++i) {
-    const Landmark landmark = RandomLandmarkInCamera();
-    const BoxEdge edge = RandomEdge();
-    const Eigen::Vector4d pi(edge.plane.x(), edge.plane.y(), edge.plane.z(), 0.0);
-    const double form = pi.dot(DualQuadric(landmark) * pi);
-    const double at_centre = edge.plane.dot(landmark.Centre());
-    const double extent = FindSupportPoint(landmark, edge.plane).distance - at_centre;
-    EXPECT_NEAR(form, extent * extent - at_centre * at_centre, 1e-7 * extent * extent);
-    // The plane moved along its normal until it touches.
-    const TangentDepth depth = FindTangentDepth(edge, landmark);
-    const double in_metres =
-        Tangency(edge, landmark, depth, 0.0, nullptr) * depth.depth_m * edge.sigma_px;
-    Landmark touching = landmark;
-    touching.frame_from_object.translation -= in_metres / edge.plane.squaredNorm() * edge.plane;
-    EXPECT_NEAR(AtOwnDepth(edge, touching), 0.0, 1e-9);
-    EXPECT_NEAR(pi.dot(DualQuadric(touching) * pi), 0.0, 1e-7 * extent * extent);
-  }
-}
-
-TEST(Tangency, MovesWithCameraAndBody) {
-  for (const double p : kShapeExponents) {
-    const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
-    const BoxEdge edge = RandomEdge();
-    const Eigen::Quaterniond turn = RandomRotation();
-    BoxEdge turned = edge;
-    turned.plane = turn * edge.plane;
-    EXPECT_NEAR(Tangency(turned, Transform({turn, {0, 0, 0}}, landmark), {3.0}, 0.5, nullptr),
-                Tangency(edge, landmark, {3.0}, 0.5, nullptr), 1e-9);
-    // Nor does it change with the unit of length.
-    Landmark larger = landmark;
-    larger.half_axes *= 10.0;
-    larger.frame_from_object.translation *= 10.0;
-    EXPECT_NEAR(AtOwnDepth(edge, larger), AtOwnDepth(edge, landmark), 1e-9);
-  }
-}
-
 TEST(Tangency, BiasShiftsTheEdge) {
   const Camera camera = TestCamera();
   const Landmark landmark = WithShape(RandomLandmarkInCamera(), 1.3);
@@ -300,30 +261,6 @@ TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
   const bool without_curvature = false;
   ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &without_curvature),
                          {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
-}
-
-// The depth of the tangent point shrinks with the world.
-TEST(TangencyResidual, IsTheSameInASmallerWorld) {
-  const bool with_curvature = true;
-  for (int i = 0; i < 20; ++i) {
-    const View view;
-    const TangencyResidual residual(RandomEdge(), view.initial_in_camera, &with_curvature);
-    const LandmarkBlock landmark = view.LandmarkInWorld();
-    PoseBlock smaller_pose = view.pose;
-    LandmarkBlock smaller = landmark;
-    for (size_t k = 4; k < 7; ++k) {
-      smaller_pose[k] *= 0.6;
-      smaller[k] *= 0.6;
-    }
-    for (size_t k = 7; k < 10; ++k) smaller[k] += std::log(0.6);
-    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
-    const double* smaller_blocks[] = {smaller_pose.data(), smaller.data(), &view.bias_px,
-                                      &view.misfit};
-    Eigen::Vector3d values, smaller_values;
-    ASSERT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
-    ASSERT_TRUE(residual.Evaluate(smaller_blocks, smaller_values.data(), nullptr));
-    EXPECT_NEAR(smaller_values[0], values[0], 1e-9 * (1.0 + std::abs(values[0])));
-  }
 }
 
 TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {

@@ -61,9 +61,5 @@ TEST(UprightOnPlaneResidual, OtherSideIsTheOppositeNormal) {
   EXPECT_EQ(values, UprightResiduals(plane, UnpackLandmark(block.data())));
 }
 
-TEST(UprightOnPlaneResidual, DoesNotChangeWithTheWorld) {
-  ExpectNoChangeWithTheWorld(UprightResiduals);
-}
-
 }  // namespace
 }  // namespace soslam

@@ -30,16 +30,6 @@ class CocoResultsTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(CocoResultsTest, WithoutDataset) {
-  const auto boxes = Read(R"([
-      {"image_id": 4, "category_id": 72, "bbox": [10, 20, 30.5, 40], "score": 0.9},
-      {"image_id": "1341.058", "category_id": 1, "bbox": [0, 0, 1, 2], "score": 1}])");
-  ASSERT_EQ(boxes.size(), 2u);
-  ExpectLabelledBox(boxes[0], 4, "tv", 0.9, {9.5, 19.5, 40.0, 59.5});
-  ExpectLabelledBox(boxes[1], "1341.058", "person", 1.0, {-0.5, -0.5, 0.5, 1.5});
-  EXPECT_EQ(boxes[1].place, (folder_ / "results.json").string() + "#/1");
-}
-
 TEST_F(CocoResultsTest, DatasetSaysWhatIdsMean) {
   const auto boxes = ReadWith(
       kDataset, R"([{"image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 0.5}])");
@@ -73,8 +63,6 @@ TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
       ReadWith(kDataset, R"([{"image_id": "a.png", "category_id": 2, "bbox": [1, 2, 3, 4]}])");
   ExpectLabelledBox(boxes.at(0), "a.png", "cup", 1.0, {0.5, 1.5, 3.5, 5.5});
 }
-
-TEST_F(CocoResultsTest, NoDetectionIsNoError) { EXPECT_TRUE(Read("[]").empty()); }
 
 TEST_F(CocoResultsTest, BadResultsAreNamed) {
   const BadTexts cases = {

@@ -10,16 +10,6 @@
 namespace soslam {
 namespace {
 
-TEST(FolderEntriesTest, ByName) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directories(folder / "a");
-  WriteBytes(folder / "b", "");
-  WriteBytes(folder / "a" / "c", "");
-  EXPECT_THAT(FolderEntries(folder.path()), testing::ElementsAre(folder / "a", folder / "b"));
-  EXPECT_THAT(EntriesAtAnyDepth(folder.path()),
-              testing::ElementsAre(folder / "a", folder / "a" / "c", folder / "b"));
-}
-
 TEST(FolderEntriesTest, WhatCannotBeListedIsNamed) {
   const TemporaryFolder folder;
   WriteBytes(folder / "file", "");

@@ -14,13 +14,6 @@ class FrameLookupTest : public testing::Test {
       {{1.0, "rgb/12.50.png"}, {2.0, "rgb/12.51.png"}, {3.0, "a/0.png"}, {4.0, "b/0.png"}}};
 };
 
-TEST_F(FrameLookupTest, RowsAreThemselves) {
-  EXPECT_EQ(lookup_.Find(0, ""), 0);
-  EXPECT_EQ(lookup_.Find(3, ""), 3);
-  EXPECT_EQ(lookup_.Find(4, ""), std::nullopt);
-  EXPECT_EQ(lookup_.Find(-1, ""), std::nullopt);
-}
-
 TEST_F(FrameLookupTest, NamesWithOrWithoutFolderAndExtension) {
   for (const char* name : {"rgb/12.51.png", "12.51.png", "12.51", "elsewhere/rgb/12.51.png"}) {
     EXPECT_EQ(lookup_.Find(name, ""), 1) << name;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "base/error.h"
 #include "dataset/kitti_object.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
@@ -19,15 +18,6 @@ class KittiBoxesTest : public testing::Test {
   }
   TemporaryFolder folder_;
 };
-
-TEST_F(KittiBoxesTest, FrameBoxScoreAndFolderAsLabel) {
-  const auto boxes = Read("0,296.5,160,452.25,288,0.5\r\n17,1,2,3,4,0.25\r\n");
-  ASSERT_EQ(boxes.size(), 2u);
-  ExpectLabelledBox(boxes[0], 0, "Car", 0.5, {296.5, 160, 452.25, 288});
-  ExpectLabelledBox(boxes[1], 17, "Car", 0.25, {1, 2, 3, 4});
-}
-
-TEST_F(KittiBoxesTest, EmptyFileHasNoBoxes) { EXPECT_TRUE(Read("").empty()); }
 
 TEST_F(KittiBoxesTest, BadLinesAreNamed) {
   const BadTexts cases = {{"1,2,3,4,5", {"has 5 fields", "frame,x1,y1,x2,y2,score"}},

@@ -9,7 +9,6 @@
 #include "dataset/import.h"
 #include "support/expect_error.h"
 #include "support/kitti_fixture.h"
-#include "support/real_data.h"
 
 namespace soslam {
 namespace {
@@ -96,21 +95,6 @@ TEST_F(KittiObjectTest, BadInputIsRefused) {
   ExpectError<InputError>([&] { Import(); }, {"calib/000011.txt", "missing"});
   std::filesystem::remove_all(folder / "label_2");
   ExpectError<InputError>([&] { Import(); }, {"label_2", "no files"});
-}
-
-// The publisher's own files, where they are.
-TEST(KittiObjectDataTest, ReadsTheRealFolder) {
-  const std::filesystem::path data = RealDataset("kitti_object");
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not there";
-  ImportOptions options;
-  options.format = DatasetFormat::kKittiObject;
-  options.border_px = 0.0;
-  options.min_observations = 1;
-  options.labels = "car";
-  const Sequence sequence = ImportDataset(data, options);
-  EXPECT_EQ(sequence.frames.size(), 23u);
-  EXPECT_EQ(sequence.detections.size(), 54u);
-  for (const Frame& frame : sequence.frames) EXPECT_FALSE(frame.image.empty());
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "dataset/import.h"
 #include "support/expect_error.h"
 #include "support/kitti_fixture.h"
-#include "support/real_data.h"
 
 namespace soslam {
 namespace {
@@ -221,30 +220,6 @@ TEST_F(KittiTrackingTest, BadInputIsRefused) {
   options.kitti.poses = "no_poses";
   ExpectError<InputError>([&] { Import(); }, {"no_poses/0003.txt", "missing"});
   ExpectError<InputError>([&] { ImportDataset(folder / "calib", options); }, {"label_02"});
-}
-
-// The publisher's own files, where they are.
-TEST(KittiTrackingDataTest, ReadsTheRealFolder) {
-  const std::filesystem::path data = RealDataset("kitti_tracking");
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not there";
-  ImportOptions options;
-  options.format = DatasetFormat::kKittiTracking;
-  options.border_px = 0.0;
-  options.min_observations = 1;
-  options.labels = "car";
-  options.max_truncation = 0.0;
-  options.max_occlusion = 0;
-  options.kitti.poses = "poses_orbslam3_stereo";
-  options.kitti.translation_scale = "1";  // as its README counts parked cars
-  const Sequence sequence = ImportDataset(data, options);
-  // Numbers of its README.
-  EXPECT_EQ(sequence.frames.size(), 4937u);
-  EXPECT_EQ(sequence.objects.size(), 574u);
-  EXPECT_EQ(sequence.detections.size(), 7459u);
-  const auto parked = std::ranges::count_if(sequence.objects, [](const Object& object) {
-    return object.label == "car" && object.is_static;
-  });
-  EXPECT_NEAR(static_cast<double>(parked), 263, 5);
 }
 
 }  // namespace

@@ -20,15 +20,6 @@ class KittiTrajectoryTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// A camera at (1, 2, 3) that looks along the world's x axis: z goes to x, x to -y, y to -z.
-TEST_F(KittiTrajectoryTest, RowsOfWorldFromCamera) {
-  const auto poses = Read("1 0 0 0 0 1 0 0 0 0 1 0\n0 0 1 1 -1 0 0 2 0 -1 0 3\r\n");
-  ASSERT_EQ(poses.size(), 2u);
-  EXPECT_TRUE(poses[0].Matrix().isIdentity(1e-12));
-  EXPECT_TRUE((poses[1] * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(6, 2, 3)));
-  EXPECT_TRUE((poses[1] * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
-}
-
 TEST_F(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
   for (int i = 0; i < 50; ++i) {
     const Rigid3d pose = RandomRigid();

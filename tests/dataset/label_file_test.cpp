@@ -19,11 +19,6 @@ class LabelFileTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(LabelFileTest, OneNameALine) {
-  EXPECT_THAT(Read("# mine\r\nmilk carton\r\n\r\n  cup \n"),
-              testing::ElementsAre("milk carton", "cup"));
-}
-
 TEST_F(LabelFileTest, BadFilesAreNamed) {
   ExpectError<InputError>([&] { Read("cup\nbox, large\n"); }, {"labels.txt:2", "'box, large'"});
   ExpectError<InputError>([&] { Read("\n# none\n"); }, {"labels.txt", "no label"});

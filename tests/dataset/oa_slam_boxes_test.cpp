@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "base/error.h"
 #include "dataset/class_names.h"
 #include "dataset/labelled_box.h"
 #include "support/expect_error.h"
@@ -19,21 +18,6 @@ class OaSlamBoxesTest : public testing::Test {
   }
   TemporaryFolder folder_;
 };
-
-TEST_F(OaSlamBoxesTest, ImagesWithTheirDetections) {
-  const auto boxes = Read(R"([
-      {"file_name": "12.5.png", "detections": [
-          {"category_id": 77, "detection_score": 0.25, "bbox": [293, 68, 359, 97]},
-          {"category_id": 0, "detection_score": 0.5, "bbox": [1, 2, 3, 4]}]},
-      {"file_name": "12.6.png", "detections": []},
-      {"file_name": "12.7.png", "detections": [
-          {"category_id": 79, "detection_score": 1, "bbox": [0, 0, 640, 480]}]}])");
-  ASSERT_EQ(boxes.size(), 3u);
-  ExpectLabelledBox(boxes[0], "12.5.png", "teddy bear", 0.25, {292.5, 67.5, 358.5, 96.5});
-  ExpectLabelledBox(boxes[1], "12.5.png", "person", 0.5, {0.5, 1.5, 2.5, 3.5});
-  ExpectLabelledBox(boxes[2], "12.7.png", "toothbrush", 1.0, {-0.5, -0.5, 639.5, 479.5});
-  EXPECT_EQ(boxes[1].place, (folder_ / "boxes.json").string() + "#/0/detections/1");
-}
 
 TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
   const auto detection = [](const std::string& fields) {

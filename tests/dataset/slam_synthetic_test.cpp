@@ -7,7 +7,6 @@
 #include "dataset/import.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
-#include "support/real_data.h"
 
 namespace soslam {
 namespace {
@@ -87,19 +86,6 @@ TEST_F(SlamSyntheticTest, BadInputIsRefused) {
   ExpectError<InputError>([&] { Import(); }, {"A.json#/T_wc/0", "4 rows of 4 numbers"});
   Write("A", replaced(good, "\"half\": [0.1", "\"half\": [0"));
   ExpectError<InputError>([&] { Import(); }, {"A.json#/objects/0", "half"});
-}
-
-// Where they are.
-TEST(SlamSyntheticDataTest, ReadsTheRealFolder) {
-  const std::filesystem::path data = RealDataset("slam_synthetic");
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not there";
-  ImportOptions options;
-  options.format = DatasetFormat::kSlamSynthetic;
-  options.border_px = 0.0;
-  const Sequence sequence = ImportDataset(data, options);
-  EXPECT_EQ(sequence.frames.size(), 300u);
-  EXPECT_EQ(sequence.objects.size(), 50u);
-  EXPECT_EQ(sequence.detections.size(), 949u + 6495u);
 }
 
 }  // namespace

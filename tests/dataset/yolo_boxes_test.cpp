@@ -27,28 +27,6 @@ class YoloBoxesTest : public testing::Test {
   RejectionCounts mended_;
 };
 
-// The image covers 0 to 640 from its corner, -0.5 to 639.5 in pixels.
-TEST_F(YoloBoxesTest, NormalisedCentreAndSize) {
-  Write("12.50.txt", "1 0.5 0.25 0.125 0.5 0.75\r\n2 0.5 0.5 1 1\r\n");
-  Write("11.txt", "0 0.1 0.1 0.1 0.1 0.3");
-  Write("13.txt", "");
-  Write("notes.md", "not a box");
-  const auto boxes = Normalised();
-  ASSERT_EQ(boxes.size(), 3u);
-  ExpectLabelledBox(boxes[0], "11", "cup", 0.3, {31.5, 23.5, 95.5, 71.5});
-  ExpectLabelledBox(boxes[1], "12.50", "teddy bear", 0.75, {279.5, -0.5, 359.5, 239.5});
-  ExpectLabelledBox(boxes[2], "12.50", "book", 1.0, {-0.5, -0.5, 639.5, 479.5});
-  EXPECT_EQ(boxes[2].place, (folder_ / "12.50.txt").string() + ":2");
-}
-
-TEST_F(YoloBoxesTest, PixelCornerAndSize) {
-  Write("1341.058.txt", "2 218 246 65 94 0.46\n0 10.5 0 4 8\n");
-  const auto boxes = Pixels();
-  ASSERT_EQ(boxes.size(), 2u);
-  ExpectLabelledBox(boxes[0], "1341.058", "book", 0.46, {217.5, 245.5, 282.5, 339.5});
-  ExpectLabelledBox(boxes[1], "1341.058", "cup", 1.0, {10.0, -0.5, 14.0, 7.5});
-}
-
 TEST_F(YoloBoxesTest, BadLinesAreNamed) {
   const BadTexts cases = {
       {"0 0.1 0.1 0.1", {"has 4 numbers", "class cx cy w h [score] [track]"}},
@@ -88,15 +66,6 @@ TEST_F(YoloBoxesTest, BoxesALittleOutsideAreCutAndCounted) {
   EXPECT_EQ(mended_, (RejectionCounts{{"cut_to_image", 2}}));
   Write("a.txt", "0 0.5 0.5 1.06 0.9\n");
   ExpectError<InputError>([&] { Normalised(); }, {"a.txt:1", "has 1.06", "fractions"});
-}
-
-TEST_F(YoloBoxesTest, TracksBecomeObjectIds) {
-  Write("a.txt", "0 0.5 0.5 0.1 0.1 0.75 7\n1 0.5 0.5 0.2 0.2\n");
-  const auto boxes = Normalised();
-  EXPECT_EQ(boxes[0].object_id, 7);
-  EXPECT_EQ(boxes[0].score, 0.75);
-  EXPECT_FALSE(boxes[1].object_id);
-  EXPECT_EQ(boxes[1].score, 1.0);
 }
 
 }  // namespace

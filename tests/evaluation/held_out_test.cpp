@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dataset/gate.h"
-#include "synthesis/random_scene.h"
+#include "support/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

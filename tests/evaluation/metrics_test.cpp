@@ -5,7 +5,7 @@
 
 #include "evaluation/trajectory_error.h"
 #include "support/random.h"
-#include "synthesis/random_scene.h"
+#include "support/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

@@ -91,20 +91,5 @@ TEST(PlyTest, ColoursGoByLabel) {
   EXPECT_NE(file.colours[0], file.colours[8]);
 }
 
-TEST(PlyTest, ColoursAreAllDifferentAndInRange) {
-  World world;
-  for (int i = 0; i < 30; ++i)
-    world.objects.push_back({i, "l" + std::to_string(i), {}, Eigen::Vector3d::UnitZ(), 1.0, {}});
-  const LabelColours colours = ColoursOfLabels({world});
-  std::set<std::vector<int>> rounded;
-  for (const auto& [label, colour] : colours) {
-    EXPECT_GE(colour.minCoeff(), 0.0);
-    EXPECT_LE(colour.maxCoeff(), 1.0);
-    const Eigen::Vector3i rgb = (255.0 * colour).cast<int>();
-    rounded.insert({rgb.x(), rgb.y(), rgb.z()});
-  }
-  EXPECT_EQ(rounded.size(), 30u);
-}
-
 }  // namespace
 }  // namespace soslam

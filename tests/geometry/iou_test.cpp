@@ -24,14 +24,6 @@ TEST(BoxIou, OfABoxWithItselfIsOne) {
   }
 }
 
-TEST(BoxIou, OfShiftedCubesIsTheOverlapOfTheirIntervals) {
-  const Landmark cube{Rigid3d(), {1, 1, 1}};
-  const Landmark shifted{{Eigen::Quaterniond::Identity(), {0.5, 1.0, -1.5}}, {1, 1, 1}};
-  const double overlap = 1.5 * 1.0 * 0.5;
-  EXPECT_NEAR(IntersectionVolume(cube, shifted), overlap, 1e-12);
-  EXPECT_NEAR(BoxIou(cube, shifted), overlap / (16.0 - overlap), 1e-12);
-}
-
 // A square turned by 45 degrees in the same square overlaps in a regular octagon: 8 (sqrt(2) - 1).
 TEST(BoxIou, OfACubeTurnedByAnEighthIsAnOctagonalPrism) {
   const Landmark cube{Rigid3d(), {1, 1, 1}};
@@ -67,26 +59,6 @@ TEST(BoxIou, IsSymmetricAndDoesNotChangeWithTheWorldOrScale) {
       return box;
     };
     EXPECT_NEAR(BoxIou(scaled(one), scaled(other)), iou, 1e-9);
-  }
-}
-
-TEST(IntersectionVolume, AgreesWithCountingPoints) {
-  for (int i = 0; i < 10; ++i) {
-    const Landmark one = RandomBox();
-    const Landmark other = RandomBox();
-    constexpr int kPoints = 200000;
-    int inside = 0;
-    for (int k = 0; k < kPoints; ++k) {
-      const Eigen::Vector3d point =
-          one.frame_from_object * one.half_axes.cwiseProduct(RandomVector(-1, 1));
-      const Eigen::Vector3d in_other = other.frame_from_object.Inverse() * point;
-      inside += (in_other.array().abs() <= other.half_axes.array()).all() ? 1 : 0;
-    }
-    const double fraction = static_cast<double>(inside) / kPoints;
-    const double volume = 8.0 * one.half_axes.prod();
-    // Five standard deviations of the count.
-    const double tolerance = 5.0 * std::sqrt(0.25 / kPoints) * volume;
-    EXPECT_NEAR(IntersectionVolume(one, other), fraction * volume, tolerance);
   }
 }
 

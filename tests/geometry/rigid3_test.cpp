@@ -28,16 +28,6 @@ TEST(Rotation, LogIsTheInverseOfExp) {
   }
 }
 
-TEST(Plane, KeepsDistancesUnderARigidMotion) {
-  for (int i = 0; i < 100; ++i) {
-    const Plane plane{RandomRotation() * Eigen::Vector3d::UnitZ(), RandomUniform(-2, 2)};
-    const Rigid3d motion = RandomRigid();
-    const Eigen::Vector3d point = RandomVector(-3, 3);
-    EXPECT_NEAR(Transform(motion, plane).SignedDistance(motion * point),
-                plane.SignedDistance(point), 1e-12);
-  }
-}
-
 TEST(Camera, RayAndBackProjectedPlanesUndoProjection) {
   const Camera camera = TestCamera();
   for (int i = 0; i < 100; ++i) {

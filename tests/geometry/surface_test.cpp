@@ -45,21 +45,6 @@ TEST(BodySurface, EntryIsTheFirstPointOfTheBody) {
   }
 }
 
-TEST(BodySurface, EntryOfTheEllipsoidSolvesItsQuadratic) {
-  for (int i = 0; i < 200; ++i) {
-    const RandomRay ray;
-    const Eigen::Vector3d o = ray.origin.cwiseQuotient(ray.half_axes);
-    const Eigen::Vector3d d = ray.direction.cwiseQuotient(ray.half_axes);
-    const double root = std::sqrt(std::pow(o.dot(d), 2) - d.dot(d) * (o.dot(o) - 1.0));
-    const double expected = (-o.dot(d) - root) / d.dot(d);
-    const auto entry = [&](double p) {
-      return *BodySurface(ray.half_axes, p).Entry(ray.origin, ray.direction);
-    };
-    EXPECT_NEAR(entry(2.0), expected, 1e-12);
-    EXPECT_NEAR(entry(2.0 - 1e-9), expected, 1e-7);  // by Newton's method
-  }
-}
-
 TEST(BodySurface, EntryOfTheCuboidAndNearlyOfItsRoundedForms) {
   for (int i = 0; i < 200; ++i) {
     const RandomRay ray;
@@ -100,13 +85,6 @@ TEST(BodySurface, GradientIsTheOutwardNormal) {
           << p;
     }
   }
-}
-
-TEST(BodySurface, GradientOfTheCuboidIsThatOfTheFace) {
-  const BodySurface cuboid({0.5, 1.0, 2.0}, kCuboidExponent);
-  EXPECT_EQ(cuboid.Gradient({-0.5, 0.3, 1.2}), Eigen::Vector3d(-2, 0, 0));
-  EXPECT_EQ(cuboid.Gradient({0.2, 1.0, -1.9}), Eigen::Vector3d(0, 1, 0));
-  EXPECT_EQ(cuboid.Gradient({0.2, -0.7, -2.0}), Eigen::Vector3d(0, 0, -0.5));
 }
 
 TEST(BodySurface, GradientChangesAsItSays) {

@@ -5,7 +5,6 @@
 
 #include "image/yolo_detector.h"
 #include "support/labelled_boxes.h"
-#include "support/random.h"
 
 namespace soslam {
 namespace {
@@ -16,19 +15,6 @@ TEST(LetterboxTest, WideImageByHand) {
   const Letterbox letterbox({640, 480}, {320, 320});
   ExpectBox(letterbox.ToImage({0, 40, 320, 280}), {-0.5, -0.5, 639.5, 479.5});
   ExpectBox(letterbox.ToImage({10, 50, 20, 65}), {19.5, 19.5, 39.5, 49.5});
-}
-
-// 100 x 300 fills 50 x 150 of 200 x 150, 75 columns from the left.
-TEST(LetterboxTest, TallImageByHand) {
-  const Letterbox letterbox({100, 300}, {200, 150});
-  ExpectBox(letterbox.ToImage({75, 0, 125, 150}), {-0.5, -0.5, 99.5, 299.5});
-  ExpectBox(letterbox.ToImage({80, 10, 85, 20}), {9.5, 19.5, 19.5, 39.5});
-}
-
-// 3 x 2 fills 64 x 43 of 64 x 64: the rows are 21.5 each, the columns 21 and a third.
-TEST(LetterboxTest, SmallImageGrowsAndIsRounded) {
-  const Letterbox letterbox({3, 2}, {64, 64});
-  ExpectBox(letterbox.ToImage({0, 10 + 21.5, 64, 10 + 43}), {-0.5, 0.5, 2.5, 1.5});
 }
 
 TEST(LetterboxTest, BoxesAreCutAtTheImage) {

@@ -110,30 +110,12 @@ TEST(Neighbours, ReachTheMapsBorderAndNoFurther) {
   EXPECT_FALSE(neighbours.AreInside({kInfinity, kInfinity, -kInfinity, -kInfinity}));
 }
 
-// What follows the last pixel of a row in memory is not beside it.
-TEST(Neighbours, OfTheLastColumnAreNotThoseOfTheFirst) {
-  cv::Mat map = RandomMap();
-  map.col(0) = std::numeric_limits<float>::infinity();
-  Neighbours neighbours(map);
-  neighbours.SelectInBounds({0.0F, 0.0F, kColumns - 1.0F, kRows - 1.0F});
-  EXPECT_NEAR(Value<true>(neighbours, kColumns - 1.0F, 3.0F), map.at<float>(3, kColumns - 1),
-              kTolerance);
-}
-
 TEST(Neighbours, OfNoKnownBoundsAreTheWholeMap) {
   Neighbours neighbours(RandomMap());
   const float nan = std::nanf("");
   neighbours.SelectInBounds({nan, nan, nan, nan});
   EXPECT_EQ(neighbours.view().part, cv::Rect(0, 0, kColumns, kRows));
   EXPECT_FALSE(neighbours.AreInside({nan, nan, nan, nan}));
-}
-
-TEST(Neighbours, CoverTwoPixelsAtLeast) {
-  Neighbours neighbours(RandomMap());
-  neighbours.SelectInBounds({1e9F, -1e9F, 1e9F, -1e9F});
-  EXPECT_GE(neighbours.view().part.width, 2);
-  EXPECT_GE(neighbours.view().part.height, 2);
-  EXPECT_TRUE(std::isnan(Value<true>(neighbours, 1e9F, -1e9F)));
 }
 
 }  // namespace

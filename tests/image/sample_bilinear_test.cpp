@@ -30,26 +30,6 @@ TEST(SampleBilinearTest, ReproducesABilinearFunctionAndItsGradient) {
   }
 }
 
-TEST(SampleBilinearTest, GradientAgreesWithCentralDifferences) {
-  cv::Mat map(20, 30, CV_8UC1);
-  for (auto it = map.begin<uchar>(); it != map.end<uchar>(); ++it) {
-    *it = static_cast<uchar>(RandomUniform(0, 256));
-  }
-  constexpr double kStep = 1e-4;
-  for (int i = 0; i < 100; ++i) {
-    // Away from pixel centres, where the gradient jumps.
-    const Eigen::Vector2d pixel(std::floor(RandomUniform(0, 29)) + RandomUniform(0.01, 0.99),
-                                std::floor(RandomUniform(0, 19)) + RandomUniform(0.01, 0.99));
-    const auto value = [&](double dx, double dy) {
-      return SampleBilinear(map, pixel + Eigen::Vector2d(dx, dy))->value;
-    };
-    const Eigen::Vector2d expected((value(kStep, 0) - value(-kStep, 0)) / (2 * kStep),
-                                   (value(0, kStep) - value(0, -kStep)) / (2 * kStep));
-    // Rounding: 256 * 1e-16 / 1e-4 is below 1e-9.
-    EXPECT_LT((SampleBilinear(map, pixel)->gradient - expected).norm(), 1e-8);
-  }
-}
-
 TEST(SampleBilinearTest, ReachesExactlyToTheLastPixelCentres) {
   const cv::Mat map = (cv::Mat_<float>(2, 2) << 1, 2, 3, 5);
   EXPECT_EQ(SampleBilinear(map, {0, 0})->value, 1.0);

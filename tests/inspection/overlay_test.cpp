@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/random.h"
-#include "synthesis/random_scene.h"
+#include "support/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

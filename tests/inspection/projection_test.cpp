@@ -46,23 +46,6 @@ TEST(OutlinePolygon, OfACuboidInFrontIsItsNearFace) {
   EXPECT_NEAR(Area(outline), (2.0 * 0.5 * camera.fx / 4.0) * (2.0 * 0.4 * camera.fy / 4.0), 1.0);
 }
 
-TEST(OutlinePolygon, NeedsTheWholeBodyInFront) {
-  Landmark landmark = RandomLandmarkInCamera();
-  landmark.frame_from_object.translation.z() = 0.01;
-  EXPECT_TRUE(OutlinePolygon(TestCamera(), landmark).empty());
-}
-
-TEST(ProjectedAxes, LeadFromTheCentreToTheFaces) {
-  const Camera camera = TestCamera();
-  const Landmark landmark = RandomLandmarkInCamera();
-  const auto axes = ProjectedAxes(camera, landmark);
-  ASSERT_TRUE(axes);
-  const Eigen::Vector3d front =
-      landmark.frame_from_object * Eigen::Vector3d(landmark.half_axes.x(), 0.0, 0.0);
-  EXPECT_LT(((*axes)[0][1] - *camera.Project(front)).norm(), 1e-9);
-  for (const LineSegment2& axis : *axes) EXPECT_EQ(axis[0], *camera.Project(landmark.Centre()));
-}
-
 TEST(ProjectSegment, EndsWhereTheCameraIs) {
   const Camera camera = TestCamera();
   const LineSegment3 through{Eigen::Vector3d(0.3, 0.2, -1.0), Eigen::Vector3d(0.3, 0.2, 3.0)};

@@ -20,11 +20,6 @@ TEST(ValueTableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
             "c      -10.00      3  no\n");
 }
 
-TEST(ValueTableTest, NothingIsADash) {
-  const ValueTable table = {{{"x", "", 1}}, {{nullptr}, {2.0}}};
-  EXPECT_EQ(FormatTable(table, false), "  x\n  -\n2.0\n");
-}
-
 TEST(ValueTableTest, OnlyTheHeadIsColoured) {
   const std::string plain = FormatTable(SmallTable(), false);
   const std::string coloured = FormatTable(SmallTable(), true);

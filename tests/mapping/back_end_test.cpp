@@ -11,7 +11,7 @@
 #include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"
 #include "support/random.h"
-#include "synthesis/random_scene.h"
+#include "support/scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <algorithm>
 
 #include "geometry/iou.h"
 #include "mapping/initial_landmarks.h"
@@ -48,30 +47,6 @@ TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
       EXPECT_GT(BoxIou(*initial_landmarks[i], sequence_.objects[i].ground_truth->landmark_in_world),
                 0.98)
           << "object " << i << ", edges " << edges;
-    }
-  }
-}
-
-// Neither on what was looked at before, nor on what was given up as more expensive.
-TEST_F(UprightStarts, DoNotDependOnThreadsOrTheOrderOfHypotheses) {
-  options_.texture.asymmetry_cost = 100.0;  // decides
-  for (const auto& [index, image] : DrawnEdges(sequence_)) {
-    symmetry_images_[index] = std::make_shared<const SymmetryImage>(image->frame->maps, image->box);
-  }
-  for (const Descriptor descriptor : {Descriptor::kDistanceTransform, Descriptor::kImprovedDt}) {
-    options_.symmetry_options.descriptor = descriptor;
-    const auto initial_landmarks = Choose(1), on_three_threads = Choose(3);
-    for (auto& observation : estimates_.observations) std::ranges::reverse(observation.hypotheses);
-    std::ranges::reverse(estimates_.observations);
-    const auto in_reverse = Choose(1);
-    for (size_t i = 0; i < initial_landmarks.size(); ++i) {
-      ASSERT_TRUE(initial_landmarks[i] && on_three_threads[i] && in_reverse[i]);
-      EXPECT_EQ(initial_landmarks[i]->frame_from_object.Matrix(),
-                on_three_threads[i]->frame_from_object.Matrix());
-      EXPECT_EQ(initial_landmarks[i]->half_axes, on_three_threads[i]->half_axes);
-      EXPECT_TRUE(in_reverse[i]->frame_from_object.Matrix().isApprox(
-          initial_landmarks[i]->frame_from_object.Matrix(), 1e-6));
-      EXPECT_TRUE(in_reverse[i]->half_axes.isApprox(initial_landmarks[i]->half_axes, 1e-6));
     }
   }
 }

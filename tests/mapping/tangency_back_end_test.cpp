@@ -79,21 +79,6 @@ TEST_F(HeldPosesTest, StayAsTheyAre) {
   ExpectTruth(sequence, map, 0.99);
 }
 
-// Views are looked at one by one where there is a bias.
-TEST_F(HeldPosesTest, AreTheSameProblemWithABiasThatIsNextToNone) {
-  const MapEstimate without = OptimiseMap(input, options);
-  options.detector_bias_sigma_px = 1e-9;
-  const MapEstimate with = OptimiseMap(input, options);
-  EXPECT_NEAR(with.solver.initial_cost, without.solver.initial_cost,
-              1e-9 * without.solver.initial_cost);
-  EXPECT_NEAR(with.solver.final_cost, without.solver.final_cost,
-              1e-6 * without.solver.initial_cost);
-  for (size_t i = 0; i < without.objects.size(); ++i) {
-    const Landmark& one = *without.objects[i].landmark_in_world;
-    EXPECT_LT((with.objects[i].landmark_in_world->Centre() - one.Centre()).norm(), 1e-3);
-  }
-}
-
 TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   const Sequence sequence = CuboidSequence(5, 20);
   const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());
@@ -289,23 +274,6 @@ TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
   const double with = MeanIou(sequence, edges);
   EXPECT_GT(with, MeanIou(sequence, boxes));
   EXPECT_GT(with, 0.9);
-}
-
-TEST(TangencyBackEnd, DoesNotDependOnThreads) {
-  const Sequence sequence = CuboidSequence(5, 8);
-  BackEndInput input = TruthInput(sequence);
-  input.edge_images = DrawnEdges(sequence);
-  Disturb(&input);
-  const MapEstimate one = OptimiseMap(input, TangencyOptions(), 1);
-  const MapEstimate three = OptimiseMap(input, TangencyOptions(), 3);
-  EXPECT_GT(one.solver.cost_per_iteration.size(), 5u);
-  EXPECT_EQ(one.solver.cost_per_iteration, three.solver.cost_per_iteration);
-  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
-    const Landmark& of_one = *one.objects[i].landmark_in_world;
-    const Landmark& of_three = *three.objects[i].landmark_in_world;
-    EXPECT_EQ(of_one.frame_from_object.Matrix(), of_three.frame_from_object.Matrix());
-    EXPECT_EQ(of_one.half_axes, of_three.half_axes);
-  }
 }
 
 // Which edge points count is decided anew until nothing moves: from there, nothing does.

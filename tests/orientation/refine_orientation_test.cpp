@@ -11,8 +11,8 @@
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "support/drawn_cuboids.h"
+#include "support/scene.h"
 #include "synthesis/render.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

@@ -11,9 +11,9 @@
 #include "orientation/refine_symmetry.h"
 #include "orientation/symmetry_samples.h"
 #include "support/random.h"
+#include "support/scene.h"
 #include "synthesis/render.h"
 #include "synthesis/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

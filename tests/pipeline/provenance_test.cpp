@@ -19,15 +19,8 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-class ProvenanceTest : public testing::Test {
+class ProvenanceTest : public FinishedRunTest {
  protected:
-  static constexpr const char* kVariants = "InitP InitPT";
-
-  static const SmallPipeline& Finished() {
-    static const FinishedRun run(kVariants);
-    return run.Restored();
-  }
-
   fs::path Results() const { return pipeline_.Folder() / "results"; }
   // The folder of the only run of a stage.
   fs::path RunOf(const std::string& stage) const {
@@ -57,8 +50,6 @@ class ProvenanceTest : public testing::Test {
     }
     return files;
   }
-
-  const SmallPipeline& pipeline_ = Finished();
 };
 
 TEST_F(ProvenanceTest, RecordsNameEveryFileThatAStageRead) {

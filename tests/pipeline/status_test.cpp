@@ -17,14 +17,8 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-class StatusTest : public testing::Test {
+class StatusTest : public FinishedRunTest {
  protected:
-  static constexpr const char* kVariants = "InitP InitPT";
-
-  static const SmallPipeline& Finished() {
-    static const FinishedRun run(kVariants);
-    return run.Restored();
-  }
   std::string Status(const std::vector<std::string>& arguments = {}) const {
     std::vector<std::string> words = {StageProgram("status"), "--results",
                                       pipeline_.Results().parent_path().string(), "--executables",
@@ -40,8 +34,6 @@ class StatusTest : public testing::Test {
   static void Touch(const fs::path& path) {
     fs::last_write_time(path, fs::file_time_type::clock::now());
   }
-
-  const SmallPipeline& pipeline_ = Finished();
 };
 
 TEST_F(StatusTest, AfterARunEverythingIsDone) {

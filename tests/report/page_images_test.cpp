@@ -46,12 +46,6 @@ TEST(EncodeImages, AreFewerWhenTheSmallestAreTooLarge) {
   EXPECT_TRUE(EncodeImages(frames, kNoises, 100, 2).images.empty());
 }
 
-TEST(EncodeImages, DoNotDependOnTheNumberOfThreads) {
-  const EncodedImages one = EncodeImages({0, 1, 2}, kNoises, 300'000, 1);
-  const EncodedImages two = EncodeImages({0, 1, 2}, kNoises, 300'000, 2);
-  for (size_t i = 0; i < 3; ++i) EXPECT_EQ(one.images[i].base64, two.images[i].base64);
-}
-
 TEST(EncodeImages, LeaveOutWhatIsNotThereAndNameWhatIsDamaged) {
   const ImageSource source = {[](int frame) { return frame != 1; },
                               [](int frame) {

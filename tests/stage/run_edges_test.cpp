@@ -110,14 +110,6 @@ TEST_F(RunEdgesTest, WritesTheMapsOfEveryFrame) {
   EXPECT_FALSE(reader.Has(1));
 }
 
-TEST_F(RunEdgesTest, SameBytesForAnyNumberOfThreads) {
-  RunEdges({}, Files("one.h5"), 1);
-  RunEdges({}, Files("two.h5"), 2);
-  RunEdges({}, Files("many.h5"), 7);
-  EXPECT_EQ(FileBytes(folder_ / "one.h5"), FileBytes(folder_ / "two.h5"));
-  EXPECT_EQ(FileBytes(folder_ / "one.h5"), FileBytes(folder_ / "many.h5"));
-}
-
 TEST_F(RunEdgesTest, BadImagesAreNamedAndNothingIsWritten) {
   const auto image = folder_ / "rgb/7.png";
   const std::string whole = FileBytes(image);

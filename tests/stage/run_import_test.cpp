@@ -80,18 +80,18 @@ TEST_F(RunImportTest, ATrajectoryThatIsNotReadIsNotAnInput) {
 
 TEST_F(RunImportTest, FailureLeavesTheEarlierResult) {
   Run();
-  const std::string before = ReadText(files.at("output"));
+  const std::string before = FileBytes(files.at("output"));
   dataset.files["camera.json"] = "{}";
   EXPECT_THROW(Run(), InputError);
-  EXPECT_EQ(ReadText(files.at("output")), before);
+  EXPECT_EQ(FileBytes(files.at("output")), before);
 }
 
 TEST_F(RunImportTest, SameInputsGiveTheSameBytes) {
   Run();
-  const std::string first = ReadText(files.at("output"));
+  const std::string first = FileBytes(files.at("output"));
   std::filesystem::remove(files.at("output"));
   Run();
-  EXPECT_EQ(ReadText(files.at("output")), first);
+  EXPECT_EQ(FileBytes(files.at("output")), first);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include "base/error.h"
 #include "inspection/canvas.h"
 #include "support/expect_error.h"
+#include "support/scene.h"
 #include "support/temporary_folder.h"
-#include "synthesis/random_scene.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
