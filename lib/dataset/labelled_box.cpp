@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -15,8 +14,8 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/table.h"
-#include "base/text.h"
 #include "dataset/class_names.h"
+#include "dataset/csv_table.h"
 #include "dataset/json_entry.h"
 #include "dataset/text_file.h"
 
@@ -26,91 +25,31 @@ namespace {
 constexpr std::array kBoxColumns = {"frame", "label", "score", "x1", "y1", "x2", "y2"};
 constexpr const char* kIdColumn = "object_id";
 
-// Normalised column name: lower case, underscores instead of blanks.
-std::string ColumnName(const std::string& field) {
-  std::string name = LowerCase(field);
-  std::ranges::replace(name, ' ', '_');
-  return name;
+// Some programs write a column with gaps as real numbers: 7 is "7.0".
+std::optional<int> ParseObjectId(std::string_view text, const std::string& place) {
+  if (text.empty()) return std::nullopt;
+  if (text.ends_with(".0")) text.remove_suffix(2);
+  return ParseInteger(text, place, kIdColumn);
 }
 
-// Table format given by the first line.
-struct Header {
-  char separator;
-  size_t size;
-  std::map<std::string, size_t> positions;  // column name -> index, for the columns that are read
-};
-
-Header ParseHeader(const TextLine& line) {
-  Header header{SeparatorOf(line.text), 0, {}};
-  const auto fields = SplitCsvLine(line.text, header.separator, line.place);
-  header.size = fields.size();
-  const auto refuse = [&](const std::string& column, const char* how_often) {
-    throw InputError(fmt::format("{}: column '{}' is {}; expected each of {} once", line.place,
-                                 column, how_often, fmt::join(kBoxColumns, ",")));
-  };
-  for (size_t i = 0; i < fields.size(); ++i) {
-    const std::string name = ColumnName(fields[i]);
-    if (name != kIdColumn && std::ranges::find(kBoxColumns, name) == kBoxColumns.end()) continue;
-    if (!header.positions.emplace(name, i).second) refuse(name, "twice");
-  }
-  for (const char* column : kBoxColumns) {
-    if (!header.positions.contains(column)) refuse(column, "missing");
-  }
-  return header;
+LabelledBox ParseBox(const CsvRow& row) {
+  LabelledBox box{row.place,
+                  ParseInteger(row.fields.at("frame"), row.place, "frame"),
+                  row.fields.at("label"),
+                  row.Real("score"),
+                  {row.Real("x1"), row.Real("y1"), row.Real("x2"), row.Real("y2")}};
+  if (box.label.empty()) throw InputError(row.place + ": label is empty; expected a category");
+  const auto id = row.fields.find(kIdColumn);
+  if (id != row.fields.end()) box.object_id = ParseObjectId(id->second, row.place);
+  return box;
 }
-
-// Fields of one row, accessed by column name.
-class Row {
- public:
-  Row(const TextLine& line, const Header& header)
-      : place_(line.place),
-        fields_(SplitCsvLine(line.text, header.separator, line.place)),
-        header_(header) {
-    if (fields_.size() == header.size) return;
-    throw InputError(fmt::format("{}: has {} fields; expected {}, as the header has", place_,
-                                 fields_.size(), header.size));
-  }
-
-  LabelledBox Parse() const {
-    LabelledBox box{place_,
-                    ParseInteger(Field("frame"), place_, "frame"),
-                    Field("label"),
-                    Real("score"),
-                    {Real("x1"), Real("y1"), Real("x2"), Real("y2")}};
-    if (box.label.empty()) throw InputError(place_ + ": label is empty; expected a category");
-    if (header_.positions.contains(kIdColumn)) box.object_id = ObjectId();
-    return box;
-  }
-
- private:
-  const std::string& Field(const char* column) const {
-    return fields_[header_.positions.at(column)];
-  }
-  // Some programs write a column with gaps as real numbers: 7 is "7.0".
-  std::optional<int> ObjectId() const {
-    std::string_view text = Field(kIdColumn);
-    if (text.empty()) return std::nullopt;
-    if (text.ends_with(".0")) text.remove_suffix(2);
-    return ParseInteger(text, place_, kIdColumn);
-  }
-  double Real(const char* column) const { return ParseReal(Field(column), place_, column); }
-
-  const std::string& place_;
-  std::vector<std::string> fields_;
-  const Header& header_;
-};
 
 }  // namespace
 
 std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
-  const std::vector<TextLine> lines = ReadTableLines(path);
-  if (lines.empty()) {
-    throw InputError(fmt::format("{}: is empty; expected a header {}", path.string(),
-                                 fmt::join(kBoxColumns, ",")));
-  }
-  const Header header = ParseHeader(lines[0]);
   std::vector<LabelledBox> boxes;
-  for (size_t i = 1; i < lines.size(); ++i) boxes.push_back(Row(lines[i], header).Parse());
+  ForEachCsvRow(path, {{kBoxColumns.begin(), kBoxColumns.end()}, kIdColumn},
+                [&](const CsvRow& row) { boxes.push_back(ParseBox(row)); });
   return boxes;
 }
 

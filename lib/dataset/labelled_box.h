@@ -35,10 +35,8 @@ inline Box ToCornerOrigin(const Box& box) {
   return {box.x_min + 0.5, box.y_min + 0.5, box.x_max + 0.5, box.y_max + 0.5};
 }
 
-// Reads detections.csv, a table whose first line names the columns, in any order: frame, object_id,
-// label, score, x1, y1, x2, y2; others are ignored. Column names are case-insensitive, with blanks
-// equal to underscores. Fields may be quoted (SplitCsvLine) and use the separator of the header:
-// comma, semicolon or tab. Frames are rows of rgb.txt.
+// Reads detections.csv, a table (ForEachCsvRow) with the columns frame, object_id, label, score,
+// x1, y1, x2, y2. Frames are rows of rgb.txt.
 //
 // The column object_id may be absent, and its fields may be empty. Throws InputError naming the
 // line, and for a file without header.

@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
-#include <utility>
 
 #include "base/error.h"
 #include "image/protobuf_reader.h"
@@ -122,94 +119,6 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name) {
     throw InputError(fmt::format("{}: is not an ONNX network, or damaged: {}", name, error.what()));
   }
   return header;
-}
-
-namespace {
-
-// Reads Python's notation of a list of texts, or of a dictionary from 0, 1, ... to texts.
-class PythonNames {
- public:
-  explicit PythonNames(std::string_view text) : rest_(text) {}
-
-  // None if the text is anything else.
-  std::optional<std::vector<std::string>> Read() {
-    const bool is_list = Skip('[');
-    if (!is_list && !Skip('{')) return std::nullopt;
-    const char end = is_list ? ']' : '}';
-    std::vector<std::string> names;
-    while (!Skip(end)) {
-      if (!names.empty() && !Skip(',')) return std::nullopt;
-      if (!is_list && !(SkipNumber(names.size()) && Skip(':'))) return std::nullopt;
-      auto name = Text();
-      if (!name) return std::nullopt;
-      names.push_back(std::move(*name));
-    }
-    SkipBlanks();
-    return rest_.empty() ? std::optional(std::move(names)) : std::nullopt;
-  }
-
- private:
-  void SkipBlanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \n"), rest_.size())); }
-
-  bool Skip(char expected) {
-    SkipBlanks();
-    if (rest_.empty() || rest_.front() != expected) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-
-  bool SkipNumber(size_t expected) {
-    SkipBlanks();
-    size_t number = 0;
-    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
-    if (error != std::errc() || number != expected) return false;
-    rest_.remove_prefix(static_cast<size_t>(end - rest_.data()));
-    return true;
-  }
-
-  // A text in quotes of either kind, in which a backslash stands before quotes and itself.
-  std::optional<std::string> Text() {
-    SkipBlanks();
-    if (rest_.empty() || (rest_.front() != '\'' && rest_.front() != '"')) return std::nullopt;
-    const char quote = rest_.front();
-    std::string text;
-    for (size_t i = 1; i < rest_.size(); ++i) {
-      if (rest_[i] == quote) {
-        rest_.remove_prefix(i + 1);
-        return text;
-      }
-      if (rest_[i] == '\\' && (++i == rest_.size() || !IsEscaped(rest_[i]))) break;
-      text += rest_[i];
-    }
-    return std::nullopt;
-  }
-
-  static bool IsEscaped(char c) { return c == '\\' || c == '\'' || c == '"'; }
-
-  std::string_view rest_;
-};
-
-// True for a name that detections.csv cannot hold.
-bool IsBadName(const std::string& label) {
-  return label.empty() || std::ranges::any_of(label, [](char c) {
-           return c == ',' || static_cast<unsigned char>(c) < 0x20;
-         });
-}
-
-}  // namespace
-
-std::vector<std::string> ClassNames(const OnnxHeader& header, const std::string& name) {
-  const auto found = header.metadata.find("names");
-  if (found == header.metadata.end()) return {};
-  auto names = PythonNames(found->second).Read();
-  if (!names || names->empty() || std::ranges::any_of(*names, IsBadName)) {
-    constexpr size_t kShown = 100;
-    throw InputError(
-        fmt::format("{}: its class names are '{}'; expected {{0: 'cup', 1: 'book', ...}}, no name "
-                    "with a comma (--labels FILE gives others)",
-                    name, found->second.substr(0, kShown)));
-  }
-  return *std::move(names);
 }
 
 std::string ShapeText(const std::vector<std::int64_t>& shape) {

@@ -33,12 +33,6 @@ struct OnnxHeader {
 // `name`, for a file without graph, and for one with absurdly many inputs or outputs.
 OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name);
 
-// The class names in the metadata of a network, from class 0 on: "names", as Ultralytics writes
-// them, a dictionary {0: 'person', 1: 'bicycle'} or a list ['person', 'bicycle'] in Python's
-// notation. Empty without them. Throws InputError, naming the file `name`, for anything else and
-// for a name with a comma.
-std::vector<std::string> ClassNames(const OnnxHeader& header, const std::string& name);
-
 // The shape as text, "[1, 3, ?, 640]".
 std::string ShapeText(const std::vector<std::int64_t>& shape);
 

@@ -143,10 +143,27 @@ std::string Comments(const ArtefactInfo& info) {
   return text;
 }
 
+// The class names in the metadata of a network, from class 0 on, as Ultralytics writes them in
+// Python's notation, which is also YAML unless it escapes characters.
+std::vector<std::string> NamesIn(const NetworkFile& network) {
+  const auto names = network.header.metadata.find("names");
+  if (names == network.header.metadata.end()) return CocoLabels();
+  const std::string& text = names->second;
+  try {
+    if (!text.starts_with('{') && !text.starts_with('[')) throw InputError("is one name");
+    if (text.find('\\') != text.npos) throw InputError("has an escaped character");
+    return ParseLabels("names: " + text, "names.yaml");
+  } catch (const InputError&) {
+    constexpr size_t kShown = 100;
+    throw InputError(
+        fmt::format("{}: its class names are '{}'; expected {{0: 'cup', 1: 'book', ...}}, no name "
+                    "with a comma (--labels FILE gives others)",
+                    network.name, text.substr(0, kShown)));
+  }
+}
+
 std::vector<std::string> ClassesOf(const NetworkFile& network, const StageFiles& files) {
-  if (files.contains("labels")) return ReadLabelFile(files.at("labels"));
-  auto names = ClassNames(network.header, network.name);
-  return names.empty() ? CocoLabels() : names;
+  return files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network);
 }
 
 // The options with the format in place of "auto": with them the same comes out again.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-
 #include "exchange/meshes.h"
 #include "geometry/support_function.h"
 #include "geometry/surface.h"

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "base/hash.h"
 #include "geometry/angles.h"
 #include "support/exported_world.h"

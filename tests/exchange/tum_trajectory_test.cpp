@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-
 #include "dataset/trajectories.h"
 #include "exchange/text_exports.h"
 #include "support/exported_world.h"

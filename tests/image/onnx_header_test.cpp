@@ -10,20 +10,13 @@
 namespace soslam {
 namespace {
 
-using Names = std::vector<std::string>;
 using Shape = std::vector<std::int64_t>;
 
 OnnxHeader Read(const std::string& bytes) { return ReadOnnxHeader(bytes, "net.onnx"); }
 
-Names ReadNames(const std::string& names) {
-  OnnxHeader header;
-  header.metadata["names"] = names;
-  return ClassNames(header, "net.onnx");
-}
-
 TEST(OnnxHeaderTest, SaysWhatTheFileDeclares) {
   MeanNetwork network = {{1, 2, 7}, std::vector<float>(14), {}, 96, 32};
-  network.metadata = {{"names", "{0: 'cup', 1: 'book'}"}, {"task", "segment"}};
+  network.metadata = {{"task", "segment"}};
   network.has_masks = true;
   network.opset = 17;
   const OnnxHeader header = Read(network.Onnx());
@@ -38,7 +31,6 @@ TEST(OnnxHeaderTest, SaysWhatTheFileDeclares) {
   EXPECT_EQ(header.operators, (std::set<std::string>{"Conv", "GlobalAveragePool", "Reshape"}));
   EXPECT_FALSE(header.has_half_weights);
   EXPECT_EQ(header.metadata.at("task"), "segment");
-  EXPECT_EQ(ClassNames(header, "net.onnx"), (Names{"cup", "book"}));
 }
 
 TEST(OnnxHeaderTest, WeightsAreNoInputs) {
@@ -56,21 +48,6 @@ TEST(OnnxHeaderTest, HalfPrecisionIsFoundInWeightsAndConstants) {
   const auto tensor = ProtoMessage().Integer(2, OnnxGraph::kHalf).Text(9, "ab");
   constants.Node("Constant", {}, "number", {ProtoMessage().Text(1, "value").Message(5, tensor)});
   EXPECT_TRUE(Read(constants.Onnx()).has_half_weights);
-}
-
-TEST(OnnxHeaderTest, NamesAreAPythonDictionaryOrList) {
-  EXPECT_EQ(ReadNames("{0: 'cup', 1: \"bird's nest\", 2: 'it\\'s'}"),
-            (Names{"cup", "bird's nest", "it's"}));
-  EXPECT_EQ(ReadNames("['cup', 'book']"), (Names{"cup", "book"}));
-  EXPECT_TRUE(ClassNames(OnnxHeader{}, "net.onnx").empty());
-}
-
-TEST(OnnxHeaderTest, OtherNamesAreRefused) {
-  for (const char* names : {"", "{}", "cup", "{0: 'cup'", "{0: 'cup', 2: 'book'}", "{1: 'cup'}",
-                            "{0: cup}", "['cup' 'book']", "['cup'] more", "['cup, saucer']", "['']",
-                            "['a\\n']", "['cup\\", "['cup", "{0 'cup'}", "['cup',"}) {
-    ExpectError<InputError>([&] { ReadNames(names); }, {"net.onnx", names, "--labels"});
-  }
 }
 
 TEST(OnnxHeaderTest, DamagedFilesAreRefused) {

@@ -141,21 +141,6 @@ TEST_F(YoloDetectorTest, YoloxRawAndDecoded) {
   }
 }
 
-TEST_F(YoloDetectorTest, ImpossibleBoxesAreRefused) {
-  const std::vector<std::string> words = {"net.onnx", "of 1 boxes", "layout v5",
-                                          "rgb_0_1",  "64 x 64",    "output_layout"};
-  ExpectError<InputError>(
-      [&] {
-        Detect(MeanNetwork{{1, 1, 7}, {20, 30, 3, 3.5F, 1, 1, 0}, {}}, image_);
-      },
-      words);
-  ExpectError<InputError>(
-      [&] {
-        Detect(MeanNetwork{{1, 1, 7}, {30, 60, 8, 6, 1, 1, 0}, {}}, image_);
-      },
-      words);
-}
-
 TEST_F(YoloDetectorTest, BadFilesAreNamed) {
   const auto load = [&](const std::string& bytes) {
     WriteBytes(folder_ / "bad.onnx", bytes);

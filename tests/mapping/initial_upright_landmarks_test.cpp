@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-
 #include "geometry/iou.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"

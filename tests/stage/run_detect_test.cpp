@@ -147,22 +147,15 @@ TEST_F(RunDetectTest, NamesInTheNetworkAreItsLabels) {
   Run(files);
   EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "tea pot");
   EXPECT_THAT(printed_, HasSubstr("net.onnx: layout v5, pixel values rgb_0_1, input of 64 x 64"));
+  for (const char* names : {"", "{}", "cup", "{0: 'cup'", "{0: 'cup', 2: 'book'}",
+                            "['cup, saucer']", "['']", "['a\\n']", "['cup"}) {
+    network.metadata["names"] = names;
+    WriteBytes(folder_ / "net.onnx", network.Onnx());
+    ExpectError<InputError>([&] { RunDetect(options_, files, 2); },
+                            {"net.onnx", names, "--labels"});
+  }
   Run(Files());  // the file of labels comes first
   EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "milk carton");
-}
-
-// The same rows from boxes in cells, as YOLOX is published, and in pixels.
-TEST_F(RunDetectTest, YoloxRawAndDecoded) {
-  options_.input_width = options_.input_height = 64;
-  std::vector<std::string> tables;
-  for (const bool is_decoded : {false, true}) {
-    WriteBytes(folder_ / "net.onnx", GridNetwork{is_decoded}.Onnx());
-    Run(Files());
-    const std::string text = FileBytes(folder_ / "detections.csv");
-    tables.push_back(text.substr(text.find("\nframe,")));
-  }
-  EXPECT_EQ(tables[0], tables[1]);
-  EXPECT_GT(ReadDetectionsCsv(folder_ / "detections.csv").size(), 10u);
 }
 
 TEST_F(RunDetectTest, LabelsAreRenamedAndSelected) {

@@ -25,19 +25,19 @@ class RunPlanesTest : public testing::Test {
   RunPlanesTest() {
     options_.planes = PlaneSource::kEstimated;
     options_.verticals = false;  // there are no images
-    for (const Object& object : sequence_.objects) WriteLabel(object, /*hangs=*/false);
+    for (const Object& object : sequence_.objects) WriteLabel(object);
     WriteTable();
     WriteSequence(File("sequence"), sequence_, {});
   }
 
-  void WriteLabel(const Object& object, bool hangs) {
+  void WriteLabel(const Object& object) {
     const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
     labels_[object.label] = {{"a_by_c", half_axes.x() / half_axes.z()},
                              {"b_by_c", half_axes.y() / half_axes.z()},
                              {"a_by_c_log_sigma", 0.1},
                              {"b_by_c_log_sigma", 0.1},
                              {"shape_exponent", 1.0},
-                             {"mount", hangs ? "hanging" : "standing"},
+                             {"mount", "standing"},
                              {"source", "the test"}};
   }
   void WriteTable() const { WriteBytes(File("table"), json{{"labels", labels_}}.dump()); }
@@ -159,25 +159,6 @@ TEST_F(RunPlanesTest, CameraHeightIsTheGroundOfEveryFrame) {
   const json report = ReadArtefact(File("report"), "planes");
   EXPECT_EQ(report.at("planes").size(), sequence_.objects.size());
   EXPECT_TRUE(report.at("cost").is_null());
-}
-
-// Also once planes and poses have settled together in the back end.
-TEST_F(RunPlanesTest, CeilingsAreLevelWhereFloorsAre) {
-  sequence_ = SyntheticSequence(WithCeiling(RandomScene(2, 8, 20, {Shape::kBox}), 1.15), false);
-  WriteSequence(File("sequence"), sequence_, {});
-  labels_.clear();
-  for (const Object& object : sequence_.objects) {
-    WriteLabel(object, sequence_.planes[static_cast<size_t>(object.plane_index)].id == 1);
-  }
-  WriteTable();
-  Run();
-  const Sequence output = ReadSequence(File("output"));
-  ASSERT_EQ(output.planes.size(), 2u);
-  EXPECT_EQ(output.planes[0].plane_in_world.normal, -output.planes[1].plane_in_world.normal);
-  for (const json& plane : ReadArtefact(File("report"), "planes").at("planes")) {
-    EXPECT_LT(plane.at("error").at("angle_deg").get<double>(), 0.6);
-    EXPECT_LT(std::abs(plane.at("error").at("offset_m").get<double>()), 0.03);
-  }
 }
 
 TEST_F(RunPlanesTest, WhatIsOnAWallIsLeftOutAndCounted) {
