@@ -66,18 +66,6 @@ std::vector<ObservationEstimate> ObservationsFromJson(const json& json, const Se
   return estimates;
 }
 
-// Number of observations and objects with a failure, per reason.
-std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
-  std::map<std::string, int> failures;
-  for (const auto& observation : estimates.observations) {
-    if (!observation.failure.empty()) ++failures[observation.failure];
-  }
-  for (const auto& object : estimates.objects) {
-    if (!object.failure.empty()) ++failures[object.failure];
-  }
-  return failures;
-}
-
 }  // namespace
 
 LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequence& sequence) {
@@ -175,6 +163,17 @@ void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const S
                  {"trajectory", TrajectoryToJson(map.world_from_camera, sequence)},
                  {"planes", PlanesToJson(map.planes_in_world, sequence)},
                  {"solver", map.solver}});
+}
+
+std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
+  std::map<std::string, int> failures;
+  for (const auto& observation : estimates.observations) {
+    if (!observation.failure.empty()) ++failures[observation.failure];
+  }
+  for (const auto& object : estimates.objects) {
+    if (!object.failure.empty()) ++failures[object.failure];
+  }
+  return failures;
 }
 
 }  // namespace soslam

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "artefact/json_file.h"
 #include "model/estimates.h"
@@ -24,5 +26,8 @@ MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence)
 // Errors as WriteArtefact.
 void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,
               const ArtefactInfo& info);
+
+// Number of observations and objects with a failure, per reason.
+std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates);
 
 }  // namespace soslam

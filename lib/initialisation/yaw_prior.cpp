@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "geometry/angles.h"
 #include "initialisation/multi_view.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -20,12 +21,10 @@ constexpr size_t kMinPriorViews = 2;
 // front of the camera.
 std::optional<Eigen::Vector3d> Foot(const Sequence& sequence, const Detection& detection) {
   if (detection.is_bound[3]) return std::nullopt;
-  const Box& box = detection.box;
-  const Plane& plane = detection.plane_in_camera;
-  const Eigen::Vector3d ray = sequence.CameraOf(detection).Ray({box.Centre().x(), box.y_max});
-  const double depth = -plane.offset / plane.normal.dot(ray);
-  if (!(depth > 0.0) || !std::isfinite(depth)) return std::nullopt;
-  return sequence.FrameOf(detection).world_from_camera * Eigen::Vector3d(depth * ray);
+  const auto foot_in_camera =
+      GroundContactInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
+  if (!foot_in_camera) return std::nullopt;
+  return sequence.FrameOf(detection).world_from_camera * *foot_in_camera;
 }
 
 // Motion (m, world frame) between the first and the last of the detections' feet, from the linear

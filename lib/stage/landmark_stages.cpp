@@ -30,17 +30,6 @@
 namespace soslam {
 namespace {
 
-std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates) {
-  std::map<std::string, int> failures;
-  for (const auto& observation : estimates.observations) {
-    if (observation.hypotheses.empty()) ++failures[observation.failure];
-  }
-  for (const auto& object : estimates.objects) {
-    if (!object.landmark_in_world) ++failures[object.failure];
-  }
-  return failures;
-}
-
 std::vector<std::optional<YawPrior>> YawPriorsOf(
     const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& shapes,
     const InitialiseOptions& options, int threads) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/kitti_object.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -9,6 +10,8 @@
 #include "dataset/import.h"
 #include "support/expect_error.h"
 #include "support/kitti_fixture.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -95,6 +98,53 @@ TEST_F(KittiObjectTest, BadInputIsRefused) {
   ExpectError<InputError>([&] { Import(); }, {"calib/000011.txt", "missing"});
   std::filesystem::remove_all(folder / "label_2");
   ExpectError<InputError>([&] { Import(); }, {"label_2", "no files"});
+}
+
+class KittiBoxesTest : public testing::Test {
+ protected:
+  KittiBoxesTest() { std::filesystem::create_directory(folder_ / "Car"); }
+  std::vector<LabelledBox> Read(const std::string& text) {
+    WriteBytes(folder_ / "Car/0000.txt", text);
+    return ReadKittiBoxes(folder_ / "Car/0000.txt");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(KittiBoxesTest, BadLinesAreNamed) {
+  const BadTexts cases = {{"1,2,3,4,5", {"has 5 fields", "frame,x1,y1,x2,y2,score"}},
+                          {"1 2 3 4 5 6", {"has 1 fields"}},
+                          {"1.5,1,2,3,4,1", {"frame is '1.5'"}},
+                          {"-1,1,2,3,4,1", {"frame is -1"}},
+                          {"1,1,2,inf,4,1", {"x2 is 'inf'"}},
+                          {"1,1,2,3,4,", {"score is ''"}},
+                          {"1,10,2,3,4,1", {"box is 10 2 3 4", "x1 <= x2"}}};
+  ExpectBadTexts(cases, "Car/0000.txt:2",
+                 [&](const std::string& line) { Read("0,1,2,3,4,1\r\n" + line + "\r\n"); });
+}
+
+using testing::ElementsAre;
+using testing::Optional;
+
+constexpr Box kUnit{0, 0, 10, 10};
+
+Box Shifted(double x) { return {x, 0, 10 + x, 10}; }
+
+TEST(MatchBoxes, TakesTheLargestOverlap) {
+  EXPECT_THAT(MatchBoxes({{kUnit, 0.5}}, {Shifted(4), Shifted(1), Shifted(2)}, 0.1),
+              ElementsAre(Optional(1)));
+}
+
+TEST(MatchBoxes, TheHighestScoreChoosesFirst) {
+  EXPECT_THAT(MatchBoxes({{Shifted(2), 0.4}, {Shifted(1), 0.9}}, {kUnit, Shifted(6)}, 0.1),
+              ElementsAre(Optional(1), Optional(0)));
+}
+
+TEST(MatchBoxes, IsOneToOneWithAMinimum) {
+  EXPECT_THAT(MatchBoxes({{kUnit, 0.9}, {kUnit, 0.8}}, {kUnit}, 0.5),
+              ElementsAre(Optional(0), std::nullopt));
+  EXPECT_THAT(MatchBoxes({{Shifted(5), 0.9}}, {kUnit}, 0.34), ElementsAre(std::nullopt));
+  EXPECT_THAT(MatchBoxes({{Shifted(5), 0.9}}, {kUnit}, 0.33), ElementsAre(Optional(0)));
+  EXPECT_THAT(MatchBoxes({{kUnit, 0.9}}, {}, 0.5), ElementsAre(std::nullopt));
 }
 
 }  // namespace

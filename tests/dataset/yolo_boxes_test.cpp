@@ -1,15 +1,144 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/yolo_boxes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
+#include "support/run_command.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+class YoloTextsTest : public testing::Test {
+ protected:
+  void Write(const std::string& name, const std::string& text) {
+    fs::create_directories((folder_ / name).parent_path());
+    WriteBytes(folder_ / name, text);
+  }
+  fs::path Pack() {
+    EXPECT_EQ(RunCommand({"tar", "czf", (folder_ / "labels.tar.gz").string(), "-C",
+                          folder_.path().string(), "packed"})
+                  .exit_code,
+              0);
+    return folder_ / "labels.tar.gz";
+  }
+  static std::vector<std::string> Images(const YoloTexts& texts) {
+    std::vector<std::string> images;
+    for (const YoloText& text : texts.images) images.push_back(text.image);
+    return images;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(YoloTextsTest, ExtrasOfToolsAreLeftOut) {
+  Write("labels/1.txt", "0 0.1 0.1 0.1 0.1\n");
+  Write("labels/train.txt", "0 0.1 0.1 0.1 0.1\n");  // an image of that name
+  Write("labels/val.txt", "data/obj_train_data/1.jpg\n");
+  Write("labels/classes.txt", "cup\nbook\n");
+  Write("labels/._1.txt", std::string("\0\5\x16\7Mac OS X", 12));
+  Write("labels/.DS_Store", "x");
+  Write("labels/README.roboflow.txt", "Exported\n");
+  const YoloTexts texts = ReadYoloTexts(folder_ / "labels");
+  EXPECT_THAT(Images(texts), ElementsAre("1", "train"));
+  EXPECT_FALSE(texts.names);  // FindLabelFile finds those of folders
+}
+
+TEST_F(YoloTextsTest, ArchivesOfCvatAndMacOs) {
+  Write("packed/obj_train_data/1.txt", "0 0.1 0.1 0.1 0.1\n");
+  Write("packed/train.txt", "data/obj_train_data/1.jpg\n");
+  Write("packed/obj.data", "classes = 2\n");
+  Write("packed/obj.names", "cup\nbook\n");
+  Write("packed/__MACOSX/obj_train_data/._1.txt", std::string("\0\5\x16\7Mac OS X", 12));
+  Write("packed/__MACOSX/obj.names", "no\n");
+  const YoloTexts texts = ReadYoloTexts(Pack());
+  EXPECT_THAT(Images(texts), ElementsAre("1"));
+  ASSERT_TRUE(texts.names);
+  EXPECT_THAT(*texts.names, ElementsAre("cup", "book"));
+  EXPECT_THAT(texts.names_place, testing::EndsWith("labels.tar.gz/packed/obj.names"));
+}
+
+TEST_F(YoloTextsTest, NothingToReadAndTwoOfOneNameAreNamed) {
+  fs::create_directories(folder_ / "labels");
+  ExpectError<InputError>([&] { ReadYoloTexts(folder_ / "labels"); }, {"labels", "no *.txt"});
+  ExpectError<InputError>([&] { ReadYoloTexts(folder_ / "none"); }, {"none", "is missing"});
+  Write("packed/a/1.txt", "");
+  Write("packed/b/1.txt", "");
+  ExpectError<InputError>([&] { ReadYoloTexts(Pack()); }, {"labels.tar.gz", "several files 1.txt"});
+}
+
+// Rows of an image each, with these extras.
+std::vector<YoloRow> Rows(const std::vector<std::vector<double>>& extras) {
+  std::vector<YoloRow> rows;
+  for (const auto& numbers : extras) {
+    const std::string name = std::to_string(rows.size());
+    rows.push_back({name + ".txt:1", name, 0, {}, numbers});
+  }
+  return rows;
+}
+
+std::vector<YoloRow> Read(const std::vector<std::vector<double>>& extras) {
+  std::vector<YoloRow> rows = Rows(extras);
+  ReadYoloExtras(&rows);
+  return rows;
+}
+
+void ExpectRefused(const std::vector<std::vector<double>>& extras,
+                   const std::vector<std::string>& words) {
+  ExpectError<InputError>([&] { Read(extras); }, words);
+}
+
+TEST(YoloColumnsTest, OneExtraIsAConfidenceIfAllCanBe) {
+  const auto rows = Read({{0.5}, {1}, {}, {0}});
+  EXPECT_EQ(rows[0].score, 0.5);
+  EXPECT_EQ(rows[2].score, 1.0);
+  EXPECT_FALSE(rows[0].track);
+  EXPECT_FALSE(Read({{1}, {1}})[0].track);
+}
+
+TEST(YoloColumnsTest, OrElseATrack) {
+  const auto rows = Read({{1}, {-1}, {2}, {}, {1}});
+  EXPECT_EQ(rows[0].track, 1);
+  EXPECT_EQ(rows[1].track, -1);
+  EXPECT_EQ(rows[0].score, 1.0);
+  EXPECT_FALSE(rows[3].track);
+}
+
+TEST(YoloColumnsTest, TwoExtrasInEitherOrder) {
+  const auto ultralytics = Read({{0.5, 3}, {1, 2}, {0.25}, {}});
+  EXPECT_EQ(ultralytics[0].track, 3);
+  EXPECT_EQ(ultralytics[0].score, 0.5);
+  EXPECT_EQ(ultralytics[1].track, 2);
+  EXPECT_EQ(ultralytics[2].score, 0.25);
+  EXPECT_FALSE(ultralytics[2].track);
+  const auto others = Read({{3, 0.5}, {2, 1}});
+  EXPECT_EQ(others[0].track, 3);
+  EXPECT_EQ(others[1].score, 1.0);
+  const auto either = Read({{1, 0}, {0, 1}});
+  EXPECT_EQ(either[1].track, 1);
+  EXPECT_EQ(either[1].score, 0.0);
+}
+
+TEST(YoloColumnsTest, ContradictionsAreNamed) {
+  ExpectRefused({{0.5}, {3}}, {"1.txt:1", "sixth number 3", "confidence from 0 to 1"});
+  ExpectRefused({{0.5}, {1.5}}, {"1.txt:1", "1.5"});
+  ExpectRefused({{3}, {-2}}, {"0.txt:1", "3"});
+  ExpectRefused({{0.5, 3}, {2, 0.5}}, {"1.txt:1", "2 0.5", "one order"});
+  ExpectRefused({{0.2, 0.3}, {0.4, 0.5}}, {"0.txt:1", "0.2 0.3", "segmentation"});
+  ExpectRefused({{0.5, 3}, {4}}, {"1.txt:1", "sixth number 4", "beside a track"});
+}
+
+TEST(YoloColumnsTest, NoImageHasATrackTwice) {
+  auto rows = Rows({{97}, {88}, {97}});
+  rows[2].image = rows[0].image;
+  ExpectError<InputError>([&] { ReadYoloExtras(&rows); }, {"2.txt:1", "97 twice in one image"});
+}
 
 const std::vector<std::string> kLabels = {"cup", "teddy bear", "book"};
 

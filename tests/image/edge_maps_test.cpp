@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/random.h"
 
 namespace soslam {
 namespace {
@@ -107,6 +110,124 @@ TEST(NearestEdgeQueryTest, RoundsToTheClosestPixelAndKnowsTheBorder) {
         Eigen::Vector2d(1e300, 0)}) {
     EXPECT_FALSE(NearestEdge(maps, outside)) << outside.transpose();
   }
+}
+
+cv::Mat RandomEdges(int width, int height, double density) {
+  cv::Mat edges = cv::Mat::zeros(height, width, CV_8UC1);
+  for (auto it = edges.begin<uchar>(); it != edges.end<uchar>(); ++it) {
+    if (RandomUniform(0, 1) < density) *it = 255;
+  }
+  return edges;
+}
+
+// Tries every edge pixel, column by column from the top left; the first of several nearest ones
+// wins.
+cv::Vec2s NearestByBruteForce(const cv::Mat& edges, int x, int y) {
+  cv::Vec2s nearest(-1, -1);
+  int least = std::numeric_limits<int>::max();
+  for (int u = 0; u < edges.cols; ++u) {
+    for (int v = 0; v < edges.rows; ++v) {
+      const int squared = (u - x) * (u - x) + (v - y) * (v - y);
+      if (edges.at<uchar>(v, u) == 0 || squared >= least) continue;
+      least = squared;
+      nearest = {static_cast<short>(u), static_cast<short>(v)};
+    }
+  }
+  return nearest;
+}
+
+void ExpectExact(const cv::Mat& edges) {
+  const cv::Mat nearest_edge = NearestEdgeMap(edges);
+  const cv::Mat distance = DistanceMap(nearest_edge);
+  ASSERT_EQ(nearest_edge.type(), CV_16SC2);
+  ASSERT_EQ(distance.type(), CV_32FC1);
+  for (int y = 0; y < edges.rows; ++y) {
+    for (int x = 0; x < edges.cols; ++x) {
+      const cv::Vec2s nearest = NearestByBruteForce(edges, x, y);
+      ASSERT_EQ(nearest_edge.at<cv::Vec2s>(y, x), nearest) << x << ", " << y;
+      const double expected = std::hypot(nearest[0] - x, nearest[1] - y);
+      ASSERT_EQ(distance.at<float>(y, x), static_cast<float>(expected)) << x << ", " << y;
+    }
+  }
+}
+
+TEST(NearestEdgeTest, EqualsBruteForce) {
+  for (const double density : {0.002, 0.01, 0.1, 0.5, 1.0}) {
+    for (int repetition = 0; repetition < 5; ++repetition) {
+      cv::Mat edges = RandomEdges(61, 47, density);
+      edges.at<uchar>(11, 23) = 1;  // any value but 0 is an edge
+      ExpectExact(edges);
+    }
+  }
+}
+
+TEST(NearestEdgeTest, OfTheLargestSides) {
+  constexpr int kSide = 32767;
+  cv::Mat row = cv::Mat::zeros(1, kSide, CV_8UC1);
+  row.at<uchar>(0, 0) = row.at<uchar>(0, kSide - 1) = 255;
+  cv::Mat column = row.t();
+  for (const int i : {0, 1, kSide / 2, kSide / 2 + 1, kSide - 1}) {
+    const int nearest = i <= kSide / 2 ? 0 : kSide - 1;
+    EXPECT_EQ(NearestEdgeMap(row).at<cv::Vec2s>(0, i), cv::Vec2s(static_cast<short>(nearest), 0));
+    EXPECT_EQ(NearestEdgeMap(column).at<cv::Vec2s>(i, 0),
+              cv::Vec2s(0, static_cast<short>(nearest)));
+  }
+}
+
+TEST(NearestEdgeTest, OfTwoEquallyNearTheLeftThenTheUpperWins) {
+  cv::Mat edges = cv::Mat::zeros(3, 3, CV_8UC1);
+  for (const auto& [x, y] : {std::pair(0, 0), {2, 0}, {0, 2}, {2, 2}}) edges.at<uchar>(y, x) = 255;
+  EXPECT_EQ(NearestEdgeMap(edges).at<cv::Vec2s>(1, 1), cv::Vec2s(0, 0));
+}
+
+TEST(NearestEdgeTest, WithoutEdges) {
+  const cv::Mat nearest_edge = NearestEdgeMap(cv::Mat::zeros(5, 4, CV_8UC1));
+  const cv::Mat distance = DistanceMap(nearest_edge);
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      EXPECT_EQ(nearest_edge.at<cv::Vec2s>(y, x), cv::Vec2s(-1, -1));
+      EXPECT_EQ(distance.at<float>(y, x), std::numeric_limits<float>::infinity());
+    }
+  }
+}
+
+constexpr double kMinLength = 40.0;
+
+// A bright quadrilateral on grey: four edges, none along the image's axes.
+cv::Mat Quadrilateral(const std::vector<cv::Point>& corners) {
+  cv::Mat image(240, 320, CV_8UC1, cv::Scalar(90));
+  cv::fillConvexPoly(image, corners, cv::Scalar(200), cv::LINE_AA);
+  return image;
+}
+
+// Half a pixel of rounding at either end of 80 px or more is less than 0.02 rad.
+TEST(FindLineSegments, FindsTheEdgesOfAQuadrilateral) {
+  const std::vector<cv::Point> corners = {{60, 50}, {220, 70}, {200, 190}, {80, 170}};
+  const auto segments = FindLineSegments(Quadrilateral(corners), kMinLength);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const cv::Point edge = corners[(i + 1) % 4] - corners[i];
+    const Eigen::Vector2d direction = Eigen::Vector2d(edge.x, edge.y).normalized();
+    const Eigen::Vector2d corner(corners[i].x, corners[i].y);
+    const auto lies_on_edge = [&](const LineSegment& segment) {
+      const Eigen::Vector2d along = (segment.end - segment.begin).normalized();
+      const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        return std::abs(a.x() * b.y() - a.y() * b.x());
+      };
+      return cross(along, direction) < 0.02 && cross(segment.begin - corner, direction) < 1.5;
+    };
+    EXPECT_TRUE(std::any_of(segments.begin(), segments.end(), lies_on_edge)) << "edge " << i;
+  }
+}
+
+TEST(FindLineSegments, LeavesOutShortOnes) {
+  const std::vector<cv::Point> corners = {{60, 50}, {220, 70}, {215, 100}, {62, 80}};
+  for (const LineSegment& segment : FindLineSegments(Quadrilateral(corners), kMinLength)) {
+    EXPECT_GE((segment.end - segment.begin).norm(), kMinLength);
+  }
+}
+
+TEST(FindLineSegments, FindsNothingInAPlainImage) {
+  EXPECT_TRUE(FindLineSegments(cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)), kMinLength).empty());
 }
 
 }  // namespace

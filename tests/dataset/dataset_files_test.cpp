@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/dataset_files.h"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "dataset/dataset_files.h"
 #include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
+
+TEST(FolderEntriesTest, WhatCannotBeListedIsNamed) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "file", "");
+  ExpectError<InputError>([&] { FolderEntries(folder / "file"); }, {"file: cannot be listed"});
+  ExpectError<InputError>([&] { EntriesAtAnyDepth(folder / "none"); }, {"none: cannot be listed"});
+}
 
 bool IsText(const std::filesystem::path& name) { return name.extension() == ".txt"; }
 

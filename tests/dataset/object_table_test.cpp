@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/object_table.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "dataset/object_table.h"
 
 namespace soslam {
 namespace {
@@ -82,6 +82,32 @@ TEST_F(ObjectIdsTest, ATableWithoutTracksHasNoIds) {
 TEST_F(ObjectIdsTest, ListedObjectsAreObjects) {
   listed_ = {{-1, "cup", std::nullopt, std::nullopt}, {0, "cup", std::nullopt, std::nullopt}};
   EXPECT_THAT(Ids({{-1, 0, 0}, {0, 0, -2}}), ElementsAre(-1, 0, 0, 0, 0));
+}
+
+DetectionRow Row(int object, const std::string& label, double score = 1.0) {
+  return {"a.csv:2", 0, object, label, score, {0, 0, 1, 1}};
+}
+
+class TrackLabelsTest : public testing::Test {
+ protected:
+  std::vector<std::string> Labels(std::vector<DetectionRow> rows) {
+    changed_ = UnifyLabels({}, &rows);
+    std::vector<std::string> labels;
+    for (const DetectionRow& row : rows) labels.push_back(row.label);
+    return labels;
+  }
+
+  int changed_ = 0;
+};
+
+TEST_F(TrackLabelsTest, MostRowsThenScoresThenNamesDecide) {
+  EXPECT_THAT(Labels({Row(1, "sofa", 0.1), Row(1, "couch"), Row(1, "sofa", 0.1), Row(2, "couch")}),
+              ElementsAre("sofa", "sofa", "sofa", "couch"));
+  EXPECT_EQ(changed_, 1);
+  EXPECT_THAT(Labels({Row(1, "couch", 0.4), Row(1, "sofa", 0.5)}), ElementsAre("sofa", "sofa"));
+  EXPECT_THAT(Labels({Row(1, "sofa"), Row(1, "couch")}), ElementsAre("couch", "couch"));
+  EXPECT_THAT(Labels({Row(1, "sofa"), Row(2, "couch")}), ElementsAre("sofa", "couch"));
+  EXPECT_EQ(changed_, 0);
 }
 
 }  // namespace

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/labelled_box.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "dataset/class_names.h"
+#include "support/expect_error.h"
+#include "support/labelled_boxes.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+class DetectionsCsvTest : public testing::Test {
+ protected:
+  std::filesystem::path Write(const std::string& text) {
+    WriteBytes(folder_ / "detections.csv", text);
+    return folder_ / "detections.csv";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(DetectionsCsvTest, WithAndWithoutObjectIds) {
+  for (const char* text : {"frame,label,score,x1,y1,x2,y2\n3,cup,0.5,1,2,3.25,4\n",
+                           "# a comment\nscore,frame,object_id,label,x1,y1,x2,y2\n"
+                           "0.5,3,7,cup,1,2,3.25,4\n"}) {
+    const auto boxes = ReadDetectionsCsv(Write(text));
+    ASSERT_EQ(boxes.size(), 1u);
+    ExpectLabelledBox(boxes[0], 3, "cup", 0.5, {1, 2, 3.25, 4});
+  }
+}
+
+TEST_F(DetectionsCsvTest, ObjectIds) {
+  const auto boxes = ReadDetectionsCsv(
+      Write("frame,object_id,label,score,x1,y1,x2,y2\n3,7,cup,0.5,1,2,3,4\n3,,cup,0.5,1,2,3,4\n"
+            "3,8.0,cup,0.5,1,2,3,4\n"));
+  EXPECT_EQ(boxes.at(0).object_id, 7);
+  EXPECT_FALSE(boxes.at(1).object_id);
+  EXPECT_EQ(boxes.at(2).object_id, 8);
+}
+
+TEST_F(DetectionsCsvTest, AsSpreadsheetsAndOtherProgramsWriteIt) {
+  for (const char* text :
+       {"\"frame\",\"label\",\"score\",\"x1\",\"y1\",\"x2\",\"y2\"\n3,\"milk "
+        "carton\",0.5,1,2,3.25,4\n",
+        "frame;label;score;x1;y1;x2;y2\n3;milk carton;0.5;1;2;3.25;4\n",
+        "Frame \tLABEL\tScore\tX1\ty1\tx2\ty2\n3\tmilk carton\t0.5\t1\t2\t3.25\t4\n",
+        "frame,label,score,x1,y1,x2,y2\r3,milk carton,0.5,1,2,3.25,4\r"}) {
+    const auto boxes = ReadDetectionsCsv(Write(text));
+    ASSERT_EQ(boxes.size(), 1u) << text;
+    ExpectLabelledBox(boxes[0], 3, "milk carton", 0.5, {1, 2, 3.25, 4});
+  }
+  const auto boxes =
+      ReadDetectionsCsv(Write("frame,Object ID,label,score,x1,y1,x2,y2\n3,7,cup,0.5,1,2,3,4\n"));
+  EXPECT_EQ(boxes.at(0).object_id, 7);
+}
+
+TEST_F(DetectionsCsvTest, WrittenBoxesComeBackRounded) {
+  const std::string text = LabelledBoxesText(
+      {{"", 0, "milk carton", 0.123456, {-0.5, 10.126, 20, 30}}, {"", 12, "cup", 1, {1, 2, 3, 4}}});
+  EXPECT_EQ(text,
+            "frame,label,score,x1,y1,x2,y2\n"
+            "0,milk carton,0.1235,-0.50,10.13,20.00,30.00\n"
+            "12,cup,1.0000,1.00,2.00,3.00,4.00\n");
+  const auto boxes = ReadDetectionsCsv(Write(text));
+  ASSERT_EQ(boxes.size(), 2u);
+  ExpectLabelledBox(boxes[0], 0, "milk carton", 0.1235, {-0.5, 10.13, 20, 30});
+}
+
+TEST_F(DetectionsCsvTest, LabelsWithCommasAndQuotesComeBack) {
+  for (const char* label : {"box, large", "12\" screen", "\"cup\""}) {
+    const auto boxes =
+        ReadDetectionsCsv(Write(LabelledBoxesText({{"", 0, label, 1, {1, 2, 3, 4}}})));
+    ASSERT_EQ(boxes.size(), 1u);
+    EXPECT_EQ(boxes[0].label, label);
+  }
+}
+
+TEST_F(DetectionsCsvTest, FirstAndLastFieldBetweenTabsMayBeEmpty) {
+  const auto boxes =
+      ReadDetectionsCsv(Write("object_id\tframe\tlabel\tscore\tx1\ty1\tx2\ty2\tnote\n"
+                              "\t3\tcup\t0.5\t1\t2\t3\t4\t\r\n\t\t\n"));
+  ASSERT_EQ(boxes.size(), 1u);
+  EXPECT_FALSE(boxes[0].object_id);
+  EXPECT_EQ(boxes[0].label, "cup");
+}
+
+TEST_F(DetectionsCsvTest, OnlyRegularFilesAreRead) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  ExpectError<InputError>([&] { ReadDetectionsCsv(folder_ / "pipe"); }, {"pipe", "cannot be read"});
+  Write("");
+  std::filesystem::resize_file(folder_ / "detections.csv", (1u << 30) + 1);  // of no blocks
+  ExpectError<InputError>([&] { ReadDetectionsCsv(folder_ / "detections.csv"); },
+                          {"detections.csv", "1073741825 bytes", "at most 1073741824"});
+}
+
+TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
+  const std::string header = "frame,label,score,x1,y1,x2,y2\n";
+  const BadTexts cases = {
+      {header + "a.png,cup,0.5,1,2,3,4\n", {"detections.csv:2", "frame is 'a.png'"}},
+      {"frame;label;score;x1;y1;x2;y2\n0;cup;0,5;1;2;3;4\n",
+       {"detections.csv:2", "score is '0,5'", "a decimal point"}},
+      {header + "0,\"cup,0.5,1,2,3,4\n", {"detections.csv:2", "not closed"}},
+      {header + "0,\"cup\"s,0.5,1,2,3,4\n", {"detections.csv:2", "'s' after a quoted field"}}};
+  ExpectBadTexts(cases, "detections.csv",
+                 [&](const std::string& text) { ReadDetectionsCsv(Write(text)); });
+}
+
+constexpr const char* kDataset = R"({
+    "images": [{"id": 7, "file_name": "rgb/a.png"}, {"id": 3, "file_name": "rgb/b.png"}],
+    "categories": [{"id": 1, "name": "milk carton"}, {"id": 2, "name": "cup"}]})";
+
+class CocoResultsTest : public testing::Test {
+ protected:
+  std::vector<LabelledBox> Read(const std::string& results) {
+    WriteBytes(folder_ / "results.json", results);
+    return ReadCocoResults(folder_ / "results.json");
+  }
+  std::vector<LabelledBox> ReadWith(const std::string& dataset, const std::string& results) {
+    WriteBytes(folder_ / "results.json", results);
+    WriteBytes(folder_ / "dataset.json", dataset);
+    return ReadCocoResults(folder_ / "results.json", folder_ / "dataset.json");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CocoResultsTest, DatasetSaysWhatIdsMean) {
+  const auto boxes = ReadWith(
+      kDataset, R"([{"image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 0.5}])");
+  ASSERT_EQ(boxes.size(), 1u);
+  ExpectLabelledBox(boxes[0], "rgb/b.png", "milk carton", 0.5, {0.5, 1.5, 3.5, 5.5});
+}
+
+TEST_F(CocoResultsTest, WithoutScoreItIsOne) {
+  EXPECT_EQ(Read(R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4]}])").at(0).score, 1.0);
+}
+
+TEST_F(CocoResultsTest, ADataSetHoldsItsBoxesItself) {
+  nlohmann::json dataset = nlohmann::json::parse(kDataset);
+  dataset["annotations"] = nlohmann::json::parse(R"([
+      {"id": 0, "image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4], "iscrowd": 0},
+      {"id": 1, "image_id": 3, "category_id": 1, "bbox": [0, 0, 9, 9], "iscrowd": 1},
+      {"id": 2, "image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4], "track_id": 5},
+      {"id": 3, "image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4],
+       "attributes": {"track_id": 6}}])");
+  const auto boxes = Read(dataset.dump());
+  ASSERT_EQ(boxes.size(), 3u);
+  ExpectLabelledBox(boxes[0], "rgb/b.png", "milk carton", 1.0, {0.5, 1.5, 3.5, 5.5});
+  EXPECT_EQ(boxes[0].place, (folder_ / "results.json").string() + "#/annotations/0");
+  EXPECT_FALSE(boxes[0].object_id);
+  EXPECT_EQ(boxes[1].object_id, 5);
+  EXPECT_EQ(boxes[2].object_id, 6);
+}
+
+TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
+  const auto boxes =
+      ReadWith(kDataset, R"([{"image_id": "a.png", "category_id": 2, "bbox": [1, 2, 3, 4]}])");
+  ExpectLabelledBox(boxes.at(0), "a.png", "cup", 1.0, {0.5, 1.5, 3.5, 5.5});
+}
+
+TEST_F(CocoResultsTest, BadResultsAreNamed) {
+  const BadTexts cases = {
+      {R"({"image_id": 0})", {"results.json", "not a list", "annotations"}},
+      {R"([3])", {"results.json#/0", "not an object"}},
+      {R"([{"category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])", {"#/0", "image_id is missing"}},
+      {R"([{"image_id": 0.5, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])",
+       {"#/0", "image_id is 0.5"}},
+      {R"([{"image_id": 0, "category_id": 12, "bbox": [1, 2, 3, 4], "score": 1}])",
+       {"#/0", "category_id is 12", "1 to 90"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3], "score": 1}])",
+       {"#/0", "bbox is [1,2,3]", "4 numbers"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, -3, 4], "score": 1}])",
+       {"#/0", "[x, y, width, height]"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "score": "1"}])",
+       {"score is \"1\""}}};
+  ExpectBadTexts(cases, "results.json", [&](const std::string& text) { Read(text); });
+}
+
+TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
+  const std::string result =
+      R"([{"image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4], "score": 1}])";
+  const BadTexts cases = {
+      {R"({"images": []})", {"dataset.json", "categories is missing"}},
+      {R"({"images": {}, "categories": []})", {"dataset.json", "images is {}", "a list"}},
+      {R"({"images": [{"id": 7}], "categories": []})",
+       {"dataset.json#/images/0", "file_name is missing"}},
+      {R"({"images": [], "categories": [{"id": 2, "name": "cup"}]})",
+       {"results.json#/0", "image_id is 7"}},
+      {R"({"images": [{"id": 7, "file_name": "a"}], "categories": [{"id": 1, "name": "cup"}]})",
+       {"results.json#/0", "category_id is 2"}},
+      {R"({"images": [], "categories": [{"id": 1, "name": "cup"}, {"id": 1, "name": "box"}]})",
+       {"dataset.json#/categories/1", "id is 1"}}};
+  ExpectBadTexts(cases, ".json", [&](const std::string& text) { ReadWith(text, result); });
+}
+
+TEST_F(CocoResultsTest, LongValuesAreCutInMessages) {
+  const std::string dataset = R"({"images": {"a": ")" + std::string(5000, 'x') + R"("}})";
+  try {
+    ReadWith(dataset, "[]");
+    FAIL() << "read";
+  } catch (const InputError& error) {
+    EXPECT_LT(std::string(error.what()).size(), 500u);
+  }
+}
+
+class OaSlamBoxesTest : public testing::Test {
+ protected:
+  std::vector<LabelledBox> Read(const std::string& text) {
+    WriteBytes(folder_ / "boxes.json", text);
+    return ReadOaSlamBoxes(folder_ / "boxes.json", CocoLabels());
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
+  const auto detection = [](const std::string& fields) {
+    return R"([{"file_name": "a.png", "detections": []},
+               {"file_name": "b.png", "detections": [{)" +
+           fields + "}]}]";
+  };
+  const std::string where = "boxes.json#/1/detections/0";
+  const BadTexts cases = {
+      {"{}", {"boxes.json", "not a list"}},
+      {R"([{"detections": []}])", {"boxes.json#/0", "file_name is missing"}},
+      {R"([{"file_name": "a.png", "detections": 3}])", {"boxes.json#/0", "detections is 3"}},
+      {detection(R"("category_id": 80, "detection_score": 1, "bbox": [1, 2, 3, 4])"),
+       {where, "category_id is 80", "0 to 79"}},
+      {detection(R"("category_id": -1, "detection_score": 1, "bbox": [1, 2, 3, 4])"),
+       {where, "category_id is -1"}},
+      {detection(R"("category_id": 1, "bbox": [1, 2, 3, 4])"),
+       {where, "detection_score is missing"}},
+      {detection(R"("category_id": 1, "detection_score": 1, "bbox": [1, 2, "3", 4])"),
+       {where, "bbox is [1,2,\"3\",4]"}},
+      {detection(R"("category_id": 1, "detection_score": 1, "bbox": [300, 68, 59, 97])"),
+       {where, "x1 <= x2"}}};
+  ExpectBadTexts(cases, "boxes.json", [&](const std::string& text) { Read(text); });
+}
+
+}  // namespace
+}  // namespace soslam
