@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -15,11 +19,146 @@
 #include "base/error.h"
 #include "dataset/import.h"
 #include "geometry/angles.h"
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/rigid3.h"
 #include "support/dataset_fixture.h"
 #include "support/image_files.h"
-#include "support/plausible_dataset.h"
 
 namespace soslam {
+
+// A dataset without a mistake: a camera on an arc around five balls on a floor (z =
+// height_of_floor), which looks at their middle. A test changes what its files say.
+struct PlausibleDataset {
+  static constexpr int kFrames = 24;
+  static constexpr double kRadius = 0.2;  // of the balls (m)
+
+  Camera camera{640, 480, 500.0, 500.0, 319.5, 239.5};  // that took the images
+  double height_of_floor = 0.0;
+  double camera_height = 1.4;  // over the floor
+  double roll_rad = 0.0;       // of the camera
+  double sway = 0.0;           // of the point that it looks at (m)
+  bool drive = false;          // along x, looking ahead, in place of the arc
+  double ball_moves = 0.0;     // how many times as fast as the camera, along x
+
+  // What the files say.
+  Camera written_camera = camera;
+  std::function<Rigid3d(const Rigid3d&)> odometry = [](const Rigid3d& pose) { return pose; };
+  std::function<int(int)> pose_of_frame = [](int frame) { return frame; };
+  std::function<std::array<double, 4>(const Box&)> box = [](const Box& b) {
+    return std::array<double, 4>{b.x_min, b.y_min, b.x_max, b.y_max};
+  };
+  bool has_object_ids = true;
+  int first_object_id = 1;
+  int first_row = 0;  // the number of the first image
+  std::string score = "0.9";
+  std::string plane = R"([{"id": 0, "normal": [0, 0, 1], "d": 0}])";
+  bool has_truth = false;
+  std::string objects;  // objects.json; empty: none
+  double true_radius = kRadius;
+  std::string true_quaternion = "0, 0, 0, 1";
+  std::function<std::string(double)> image_time = [](double t) { return fmt::format("{:.6f}", t); };
+  std::function<std::string(double)> pose_time = [](double t) { return fmt::format("{:.6f}", t); };
+
+  Rigid3d WorldFromCamera(int frame) const {
+    if (drive) {
+      Eigen::Matrix3d ahead;  // right, down, forward
+      ahead << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+      return {Eigen::Quaterniond(ahead), {-6.0 + 0.1 * frame, 0.0, camera_height}};
+    }
+    const double angle = 0.3 + 1.4 * frame / kFrames;
+    const Eigen::Vector3d centre(3.0 * std::cos(angle), 3.0 * std::sin(angle),
+                                 height_of_floor + camera_height + 0.1 * std::sin(5.0 * angle));
+    const Eigen::Vector3d forward =
+        (Eigen::Vector3d(0.1 + sway * std::sin(5.0 * angle), 0.0, height_of_floor + 0.3) - centre)
+            .normalized();
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Matrix3d axes;
+    axes << right, forward.cross(right), forward;
+    const Eigen::AngleAxisd roll(roll_rad, Eigen::Vector3d::UnitZ());
+    return {Eigen::Quaterniond(axes) * roll, centre};
+  }
+
+  static std::vector<std::string> Labels() { return {"ball", "cup", "vase", "bowl", "bottle"}; }
+  std::function<std::string(size_t)> label = [](size_t ball) { return Labels()[ball]; };
+
+  Eigen::Vector3d BallInWorld(size_t ball) const {
+    const double angle = 0.7 + 1.26 * static_cast<double>(ball);
+    return {0.7 * std::cos(angle), 0.7 * std::sin(angle), height_of_floor + kRadius};
+  }
+
+  // objects.json with the true balls, whose ids begin with `first_id` and whose numbers are in
+  // units of `unit_m`.
+  std::string TrueObjects(int first_id, double unit_m) const {
+    std::string text;
+    for (size_t ball = 0; ball < Labels().size(); ++ball) {
+      const Eigen::Vector3d p = BallInWorld(ball) / unit_m;
+      const double r = true_radius / unit_m;
+      text += fmt::format(
+          R"({}{{"id": {}, "label": "{}", "center": [{}, {}, {}], "quaternion_xyzw": [{}],
+              "half_axes": [{}, {}, {}]}})",
+          text.empty() ? "[" : ",", first_id + static_cast<int>(ball), label(ball), p.x(), p.y(),
+          p.z(), true_quaternion, r, r, r);
+    }
+    return text + "]";
+  }
+
+  Box BoxOf(size_t ball, int frame) const {
+    const Eigen::Vector3d moved(ball_moves * 0.1 * frame, 0.0, 0.0);
+    const Eigen::Vector3d point = WorldFromCamera(frame).Inverse() * (BallInWorld(ball) + moved);
+    const Eigen::Vector2d pixel = *camera.Project(point);
+    const double half = camera.fx * kRadius / point.z();
+    return {pixel.x() - half, pixel.y() - half, pixel.x() + half, pixel.y() + half};
+  }
+
+  void Write(const std::filesystem::path& folder) const {
+    std::filesystem::create_directories(folder);
+    const auto write = [&](const std::string& name, const std::string& text) {
+      std::ofstream(folder / name, std::ios::binary) << text;
+    };
+    const Camera& c = written_camera;
+    write("camera.json",
+          fmt::format(R"({{"width": {}, "height": {}, "fx": {}, "fy": {}, "cx": {}, "cy": {}}})",
+                      c.width, c.height, c.fx, c.fy, c.cx, c.cy));
+    write("planes.json", plane);
+    std::string images, poses, truth;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const double time = 100.0 + 0.5 * frame;
+      images += fmt::format("{} rgb/{:06}.png\n", image_time(time), frame);
+      poses += PoseLine(pose_time(time), odometry(WorldFromCamera(pose_of_frame(frame))));
+      truth += PoseLine(image_time(time), WorldFromCamera(frame));
+    }
+    write("rgb.txt", images);
+    if (!objects.empty()) write("objects.json", objects);
+    write("odometry.txt", poses);
+    if (has_truth) write("groundtruth.txt", truth);
+    write("detections.csv", Detections());
+  }
+
+ private:
+  static std::string PoseLine(const std::string& time, const Rigid3d& pose) {
+    const Eigen::Quaterniond& q = pose.rotation;
+    const Eigen::Vector3d& t = pose.translation;
+    return fmt::format("{} {} {} {} {} {} {} {}\n", time, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
+                       q.w());
+  }
+
+  std::string Detections() const {
+    std::string text = has_object_ids ? "frame,object_id,label,score,x1,y1,x2,y2\n"
+                                      : "frame,label,score,x1,y1,x2,y2\n";
+    // One image fewer than there are, so that numbers from 1 stay within the list.
+    for (int frame = std::max(0, -first_row); frame + 1 < kFrames; ++frame) {
+      for (size_t ball = 0; ball < Labels().size(); ++ball) {
+        const auto [a, b, c, d] = box(BoxOf(ball, frame));
+        const int object_id = first_object_id + static_cast<int>(ball);
+        const std::string id = has_object_ids ? fmt::format("{},", object_id) : "";
+        text += fmt::format("{},{}{},{},{},{},{},{}\n", frame + first_row, id, label(ball), score,
+                            a, b, c, d);
+      }
+    }
+    return text;
+  }
+};
 
 inline Rigid3d TurnedAboutOpticalAxis(const Rigid3d& world_from_camera, double degrees) {
   const Eigen::AngleAxisd turn(degrees * kRadPerDeg, Eigen::Vector3d::UnitZ());
