@@ -7,17 +7,22 @@
 #include <opencv2/video/tracking.hpp>
 
 namespace soslam {
-namespace {
+
+cv::Size SizeWithin(const cv::Size& size, int longer_side) {
+  const double scale = static_cast<double>(longer_side) / std::max(size.width, size.height);
+  if (scale >= 1.0) return size;
+  return {std::max(1, cvRound(scale * size.width)), std::max(1, cvRound(scale * size.height))};
+}
 
 cv::Mat ScaledDown(const cv::Mat& image, int longer_side) {
-  const double scale = static_cast<double>(longer_side) / std::max(image.cols, image.rows);
-  if (scale >= 1.0) return image;
+  const cv::Size size = SizeWithin(image.size(), longer_side);
+  if (size == image.size()) return image;
   cv::Mat scaled;
-  cv::resize(image, scaled,
-             {std::max(1, cvRound(scale * image.cols)), std::max(1, cvRound(scale * image.rows))},
-             0, 0, cv::INTER_AREA);
+  cv::resize(image, scaled, size, 0, 0, cv::INTER_AREA);
   return scaled;
 }
+
+namespace {
 
 double VarianceOfLaplacian(const cv::Mat& grey) {
   cv::Mat laplacian;

@@ -47,6 +47,11 @@ enum class FrameRejection {
 inline constexpr std::array kFrameRejectionNames = {
     "unreadable", "other_size", "other_focal_length", "blurred", "no_motion", "over_limit"};
 
+// The size of an image whose longer side is scaled down to `longer_side`, if it is longer.
+cv::Size SizeWithin(const cv::Size& size, int longer_side);
+// The image in this size.
+cv::Mat ScaledDown(const cv::Mat& image, int longer_side);
+
 // The properties of an image that decide whether it is chosen.
 struct FrameView {
   double sharpness = 0.0;  // variance of the Laplacian at a common size

@@ -99,24 +99,14 @@ void NameImages(const std::vector<std::string>& extensions, std::vector<SourceFr
   }
 }
 
-cv::Size SizeWithin(const cv::Size& size, int max_image_px) {
-  const double scale = static_cast<double>(max_image_px) / std::max(size.width, size.height);
-  if (scale >= 1.0) return size;
-  return {std::max(1, cvRound(scale * size.width)), std::max(1, cvRound(scale * size.height))};
-}
-
 // `focal_over_diagonal`, if known, becomes part of the file, where reconstructions look for it.
-void WriteJpeg(cv::Mat image, int max_image_px, const std::optional<double>& focal_over_diagonal,
-               const std::string& name, const DatasetFolder& output) {
+void WriteJpeg(const cv::Mat& image, int max_image_px,
+               const std::optional<double>& focal_over_diagonal, const std::string& name,
+               const DatasetFolder& output) {
   constexpr int kQuality = 95;
-  const cv::Size size = SizeWithin(image.size(), max_image_px);
-  if (size != image.size()) {
-    cv::Mat scaled;
-    cv::resize(image, scaled, size, 0, 0, cv::INTER_AREA);
-    image = scaled;
-  }
   std::vector<uchar> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  cv::imencode(".jpg", ScaledDown(image, max_image_px), bytes,
+               {cv::IMWRITE_JPEG_QUALITY, kQuality});
   std::string jpeg(bytes.begin(), bytes.end());
   constexpr size_t kAfterStart = 2;
   if (focal_over_diagonal) jpeg.insert(kAfterStart, FocalLengthSegment(*focal_over_diagonal));

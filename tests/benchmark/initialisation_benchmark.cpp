@@ -38,7 +38,10 @@ BENCHMARK(SolveAtOneYaw)->Name("single_frame/closed_form");
 // Levenberg-Marquardt from there with the yaw fixed, as in the sweep, or free, as at its optima.
 void Fit(benchmark::State& state, bool yaw_is_free) {
   const OneBox box;
-  const Landmark start = *SolveAtYaw(box.observation, /*yaw=*/0.3);
+  const auto solution = ClosedForm(box.observation).At(/*yaw=*/0.3);
+  const Landmark start =
+      UprightGround(box.observation.plane_in_camera)
+          .LandmarkAt(solution->parameters, box.observation.prior.shape_exponent);
   const LandmarkCosts costs = ObservationTerms(box.observation, start);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
