@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "artefact/atomic_file.h"
-#include "base/error.h"
 #include "base/paths.h"
 #include "base/process.h"
 #include "dataset/image_path.h"

@@ -79,9 +79,6 @@ std::vector<fs::path> DatasetFiles::All() const {
 }
 
 DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& options) {
-  if (!IsFolder(folder)) {
-    throw InputError(folder.string() + ": is not a folder; expected a dataset folder");
-  }
   const FolderOptions usual;
   const FolderOptions& names = options.folder;
   Finder find(folder);

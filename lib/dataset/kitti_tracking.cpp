@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "dataset/dataset_files.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/kitti_object.h"
@@ -199,16 +200,14 @@ class Recording {
 
   // Adds the detector's boxes from one folder per object type.
   void AddFoundBoxes() {
+    const fs::path folder = folder_ / detections_;
     std::vector<fs::path> types;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder_ / detections_, error)) {
-      if (IsFolder(entry.path())) types.push_back(entry.path());
-    }
+    if (IsFolder(folder))
+      std::ranges::copy_if(FolderEntries(folder), std::back_inserter(types), &IsFolder);
     if (types.empty()) {
-      throw InputError(fmt::format("{}: has no folders; expected one for each type of object",
-                                   (folder_ / detections_).string()));
+      throw InputError(
+          fmt::format("{}: has no folders; expected one for each type of object", folder.string()));
     }
-    std::ranges::sort(types);
     for (const fs::path& type : types) AddFoundBoxes(type);
   }
 

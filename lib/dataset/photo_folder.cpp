@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "dataset/dataset_files.h"
 #include "dataset/text_file.h"
 
 namespace soslam {
@@ -54,26 +55,18 @@ struct FilesOfFolder {
 
 FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
   FilesOfFolder files;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
+  for (const fs::path& path : FolderEntries(folder)) {
+    const std::string name = path.filename().string();
     if (name.starts_with('.')) continue;
-    const bool is_image = HasNameOfImage(entry->path()) || HasNameOfOtherImage(entry->path());
-    if (!is_image || !IsFile(entry->path())) {
+    if (!(HasNameOfImage(path) || HasNameOfOtherImage(path)) || !IsFile(path)) {
       files.others.push_back(name);
     } else if (!IsUtf8(name)) {
       throw InputError(fmt::format("{}: image '{}' has a name that is not UTF-8; rename it",
                                    folder.string(), name));
     } else {
-      files.images.push_back(entry->path());
+      files.images.push_back(path);
     }
   }
-  if (error) {
-    throw InputError(
-        fmt::format("{}: its files cannot be listed: {}", folder.string(), error.message()));
-  }
-  std::ranges::sort(files.others);
   std::ranges::sort(files.images, &IsNamedBefore,
                     [](const fs::path& path) { return path.filename().string(); });
   return files;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/metrics.h"
 
-#include <algorithm>
-#include <string>
-
 #include "evaluation/statistics.h"
 #include "evaluation/trajectory_error.h"
 

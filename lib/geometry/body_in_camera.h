@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 
 #include "geometry/landmark.h"
 #include "geometry/surface.h"

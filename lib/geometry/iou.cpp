@@ -2,7 +2,6 @@
 #include "geometry/iou.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "geometry/image_size.h"
 #include "image/image_format.h"
 
 namespace soslam {

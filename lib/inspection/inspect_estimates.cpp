@@ -10,7 +10,6 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
-#include "base/error.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "inspection/inspection.h"

@@ -7,7 +7,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "inspection/projection.h"

@@ -4,7 +4,6 @@
 #include <ceres/normal_prior.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "base/error.h"
 #include "base/progress.h"

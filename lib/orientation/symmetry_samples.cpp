@@ -2,7 +2,6 @@
 #include "orientation/symmetry_samples.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/mirror_mapping.h"
 

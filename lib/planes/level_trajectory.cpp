@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
 #include "geometry/angles.h"
 #include "planes/camera_holding.h"
 #include "planes/estimate_planes.h"

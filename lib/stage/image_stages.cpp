@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <limits>
 #include <opencv2/core/utility.hpp>
-#include <string>
 #include <vector>
 
 #include "artefact/hdf5_artefact.h"

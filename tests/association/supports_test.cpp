@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "association/association.h"
 #include "support/association_scenes.h"
 

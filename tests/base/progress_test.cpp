@@ -5,7 +5,6 @@
 
 #include <sstream>
 #include <thread>
-#include <vector>
 
 #include "base/parallel.h"
 

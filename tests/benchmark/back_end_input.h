@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
-
 #include "benchmark/inputs.h"
 #include "benchmark/texture_settings.h"
 #include "initialisation/initialise.h"

@@ -2,7 +2,6 @@
 // One landmark from one box, and what of it costs how much; one landmark from many boxes.
 #include <benchmark/benchmark.h>
 
-#include <array>
 #include <vector>
 
 #include "benchmark/inputs.h"

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <string>
 
-#include "base/process.h"
 #include "benchmark/back_end_input.h"
 #include "support/drive.h"
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "constraints/tangency.h"
-#include "support/random_scene.h"
 
 namespace soslam {
 namespace {

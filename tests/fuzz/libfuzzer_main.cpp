@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // soslam-fuzz --target=<name> [libFuzzer's arguments]: all targets in one program, as they share
 // all but a few lines.
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
