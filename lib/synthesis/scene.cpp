@@ -131,19 +131,13 @@ namespace {
 
 using nlohmann::json;
 
-double Radians(double degrees) { return degrees * kRadPerDeg; }
-
 Eigen::Vector2d Vector2(const json& values) {
   return {values[0].get<double>(), values[1].get<double>()};
 }
 
-Eigen::Vector3d Vector3(const json& values) {
-  return {values[0].get<double>(), values[1].get<double>(), values[2].get<double>()};
-}
-
 Plane ParsePlane(const json& document, const std::string& where) {
   constexpr double kTolerance = 1e-6;  // rounding of a unit vector
-  const Eigen::Vector3d normal = Vector3(document.at("normal"));
+  const Eigen::Vector3d normal = VectorFromJson(document.at("normal"));
   if (!(std::abs(normal.norm() - 1.0) <= kTolerance)) {
     throw InputError(
         fmt::format("{}/normal: has length {}, expected a unit vector", where, normal.norm()));
@@ -155,7 +149,7 @@ TableTop ParseTable(const json& document) {
   TableTop table;
   table.position_on_plane = Vector2(document.at("position"));
   table.half_size = Vector2(document.at("half_size"));
-  table.yaw = Radians(document.value("yaw_deg", 0.0));
+  table.yaw = document.value("yaw_deg", 0.0) * kRadPerDeg;
   table.thickness = document.value("thickness", table.thickness);
   table.leg_length = document.value("leg_length", table.leg_length);
   return table;
@@ -205,9 +199,9 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     object.id = entry.at("id").get<int>();
     object.label = entry.at("label").get<std::string>();
     object.shape = ParseShape(entry.at("shape").get<std::string>());
-    object.half_axes = Vector3(entry.at("half_axes"));
+    object.half_axes = VectorFromJson(entry.at("half_axes"));
     object.position_on_plane = Vector2(entry.at("position"));
-    object.yaw = Radians(entry.value("yaw_deg", 0.0));
+    object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;
     object.texture_seed = entry.value("texture_seed", object.id);
     const int plane_id = entry.at("plane").get<int>();
     const auto plane = std::ranges::find(planes, plane_id, &ScenePlane::id);
@@ -228,7 +222,7 @@ Trajectory ParseTrajectory(const json& document) {
   trajectory.frame_interval = document.at("frame_interval").get<double>();
   for (const json& waypoint : document.at("waypoints")) {
     trajectory.waypoints.push_back(
-        {Vector3(waypoint.at("position")), Vector3(waypoint.at("look_at"))});
+        {VectorFromJson(waypoint.at("position")), VectorFromJson(waypoint.at("look_at"))});
   }
   return trajectory;
 }
