@@ -22,7 +22,7 @@ done
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
 
 for number in "$MAP_SCALE" "$MAP_CAMERA_HEIGHT"; do
-  [[ $number =~ ^([0-9]+\.?[0-9]*)?$ ]] || refuse "SCALE and CAMERA_HEIGHT: found '$number'; expected a number, as 1.6"
+  [[ $number =~ ^((0|[1-9][0-9]*)(\.[0-9]+)?)?$ ]] || refuse "SCALE and CAMERA_HEIGHT: found '$number'; expected a number, as 1.6"
 done
 
 if [[ -z $MAP_MODEL ]] && ! command -v colmap > /dev/null; then
