@@ -10,17 +10,13 @@
 #include "artefact/landmarks_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "report/page_html.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::string WithBlanks(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
 
 const json& TrackAt(const json& tracks, const json& index) {
   if (index.is_number() && index.get<size_t>() < tracks.size()) return tracks[index.get<size_t>()];

@@ -65,6 +65,11 @@ std::string PageText(const json& data) {
   return Escaped(Dump(data), '<', "\\u003c");  // '<' would begin or end elements
 }
 
+std::string WithBlanks(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 std::string HtmlText(const std::string& text) {
   std::string escaped = Escaped(Escaped(Utf8(text), '&', "&amp;"), '<', "&lt;");
   return Escaped(Escaped(Escaped(escaped, '>', "&gt;"), '"', "&quot;"), '\'', "&#39;");

@@ -27,6 +27,9 @@ std::string UrlOf(const std::string& name);
 // A page's data as stored in the page. Invalid UTF-8 is replaced.
 std::string PageText(const nlohmann::json& data);
 
+// A name of the artefacts as words: "no_support" is "no support".
+std::string WithBlanks(std::string name);
+
 // Text escaped for HTML, also within quotes.
 std::string HtmlText(const std::string& text);
 

@@ -32,11 +32,6 @@ std::string Counted(const json& count, const char* what) {
   return fmt::format("{} {}{}", count.get<size_t>(), what, count == 1 ? "" : "s");
 }
 
-std::string WithBlanks(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
 // {"name": count, ...} as "2 name, 1 other name".
 std::string ListOf(const json& counts) {
   std::vector<std::string> texts;

@@ -148,7 +148,7 @@ std::string ScaleBar(const PlanView& plan, const Screen& screen, const PlanForma
       HtmlText(LengthInWords(length, plan.in_metres)));
 }
 
-std::string CameraPath(const PlanView& plan, const Screen& screen) {
+std::string PathOfCameras(const PlanView& plan, const Screen& screen) {
   if (plan.cameras.empty()) return "";
   const Points path = screen.Place(plan.cameras);
   return fmt::format(
@@ -220,7 +220,7 @@ double AspectOf(const PlanObject& object) { return std::clamp(object.picture_asp
 
 // Cards of all objects, names with pictures of this height above them; the area of the cards, and
 // that which two of them share.
-struct Layout {
+struct CardLayout {
   double picture_height = 0.0;
   std::vector<Rectangle> cards = {};
   double area = 0.0;
@@ -231,8 +231,8 @@ struct Layout {
   }
 };
 
-Layout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& format,
-              double picture_height) {
+CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& format,
+                  double picture_height) {
   constexpr double kWidthOfLetter = 0.58, kGap = 3.0;
   const double bar = screen.scale * RoundLength(0.25 * screen.width / screen.scale);
   std::vector<Rectangle> footprints, taken = {{0.0, screen.height - 3.0 * format.font,
@@ -240,7 +240,7 @@ Layout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& form
   for (const PlanObject& object : plan.objects) {
     footprints.push_back(AsRectangle(BoundsOf(screen.Place(object.footprint))));
   }
-  Layout layout{picture_height};
+  CardLayout layout{picture_height};
   for (size_t i = 0; i < plan.objects.size(); ++i) {
     const PlanObject& object = plan.objects[i];
     const double height = layout.HeightOn(object);
@@ -287,7 +287,7 @@ std::string CardSvg(const PlanObject& object, const Rectangle& card, double pict
 std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
   const Screen screen = ScreenOf(plan, format);
   constexpr double kMaxShareOfCards = 0.3;  // of the plan, which is to be seen as well
-  Layout layout;
+  CardLayout layout;
   for (const double height : format.picture_heights) {
     layout = LayOut(plan, screen, format, height);
     const double share = layout.area / (screen.width * screen.height);
@@ -305,7 +305,7 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
              "<svg class=\"plan {}\" viewBox=\"0 0 {:.0f} {:.0f}\" font-size=\"{:.0f}\" "
              "role=\"img\" aria-label=\"{} objects from above\">\n",
              format.name, screen.width, screen.height, format.font, plan.objects.size()) +
-         GridLines(screen) + CameraPath(plan, screen) + shapes + leaders + cards +
+         GridLines(screen) + PathOfCameras(plan, screen) + shapes + leaders + cards +
          ScaleBar(plan, screen, format) + "</svg>\n";
 }
 
