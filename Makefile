@@ -29,6 +29,8 @@ NETWORK ?=
 DETECTIONS ?=
 CAMERA ?=
 MODEL ?=
+SCALE ?=
+CAMERA_HEIGHT ?=
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -101,7 +103,7 @@ help: ## List the targets
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
 	@echo 'Maps of photos (see docs/photos-to-map.md): IMAGES, NETWORK or DETECTIONS=<file>, CAMERA=<camera.json>,'
-	@echo 'MODEL=<folder of COLMAP>, NAME=<of the map>, MAPS=maps'
+	@echo 'MODEL=<folder of COLMAP>, SCALE, CAMERA_HEIGHT, NAME=<of the map>, MAPS=maps'
 	@echo 'Datasets of others (see docs/data.md): MIRROR=<address of copies of the downloads>, WITHOUT=<folder of the'
 	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
@@ -136,7 +138,7 @@ define line-end
 
 endef
 refuse-lines = $(if $(findstring $(line-end),$(value $(1))),$(error $(1): expected a path of one line))
-$(foreach name,$(PATHS),$(call refuse-lines,$(name)))
+$(foreach name,$(PATHS) SCALE CAMERA_HEIGHT,$(call refuse-lines,$(name)))
 shell-word = '$(subst ','\'',$(value $(1)))'
 ifneq ($(filter map,$(MAKECMDGOALS)),)
 MAKEOVERRIDES :=

@@ -21,9 +21,13 @@ for file in "$MAP_NETWORK" "$MAP_DETECTIONS" "$MAP_CAMERA"; do
 done
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
 
-for number in "$MAP_SCALE" "$MAP_CAMERA_HEIGHT"; do
-  [[ $number =~ ^((0|[1-9][0-9]*)(\.[0-9]+)?)?$ ]] || refuse "SCALE and CAMERA_HEIGHT: found '$number'; expected a number, as 1.6"
+for name in SCALE CAMERA_HEIGHT; do
+  number=MAP_$name
+  [[ ${!number} =~ ^((0|[1-9][0-9]*)(\.[0-9]+)?)?$ ]] || refuse "$name='${!number}': expected a number, as 1.6"
 done
+[[ -z $MAP_SCALE || -n $MAP_MODEL ]] ||
+  refuse "SCALE is of the unit of MODEL; found no MODEL, and the unit of COLMAP's own is another in each run"
+[[ ${MAP_CAMERA_HEIGHT%.*} -le 100 ]] || refuse "CAMERA_HEIGHT=$MAP_CAMERA_HEIGHT: expected metres, at most 100"
 
 if [[ -z $MAP_MODEL ]] && ! command -v colmap > /dev/null; then
   pipelines/install-packages.sh pipelines/colmap-packages.txt ||
@@ -80,5 +84,6 @@ $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/da
 map=$MAP_ROOT/results/$MAP_NAME/${MAP_VARIANT%% *}/map.json
 [[ -e $map ]] || refuse "VARIANT='$MAP_VARIANT' makes no map; expected one that does, as OursS" 4
 objects=$("$BIN/soslam-inspect" "$map" --csv - | tail -n +2 | wc -l)
-scale=$("$BIN/soslam-inspect" "${map%/*}/world.json" | sed -n 's/^ *scale .*(95 %, \(+- [0-9]* %\)).*/\1/p')
+scale=
+[[ ! -e ${map%/*}/world.json ]] || scale=$("$BIN/soslam-inspect" "${map%/*}/world.json" | sed -n 's/^ *scale .*(95 %, \(+- [0-9]* %\)).*/\1/p')
 echo "$objects objects, scale ${scale:-unknown}, page: $MAP_ROOT/results/$MAP_NAME/report.html"

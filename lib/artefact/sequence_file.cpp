@@ -42,15 +42,16 @@ GroundTruth GroundTruthFromJson(const json& json) {
 
 SupportPlane SupportPlaneFromJson(const json& json) {
   SupportPlane plane{json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>()};
-  if (json.contains("attitude_information")) {  // since version 1.3
+  const auto has = [&](const char* name) { return json.contains(name) && !json[name].is_null(); };
+  if (has("attitude_information")) {  // since version 1.3
     plane.attitude_information = MatrixFromJson(json["attitude_information"]);
   }
-  if (json.contains("height_prior")) {  // since version 1.7
+  if (has("height_prior")) {  // since version 1.7
     const auto& prior = json["height_prior"];
     plane.height_prior = {VectorFromJson(prior.at("point_in_world")),
                           prior.at("sigma_m").get<double>()};
   }
-  if (json.contains("scene_axis")) {  // since version 1.7
+  if (has("scene_axis")) {  // since version 1.7
     plane.scene_axis_in_world = VectorFromJson(json["scene_axis"]);
   }
   return plane;

@@ -35,9 +35,7 @@ json ScaleToJson(const GroundEstimate& estimate) {
           {"log_sigma", scale.log_sigma},
           {"interval_95", {std::exp(scale.low), std::exp(scale.high)}},
           {"found_by", estimate.scale_found_by},
-          {"objects", std::ranges::count_if(
-                          estimate.objects,
-                          [](const GroundObject& object) { return object.agreement >= 0.5; })},
+          {"objects", estimate.AgreeingObjects()},
           {"independent_objects", estimate.independent_objects},
           {"labels", labels},
           {"misfit", scale.misfit},

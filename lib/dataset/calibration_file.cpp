@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdlib>
 #include <initializer_list>
+#include <iterator>
 #include <map>
 #include <string>
 #include <vector>

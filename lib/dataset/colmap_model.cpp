@@ -145,7 +145,6 @@ std::vector<Entry> ReadBinary(const std::filesystem::path& path, const std::stri
   BinaryReader reader(path);
   const size_t count = reader.TakeCount(least_bytes, name + "s");
   std::vector<Entry> entries;
-  entries.reserve(count);
   for (size_t i = 0; i < count; ++i) {
     entries.push_back(take(&reader, fmt::format("{}: {} {}", path.string(), name, i + 1)));
   }

@@ -74,7 +74,7 @@ std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
   for (size_t i = 0; i < header.size(); ++i) {
     std::string name = LowerCase(header[i]);
     std::ranges::replace(name, ' ', '_');
-    const bool is_read = name == columns.optional ||
+    const bool is_read = (!columns.optional.empty() && name == columns.optional) ||
                          std::ranges::find(columns.required, name) != columns.required.end();
     if (is_read && !positions.emplace(name, i).second) refuse(name, "twice");
   }

@@ -43,9 +43,33 @@ bool HasNameOfOtherImage(const fs::path& path) {
   return kExtensions.contains(LowerCase(path.extension().string()));
 }
 
+bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+
+// The digits at `begin` without leading zeros; moves `begin` behind them.
+std::string_view TakeNumber(std::string_view text, size_t* begin) {
+  while (*begin < text.size() && text[*begin] == '0') ++*begin;
+  const size_t first = *begin;
+  while (*begin < text.size() && IsDigit(text[*begin])) ++*begin;
+  return text.substr(first, *begin - first);
+}
+
 // True if `one` comes before `other`, where numbers in names compare as numbers.
 bool IsNamedBefore(const std::string& one, const std::string& other) {
-  return strverscmp(one.c_str(), other.c_str()) < 0;
+  size_t i = 0, j = 0;
+  while (i < one.size() && j < other.size()) {
+    if (IsDigit(one[i]) && IsDigit(other[j])) {
+      const std::string_view number = TakeNumber(one, &i), other_number = TakeNumber(other, &j);
+      if (number.size() != other_number.size()) return number.size() < other_number.size();
+      if (number != other_number) return number < other_number;
+    } else if (one[i] != other[j]) {
+      return one[i] < other[j];
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+  const size_t rest = one.size() - i, other_rest = other.size() - j;
+  return rest != other_rest ? rest < other_rest : one < other;  // a007 after a7, in any folder
 }
 
 struct FilesOfFolder {

@@ -87,13 +87,14 @@ class Estimation {
              const SemanticTable& table, const GroundOptions& options, int threads)
       : sequence_(sequence), points_(points), table_(table), options_(options), threads_(threads) {}
 
-  // With the cameras held so.
+  // Runs all steps for cameras that are held in this way.
   void Run(const UpEstimate& held, const std::vector<SegmentView>& views) {
     of_cameras = held;
     FindAttitude(views);
     planes = FindHorizontalPlanes(points_, attitude, 1.0);
     CheckVerticals();
     planes_of_points = static_cast<int>(planes.planes.size());
+    if (planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
     const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
     Measure(groups);
     if (DropPlanesWithoutObjects()) {
@@ -173,7 +174,6 @@ class Estimation {
     std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
     scale_of_objects = EstimateScale(evidence, {});
     scale_found_by.clear();
-    if (scale_of_objects) scale_found_by.emplace_back("objects");
     scale = EstimateScale(evidence, Known());
   }
 
@@ -183,11 +183,11 @@ class Estimation {
       known.push_back({std::log(options_.scale * units_per_input), options_.scale_log_sigma});
       scale_found_by.emplace_back("scale");
     }
-    if (options_.camera_height_m > 0.0 && !planes.planes.empty()) {
+    if (options_.camera_height_m > 0.0 && on_lowest_plane_) {
       std::vector<double> heights;
       for (const Frame& frame : sequence_.frames) {
-        heights.push_back(planes.up_in_world.dot(frame.world_from_camera.translation) -
-                          planes.planes.front().height);
+        heights.push_back(
+            planes.up_in_world.dot(frame.world_from_camera.translation - *on_lowest_plane_));
       }
       const double height = Median(std::move(heights));
       if (height > 0.0) {
@@ -233,6 +233,7 @@ class Estimation {
   const SemanticTable& table_;
   const GroundOptions& options_;
   int threads_;
+  std::optional<Eigen::Vector3d> on_lowest_plane_;  // of points, whether or not objects stand on it
 };
 
 // With the cameras held as their boxes say. Where fewer than half of the objects then stand on
@@ -335,7 +336,8 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   const double log_units = -std::log(normalised_from_input.scale);
   Estimation none(normalised, ground_points, table, options, threads);
   none.units_per_input = std::exp(log_units);
-  const Estimation estimation = BestHeld(none, UpOfCameras(normalised, table, options), views);
+  const UpEstimate of_cameras = UpOfCameras(normalised, table, options);
+  const Estimation estimation = BestHeld(none, of_cameras, views);
 
   GroundEstimate result;
   const Similarity output = OutputFromNormalised(estimation);
@@ -353,6 +355,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
     result.scale_of_objects = Shifted(*estimation.scale_of_objects, -log_units);
   }
   result.scale_found_by = estimation.scale_found_by;
+  result.holding_of_boxes = of_cameras.holding;
   result.points = static_cast<int>(ground_points.size());
   result.planes_of_points = estimation.planes_of_points;
   for (const PlaneOfPoints& plane : estimation.planes.planes) {
@@ -362,6 +365,9 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   for (const MeasuredObject& object : estimation.objects) {
     result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale)));
     result.independent_objects += result.objects.back().weight * result.objects.back().agreement;
+  }
+  if (result.AgreeingObjects() > 0) {
+    result.scale_found_by.insert(result.scale_found_by.begin(), "objects");
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,13 +35,14 @@ struct GroundObject {
 struct GroundEstimate {
   Similarity output_from_input;  // the output's world has z up, in metres
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
-  double tilt_sigma = 0.0;                  // of up, both tilts together (rad)
-  double attitude_tilt_sigma = 0.0;         // of up from the cameras and vertical edges alone (rad)
-  double attitude_tilt = 0.0;               // from that up to the final one (rad)
-  UpEstimate attitude;                      // from the cameras alone
-  bool verticals = false;                   // vertical edges were used
-  std::optional<ScalePosterior> scale;      // of metres per unit of the input
-  std::vector<std::string> scale_found_by;  // "objects", and the options that it is known by
+  double tilt_sigma = 0.0;           // of up, both tilts together (rad)
+  double attitude_tilt_sigma = 0.0;  // of up from the cameras and vertical edges alone (rad)
+  double attitude_tilt = 0.0;        // from that up to the final one (rad)
+  UpEstimate attitude;               // from the cameras alone
+  CameraHolding holding_of_boxes = CameraHolding::kLevel;  // where planes do not contradict it
+  bool verticals = false;                                  // vertical edges were used
+  std::optional<ScalePosterior> scale;                     // of metres per unit of the input
+  std::vector<std::string> scale_found_by;         // "objects", and the options that it is known by
   std::optional<ScalePosterior> scale_of_objects;  // without `scale` and `camera_height_m`
   double independent_objects = 0.0;                // sum of weight times agreement
   std::vector<EstimatedPlane> planes;              // of the output
@@ -48,6 +50,12 @@ struct GroundEstimate {
   int planes_of_points = 0;  // before planes without an object were dropped
   int points = 0;
   std::vector<GroundObject> objects;
+
+  // How many objects have the height of their label at the scale.
+  int AgreeingObjects() const {
+    return static_cast<int>(std::ranges::count_if(
+        objects, [](const GroundObject& object) { return object.agreement >= 0.5; }));
+  }
 };
 
 // Estimates up, scale and support planes from sparse points, boxes and the way cameras are held.

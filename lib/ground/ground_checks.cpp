@@ -97,6 +97,19 @@ void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings
                        "look at the map from the side; more images of the ground"});
 }
 
+void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+  const CameraHolding holding = estimate.attitude.holding;
+  if (holding == estimate.holding_of_boxes) return;
+  findings->push_back(
+      {"camera_holding_of_planes", Severity::kWarning,
+       fmt::format("by their boxes cameras are held {}; up is that of cameras held {}, as then at "
+                   "least twice as many objects stand on planes, of twice as many points",
+                   NameOf(estimate.holding_of_boxes), NameOf(holding)),
+       "one way to hold cameras that explains boxes and planes",
+       "cameras that were turned in many ways, or look down",
+       "look at the map from the side; images with the camera held level"});
+}
+
 void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
                        std::vector<Finding>* findings) {
   constexpr const char* kName = "camera_height_m";
@@ -104,10 +117,11 @@ void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& opti
       std::ranges::find(estimate.scale_found_by, kName) != estimate.scale_found_by.end()) {
     return;
   }
-  findings->push_back({"camera_height_unused", Severity::kWarning,
-                       "camera_height_m is given, and no support plane below the cameras is found",
-                       "a plane that camera_height_m is the height above",
-                       "a floor without texture has no points", "give scale instead"});
+  findings->push_back(
+      {"camera_height_unused", Severity::kWarning,
+       "camera_height_m is given, and no horizontal plane below the cameras is found",
+       "a plane that camera_height_m is the height above", "a floor without texture has no points",
+       "give scale instead"});
 }
 
 }  // namespace
@@ -119,6 +133,7 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   CheckContradictions(estimate, &findings);
   CheckKnownScale(estimate, &findings);
   CheckCameraHeight(estimate, options, &findings);
+  CheckHolding(estimate, &findings);
   CheckSupport(estimate, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,

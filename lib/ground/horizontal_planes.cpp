@@ -32,6 +32,7 @@ constexpr double kLeastShare = 0.01;  // of the points, on a plane
 constexpr double kLeastOnPlane = 15.0;
 constexpr double kLeastContrast = 2.0;  // of the density on a plane, relative to its surroundings
 constexpr double kLyingThings = 0.2 * kRadPerDeg;  // error of a tilt by flat things on a plane
+constexpr double kCommonHeight = 0.002;            // error of a height that all points share
 constexpr size_t kSectors = 8;                     // parts of the planes whose scatter is measured
 
 struct WeightedPoint {
@@ -303,6 +304,7 @@ HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrio
   AddScatter(points, attitude, unit, fit, &result);
   for (PlaneOfPoints& plane : result.planes) {
     plane.covariance.diagonal().head<2>().array() += kLyingThings * kLyingThings;
+    plane.covariance(2, 2) += std::pow(kCommonHeight * unit, 2.0);
     plane.covariance.topLeftCorner<2, 2>() += ambiguity;
   }
   result.tilt_covariance = result.planes.front().covariance.topLeftCorner<2, 2>();

@@ -45,8 +45,8 @@ struct GroundOptions {
     visit.Real("scale_log_sigma", &scale_log_sigma, {0.005, 10.0},
                "standard deviation of the logarithm of `scale`; 0.02 is 2 %");
     visit.Real("camera_height_m", &camera_height_m, {0.0, 1e3},
-               "median height of the cameras above the lowest support plane, where it is known; 0: "
-               "unknown. It is combined with the heights of objects");
+               "median height of the cameras above the lowest horizontal plane of points, where it "
+               "is known; 0: unknown. It is combined with the heights of objects");
     visit.Real("camera_height_log_sigma", &camera_height_log_sigma, {0.005, 10.0},
                "standard deviation of the logarithm of `camera_height_m`");
     visit.Real("wrong_height_probability", &wrong_height_probability, {1e-6, 0.5},

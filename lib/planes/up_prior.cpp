@@ -123,10 +123,6 @@ std::vector<Eigen::Vector3d> HalfSphere() {
   return directions;
 }
 
-}  // namespace
-
-namespace {
-
 // The axes of all cameras that are level when they are held so.
 LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
                               double pitch_sigma, double correlation_rad, CameraHolding holding) {
@@ -152,7 +148,6 @@ Eigen::Vector3d AboveCameras(const std::vector<Rigid3d>& world_from_camera, Came
 
 UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
                            double pitch_sigma, double correlation_rad, CameraHolding holding) {
-  // Without the loss, which has no effect at zero.
   const Eigen::Matrix3d information =
       AxesOfCameras(world_from_camera, roll_sigma, pitch_sigma, correlation_rad, holding)
           .Information(Eigen::Vector3d::Zero());

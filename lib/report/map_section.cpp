@@ -130,7 +130,7 @@ std::string AndMore(size_t more) {
   return more == 0 ? "" : fmt::format("<p class=\"faint\">And {} more.</p>\n", more);
 }
 
-// What the section is made of.
+// The map of a variant with the pictures of its objects.
 class MapOfVariant {
  public:
   MapOfVariant(const fs::path& folder, const Sequence& sequence, const ImageSource& images)

@@ -96,7 +96,10 @@ std::string LabelsInWords(const Object& object) {
     if (is_own ? probability >= kCertain : probability < kLeast) continue;
     labels.push_back(fmt::format("{} {:.0f}\u00a0%", label, 100.0 * probability));
   }
-  return fmt::format("{}", fmt::join(labels, ", or "));
+  const bool has_own = std::ranges::find(object.labels, object.label, &LabelProbability::label) !=
+                       object.labels.end();
+  return fmt::format("{}{}", fmt::join(labels, ", or "),
+                     labels.empty() || has_own ? "" : "; detected as " + object.label);
 }
 
 namespace {
@@ -132,9 +135,12 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
                            const MapEstimate& map, const ScaleOfMap& scale) {
   const int own = sequence.objects[static_cast<size_t>(estimate.object_index)].plane_index;
   if (own == kNoPlane) return "support unknown";
-  // Datasets with more planes have one for each object, all of one ground.
+  // Recordings of vehicles have a plane for each object, all of one ground.
   constexpr size_t kMaxPlanesOfRoom = 8;
-  if (sequence.planes.size() > kMaxPlanesOfRoom) return "on the ground";
+  if (sequence.planes.size() > kMaxPlanesOfRoom &&
+      sequence.planes.size() >= sequence.objects.size()) {
+    return "on the ground";
+  }
   const int segment = SegmentOf(sequence, estimate.object_index);
   const std::set<int> level = LevelPlanesOf(sequence, map, segment);
   if (!level.contains(own)) return "on a wall or ceiling";

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <map>
 
 #include "artefact/json_file.h"
@@ -173,11 +175,27 @@ std::vector<NotPlaced> ObjectsLeftOut(const fs::path& folder, const MapEstimate&
   return things;
 }
 
+// What soslam-planes left out, by label.
+std::vector<NotPlaced> LeftOutByPlanes(const Sequence& sequence) {
+  std::map<std::string, NotPlaced> left_out;
+  for (const RejectedDetection& rejected : sequence.rejected) {
+    if (rejected.stage != RejectingStage::kPlanes) continue;
+    NotPlaced& thing = left_out[rejected.label];
+    thing.label = rejected.label;
+    thing.reason = "no plane was found that it stands on or hangs from";
+    thing.boxes.push_back(BoxOf(sequence, rejected));
+  }
+  std::vector<NotPlaced> things;
+  for (auto& [label, thing] : left_out) things.push_back(std::move(thing));
+  return things;
+}
+
 }  // namespace
 
 std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate& map,
                                        const Sequence& sequence) {
   std::vector<NotPlaced> things = ObjectsLeftOut(folder, map, sequence);
+  std::ranges::move(LeftOutByPlanes(sequence), std::back_inserter(things));
   if (Exists(folder / "associations.json")) {
     const json associations = ReadArtefact(folder / "associations.json", "associations");
     for (NotPlaced& thing : TracksLeftOut(associations, sequence)) {

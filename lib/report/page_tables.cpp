@@ -14,6 +14,7 @@
 
 #include "base/table.h"
 #include "report/dataset_tables.h"
+#include "report/map_words.h"
 #include "report/page_html.h"
 #include "report/page_variant.h"
 #include "report/results_tree.h"
@@ -26,10 +27,6 @@ using Pointer = json::json_pointer;
 
 std::string NumberOrDash(const json& value, int decimals) {
   return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "–";
-}
-
-std::string Counted(const json& count, const char* what) {
-  return fmt::format("{} {}{}", count.get<size_t>(), what, count == 1 ? "" : "s");
 }
 
 // {"name": count, ...} as "2 name, 1 other name".
@@ -333,14 +330,14 @@ std::string Remarks(const json& page) {
 // Where findings are below a map that may need all of the screen.
 std::string LinkToFindings(const json& page) {
   const size_t count = page.at("findings").size();
-  if (count == 0 || page.at("map_section") == "") return "";
+  if (count == 0 || page.at("map_section").get_ref<const std::string&>().empty()) return "";
   return fmt::format("<p><a href=\"#remarks\">{}</a> below</p>\n", Counted(count, "finding"));
 }
 
 std::string CountsText(const json& counts) {
-  return fmt::format("{}, {}, {} used", Counted(counts.at("frames"), "frame"),
-                     Counted(counts.at("objects"), "object"),
-                     Counted(counts.at("detections"), "detection"));
+  return fmt::format("{}, {}, {} used", Counted(counts.at("frames").get<size_t>(), "frame"),
+                     Counted(counts.at("objects").get<size_t>(), "object"),
+                     Counted(counts.at("detections").get<size_t>(), "detection"));
 }
 
 }  // namespace

@@ -55,9 +55,11 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
       EstimateGround(sequence, ReadPoints(files.at("points")), views,
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
-  std::ranges::move(CheckUp(estimate.attitude.holding, estimate.attitude.holdings,
-                            estimate.attitude.holding_tilt_variance),
-                    std::back_inserter(info.findings));
+  if (estimate.attitude.holding == estimate.holding_of_boxes) {
+    std::ranges::move(CheckUp(estimate.attitude.holding, estimate.attitude.holdings,
+                              estimate.attitude.holding_tilt_variance),
+                      std::back_inserter(info.findings));
+  }
   ReportFindings("ground", info.findings);
   WriteWorld(files.at("world"), estimate, sequence, info);
   Sequence grounded = WithGround(sequence, estimate);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "artefact/associations_file.h"
@@ -140,13 +141,29 @@ void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
   estimate->cost = map.solver.final_cost;
 }
 
+// What the priors of a plane say of it.
+EstimatedPlane FromPriors(const SupportPlane& support) {
+  const Plane& plane = support.plane_in_world;
+  EstimatedPlane estimated{plane, -plane.offset * plane.normal, plane.normal.unitOrthogonal(), {}};
+  if (!support.attitude_information || !support.height_prior) return estimated;
+  estimated.point_in_world = support.height_prior->point_in_world;
+  const Eigen::Vector3d& x = estimated.x_axis_in_world;
+  Eigen::Matrix<double, 3, 2> d_turns;  // turns about x and y move the normal by -y and x
+  d_turns << -plane.normal.cross(x), x;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() =
+      (d_turns.transpose() * *support.attitude_information * d_turns).inverse();
+  covariance(2, 2) = std::pow(support.height_prior->sigma_m, 2.0);
+  estimated.covariance = covariance;
+  return estimated;
+}
+
 // The sequence's own planes.
 Result FromSequence(const Sequence& sequence) {
   Result result{{}, sequence, {}};
+  result.estimate.settled = true;
   for (const SupportPlane& support : sequence.planes) {
-    const Plane& plane = support.plane_in_world;
-    result.estimate.planes.push_back(
-        {plane, -plane.offset * plane.normal, plane.normal.unitOrthogonal(), {}});
+    result.estimate.planes.push_back(FromPriors(support));
   }
   for (const Object& object : sequence.objects) {
     ObjectSupport& given = result.estimate.objects.emplace_back();
@@ -234,7 +251,9 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
                       std::back_inserter(info.findings));
   }
   ReportFindings("planes", info.findings);
-  WritePlanes(files.at("report"), result.estimate, sequence, info);
+  // Planes are not compared with themselves.
+  WritePlanes(files.at("report"), result.estimate, has_planes ? WithoutPlanes(sequence) : sequence,
+              info);
   WriteSequence(files.at("output"), result.sequence, info);
   fmt::print("{}: {} planes of {} objects\n", sequence.name, result.estimate.planes.size(),
              sequence.objects.size());

@@ -19,6 +19,7 @@ namespace {
 using testing::Contains;
 using testing::Field;
 using testing::IsEmpty;
+using testing::Not;
 
 const SemanticTable& ShippedTable() {
   static const SemanticTable table =
@@ -171,6 +172,16 @@ TEST(CheckGroundTest, FewObjectsOnPlanesAreAFinding) {
   EXPECT_TRUE(is_found());
   estimate.objects[1].plane = 0;
   EXPECT_FALSE(is_found());
+}
+
+TEST(CheckGroundTest, AnotherWayToHoldCamerasThanThatOfTheBoxesIsAFinding) {
+  GroundEstimate estimate;
+  estimate.attitude.holding = CameraHolding::kRolled90;
+  EXPECT_THAT(CheckGround(estimate, {}),
+              Contains(Field(&Finding::check, "camera_holding_of_planes")));
+  estimate.holding_of_boxes = CameraHolding::kRolled90;
+  EXPECT_THAT(CheckGround(estimate, {}),
+              Not(Contains(Field(&Finding::check, "camera_holding_of_planes"))));
 }
 
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {

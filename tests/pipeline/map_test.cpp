@@ -196,7 +196,11 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, "NETWORK=$(shell touch " + marker + ")"}, "no such file");
   expect_refused({images, "NETWORK=`touch " + marker + "`"}, "no such file");
   expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
-  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2m"}, "expected a number");
+  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2m"},
+                 "SCALE='2m': expected a number");
+  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2"}, "found no MODEL");
+  expect_refused({images, "NETWORK=" + detections_.string(), "CAMERA_HEIGHT=160"},
+                 "expected metres");
   expect_refused({images, "NETWORK=x", "NAME=.."}, "expected letters and digits");
   expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
   expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");

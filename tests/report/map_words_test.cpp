@@ -96,7 +96,7 @@ TEST(LabelsInWords, HasAlternativesOfATenthAndMore) {
   object.labels = {{"sofa", 0.5}, {"chair", 0.38}, {"bench", 0.12}};
   EXPECT_EQ(LabelsInWords(object), "sofa 50\u00a0%, or chair 38\u00a0%, or bench 12\u00a0%");
   object.labels = {{"sofa", 0.8}, {"bench", 0.2}};  // its own has hardly any
-  EXPECT_EQ(LabelsInWords(object), "sofa 80\u00a0%, or bench 20\u00a0%");
+  EXPECT_EQ(LabelsInWords(object), "sofa 80\u00a0%, or bench 20\u00a0%; detected as chair");
 }
 
 // Three objects, the first on the floor, the second on a shelf, the third on a wall.

@@ -52,6 +52,11 @@ TEST_F(RunImportTest, PassesOnWhatTheReconstructionOfItsPosesFound) {
   EXPECT_EQ(std::ranges::count(sequence.findings, "no_baseline", &Finding::check), 1);
 }
 
+TEST_F(RunImportTest, OtherProgramsHaveAFileOfThatNameAsWell) {
+  dataset.files["reconstruction.json"] = R"([{"cameras": {}, "shots": {}}])";
+  EXPECT_NO_THROW(Run());
+}
+
 TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {
   ImportOptions options;
   options.border_px = 12.5;

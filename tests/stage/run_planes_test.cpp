@@ -212,6 +212,8 @@ TEST_F(RunPlanesTest, WhereMissingKeepsThePlanesThatAreThere) {
   }
   const json report = ReadArtefact(File("report"), "planes");
   EXPECT_EQ(report.at("objects").at(0).at("reason"), "given");
+  EXPECT_EQ(report.at("settled"), true);
+  EXPECT_TRUE(report.at("planes").at(0).at("error").is_null()) << "with themselves";
 }
 
 TEST_F(RunPlanesTest, WhereMissingEstimatesPlanesOfASequenceWithout) {
