@@ -19,7 +19,7 @@ constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
 constexpr int kTextMargin = 4;  // px of the picture
 
-std::string AsciiOf(std::string text) {
+std::string AsciiOf(const std::string& text) {
   std::string ascii;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
