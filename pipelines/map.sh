@@ -23,7 +23,8 @@ done
 
 for name in SCALE CAMERA_HEIGHT; do
   number=MAP_$name
-  [[ ${!number} =~ ^((0|[1-9][0-9]*)(\.[0-9]+)?)?$ ]] || refuse "$name='${!number}': expected a number, as 1.6"
+  [[ ${!number} =~ ^((0|[1-9][0-9]*)(\.[0-9]+)?)?$ && ! ${!number} =~ ^0(\.0+)?$ ]] ||
+    refuse "$name='${!number}': expected a number above 0, as 1.6"
 done
 [[ -z $MAP_SCALE || -n $MAP_MODEL ]] ||
   refuse "SCALE is of the unit of MODEL; found no MODEL, and the unit of COLMAP's own is another in each run"
@@ -74,6 +75,11 @@ sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_
   pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
 for file in variants/*.json priors/semantic_table.json; do
   for from in pipelines/$file; do keep "$MAP_ROOT/${from}" < "$from"; done
+done
+
+# The page shows the variants of this command; others may be of other settings. What they share stays.
+for folder in "$MAP_ROOT/results/$MAP_NAME"/*/; do
+  [[ " $MAP_VARIANT shared * " == *" $(basename "$folder") "* ]] || rm -r "$folder"
 done
 
 $MAKE --no-print-directory -f pipelines/map.mk
