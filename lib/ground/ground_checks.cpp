@@ -74,7 +74,8 @@ void CheckKnownScale(const GroundEstimate& estimate, std::vector<Finding>* findi
                    std::exp(difference)),
        fmt::format("a factor within {} standard deviations of the objects' {:.0f} %", kLimit,
                    100.0 * estimate.scale_of_objects->log_sigma),
-       "scale or camera_height_m in another unit, a floor that is not seen, so that the lowest plane "
+       "scale or camera_height_m in another unit, a floor that is not seen, so that the lowest "
+       "plane "
        "is a table top, or wrong labels",
        "check scale and camera_height_m, or leave them away"});
 }
