@@ -180,7 +180,7 @@ TEST_F(RunFramesTest, BoxesOfAllImagesBecomeThoseOfTheChosenOnes) {
   WriteBytes(boxes, "frame,label,score,x1,y1,x2,y2\n9,cup,0.9,0,20,100,120\n");
   ExpectError<InputError>([&] { RunFrames(options, files, 1); },
                           {boxes.string(), "none of its 1 boxes"});
-  // As soslam-detect writes them, of the two images that were chosen.
+  // The header of soslam-detect, of the two images that were chosen.
   WriteBytes(boxes,
              "# {}\n# input {}\n# input {}\nframe,label,score,x1,y1,x2,y2\n1,cup,1,1,2,3,4\n");
   ExpectError<InputError>([&] { RunFrames(options, files, 1); },
