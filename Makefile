@@ -23,7 +23,6 @@ NETWORKS ?= networks
 WITHOUT ?=
 MIRROR ?=
 MAPS ?= maps
-NAME ?=
 IMAGES ?=
 NETWORK ?=
 DETECTIONS ?=
@@ -31,6 +30,11 @@ CAMERA ?=
 MODEL ?=
 SCALE ?=
 CAMERA_HEIGHT ?=
+
+# Some shells set NAME to that of the machine: only `make ... NAME=<map>` counts.
+ifneq ($(origin NAME),command line)
+NAME :=
+endif
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
@@ -49,12 +53,21 @@ refuse-options = $(if $(filter -%,$(value $(1))),$(error $(1)='$(value $(1))': e
 one-word = $(if $(filter-out 1,$(words $(value $(1)))),$(error $(1)='$(value $(1))': expected $(2)))
 ONE_FOLDER = one folder without spaces in its path (a symbolic link to it will do)
 NAMES := DATASET VARIANT STAGE DATA_ROOT RESULTS PIPELINES THREADS BUILD DATASETS SCENES SEEDS
-NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MAPS NAME SCALE CAMERA_HEIGHT
+NAMES += DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MAPS NAME
+NUMBERS := SCALE CAMERA_HEIGHT
+PATHS := IMAGES NETWORK DETECTIONS CAMERA MODEL
+OTHERS := CMAKE_ARGS OUTSIDE_PATHS LAUNCH SBATCH MIRROR BIN GOAL QUIET
 $(foreach name,$(NAMES),$(call refuse-special,$(name))$(call refuse-options,$(name)))
+$(foreach name,$(NUMBERS),$(call refuse-special,$(name)))
 $(foreach name,DATA_ROOT RESULTS PIPELINES BUILD ANNOTATIONS NETWORKS MAPS,$(call one-word,$(name),$(ONE_FOLDER)))
 $(call one-word,DOWNLOADS,one file without spaces in its path)
 $(if $(filter-out :,$(call special-in,MIRROR)),$(error MIRROR='$(value MIRROR)': expected an address))
 $(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_PATHS: expected --allow_outside_paths))
+
+# A variable that is misspelt would be ignored. Those of compilers and of cmake pass.
+given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
+KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX %FLAGS CMAKE_% SOSLAM_% MAKE%
+$(foreach name,$(filter-out $(KNOWN) -%,$(given-names)),$(error $(name)=...: no such variable; `make help` lists them))
 
 BIN := $(BUILD)/bin
 $(call refuse-special,BIN)$(call one-word,BIN,$(ONE_FOLDER))
@@ -65,6 +78,20 @@ PLAN_COMMAND = $(BIN)/soslam-plan --dataset $(DATA_ROOT)/$(DATASET) --name $(DAT
   --pipelines $(PIPELINES) --results $(RESULTS) --variants '$(filter-out all,$(VARIANT))'
 STATUS_COMMAND = pipelines/under-way $(RESULTS) | $(BIN)/soslam-status --results $(RESULTS) --executables $(BIN) \
   --under_way /dev/stdin --name '$(DATASET)' --variants '$(filter-out all,$(VARIANT))'
+
+# The name of a map of photos stands for the dataset and the folders of that map: make doctor NAME=room.
+ifneq ($(if $(filter map,$(MAKECMDGOALS)),,$(NAME)),)
+$(if $(wildcard $(MAPS)/$(NAME)/pipelines),,$(error NAME='$(NAME)': no such map in MAPS = $(MAPS)))
+override DATASET := $(NAME)
+override DATA_ROOT := $(MAPS)/$(NAME)/data
+override RESULTS := $(MAPS)/$(NAME)/results
+override PIPELINES := $(MAPS)/$(NAME)/pipelines
+endif
+# Other settings would make a map anew, as of another dataset.
+ifneq ($(wildcard $(RESULTS)/../steps/images.txt),)
+$(if $(filter-out $(abspath $(RESULTS)/../pipelines),$(abspath $(PIPELINES))),$(error RESULTS=$(RESULTS) is of a map \
+  of photos, whose settings are not those in PIPELINES=$(PIPELINES); expected NAME=$(notdir $(abspath $(RESULTS)/..))))
+endif
 
 # A sweep: datasets, and each scene rendered with each seed of its noise, as dataset <scene>-seed<seed> in DATA_ROOT.
 scene-name = $(basename $(notdir $(1)))
@@ -102,8 +129,10 @@ help: ## List the targets
 	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
-	@echo 'Maps of photos (see docs/photos-to-map.md): IMAGES, NETWORK or DETECTIONS=<file>, CAMERA=<camera.json>,'
-	@echo 'MODEL=<folder of COLMAP>, SCALE, CAMERA_HEIGHT, NAME=<of the map>, MAPS=maps'
+	@echo 'Maps of photos (see docs/photos-to-map.md): IMAGES=<folder or video>, NETWORK=<file.onnx> or'
+	@echo 'DETECTIONS=<file.csv>; VARIANT=OursS, NAME=<that of the folder or video>, MAPS=maps; where known,'
+	@echo 'CAMERA=<camera.json>, MODEL=<folder of COLMAP>, SCALE=<metres per unit of MODEL>, CAMERA_HEIGHT=<metres>.'
+	@echo 'NAME=<map> in place of DATASET, DATA_ROOT, RESULTS, PIPELINES: that map, in all other targets'
 	@echo 'Datasets of others (see docs/data.md): MIRROR=<address of copies of the downloads>, WITHOUT=<folder of the'
 	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
@@ -131,7 +160,6 @@ network: ## Fetch the detector network YOLOX-nano, check it and show its licence
 
 # Paths that may have any characters: the shell gets them as one quoted word, make expands them nowhere, also not on the
 # way to a make below.
-PATHS := IMAGES NETWORK DETECTIONS CAMERA MODEL
 unexport $(PATHS)
 define line-end
 

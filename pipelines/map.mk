@@ -6,8 +6,9 @@ folder := $(MAP_ROOT)/data/$(MAP_NAME)
 steps := $(MAP_ROOT)/steps
 QUIET ?=
 
+# Boxes first: they take seconds, and so a network that cannot run is found out before COLMAP works for minutes.
 .PHONY: dataset
-dataset: $(steps)/reconstructed $(steps)/detected
+dataset: $(steps)/detected $(steps)/reconstructed
 
 # $(call step,TITLE,COMMAND)
 define step

@@ -19,10 +19,15 @@ refuse() {
 for file in "$MAP_NETWORK" "$MAP_DETECTIONS" "$MAP_CAMERA"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
+mappers=$(grep --files-with-matches optimise pipelines/variants/*.json | xargs basename --multiple --suffix .json | xargs)
+for variant in $MAP_VARIANT; do
+  [[ " $mappers " == *" $variant "* ]] || refuse "VARIANT='$variant' makes no map; expected some of $mappers"
+done
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
 
 for name in SCALE CAMERA_HEIGHT; do
   number=MAP_$name
+  [[ ${!number} != .* ]] || declare "$number=0${!number}"
   [[ ${!number} =~ ^((0|[1-9][0-9]*)(\.[0-9]+)?)?$ && ! ${!number} =~ ^0(\.0+)?$ ]] ||
     refuse "$name='${!number}': expected a number above 0, as 1.6"
 done
@@ -61,10 +66,12 @@ options=''
 [[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0'
 export MAP_FRAMES_OPTIONS=$options
 
+# Photos that were moved are the same ones.
 first=$(head -n 1 "$MAP_ROOT/steps/images.txt" 2> /dev/null || true)
-[[ -z $first || $first == "$(realpath -- "$MAP_IMAGES")" ]] ||
+photos=$(listed "$MAP_IMAGES")
+[[ -z $first || $first == "${photos%%$'\n'*}" || $(< "$MAP_ROOT/steps/images.txt") == *"${photos#*$'\n'}"* ]] ||
   refuse "$MAP_ROOT is of other images, '$first'; expected NAME=<another name>"
-{ listed "$MAP_IMAGES" && listed "$MAP_DETECTIONS" && echo "$options"; } | keep "$MAP_ROOT/steps/images.txt"
+{ echo "$photos" && listed "$MAP_DETECTIONS" && echo "$options"; } | keep "$MAP_ROOT/steps/images.txt"
 listed "$MAP_CAMERA" | keep "$MAP_ROOT/steps/camera.txt"
 listed "$MAP_MODEL" | keep "$MAP_ROOT/steps/model.txt"
 listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
@@ -88,7 +95,6 @@ $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/da
 "$BIN/soslam-pages" --results "$MAP_ROOT/results"
 
 map=$MAP_ROOT/results/$MAP_NAME/${MAP_VARIANT%% *}/map.json
-[[ -e $map ]] || refuse "VARIANT='$MAP_VARIANT' makes no map; expected one that does, as OursS" 4
 objects=$("$BIN/soslam-inspect" "$map" --csv - | tail -n +2 | wc -l)
 scale=
 [[ ! -e ${map%/*}/world.json ]] || scale=$("$BIN/soslam-inspect" "${map%/*}/world.json" | sed -n 's/^ *scale .*(95 %, \(+- [0-9]* %\)).*/\1/p')

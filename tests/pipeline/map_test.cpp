@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <list>
 #include <random>
 #include <string>
 #include <thread>
@@ -156,6 +157,16 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   EXPECT_THAT(again.output, testing::Not(HasSubstr("[it_s_my_room_1]"))) << "nothing to do";
   EXPECT_EQ(Made(), made);
 
+  // Photos that were moved are the same ones.
+  const fs::path elsewhere = pipeline_.Folder() / "elsewhere";
+  fs::create_directory(elsewhere);
+  fs::rename(photos_, elsewhere / photos_.filename());
+  const CommandResult moved = Run(Words({"IMAGES=" + (elsewhere / photos_.filename()).string(),
+                                         "DETECTIONS=" + detections_.string()}));
+  EXPECT_EQ(moved.exit_code, 0) << moved.errors;
+  EXPECT_EQ(Made(), made);
+  fs::rename(elsewhere / photos_.filename(), photos_);
+
   // Other boxes: images and poses stay.
   const std::string boxes = FileBytes(detections_);
   WriteBytes(detections_, boxes.substr(0, boxes.rfind("\n7,")) + "\n");
@@ -181,6 +192,25 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
               HasSubstr("is of other images"));
 }
 
+TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
+  ASSERT_EQ(Run(WordsForPhotos()).exit_code, 0);
+  const auto made = Made();
+  const auto make = [&](const std::vector<std::string>& settings) {
+    std::vector<std::string> words = Words(settings);
+    std::erase(words, "map");
+    return Run(words);
+  };
+  const CommandResult doctor = make({"doctor", "NAME=it_s_my_room_1"});
+  EXPECT_EQ(doctor.exit_code, 0) << doctor.errors;
+  EXPECT_THAT(doctor.output, HasSubstr("it_s_my_room_1"));
+  const std::string results = (maps_ / "it_s_my_room_1/results").string();
+  EXPECT_THAT(make({"doctor", "DATASET=it_s_my_room_1", "RESULTS=" + results}).errors,
+              HasSubstr("expected NAME=it_s_my_room_1"));
+  EXPECT_THAT(make({"doctor", "NAME=another"}).errors, HasSubstr("no such map"));
+  EXPECT_EQ(Made(), made);
+  EXPECT_EQ(make({"verify", "NAME=it_s_my_room_1"}).exit_code, 0);
+}
+
 TEST_F(MapTest, RefusesWhatIsMissing) {
   const auto expect_refused = [&](const std::vector<std::string>& settings,
                                   const std::string& words) {
@@ -198,9 +228,17 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
   expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2m"},
                  "SCALE='2m': expected a number");
+  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=-2"},
+                 "SCALE='-2': expected a number");
+  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=.5"}, "found no MODEL");
   expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2"}, "found no MODEL");
   expect_refused({images, "NETWORK=" + detections_.string(), "CAMERA_HEIGHT=160"},
                  "expected metres");
+  const std::string network = "NETWORK=" + detections_.string();
+  expect_refused({images, network, "VARIANT=InitS"}, "VARIANT='InitS' makes no map");
+  expect_refused({images, network, "VARIANT=Best"},
+                 "VARIANT='Best' makes no map; expected some of OursP OursPT");
+  expect_refused({images, network, "CAMERA_HIGHT=1.6"}, "CAMERA_HIGHT=...: no such variable");
   expect_refused({images, "NETWORK=x", "NAME=.."}, "expected letters and digits");
   expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
   expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");
@@ -226,18 +264,19 @@ TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
   for (int i = 0; i < 4; ++i) {
     SCOPED_TRACE(i);
     fs::remove_all(maps_);
+    std::list<BackgroundCommand> killed;
     for (int kill = 0; kill < 2; ++kill) {
-      BackgroundCommand run(WordsForPhotos());
+      BackgroundCommand& run = killed.emplace_back(WordsForPhotos());
       std::this_thread::sleep_for(duration * std::uniform_real_distribution<double>(0, 1)(random));
       if (i % 2 == 0) {
         run.KillAll();
       } else {
         run.KillFirst();
       }
-      run.Wait();
     }
     const CommandResult last = Run(WordsForPhotos());
     EXPECT_EQ(last.exit_code, 0) << last.output << last.errors;
+    for (BackgroundCommand& run : killed) run.WaitForAll();
     EXPECT_EQ(Made(), made);
   }
 }

@@ -30,16 +30,23 @@ class BackgroundCommand {
     posix_spawn_file_actions_init(&actions);
     Redirect(&actions, STDOUT_FILENO, "output");
     Redirect(&actions, STDERR_FILENO, "errors");
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
+    posix_spawn_file_actions_adddup2(&actions, ends[1], kHeldByAll);
     const int error =
         posix_spawnp(&process_, arguments[0], &actions, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
+    ::close(ends[1]);
+    any_runs_ = ends[0];
     if (error != 0) throw std::runtime_error("cannot run " + words[0]);
   }
   ~BackgroundCommand() {
-    if (process_ <= 0) return;
-    KillAll();
-    Wait();
+    if (process_ > 0) {
+      KillAll();
+      Wait();
+    }
+    ::close(any_runs_);
   }
   BackgroundCommand(const BackgroundCommand&) = delete;
   BackgroundCommand& operator=(const BackgroundCommand&) = delete;
@@ -58,7 +65,18 @@ class BackgroundCommand {
             FileBytes(captured_ / "output"), FileBytes(captured_ / "errors")};
   }
 
+  // Waits until the program and all that it started have ended.
+  CommandResult WaitForAll() {
+    char byte;
+    while (::read(any_runs_, &byte, 1) != 0) {
+    }
+    return Wait();
+  }
+
  private:
+  // All processes inherit it; when the last one has ended, the other end of the pipe is at its end.
+  static constexpr int kHeldByAll = 8;
+
   void Redirect(posix_spawn_file_actions_t* actions, int descriptor, const std::string& name) {
     const std::string file = (captured_ / name).string();
     posix_spawn_file_actions_addopen(actions, descriptor, file.c_str(),
@@ -67,6 +85,7 @@ class BackgroundCommand {
 
   TemporaryFolder captured_;
   pid_t process_ = 0;
+  int any_runs_ = -1;
 };
 
 }  // namespace soslam
