@@ -33,6 +33,10 @@ constexpr const char* kModels = "sparse";
 
 constexpr int kBlockSize = 10;  // images per block of exhaustive matching
 
+// Observations of a point with a larger error are left out. With COLMAP's own bound, 4, enough
+// wrong matches remain to bend an estimated focal length by more than 1 %.
+constexpr const char* kMaxReprojectionErrorPx = "1.5";
+
 // Last number in a line; 0 without one.
 int LastNumber(const std::string& line) {
   const size_t end = line.find_last_of("0123456789");
@@ -190,6 +194,9 @@ std::vector<std::string> MapperWords(const ColmapJob& job, const fs::path& works
     WriteGivenModel(job, workspace / "given");
     words.insert(words.end(),
                  {"--input_path", (workspace / "given").string(), "--clear_points", "1"});
+  }
+  if (!poses_are_given) {
+    words.insert(words.end(), {"--Mapper.filter_max_reproj_error", kMaxReprojectionErrorPx});
   }
   if (!job.camera_is_fixed) return words;
   // Images whose camera has a larger coefficient of distortion would be left out.
