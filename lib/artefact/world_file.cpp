@@ -2,7 +2,6 @@
 #include "artefact/world_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "artefact/model_json.h"
@@ -24,22 +23,23 @@ json UpToJson(const GroundEstimate& estimate) {
           {"angle_to_cameras_deg", kDegPerRad * estimate.attitude_tilt}};
 }
 
-json ScaleToJson(const GroundEstimate& estimate) {
-  if (!estimate.scale) return {};
+json ScaleToJson(const GroundEstimate& estimate, const std::vector<Finding>& findings) {
+  const auto scale = WorldScaleOf(estimate, findings);
+  if (!scale) return {};
   std::set<std::string> labels;
   for (const GroundObject& object : estimate.objects) {
-    if (object.agreement >= 0.5) labels.insert(object.label);
+    if (object.AgreesWithScale()) labels.insert(object.label);
   }
-  const ScalePosterior& scale = *estimate.scale;
-  return {{"metres_per_unit", std::exp(scale.log_scale)},
-          {"log_sigma", scale.log_sigma},
-          {"interval_95", {std::exp(scale.low), std::exp(scale.high)}},
-          {"found_by", estimate.scale_found_by},
-          {"objects", estimate.AgreeingObjects()},
+  return {{"metres_per_unit", scale->metres_per_unit},
+          {"log_sigma", scale->log_sigma},
+          {"interval_95", {scale->low, scale->high}},
+          {"found_by", scale->found_by},
+          {"objects", scale->objects},
+          {"contradicted_by", scale->contradicted_by},
           {"independent_objects", estimate.independent_objects},
           {"labels", labels},
-          {"misfit", scale.misfit},
-          {"other_scales_probability", scale.second_mode_share}};
+          {"misfit", estimate.scale->misfit},
+          {"other_scales_probability", estimate.scale->second_mode_share}};
 }
 
 json ObjectToJson(const GroundObject& object) {
@@ -64,7 +64,7 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
   json body = {
       {"dataset", input.name},
       {"up", UpToJson(estimate)},
-      {"scale", ScaleToJson(estimate)},
+      {"scale", ScaleToJson(estimate, info.findings)},
       {"output_from_input",
        {{"scale", estimate.output_from_input.scale},
         {"rotation_xyzw", std::vector<double>(rotation.coeffs().begin(), rotation.coeffs().end())},
@@ -85,6 +85,19 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
   for (const GroundObject& object : estimate.objects)
     body["objects"].push_back(ObjectToJson(object));
   WriteArtefact(path, "world", info, std::move(body));
+}
+
+std::optional<WorldScale> ScaleOfWorld(const json& world) {
+  const json& scale = world.at("scale");
+  if (scale.is_null()) return std::nullopt;
+  const auto& interval = scale.at("interval_95");
+  return WorldScale{scale.at("metres_per_unit").get<double>(),
+                    scale.at("log_sigma").get<double>(),
+                    interval.at(0).get<double>(),
+                    interval.at(1).get<double>(),
+                    scale.at("found_by").get<std::vector<std::string>>(),
+                    scale.at("objects").get<int>(),
+                    scale.value("contradicted_by", std::vector<std::string>())};
 }
 
 }  // namespace soslam

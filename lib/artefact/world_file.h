@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "artefact/json_file.h"
 #include "ground/estimate_ground.h"
+#include "ground/world_scale.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -12,5 +15,8 @@ namespace soslam {
 // Writes world.json (kind "world", schemas/world.schema.json). Errors as WriteArtefact.
 void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimate,
                 const Sequence& input, const ArtefactInfo& info);
+
+// The scale of a world.json that was read; none where it is unknown.
+std::optional<WorldScale> ScaleOfWorld(const nlohmann::json& world);
 
 }  // namespace soslam

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <sstream>
-#include <vector>
 
 namespace soslam {
 namespace {
@@ -72,6 +71,18 @@ std::string Wrapped(const std::string& text, size_t width, size_t indent) {
     }
   }
   return wrapped;
+}
+
+std::string FirstOf(const std::vector<std::string>& names, size_t most) {
+  const size_t count = std::min(most, names.size());
+  std::string text = fmt::format(
+      "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(count), ", "));
+  if (names.size() > count) text += fmt::format(" and {} more", names.size() - count);
+  return text;
+}
+
+std::string Counted(size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 std::string CountsText(const std::map<std::string, int>& counts) {

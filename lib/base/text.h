@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 
@@ -22,6 +23,12 @@ size_t WidthOf(const std::string& text);
 // The text with each of its lines broken at spaces to at most `width` characters, except for longer
 // words; lines after the first are indented.
 std::string Wrapped(const std::string& text, size_t width, size_t indent = 0);
+
+// "a.jpg, b.jpg, c.jpg and 4 more", at most `most` of them by name.
+std::string FirstOf(const std::vector<std::string>& names, size_t most = 3);
+
+// "1 object", "2 objects"
+std::string Counted(size_t count, const char* what);
 
 // "near_border 7, duplicate 2", in the order of names.
 std::string CountsText(const std::map<std::string, int>& counts);

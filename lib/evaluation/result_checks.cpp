@@ -236,12 +236,14 @@ std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHoldi
   for (const TriedHolding& tried : holdings) {
     ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.holding), tried.probability));
   }
-  return {{"up_direction", Severity::kWarning,
-           fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
-                       fmt::join(ways, ", ")),
-           "one way to hold them that explains the boxes much better than others",
-           "few objects, or cameras that were rolled or look down",
-           "give planes.json where up is known, or images that show vertical edges"}};
+  return {
+      {"up_direction", Severity::kWarning,
+       fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
+                   fmt::join(ways, ", ")),
+       "one way to hold them that explains the boxes much better than others",
+       "few objects, or cameras that were rolled or look down",
+       "take images with the camera held level that show upright edges, such as door frames; or "
+       "give planes.json, where up in the world of the poses is known"}};
 }
 
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {

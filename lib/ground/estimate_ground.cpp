@@ -118,7 +118,7 @@ class Estimation {
   int planes_of_points = 0;
   std::vector<MeasuredObject> objects;
   std::optional<ScalePosterior> scale, scale_of_objects;
-  std::vector<std::string> scale_found_by;
+  std::vector<KnownScale> known_scales;
 
  private:
   void FindAttitude(const std::vector<SegmentView>& views) {
@@ -173,15 +173,15 @@ class Estimation {
     for (size_t i = 0; i < objects.size(); ++i) objects[i].evidence.weight = evidence[i].weight;
     std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
     scale_of_objects = EstimateScale(evidence, {});
-    scale_found_by.clear();
-    scale = EstimateScale(evidence, Known());
+    known_scales = Known();
+    scale = EstimateScale(evidence, known_scales);
   }
 
-  std::vector<KnownScale> Known() {
+  std::vector<KnownScale> Known() const {
     std::vector<KnownScale> known;
     if (options_.scale > 0.0) {
-      known.push_back({std::log(options_.scale * units_per_input), options_.scale_log_sigma});
-      scale_found_by.emplace_back("scale");
+      known.push_back(
+          {std::log(options_.scale * units_per_input), options_.scale_log_sigma, "scale"});
     }
     if (options_.camera_height_m > 0.0 && on_lowest_plane_) {
       std::vector<double> heights;
@@ -191,9 +191,8 @@ class Estimation {
       }
       const double height = Median(std::move(heights));
       if (height > 0.0) {
-        known.push_back(
-            {std::log(options_.camera_height_m / height), options_.camera_height_log_sigma});
-        scale_found_by.emplace_back("camera_height_m");
+        known.push_back({std::log(options_.camera_height_m / height),
+                         options_.camera_height_log_sigma, "camera_height_m"});
       }
     }
     return known;
@@ -354,7 +353,8 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   if (estimation.scale_of_objects) {
     result.scale_of_objects = Shifted(*estimation.scale_of_objects, -log_units);
   }
-  result.scale_found_by = estimation.scale_found_by;
+  result.known_scales = estimation.known_scales;
+  for (KnownScale& known : result.known_scales) known.log_scale -= log_units;
   result.holding_of_boxes = of_cameras.holding;
   result.points = static_cast<int>(ground_points.size());
   result.planes_of_points = estimation.planes_of_points;
@@ -366,12 +366,12 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
     result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale)));
     result.independent_objects += result.objects.back().weight * result.objects.back().agreement;
   }
-  if (result.AgreeingObjects() > 0) {
-    result.scale_found_by.insert(result.scale_found_by.begin(), "objects");
-  }
   return result;
 }
 
+// The priors of tilt and height leave out their correlation: the height is that in the middle of
+// the plane's points, about which a least squares plane turns independently of how it rises. What
+// is left, from points of different weights, is below 0.1.
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
   Sequence result = Transformed(estimate.output_from_input, sequence);
   result.odometry_world = OdometryWorld::kOwnWithScale;

@@ -29,6 +29,8 @@ struct GroundObject {
   std::optional<double> log_sigma;
   double weight = 0.0;     // below 1 where its height is correlated with that of others
   double agreement = 0.0;  // probability that its height is right
+
+  bool AgreesWithScale() const { return agreement >= 0.5; }
 };
 
 // Up, scale and support planes of a world that has neither.
@@ -42,19 +44,18 @@ struct GroundEstimate {
   CameraHolding holding_of_boxes = CameraHolding::kLevel;  // where planes do not contradict it
   bool verticals = false;                                  // vertical edges were used
   std::optional<ScalePosterior> scale;                     // of metres per unit of the input
-  std::vector<std::string> scale_found_by;         // "objects", and the options that it is known by
-  std::optional<ScalePosterior> scale_of_objects;  // without `scale` and `camera_height_m`
-  double independent_objects = 0.0;                // sum of weight times agreement
-  std::vector<EstimatedPlane> planes;              // of the output
+  std::vector<KnownScale> known_scales;                    // by the options, of the same unit
+  std::optional<ScalePosterior> scale_of_objects;          // without `scale` and `camera_height_m`
+  double independent_objects = 0.0;                        // sum of weight times agreement
+  std::vector<EstimatedPlane> planes;                      // of the output
   std::vector<int> points_on_planes;
   int planes_of_points = 0;  // before planes without an object were dropped
   int points = 0;
   std::vector<GroundObject> objects;
 
-  // How many objects have the height of their label at the scale.
+  // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {
-    return static_cast<int>(std::ranges::count_if(
-        objects, [](const GroundObject& object) { return object.agreement >= 0.5; }));
+    return static_cast<int>(std::ranges::count_if(objects, &GroundObject::AgreesWithScale));
   }
 };
 

@@ -2,21 +2,21 @@
 #include "ground/ground_checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "geometry/angles.h"
+#include "ground/world_scale.h"
 
 namespace soslam {
 namespace {
 
 constexpr const char* kGiveScale =
-    "give scale or camera_height_m; lengths are only as good as the scale";
-
-std::string InPercent(const ScalePosterior& scale) {
-  return fmt::format("{:.0f} %", 100.0 * std::expm1(0.5 * (scale.high - scale.low)));
-}
+    "give scale or camera_height_m (SCALE or CAMERA_HEIGHT of make map); lengths are only as good "
+    "as the scale";
 
 void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kUncertain = 0.25;  // of the logarithm
@@ -32,8 +32,12 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
   if (estimate.scale->log_sigma < kUncertain) return;
   findings->push_back(
       {"scale_uncertain", Severity::kWarning,
-       fmt::format("the scale is known to +- {} (95 %), from {:.1f} independent objects",
-                   InPercent(*estimate.scale), estimate.independent_objects),
+       fmt::format(
+           "the scale is known to +- {:.0f} % (95 %), from {} that count as {:.1f}, as heights of "
+           "one label are alike",
+           HalfIntervalPercent(*WorldScaleOf(estimate, {})),
+           Counted(static_cast<size_t>(estimate.AgreeingObjects()), "object"),
+           estimate.independent_objects),
        fmt::format("a standard deviation below {:.0f} %", 100.0 * kUncertain),
        "too few objects whose labels have heights, or heights that vary much", kGiveScale});
 }
@@ -52,7 +56,7 @@ void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* f
     return;
   }
   findings->push_back(
-      {"scale_contradicted", Severity::kWarning,
+      {kObjectsCheck, Severity::kWarning,
        fmt::format("{} of {} objects agree on a scale; their heights vary {:.1f} times as much as "
                    "those of their labels; another scale has a probability of {:.0f} %",
                    agreeing, scale.agreement.size(), std::sqrt(scale.misfit),
@@ -64,20 +68,27 @@ void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* f
 // Known values against the heights of objects.
 void CheckKnownScale(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kLimit = 3.0;  // standard deviations
-  if (!estimate.scale || !estimate.scale_of_objects) return;
-  const double difference = estimate.scale->log_scale - estimate.scale_of_objects->log_scale;
-  if (std::abs(difference) < kLimit * estimate.scale_of_objects->log_sigma) return;
+  if (!estimate.scale_of_objects) return;
+  const ScalePosterior& objects = *estimate.scale_of_objects;
+  std::vector<std::string> contradicted;
+  for (const KnownScale& known : estimate.known_scales) {
+    const double difference = known.log_scale - objects.log_scale;
+    const double sigma = std::hypot(known.log_sigma, objects.log_sigma);
+    if (std::abs(difference) < kLimit * sigma) continue;
+    contradicted.push_back(fmt::format("{} makes objects {:.2f} times as high as their labels",
+                                       known.setting, std::exp(difference)));
+  }
+  if (contradicted.empty()) return;
   findings->push_back(
-      {"scale_of_objects_differs", Severity::kWarning,
-       fmt::format("objects are {:.2f} times as high as their labels at the scale that scale and "
-                   "camera_height_m give",
-                   std::exp(difference)),
-       fmt::format("a factor within {} standard deviations of the objects' {:.0f} %", kLimit,
-                   100.0 * estimate.scale_of_objects->log_sigma),
-       "scale or camera_height_m in another unit, a floor that is not seen, so that the lowest "
-       "plane "
-       "is a table top, or wrong labels",
-       "check scale and camera_height_m, or leave them away"});
+      {kKnownScaleCheck, Severity::kWarning,
+       fmt::format("{}; the scale is {:.2f} times that of the objects alone",
+                   fmt::join(contradicted, "; "),
+                   std::exp(estimate.scale->log_scale - objects.log_scale)),
+       fmt::format("1, within {} standard deviations of both; that of the objects is {:.0f} %",
+                   kLimit, 100.0 * objects.log_sigma),
+       "a value in another unit; a floor that is not seen, so that camera_height_m was measured "
+       "from the floor, and the lowest plane of points is a table top; or wrong labels",
+       "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave them out"});
 }
 
 // A wrong up direction has few objects on its planes.
@@ -99,24 +110,46 @@ void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings
                        "look at the map from the side; more images of the ground"});
 }
 
+std::string HoldingInWords(CameraHolding holding) {
+  switch (holding) {
+    case CameraHolding::kRolled90:
+      return "turned clockwise by a quarter turn";
+    case CameraHolding::kRolled180:
+      return "upside down";
+    case CameraHolding::kRolled270:
+      return "turned anticlockwise by a quarter turn";
+    case CameraHolding::kLookingDown:
+    case CameraHolding::kLookingDownRolled90:
+      return "looking straight down";
+    default:
+      return "level, as is usual";
+  }
+}
+
 void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   const CameraHolding holding = estimate.attitude.holding;
   if (holding == estimate.holding_of_boxes) return;
   findings->push_back(
       {"camera_holding_of_planes", Severity::kWarning,
-       fmt::format("by their boxes cameras are held {}; up is that of cameras held {}, as then at "
-                   "least twice as many objects stand on planes, of twice as many points",
-                   NameOf(estimate.holding_of_boxes), NameOf(holding)),
-       "one way to hold cameras that explains boxes and planes",
-       "cameras that were turned in many ways, or look down",
-       "look at the map from the side; images with the camera held level"});
+       fmt::format("which way is up is not clear: objects look as if the camera was held {}, but "
+                   "flat surfaces with objects on them are found only if it was held {}, which is "
+                   "assumed. If that is wrong, the map lies on its side or is upside down, and "
+                   "heights and scale are wrong with it",
+                   HoldingInWords(estimate.holding_of_boxes), HoldingInWords(holding)),
+       "objects and surfaces that agree on which way is up",
+       "photos that were turned in different ways or look steeply down, few objects, or surfaces "
+       "without texture",
+       "see in the map from the side whether objects stand upright. If not, take photos with the "
+       "camera always held level, looking ahead, with more of the floor or table and of upright "
+       "edges in them, such as door frames and table legs"});
 }
 
 void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
                        std::vector<Finding>* findings) {
   constexpr const char* kName = "camera_height_m";
   if (options.camera_height_m <= 0.0 ||
-      std::ranges::find(estimate.scale_found_by, kName) != estimate.scale_found_by.end()) {
+      std::ranges::find(estimate.known_scales, kName, &KnownScale::setting) !=
+          estimate.known_scales.end()) {
     return;
   }
   findings->push_back(
@@ -143,6 +176,7 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
                                     estimate.planes_of_points, estimate.points),
                         "a floor or a table top with objects on it",
                         "surfaces without texture have no points",
+                        "take photos that show more of the floor or table around the objects, or "
                         "let soslam-planes estimate the planes from boxes"});
   }
   if (kDegPerRad * estimate.tilt_sigma > kUncertainUpDeg) {

@@ -27,6 +27,7 @@ struct ScaleEvidence {
 struct KnownScale {
   double log_scale;
   double log_sigma;
+  std::string setting = {};  // that it is known by
 };
 
 // Probability distribution of the logarithm of the scale.

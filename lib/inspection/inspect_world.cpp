@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "artefact/json_file.h"
+#include "artefact/world_file.h"
+#include "base/text.h"
 #include "inspection/inspection.h"
 
 namespace soslam {
@@ -14,39 +16,79 @@ namespace {
 
 using nlohmann::json;
 
-std::string ScaleInWords(const json& scale) {
-  if (scale.is_null()) return "unknown";
-  const double low = scale.at("interval_95").at(0).get<double>();
-  const double high = scale.at("interval_95").at(1).get<double>();
-  return fmt::format("{:.4g} m per unit, {:.4g} to {:.4g} (95 %, +- {:.0f} %), by {}",
-                     scale.at("metres_per_unit").get<double>(), low, high,
-                     100.0 * (std::sqrt(high / low) - 1.0),
-                     fmt::join(scale.at("found_by").get<std::vector<std::string>>(), ", "));
+std::string UpInWords(const json& up) {
+  return fmt::format(
+      "z; to {:.2f} degrees (one standard deviation), by {}", up.at("sigma_deg").get<double>(),
+      up.at("found_by") == "planes" ? "horizontal planes of points"
+                                    : "the way cameras are held, as no support plane was found");
+}
+
+// What the scale is, what it rests on, and what contradicts it.
+std::vector<Fact> ScaleFacts(const json& world) {
+  const auto scale = ScaleOfWorld(world);
+  if (!scale) {
+    return {{"scale", "unknown: nothing tells it; lengths have the unit of the input's world"}};
+  }
+  std::string sources = SourcesInWords(*scale);
+  const json& labels = world.at("scale").at("labels");
+  if (!labels.empty()) {
+    sources += fmt::format(" ({})", fmt::join(labels.get<std::vector<std::string>>(), ", "));
+  }
+  std::vector<Fact> facts = {
+      {"scale",
+       fmt::format("1 unit of the input's world is {:.4g} m, {:.4g} to {:.4g} m (95 %, "
+                   "+- {:.0f} %)",
+                   scale->metres_per_unit, scale->low, scale->high, HalfIntervalPercent(*scale))},
+      {"scale rests on", sources}};
+  const std::string contradictions = ContradictionsInWords(*scale);
+  if (!contradictions.empty()) {
+    facts.push_back(
+        {"scale uncertain", contradictions + "; it may be wrong by more than the interval says"});
+  }
+  return facts;
+}
+
+// The scale of an object by its label alone is log-normal.
+std::vector<Value> RowOfObject(const json& object) {
+  Value scale, sigma;
+  if (object.at("log_scale").is_number()) {
+    scale = std::exp(object.at("log_scale").get<double>());
+    sigma = 100.0 * object.at("log_sigma").get<double>();
+  }
+  return {object.at("label"),
+          object.at("boxes"),
+          object.at("plane"),
+          object.at("height_m"),
+          scale,
+          sigma,
+          object.at("weight"),
+          100.0 * object.at("agreement").get<double>()};
 }
 
 }  // namespace
 
 Inspection InspectWorld(const std::filesystem::path& file) {
   return ReadArtefactAs(file, "world", [](const json& document) {
-    const json& up = document.at("up");
     Inspection inspection;
-    inspection.facts = {
-        {"dataset", document.at("dataset")},
-        {"up", fmt::format("sigma {:.2f} deg, by {}", up.at("sigma_deg").get<double>(),
-                           up.at("found_by").get<std::string>())},
-        {"scale", ScaleInWords(document.at("scale"))},
+    inspection.facts = {{"dataset", document.at("dataset")}, {"up", UpInWords(document.at("up"))}};
+    for (const Fact& fact : ScaleFacts(document)) inspection.facts.push_back(fact);
+    inspection.facts.push_back(
         {"support planes",
-         fmt::format("{} of {} horizontal planes in {} points", document.at("planes").size(),
-                     document.at("planes_of_points").get<int>(),
-                     document.at("points").get<int>())}};
-    inspection.table.columns = {{"label", ""},     {"boxes", ""},        {"plane", ""},
-                                {"height", "m"},   {"log_scale", "", 3}, {"log_sigma", "", 3},
-                                {"weight", "", 2}, {"agreement", "", 2}};
+         fmt::format("{} with objects on them, of {} horizontal ones in {} points",
+                     document.at("planes").size(), document.at("planes_of_points").get<int>(),
+                     document.at("points").get<int>())});
+    inspection.facts.push_back(
+        {"columns",
+         "one row per group of boxes that are taken for one object. plane: that it stands on, none "
+         "at a free height. height: in the map. scale: metres per unit if its height is that of "
+         "its label; sigma: standard deviation of that. weight: below 1 for several of one label, "
+         "which may be of one model. agrees: probability that its height is right at the scale of "
+         "the map; objects below 50 % do not count"});
+    inspection.table.columns = {{"label", ""},     {"boxes", ""},     {"plane", ""},
+                                {"height", "m"},   {"scale", "m", 3}, {"sigma", "%", 0},
+                                {"weight", "", 2}, {"agrees", "%", 0}};
     for (const json& object : document.at("objects")) {
-      inspection.table.rows.push_back({object.at("label"), object.at("boxes"), object.at("plane"),
-                                       object.at("height_m"), object.at("log_scale"),
-                                       object.at("log_sigma"), object.at("weight"),
-                                       object.at("agreement")});
+      inspection.table.rows.push_back(RowOfObject(object));
     }
     return inspection;
   });

@@ -11,6 +11,7 @@
 #include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "inspection/projection.h"
 #include "report/map_words.h"
 #include "report/not_placed.h"
@@ -153,6 +154,9 @@ class MapOfVariant {
                     Counted(sequence_.frames.size(), "image"));
     if (!scale_.sentence.empty()) html += " " + HtmlText(scale_.sentence);
     html += "</p>\n";
+    if (!scale_.warning.empty()) {
+      html += fmt::format("<p class=\"warning\">{}</p>\n", HtmlText(scale_.warning));
+    }
     if (!placed_.empty()) {
       html += PlanHtml(entries) +
               "<h3>Objects</h3>\n<p class=\"faint\">Width × depth × height, and by how "

@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "artefact/world_file.h"
+#include "base/text.h"
 #include "report/page_geometry.h"
 #include "report/plan_view.h"
 
@@ -16,28 +18,7 @@ namespace soslam {
 
 using nlohmann::json;
 
-std::string Counted(size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 double HalfInterval95(double log_sigma) { return std::expm1(1.96 * log_sigma); }
-
-namespace {
-
-std::vector<std::string> SourcesOfScale(const json& scale) {
-  std::vector<std::string> sources;
-  for (const json& source : scale.at("found_by")) {
-    if (source == "objects") {
-      sources.push_back("the usual heights of " +
-                        Counted(scale.at("objects").get<size_t>(), "object"));
-    } else {
-      sources.emplace_back(source == "scale" ? "the scale given" : "the camera's height given");
-    }
-  }
-  return sources;
-}
-
-}  // namespace
 
 ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
   constexpr const char* kNoUnit =
@@ -48,16 +29,17 @@ ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
     if (!scale.in_metres) scale.sentence = kNoUnit;
     return scale;
   }
-  const json& found = world.at("scale");
-  scale.in_metres = !found.is_null();
+  const auto found = ScaleOfWorld(world);
+  scale.in_metres = found.has_value();
   scale.sentence = kNoUnit;
-  if (scale.in_metres) {
-    scale.log_sigma = found.at("log_sigma").get<double>();
-    const auto low = found.at("interval_95").at(0).get<double>();
-    const auto high = found.at("interval_95").at(1).get<double>();
-    scale.sentence =
-        fmt::format("Scale ± {:.0f} % (95 %), from {}.", 100.0 * (std::sqrt(high / low) - 1.0),
-                    fmt::join(SourcesOfScale(found), " and "));
+  if (found) {
+    scale.log_sigma = found->log_sigma;
+    scale.sentence = fmt::format("Scale ± {:.0f} % (95 %), from {}.", HalfIntervalPercent(*found),
+                                 SourcesInWords(*found));
+    const std::string contradictions = ContradictionsInWords(*found);
+    if (!contradictions.empty()) {
+      scale.warning = fmt::format("The scale may be wrong by more than that: {}.", contradictions);
+    }
   }
   scale.sentence += fmt::format(" Up ± {:.1f}° (one standard deviation).",
                                 world.at("up").at("sigma_deg").get<double>());
@@ -94,12 +76,15 @@ std::string LabelsInWords(const Object& object) {
   for (const auto& [label, probability] : object.labels) {
     const bool is_own = label == object.label;
     if (is_own ? probability >= kCertain : probability < kLeast) continue;
-    labels.push_back(fmt::format("{} {:.0f}\u00a0%", label, 100.0 * probability));
+    labels.insert(is_own ? labels.begin() : labels.end(),
+                  fmt::format("{} {:.0f}\u00a0%", label, 100.0 * probability));
   }
-  const bool has_own = std::ranges::find(object.labels, object.label, &LabelProbability::label) !=
-                       object.labels.end();
-  return fmt::format("{}{}", fmt::join(labels, ", or "),
-                     labels.empty() || has_own ? "" : "; detected as " + object.label);
+  std::string words = fmt::format("{}", fmt::join(labels, ", or "));
+  if (!object.labels.empty() && object.labels.front().label != object.label) {
+    words += fmt::format("; detected as {}, but its size is rather that of {}", object.label,
+                         object.labels.front().label);
+  }
+  return words;
 }
 
 namespace {

@@ -11,14 +11,12 @@ namespace soslam {
 
 // What a map says of an object, in words.
 
-// "1 object", "2 objects"
-std::string Counted(size_t count, const char* what);
-
 // The scale of a map's world.
 struct ScaleOfMap {
   bool in_metres = true;
-  double log_sigma = 0.0;  // standard deviation of the logarithm of the scale; 0: exact
-  std::string sentence;    // empty where scale and up are given
+  double log_sigma = 0.0;    // standard deviation of the logarithm of the scale; 0: exact
+  std::string sentence;      // empty where scale and up are given
+  std::string warning = {};  // what contradicts the scale, if anything
 };
 
 // `world`: world.json, or null without it.
@@ -32,8 +30,9 @@ double HalfInterval95(double log_sigma);
 // covariance of a map is for the scale that it has; the error of the scale is independent.
 std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale);
 
-// "chair 62 %, or sofa 21 %": the most probable first, alternatives of at least 10 %; empty where
-// the label is certain.
+// "chair 62 %, or sofa 21 %": its label first, then alternatives of at least 10 %; empty where the
+// label is certain. An object has a label that a box has; where another one is more probable by its
+// size, this is said.
 std::string LabelsInWords(const Object& object);
 
 // The segment in which an object was detected.

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "base/table.h"
+#include "base/text.h"
 #include "report/dataset_tables.h"
 #include "report/map_words.h"
 #include "report/page_html.h"

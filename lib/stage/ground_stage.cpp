@@ -4,34 +4,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "artefact/points_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "artefact/world_file.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
 #include "ground/estimate_ground.h"
 #include "ground/ground_checks.h"
+#include "ground/world_scale.h"
 #include "planes/scene_axis.h"
 #include "stage/segment_views.h"
 
 namespace soslam {
 namespace {
 
-void PrintSummary(const Sequence& sequence, const GroundEstimate& estimate) {
-  const std::string scale =
-      estimate.scale
-          ? fmt::format("scale +- {:.0f} % from {} objects",
-                        100.0 * std::expm1(0.5 * (estimate.scale->high - estimate.scale->low)),
-                        estimate.scale->agreement.size())
-          : "unknown scale";
-  fmt::print("{}: up +- {:.1f} degrees, {}, {} support planes\n", sequence.name,
-             kDegPerRad * estimate.tilt_sigma, scale, estimate.planes.size());
+std::string ScaleInWords(const std::optional<WorldScale>& scale) {
+  if (!scale) return "unknown scale";
+  const std::string contradictions = ContradictionsInWords(*scale);
+  return fmt::format("scale +- {:.0f} % (95 %) from {}{}{}", HalfIntervalPercent(*scale),
+                     SourcesInWords(*scale),
+                     contradictions.empty() ? "" : ", uncertain: ", contradictions);
+}
+
+void PrintSummary(const Sequence& sequence, const GroundEstimate& estimate,
+                  const std::optional<WorldScale>& scale) {
+  fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
+             kDegPerRad * estimate.tilt_sigma, ScaleInWords(scale),
+             Counted(estimate.planes.size(), "support plane"));
 }
 
 }  // namespace
@@ -68,7 +74,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   }
   SetSceneAxes(views, options.view_correlation_deg * kRadPerDeg, &grounded);
   WriteSequence(files.at("output"), grounded, info);
-  PrintSummary(sequence, estimate);
+  PrintSummary(sequence, estimate, WorldScaleOf(estimate, info.findings));
 }
 
 }  // namespace soslam

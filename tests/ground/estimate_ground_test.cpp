@@ -11,13 +11,16 @@
 #include "geometry/angles.h"
 #include "ground/ground_checks.h"
 #include "ground/group_boxes.h"
+#include "ground/world_scale.h"
 #include "support/prior_scene.h"
 
 namespace soslam {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::Field;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
@@ -130,9 +133,50 @@ TEST(EstimateGroundTest, KnownValuesNarrowTheScale) {
   ASSERT_TRUE(with_height.scale);
   EXPECT_NEAR(with_height.scale->log_scale, std::log(scene.metres_per_unit), 0.03);
   EXPECT_LT(with_height.scale->log_sigma, 0.031);
-  options.camera_height_m *= 100.0;  // centimetres
-  EXPECT_THAT(CheckGround(Estimate(scene.sequence, scene.points, options), options),
-              Contains(Field(&Finding::check, "scale_of_objects_differs")));
+  EXPECT_THAT(CheckGround(with_height, options),
+              Not(Contains(Field(&Finding::check, kKnownScaleCheck))));
+}
+
+// Whether the objects overrule it or not.
+TEST(EstimateGroundTest, AKnownValueThatObjectsContradictIsAFinding) {
+  const PriorScene scene = SceneOf(3);
+  for (const double factor : {0.01, 0.4, 2.5, 100.0}) {
+    for (const double log_sigma : {0.02, 0.1}) {
+      GroundOptions options;
+      options.camera_height_m = factor * scene.median_camera_height_m;
+      options.camera_height_log_sigma = log_sigma;
+      const GroundEstimate estimate = Estimate(scene.sequence, scene.points, options);
+      const auto findings = CheckGround(estimate, options);
+      EXPECT_THAT(findings, Contains(Field(&Finding::check, kKnownScaleCheck)))
+          << factor << " " << log_sigma;
+      const auto scale = WorldScaleOf(estimate, findings);
+      EXPECT_THAT(scale->contradicted_by, Contains(kKnownScaleCheck));
+      EXPECT_THAT(ContradictionsInWords(*scale), HasSubstr("the camera's height given"));
+    }
+  }
+}
+
+// A plane of the output has priors of its tilt and of its height at the middle of its points. They
+// are independent, and do not depend on where the origin of the input's world is.
+TEST(EstimateGroundTest, TiltAndHeightOfPlanesAreIndependentWhereverTheOriginIs) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const PriorScene scene = SceneOf(seed);
+    const Similarity far{1.0, {Eigen::Quaterniond::Identity(), {5e3, -2e3, 4e3}}};
+    const GroundEstimate one = Estimate(scene.sequence, scene.points);
+    const GroundEstimate two =
+        Estimate(Transformed(far, scene.sequence), Transformed(far, scene.points));
+    ASSERT_EQ(one.planes.size(), two.planes.size());
+    for (size_t i = 0; i < one.planes.size(); ++i) {
+      const Eigen::Matrix3d& covariance = *one.planes[i].covariance;
+      EXPECT_LT((*two.planes[i].covariance - covariance).norm(), 1e-4 * covariance.norm());
+      EXPECT_LT((two.planes[i].point_in_world - one.planes[i].point_in_world).norm(), 1e-3);
+      for (int turn = 0; turn < 2; ++turn) {
+        const double correlation =
+            covariance(turn, 2) / std::sqrt(covariance(turn, turn) * covariance(2, 2));
+        EXPECT_LT(std::abs(correlation), 0.1) << seed << " " << i;
+      }
+    }
+  }
 }
 
 TEST(EstimateGroundTest, AScaleThatCannotBeToldIsAFinding) {
@@ -178,7 +222,8 @@ TEST(CheckGroundTest, AnotherWayToHoldCamerasThanThatOfTheBoxesIsAFinding) {
   GroundEstimate estimate;
   estimate.attitude.holding = CameraHolding::kRolled90;
   EXPECT_THAT(CheckGround(estimate, {}),
-              Contains(Field(&Finding::check, "camera_holding_of_planes")));
+              Contains(AllOf(Field(&Finding::check, "camera_holding_of_planes"),
+                             Field(&Finding::found, HasSubstr("turned clockwise")))));
   estimate.holding_of_boxes = CameraHolding::kRolled90;
   EXPECT_THAT(CheckGround(estimate, {}),
               Not(Contains(Field(&Finding::check, "camera_holding_of_planes"))));

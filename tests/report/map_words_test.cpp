@@ -15,8 +15,11 @@ using nlohmann::json;
 json World(const json& scale) { return {{"scale", scale}, {"up", {{"sigma_deg", 0.44}}}}; }
 
 json Scale(const json& found_by) {
-  return {
-      {"log_sigma", 0.05}, {"interval_95", {0.25, 0.36}}, {"found_by", found_by}, {"objects", 7}};
+  return {{"metres_per_unit", 0.3},
+          {"log_sigma", 0.05},
+          {"interval_95", {0.25, 0.36}},
+          {"found_by", found_by},
+          {"objects", 7}};
 }
 
 TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
@@ -24,11 +27,25 @@ TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
   EXPECT_TRUE(scale.in_metres);
   EXPECT_EQ(scale.log_sigma, 0.05);
   // 0.30 is the middle: from 0.25 to 0.36 is a factor of 1.2 to both sides.
-  EXPECT_EQ(scale.sentence,
-            "Scale ± 20 % (95 %), from the usual heights of 7 objects. Up ± 0.4° (one standard "
-            "deviation).");
+  EXPECT_EQ(
+      scale.sentence,
+      "Scale ± 20 % (95 %), from the usual heights of 7 detected things. Up ± 0.4° (one standard "
+      "deviation).");
   EXPECT_NE(ScaleFromWorld(World(Scale({"objects", "camera_height_m"})), {})
-                .sentence.find("of 7 objects and the camera's height given. Up"),
+                .sentence.find("of 7 detected things and the camera's height given. Up"),
+            std::string::npos);
+  EXPECT_EQ(scale.warning, "");
+}
+
+TEST(ScaleFromWorld, SaysWhatContradictsIt) {
+  json scale = Scale({"objects", "camera_height_m"});
+  scale["contradicted_by"] = {"scale_of_objects_differs"};
+  EXPECT_EQ(ScaleFromWorld(World(scale), {}).warning,
+            "The scale may be wrong by more than that: the heights of objects contradict the "
+            "camera's height given.");
+  scale = Scale({"objects"});
+  scale["contradicted_by"] = {"scale_contradicted"};
+  EXPECT_NE(ScaleFromWorld(World(scale), {}).warning.find("contradict one another"),
             std::string::npos);
 }
 
@@ -94,9 +111,13 @@ TEST(LabelsInWords, HasAlternativesOfATenthAndMore) {
   object.labels = {{"chair", 0.93}, {"stool", 0.07}};
   EXPECT_EQ(LabelsInWords(object), "chair 93\u00a0%");
   object.labels = {{"sofa", 0.5}, {"chair", 0.38}, {"bench", 0.12}};
-  EXPECT_EQ(LabelsInWords(object), "sofa 50\u00a0%, or chair 38\u00a0%, or bench 12\u00a0%");
+  EXPECT_EQ(LabelsInWords(object),
+            "chair 38\u00a0%, or sofa 50\u00a0%, or bench 12\u00a0%; detected as chair, but its "
+            "size is rather that of sofa");
   object.labels = {{"sofa", 0.8}, {"bench", 0.2}};  // its own has hardly any
-  EXPECT_EQ(LabelsInWords(object), "sofa 80\u00a0%, or bench 20\u00a0%; detected as chair");
+  EXPECT_EQ(LabelsInWords(object),
+            "sofa 80\u00a0%, or bench 20\u00a0%; detected as chair, but its size is rather that of "
+            "sofa");
 }
 
 // Three objects, the first on the floor, the second on a shelf, the third on a wall.

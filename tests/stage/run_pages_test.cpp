@@ -231,7 +231,6 @@ TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
   GroundEstimate estimate;
   estimate.tilt_sigma = 0.4 * kRadPerDeg;
   estimate.scale = estimate.scale_of_objects = scale;
-  estimate.scale_found_by = {"objects"};
   estimate.objects.assign(3, object);
   const auto section = [&] {
     WriteWorld(Folder("OursS") / "world.json", estimate, sequence_,
@@ -241,7 +240,7 @@ TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
     return html.substr(0, html.find("</section>"));
   };
   EXPECT_THAT(section(),
-              AllOf(HasSubstr("Scale ± 11 % (95 %), from the usual heights of 3 objects."),
+              AllOf(HasSubstr("Scale ± 11 % (95 %), from the usual heights of 3 detected things."),
                     HasSubstr("Up ± 0.4°"), HasSubstr("cm ("), HasSubstr(" m</text>")));
   estimate.scale.reset();
   EXPECT_THAT(section(), AllOf(HasSubstr("lengths have no unit"), HasSubstr("Up ± 0.4°"),
