@@ -22,6 +22,9 @@ void WriteReconstruction(const std::filesystem::path& path, const Reconstruction
                {"colmap", summary.colmap.empty() ? json() : json(summary.colmap)},
                {"poses", summary.poses_are_given ? "given" : "estimated"},
                {"camera", summary.camera_is_given ? "given" : "estimated"}};
+  if (!summary.images_without_pose.empty()) {
+    body["images_without_pose"] = summary.images_without_pose;
+  }
   for (const ReconstructionSummary::Component& component : summary.components) {
     body["components"].push_back({{"images", component.images}, {"points", component.points}});
   }
@@ -33,6 +36,7 @@ ReconstructionSummary ReadReconstruction(const std::filesystem::path& path) {
     ReconstructionSummary summary;
     document.at("images").get_to(summary.images);
     document.at("registered").get_to(summary.registered);
+    summary.images_without_pose = document.value("images_without_pose", std::vector<std::string>());
     document.at("points").get_to(summary.points);
     document.at("observations").get_to(summary.observations);
     for (const json& component : document.at("components")) {

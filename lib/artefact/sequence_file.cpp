@@ -359,6 +359,7 @@ Sequence SequenceFromJson(const json& json) {
   if (json.contains("rejected")) {  // since version 1.7
     sequence.rejected = RejectedFromJson(json["rejected"], frames);
   }
+  sequence.images_without_pose = json.value("images_without_pose", std::vector<std::string>());
   sequence.findings = FindingsFromJson(json);
   return sequence;
 }

@@ -164,6 +164,9 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
       {"rejected_detections", sequence.rejected_detections},
       {"true_objects", json::array()},
       {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]}};
+  if (!sequence.images_without_pose.empty()) {
+    body["images_without_pose"] = sequence.images_without_pose;
+  }
   if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
   if (sequence.image_distortion)
     body["image_distortion"] = DistortionCoefficients(*sequence.image_distortion);

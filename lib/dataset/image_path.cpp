@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 
 namespace soslam {
 namespace {
@@ -166,10 +167,14 @@ std::vector<std::optional<int>> RowsOfPoses(const std::vector<NamedPose>& poses,
     }
   }
   if (found.empty()) {
-    throw InputError(
-        fmt::format("{}: image '{}' is not listed, nor that of any other pose; expected names of "
-                    "the listed images",
-                    poses.front().place, poses.front().image));
+    std::vector<std::string> with_pose, listed;
+    for (const NamedPose& pose : poses) with_pose.push_back(pose.image);
+    for (const ListedImage& image : images) listed.push_back(image.image);
+    throw InputError(fmt::format(
+        "{}: none of the images with a pose ({}) is one of those that are listed ({}); expected "
+        "the same names, apart from folders and endings: are the poses of other images, or were "
+        "these renamed?",
+        poses.front().place, FirstOf(with_pose, 2), FirstOf(listed, 2)));
   }
   return rows;
 }

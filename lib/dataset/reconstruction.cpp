@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/text.h"
 #include "dataset/image_path.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
@@ -61,7 +62,10 @@ Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<List
   const auto rows = RowsOfPoses(poses, images);
   std::map<std::int64_t, std::pair<size_t, int>> frames;  // index in the model, and frame, by id
   for (size_t i = 0; i < rows.size(); ++i) {
-    if (!rows[i]) continue;
+    if (!rows[i]) {
+      reconstruction.unlisted.push_back(poses[i].image);
+      continue;
+    }
     reconstruction.world_from_camera[static_cast<size_t>(*rows[i])] = poses[i].world_from_camera;
     frames[model.images[i].id] = {i, *rows[i]};
   }
@@ -72,7 +76,8 @@ Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<List
   return reconstruction;
 }
 
-void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summary) {
+void Summarise(const Reconstruction& reconstruction, const std::vector<ListedImage>& images,
+               ReconstructionSummary* summary) {
   std::vector<double> errors, angles;
   summary->observations = 0;
   for (const MapPoint& point : reconstruction.points) {
@@ -83,22 +88,32 @@ void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summ
   summary->images = static_cast<int>(reconstruction.world_from_camera.size());
   summary->registered = static_cast<int>(std::ranges::count_if(
       reconstruction.world_from_camera, [](const auto& pose) { return pose.has_value(); }));
+  summary->images_without_pose.clear();
+  for (size_t i = 0; i < images.size(); ++i) {
+    if (reconstruction.world_from_camera[i]) continue;
+    summary->images_without_pose.push_back(images[i].image);
+  }
   summary->points = static_cast<int>(reconstruction.points.size());
   summary->median_reprojection_error_px = MedianOf(errors);
   summary->median_triangulation_angle_deg = MedianOf(angles);
 }
 
-std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary) {
+std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
+                                         const std::vector<std::string>& unlisted) {
   constexpr double kRegistered = 0.8;
   constexpr double kAngleDeg = 2.0;
   std::vector<Finding> findings;
   if (summary.registered < kRegistered * summary.images) {
-    findings.push_back({"images_registered", Severity::kWarning,
-                        fmt::format("{} of {} images are registered; the others have no pose",
-                                    summary.registered, summary.images),
-                        "80 % of the images at least",
-                        "images that are blurred, show little texture, or overlap too little",
-                        "take more images between those that are far apart, or give the poses"});
+    findings.push_back(
+        {"images_registered", Severity::kWarning,
+         fmt::format("{} of {} images are registered; the others have no pose: {}",
+                     summary.registered, summary.images, FirstOf(summary.images_without_pose)),
+         "80 % of the images at least",
+         unlisted.empty() ? "images that are blurred, show little texture, or overlap too little"
+                          : "images under other names than in the model, which has some that are "
+                            "not listed: " +
+                                FirstOf(unlisted),
+         "take more images between those that are far apart, or give the poses"});
   }
   if (summary.components.size() > 1) {
     const ReconstructionSummary::Component& second = summary.components[1];

@@ -16,6 +16,7 @@ namespace soslam {
 struct Reconstruction {
   std::vector<std::optional<Rigid3d>> world_from_camera;  // one per listed image
   std::vector<MapPoint> points;                           // sorted by COLMAP's id
+  std::vector<std::string> unlisted;                      // images of the model that are left out
 };
 
 // Assigns the images of a model to those of the list by name (FrameLookup). Images that are not
@@ -24,11 +25,14 @@ struct Reconstruction {
 // listed.
 Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images);
 
-// Numbers of images and points, and medians; the rest is left as it is.
-void Summarise(const Reconstruction& reconstruction, ReconstructionSummary* summary);
+// Numbers of images and points, images without a pose, and medians; the rest is left as it is.
+void Summarise(const Reconstruction& reconstruction, const std::vector<ListedImage>& images,
+               ReconstructionSummary* summary);
 
 // Finds fewer than 80 % of the images registered, more than one component, and a median
-// triangulation angle of less than 2 degrees where the poses are estimated.
-std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary);
+// triangulation angle of less than 2 degrees where the poses are estimated. `unlisted`: images of
+// the model that the dataset does not list.
+std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
+                                         const std::vector<std::string>& unlisted);
 
 }  // namespace soslam

@@ -8,6 +8,7 @@
 
 #include "artefact/points_file.h"
 #include "artefact/reconstruction_file.h"
+#include "base/text.h"
 #include "evaluation/statistics.h"
 #include "inspection/inspection.h"
 
@@ -65,6 +66,7 @@ Inspection InspectReconstruction(const std::filesystem::path& file) {
   const auto in_words = [](const std::optional<double>& value, const char* unit) {
     return value ? fmt::format("{:.2f} {}", *value, unit) : "unknown";
   };
+  constexpr size_t kMaxNames = 20;
   const auto source = [](bool is_given) { return is_given ? "given" : "estimated"; };
   Inspection inspection;
   inspection.facts = {
@@ -76,6 +78,9 @@ Inspection InspectReconstruction(const std::filesystem::path& file) {
       {"medians", fmt::format("reprojection error {}, triangulation angle {}",
                               in_words(summary.median_reprojection_error_px, "px"),
                               in_words(summary.median_triangulation_angle_deg, "degrees"))}};
+  if (!summary.images_without_pose.empty()) {
+    inspection.facts.push_back({"no pose", FirstOf(summary.images_without_pose, kMaxNames)});
+  }
   inspection.table.columns = {{"component", ""}, {"images", ""}, {"points", ""}};
   for (size_t i = 0; i < summary.components.size(); ++i) {
     inspection.table.rows.push_back(

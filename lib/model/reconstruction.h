@@ -16,6 +16,7 @@ struct ReconstructionSummary {
   };
   int images = 0;      // in the dataset's list
   int registered = 0;  // images with a pose
+  std::vector<std::string> images_without_pose = {};
   int points = 0;
   int observations = 0;
   std::vector<Component> components;                     // largest first; the first one is used

@@ -138,6 +138,8 @@ struct Sequence {
   std::vector<TruthInFrame> truth_in_frames = {};  // sorted by frame, then by object
   std::vector<IgnoredThings> ignored = {};
   OdometryWorld odometry_world = OdometryWorld::kOfTruth;
+  // Images to which the reconstruction of the poses gave none, by name.
+  std::vector<std::string> images_without_pose = {};
   // Findings on the data and on the stages so far.
   std::vector<Finding> findings = {};
 

@@ -10,6 +10,7 @@
 
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
+#include "artefact/reconstruction_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
@@ -30,16 +31,17 @@ namespace soslam {
 
 namespace {
 
-// Adds what soslam-reconstruct found when it made the poses of the dataset. Other programs have
-// files of that name as well.
-void AddFindingsOfReconstruction(const std::filesystem::path& folder, const ImportOptions& options,
-                                 Sequence* sequence, std::vector<std::filesystem::path>* inputs) {
+// Adds what soslam-reconstruct found when it made the poses of the dataset, and the images to which
+// it gave none. Other programs have files of that name as well.
+void AddReconstruction(const std::filesystem::path& folder, const ImportOptions& options,
+                       Sequence* sequence, std::vector<std::filesystem::path>* inputs) {
   const std::filesystem::path path = folder / "reconstruction.json";
   if (!Exists(path) || options.folder.trajectory_format != TrajectoryFormat::kTum) return;
   const nlohmann::json document = ParseJsonFile(path);
   if (!document.is_object() || !document.contains("artefact")) return;
   std::ranges::move(FindingsFromJson(ReadArtefact(path, "reconstruction")),
                     std::back_inserter(sequence->findings));
+  sequence->images_without_pose = ReadReconstruction(path).images_without_pose;
   sequence->findings = WorstFirst(std::move(sequence->findings));
   inputs->push_back(path);
 }
@@ -51,7 +53,7 @@ void RunImport(const ImportOptions& options, const StageFiles& files, int thread
   std::vector<std::filesystem::path> inputs;
   Sequence sequence = ImportDataset(folder, options, &inputs);
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
-  AddFindingsOfReconstruction(folder, options, &sequence, &inputs);
+  AddReconstruction(folder, options, &sequence, &inputs);
   ReportFindings("import", sequence.findings);
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,

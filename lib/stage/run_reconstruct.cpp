@@ -15,6 +15,7 @@
 #include "artefact/reconstruction_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "cli/command_line.h"
 #include "dataset/dataset_json.h"
 #include "dataset/image_path.h"
@@ -291,13 +292,14 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   CheckPoses(reconstruction, given);
   summary.poses_are_given = !given.poses.empty();
   summary.camera_is_given = given.camera_is_fixed;
-  Summarise(reconstruction, &summary);
+  Summarise(reconstruction, given.images, &summary);
   if (summary.points == 0) {
     throw NothingUsableError(
         fmt::format("{}: the model has no points; expected some: do the poses fit the images?",
                     dataset.string()));
   }
-  ArtefactInfo info{OptionsToJson(options), model.files, CheckReconstruction(summary)};
+  ArtefactInfo info{OptionsToJson(options), model.files,
+                    CheckReconstruction(summary, reconstruction.unlisted)};
   info.inputs.push_back(dataset / "rgb.txt");
   ReportFindings("reconstruct", info.findings);
   WriteAll(dataset, output, given, model, reconstruction, summary, info);
@@ -310,6 +312,14 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
       summary.components.size() > 1
           ? fmt::format("; {} images in a second component", summary.components[1].images)
           : "");
+  if (!summary.images_without_pose.empty()) {
+    fmt::print("{}: without a pose, and not used: {}\n", dataset.string(),
+               FirstOf(summary.images_without_pose));
+  }
+  if (!reconstruction.unlisted.empty()) {
+    fmt::print("{}: {} in the model, but not in rgb.txt: {}\n", dataset.string(),
+               Counted(reconstruction.unlisted.size(), "image"), FirstOf(reconstruction.unlisted));
+  }
 }
 
 }  // namespace soslam

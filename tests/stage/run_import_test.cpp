@@ -46,10 +46,42 @@ TEST_F(RunImportTest, PassesOnWhatTheReconstructionOfItsPosesFound) {
   info.findings = {{"no_baseline", Severity::kWarning, "found", "expected", "cause", "remedy"}};
   ReconstructionSummary summary;
   summary.components = {{4, 100}};
+  summary.images_without_pose = {"rgb/blurred.png"};
   WriteReconstruction(files.at("dataset") / "reconstruction.json", summary, info);
   RunImport({}, files, 1);
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(std::ranges::count(sequence.findings, "no_baseline", &Finding::check), 1);
+  EXPECT_THAT(sequence.images_without_pose, testing::ElementsAre("rgb/blurred.png"));
+}
+
+// Files that say less or something else than today's are read or refused, by name.
+TEST_F(RunImportTest, AReconstructionOfAnotherVersionIsReadOrNamed) {
+  ReconstructionSummary summary;
+  summary.components = {{4, 100}};
+  const std::filesystem::path path = files.at("dataset") / "reconstruction.json";
+  dataset.Write(files.at("dataset"));
+  WriteReconstruction(path, summary, {});
+  const nlohmann::json written = ParseJsonFile(path);
+  const auto import = [&](const nlohmann::json& document) {
+    WriteBytes(path, document.dump());
+    RunImport({}, files, 1);
+  };
+  nlohmann::json changed = written;
+  EXPECT_NO_THROW(import(written));
+  changed.erase("artefact");
+  EXPECT_NO_THROW(import(changed));  // it need not be one of ours
+  for (const auto& header :
+       {nlohmann::json(), nlohmann::json(3), nlohmann::json::object(),
+        nlohmann::json{{"kind", "reconstruction"}}, nlohmann::json{{"schema_version", "1"}}}) {
+    changed["artefact"] = header;
+    ExpectError<InputError>([&] { import(changed); }, {"reconstruction.json", "artefact"});
+  }
+  changed = written;
+  changed["artefact"]["schema_version"] = {99, 0};
+  ExpectError<InputError>([&] { import(changed); }, {"reconstruction.json", "99"});
+  changed = written;
+  changed.erase("registered");
+  ExpectError<InputError>([&] { import(changed); }, {"reconstruction.json", "registered"});
 }
 
 TEST_F(RunImportTest, OtherProgramsHaveAFileOfThatNameAsWell) {

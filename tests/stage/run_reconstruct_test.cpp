@@ -173,6 +173,23 @@ TEST_F(RunReconstructTest, AGivenModelGivesTheSameBytes) {
   ExpectError<InputError>([&] { Run("again", "nothing"); }, {"nothing", "no model of COLMAP"});
 }
 
+TEST_F(RunReconstructTest, AGivenModelOfOtherNamesIsRefusedOrNamed) {
+  Run();
+  const std::string list = "0 rgb/IMG_1.png\n0.5 rgb/IMG_2.png\n1 rgb/IMG_3.png\n";
+  for (int i = 0; i < 3; ++i) {
+    fs::copy_file(Dataset() / fmt::format("rgb/{}.png", i),
+                  Dataset() / fmt::format("rgb/IMG_{}.png", i + 1));
+  }
+  WriteBytes(Dataset() / "rgb.txt", list);
+  ExpectError<InputError>([&] { Run("again", "out/colmap/sparse"); },
+                          {"images.txt", "rgb/0.png, rgb/1.png and 1 more",
+                           "rgb/IMG_1.png, rgb/IMG_2.png and 1 more", "renamed"});
+  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/IMG_3.png\n");
+  Run("again", "out/colmap/sparse");
+  EXPECT_THAT(printed_, HasSubstr("1 image in the model, but not in rgb.txt: rgb/2.png\n"));
+  EXPECT_THAT(errors_, HasSubstr("under other names than in the model"));
+}
+
 TEST_F(RunReconstructTest, AFinishedJobIsNotRunAgain) {
   Run();
   Calls();
@@ -257,6 +274,9 @@ TEST_F(RunReconstructTest, FindingsAreReported) {
     EXPECT_THAT(errors_, HasSubstr(words));
   }
   EXPECT_THAT(printed_, HasSubstr("; 2 images in a second component"));
+  EXPECT_THAT(printed_, HasSubstr("without a pose, and not used: rgb/more.png\n"));
+  EXPECT_THAT(ReadReconstruction(Output("reconstruction.json")).images_without_pose,
+              testing::ElementsAre("rgb/more.png"));
   EXPECT_EQ(FindingsFromJson(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
 }
 
