@@ -19,6 +19,7 @@ constexpr const char* kExamples =
     "  soslam-inspect map.json --sequence sequence.json\n"
     "  soslam-inspect map.json --sequence sequence.json --dataset data/room_a --frame 10 --image "
     "frame.png\n"
+    "  soslam-inspect map.json --headline\n"
     "  soslam-inspect metrics.json --csv -\n"
     "  soslam-inspect diff one/map.json two/map.json --tolerance 1e-6";
 
@@ -50,6 +51,12 @@ void AddFiles(CLI::App* app, soslam::InspectRequest* request) {
       "sequence.json that the artefact was made from:\nfor labels of objects, and for pictures");
   add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
   add("--csv", &request->csv, "table to write as CSV, in full precision; - for standard output");
+  app->add_flag(
+         "--headline", request->headline,
+         "one line instead, of map.json, for scripts: how many objects\nit has, and how well "
+         "its scale is known; reads sequence.json,\nassociations.json and world.json beside "
+         "it")
+      ->group("Files");
   add("--image", &request->image,
       "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and ground "
       "truth "

@@ -12,11 +12,13 @@
 #include "artefact/landmarks_file.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "inspection/doubts.h"
 #include "inspection/projection.h"
 #include "report/map_words.h"
 #include "report/not_placed.h"
 #include "report/page_geometry.h"
 #include "report/page_html.h"
+#include "report/page_sequence.h"
 #include "report/plan_view.h"
 
 namespace soslam {
@@ -86,6 +88,7 @@ struct Entry {
   std::string name;
   std::vector<std::string> lines;
   Picture picture;
+  std::string doubts = {};  // why it is uncertain; empty where it is not
 };
 
 std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
@@ -112,6 +115,9 @@ std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& seque
   for (const Entry& entry : entries) {
     html += fmt::format("<li>{}<div><strong>{}</strong>", PictureSvg(entry, sequence),
                         HtmlText(entry.name));
+    if (!entry.doubts.empty()) {
+      html += "<br><span class=\"doubt\">" + HtmlText("uncertain: " + entry.doubts) + "</span>";
+    }
     for (const std::string& line : entry.lines) {
       if (!line.empty()) html += "<br>" + HtmlText(line);
     }
@@ -127,6 +133,10 @@ void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* ent
   for (size_t i = 0; i < jpegs.size(); ++i) (*entries)[i].picture.jpeg = std::move(jpegs[i]);
 }
 
+void RemovePictures(std::vector<Entry>* entries) {
+  for (Entry& entry : *entries) entry.picture.jpeg.clear();
+}
+
 std::string AndMore(size_t more) {
   return more == 0 ? "" : fmt::format("<p class=\"faint\">And {} more.</p>\n", more);
 }
@@ -140,14 +150,40 @@ class MapOfVariant {
     json world;
     if (Exists(folder / "world.json")) world = ReadArtefact(folder / "world.json", "world");
     scale_ = ScaleFromWorld(world, sequence);
-    for (const ObjectEstimate& estimate : map_.objects) {
-      if (estimate.landmark_in_world) placed_.push_back(&estimate);
+    const std::vector<std::string> doubts = DoubtsOfMap(folder, map_, sequence);
+    for (size_t i = 0; i < doubts.size(); ++i) {
+      if (!map_.objects[i].landmark_in_world) continue;
+      placed_.push_back(&map_.objects[i]);
+      doubts_.push_back(doubts[i]);
     }
   }
 
-  std::string Html(const std::string& title, int threads) {
-    std::vector<Entry> entries = PlacedEntries();
-    AddPictures(images_, threads, &entries);
+  // Pictures are left out where the section would be too large, first those of what is not placed;
+  // empty where that does not suffice.
+  std::string Html(const std::string& title, size_t max_bytes, int threads) {
+    std::vector<Entry> placed = PlacedEntries();
+    NotPlacedEntries not_placed = EntriesNotPlaced();
+    AddPictures(images_, threads, &placed);
+    AddPictures(images_, threads, &not_placed.entries);
+    std::string html = Section(title, placed, not_placed, "");
+    for (std::vector<Entry>* entries : {&not_placed.entries, &placed}) {
+      if (html.size() <= max_bytes) break;
+      RemovePictures(entries);
+      html = Section(title, placed, not_placed, "For lack of room pictures are left out.");
+    }
+    return html.size() <= max_bytes ? html : "";
+  }
+
+ private:
+  // Things that are seen and not placed.
+  struct NotPlacedEntries {
+    std::vector<Entry> entries;
+    size_t more = 0;    // that are not listed
+    size_t single = 0;  // seen once
+  };
+
+  std::string Section(const std::string& title, const std::vector<Entry>& entries,
+                      const NotPlacedEntries& not_placed, const std::string& note) const {
     std::string html = "<section id=\"overview\">\n";
     html +=
         fmt::format("<h2>{}</h2>\n<p>{} in {}.", HtmlText(title), Counted(placed_.size(), "object"),
@@ -158,16 +194,16 @@ class MapOfVariant {
       html += fmt::format("<p class=\"warning\">{}</p>\n", HtmlText(scale_.warning));
     }
     if (!placed_.empty()) {
+      if (!note.empty()) html += fmt::format("<p class=\"faint\">{}</p>\n", note);
       html += PlanHtml(entries) +
               "<h3>Objects</h3>\n<p class=\"faint\">Width × depth × height, and by how "
               "much each may be off (95 %) if the label is right.</p>\n" +
               EntriesHtml(entries, sequence_);
       html += AndMore(placed_.size() - entries.size());
     }
-    return html + NotPlacedHtml(threads) + "</section>\n";
+    return html + NotPlacedHtml(not_placed) + PhotosWithoutPose() + "</section>\n";
   }
 
- private:
   std::vector<Entry> PlacedEntries() const {
     const auto detections = DetectionsByObject(sequence_);
     std::vector<Entry> entries;
@@ -180,7 +216,8 @@ class MapOfVariant {
                   {LabelsInWords(object), SizeInWords(*estimate, scale_),
                    fmt::format("{}; {}", SupportInWords(*estimate, sequence_, map_, scale_),
                                Counted(static_cast<size_t>(estimate->observations), "view"))},
-                  PictureOf(BoxesOf(sequence_, detections[index]), images_, sequence_)};
+                  PictureOf(BoxesOf(sequence_, detections[index]), images_, sequence_),
+                  doubts_[entries.size()]};
       DrawBody(*estimate, &entry.picture);
       entries.push_back(std::move(entry));
     }
@@ -210,9 +247,12 @@ class MapOfVariant {
       shown.push_back(i);
       centres.push_back(placed_[i]->landmark_in_world->Centre());
     }
+    std::vector<int> frames;
     for (size_t i = 0; i < sequence_.frames.size(); ++i) {
-      if (sequence_.frames[i].segment != segment) continue;
-      cameras.push_back(map_.world_from_camera[i].translation);
+      if (sequence_.frames[i].segment == segment) frames.push_back(static_cast<int>(i));
+    }
+    for (const int frame : SpreadOver(frames, kMaxWayFrames)) {
+      cameras.push_back(map_.world_from_camera[static_cast<size_t>(frame)].translation);
     }
     const PlanAxes axes = AxesOfPlan(up, SceneAxis(up), centres, cameras);
     PlanView plan;
@@ -237,6 +277,7 @@ class MapOfVariant {
     const Landmark& landmark = *estimate.landmark_in_world;
     PlanObject object{entry.name, Footprint(landmark, axes),
                       up.dot(FindSupportPoint(landmark, up).point)};
+    object.is_uncertain = !entry.doubts.empty();
     if (entry.picture.jpeg.empty()) return object;
     object.picture = entry.id;
     const cv::Rect& part = entry.picture.crop.part;
@@ -246,31 +287,45 @@ class MapOfVariant {
 
   std::string PlanFigure(const PlanView& plan, int segment) const {
     const int segments = sequence_.frames.back().segment + 1;
-    return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) +
-           "<figcaption>Seen from above. <span class=\"key\" style=\"background: "
-           "var(--estimate)\"></span> objects, <span class=\"key\" style=\"background: "
-           "var(--detection)\"></span> path of the camera from its first place (dot)." +
-           (segments > 1 ? fmt::format(" Part {} of {}.", segment + 1, segments) : "") +
-           "</figcaption>\n</figure>\n";
+    const bool is_doubtful = std::ranges::any_of(plan.objects, &PlanObject::is_uncertain);
+    const auto key = [](const char* colour, const char* text) {
+      return fmt::format("<span class=\"key\" style=\"background: var(--{})\"></span> {}", colour,
+                         text);
+    };
+    std::string caption = fmt::format("Seen from above. {}, {}.", key("estimate", "objects"),
+                                      key("detection",
+                                          "path of the camera from its first place "
+                                          "(dot)"));
+    if (is_doubtful) {
+      caption +=
+          " Dashed objects are uncertain: most images that should show them do not, or by their "
+          "95 % intervals they may stand beside their outline, or be half or twice as large.";
+    }
+    if (segments > 1) caption += fmt::format(" Part {} of {}.", segment + 1, segments);
+    return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) + "<figcaption>" +
+           caption + "</figcaption>\n</figure>\n";
   }
 
-  std::string NotPlacedHtml(int threads) const {
-    std::vector<Entry> entries;
-    size_t single = 0, more = 0;
+  NotPlacedEntries EntriesNotPlaced() const {
+    NotPlacedEntries result;
     for (const NotPlaced& thing : ThingsNotPlaced(folder_, map_, sequence_)) {
       if (thing.boxes.size() < 2) {
-        ++single;
-      } else if (entries.size() == kMaxNotPlaced) {
-        ++more;
+        ++result.single;
+      } else if (result.entries.size() == kMaxNotPlaced) {
+        ++result.more;
       } else {
-        entries.push_back({fmt::format("seen-{}", entries.size()),
-                           thing.label,
-                           {fmt::format("{} boxes", thing.boxes.size()), thing.reason},
-                           PictureOf(thing.boxes, images_, sequence_)});
+        result.entries.push_back({fmt::format("seen-{}", result.entries.size()),
+                                  thing.label,
+                                  {fmt::format("{} boxes", thing.boxes.size()), thing.reason},
+                                  PictureOf(thing.boxes, images_, sequence_)});
       }
     }
+    return result;
+  }
+
+  std::string NotPlacedHtml(const NotPlacedEntries& not_placed) const {
+    const auto& [entries, more, single] = not_placed;
     if (entries.empty() && single == 0) return "";
-    AddPictures(images_, threads, &entries);
     std::string html = "<h3>Seen but not placed</h3>\n";
     if (!entries.empty()) html += EntriesHtml(entries, sequence_);
     html += AndMore(more);
@@ -282,19 +337,31 @@ class MapOfVariant {
     return html;
   }
 
+  std::string PhotosWithoutPose() const {
+    constexpr size_t kMaxNames = 100;
+    const std::vector<std::string>& names = sequence_.images_without_pose;
+    if (names.empty()) return "";
+    return fmt::format(
+        "<h3>Photos without a pose</h3>\n<p>The reconstruction could not tell where {} taken; what "
+        "they show is not used: {}.</p>\n",
+        names.size() == 1 ? "a photo was" : fmt::format("{} photos were", names.size()),
+        HtmlText(FirstOf(names, kMaxNames)));
+  }
+
   const fs::path& folder_;
   const Sequence& sequence_;
   const ImageSource& images_;
   MapEstimate map_;
   ScaleOfMap scale_;
   std::vector<const ObjectEstimate*> placed_;
+  std::vector<std::string> doubts_;  // about these
 };
 
 }  // namespace
 
 std::string MapSection(const std::string& title, const fs::path& folder, const Sequence& sequence,
-                       const ImageSource& images, int threads) {
-  return MapOfVariant(folder, sequence, images).Html(title, threads);
+                       const ImageSource& images, size_t max_bytes, int threads) {
+  return MapOfVariant(folder, sequence, images).Html(title, max_bytes, threads);
 }
 
 }  // namespace soslam

@@ -10,9 +10,11 @@
 namespace soslam {
 
 // The first section of a dataset's page, as HTML without scripts: the map of the variant in this
-// folder from above, its objects with pictures, and what was seen but not placed. Throws InputError
-// for files that are not valid.
+// folder from above, its objects with pictures, what was seen but not placed, and photos without a
+// pose; empty where that has no room in `max_bytes`. Throws InputError for files that are not
+// valid.
 std::string MapSection(const std::string& title, const std::filesystem::path& folder,
-                       const Sequence& sequence, const ImageSource& images, int threads);
+                       const Sequence& sequence, const ImageSource& images, size_t max_bytes,
+                       int threads);
 
 }  // namespace soslam

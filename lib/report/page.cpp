@@ -82,6 +82,9 @@ size_t PageBytes(const json& page) { return PageText(page).size() + DatasetTable
 
 namespace fs = std::filesystem;
 
+// The section of the map has at most this fraction of a page.
+constexpr double kMostShareOfMap = 0.25;
+
 // Images shrink to this fraction of a page before anything else is left out.
 constexpr double kLeastShareOfImages = 0.125;
 
@@ -103,11 +106,15 @@ class DatasetPage {
     const LoadedSequence& first = sequences_.front();
     const ImageSource source = images_(first.sequence);
     const bool has_images = std::ranges::any_of(first.selection.shown, source.has);
-    const std::string map_section = SectionOfBestMap(threads);
+    const std::string map_section = SectionOfBestMap(
+        static_cast<size_t>(kMostShareOfMap * static_cast<double>(max_bytes)), threads);
     max_bytes -= std::min(max_bytes, map_section.size());
     const auto least = static_cast<size_t>(kLeastShareOfImages * static_cast<double>(max_bytes));
     FitPageData(max_bytes - (has_images ? least : 0), PageBytes, &data_);
     data_["detailed"] = DetailedVariants(data_);
+    data_["has_truth"] = std::ranges::any_of(data_["variants"], [](const json& variant) {
+      return HasTrueObjects(variant.at("metrics"));
+    });
     if (!data_["sequences"].front()["frames"].empty()) {
       AddImages(first, source, max_bytes, threads);
     }
@@ -140,7 +147,7 @@ class DatasetPage {
   }
 
   // The section of the map that is of most interest; empty without one.
-  std::string SectionOfBestMap(int threads) {
+  std::string SectionOfBestMap(size_t max_bytes, int threads) {
     const size_t index = DetailedVariants(data_).front();
     const json& variant = data_["variants"][index];
     if (variant.at("kind") != "map") return "";
@@ -148,7 +155,12 @@ class DatasetPage {
     const bool is_only = folders_.size() == 1;
     const std::string title = is_only ? "Map" : "Map of " + variant.at("name").get<std::string>();
     try {
-      return MapSection(title, folders_[index], sequence, images_(sequence), threads);
+      std::string section =
+          MapSection(title, folders_[index], sequence, images_(sequence), max_bytes, threads);
+      if (section.empty()) {
+        data_["notes"].push_back("For lack of room the map from above is left out.");
+      }
+      return section;
     } catch (const InputError& error) {
       data_["problems"].push_back(
           Utf8(fmt::format("the map from above cannot be shown: {}", error.what())));

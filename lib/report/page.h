@@ -34,6 +34,7 @@ using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 //   unfinished: name, state ("failed: ...", "incomplete: ...") and is_shown of variants that
 //     differ from the plan, or cannot be shown
 //   detailed: see DetailedVariants; findings: see PageFindings
+//   has_truth: whether a variant was measured against true objects
 //   notes: sentences on what was left out for lack of room
 //   problems: sentences on images that cannot be shown
 //   differences: see PageDifferences

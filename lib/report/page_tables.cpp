@@ -84,19 +84,27 @@ void AddColumn(const PageColumn& column, const std::vector<json>& variants, Tabl
   }
 }
 
+// Empty where there is no ground truth that any of the variants could be measured against.
 std::string MetricsTable(const std::vector<json>& variants) {
+  const bool has_objects = std::ranges::any_of(
+      variants, [](const json& variant) { return HasTrueObjects(variant.at("metrics")); });
   Table table;
   table.name = "metrics";
-  table.header = {"variant", "objects", "observations"};
+  table.header = {"variant"};
+  if (has_objects) table.header.insert(table.header.end(), {"objects", "observations"});
   for (const json& variant : variants) {
     const json& summary = variant.at("metrics").at("summary");
-    table.rows.push_back({variant.at("name").get<std::string>(), summary.at("objects").dump(),
-                          summary.at("observations").dump()});
+    table.rows.push_back({variant.at("name").get<std::string>()});
+    if (!has_objects) continue;
+    for (const char* key : {"objects", "observations"}) {
+      table.rows.back().emplace_back(summary.at(key).dump());
+    }
   }
   for (const PageColumn& column : kPageColumns) AddColumn(column, variants, &table);
-  return HtmlTable(table);
+  return table.header.size() == 1 ? "" : HtmlTable(table);
 }
 
+// Empty without ground truth.
 std::string NumbersSection(const json& page) {
   constexpr std::array<std::array<const char*, 2>, 3> kKinds = {
       {{"map", "Maps: all frames, landmarks and poses together"},
@@ -108,9 +116,10 @@ std::string NumbersSection(const json& page) {
     for (const json& variant : page.at("variants")) {
       if (variant.at("kind") == kind) variants.push_back(variant);
     }
-    if (variants.empty()) continue;
-    tables += fmt::format("<h3>{}</h3>\n{}", title, MetricsTable(variants));
+    const std::string table = MetricsTable(variants);
+    if (!table.empty()) tables += fmt::format("<h3>{}</h3>\n{}", title, table);
   }
+  if (tables.empty()) return "";
   return Section("numbers", "Numbers",
                  Faint("Means over objects, the best in bold. IoU: overlap of the cuboids around "
                        "estimate and truth. Rot: the smallest turn that brings the axes of one "
@@ -119,10 +128,12 @@ std::string NumbersSection(const json& page) {
                      tables);
 }
 
-// Comparison of a dataset's maps with all true objects, independent of ids; empty without maps.
+// Comparison of a dataset's maps with all true objects, independent of ids; empty without maps or
+// without true objects.
 std::string QualityHtml(const std::string& dataset, const std::vector<json>& variants) {
   std::vector<NamedMetrics> named;
   for (const json& variant : variants) {
+    if (!HasTrueObjects(variant.at("metrics"))) continue;
     named.emplace_back(variant.at("name").get<std::string>(), variant.at("metrics"));
   }
   std::string html;
@@ -192,8 +203,12 @@ std::string ObjectsTable(const json& objects, const json& variant) {
     return WithBlanks(row.estimate.at("failure").get<std::string>());
   };
   Table table;
-  table.header = {"object", "observations", "IoU",         "centre error, m",
-                  "Rot, °", "yaw error, °", "yaw sigma, °"};
+  table.header = {"object", "observations"};
+  const bool is_measured = HasTrueObjects(variant.at("metrics"));
+  if (is_measured) {
+    table.header.insert(table.header.end(), {"IoU", "centre error, m", "Rot, °", "yaw error, °"});
+  }
+  table.header.emplace_back("yaw sigma, °");
   const bool has_failures =
       std::ranges::any_of(rows, [&](const ObjectRow& row) { return !failure(row).empty(); });
   if (has_failures) table.header.emplace_back("no landmark");
@@ -206,9 +221,13 @@ std::string ObjectsTable(const json& objects, const json& variant) {
     };
     table.rows.push_back(
         {fmt::format("{} {}", object.at("label").get<std::string>(), object.at("id").dump()),
-         metrics.value("observations", row.estimate.at("observations")).dump(), number("iou", 3),
-         number("centre_m", 3), number("rotation_deg", 2), number("yaw_error_deg", 2),
-         NumberOrDash(row.estimate.value("sigma_yaw_deg", json()), 2)});
+         metrics.value("observations", row.estimate.at("observations")).dump()});
+    if (is_measured) {
+      table.rows.back().insert(table.rows.back().end(),
+                               {number("iou", 3), number("centre_m", 3), number("rotation_deg", 2),
+                                number("yaw_error_deg", 2)});
+    }
+    table.rows.back().emplace_back(NumberOrDash(row.estimate.value("sigma_yaw_deg", json()), 2));
     if (has_failures) table.rows.back().emplace_back(failure(row));
     indices.push_back(row.index);
   }
@@ -226,7 +245,12 @@ std::string ObjectsSection(const json& page) {
                     tables.empty() ? " open" : "", HtmlText(variant.at("name").get<std::string>()),
                     ObjectsTable(sequence.at("objects"), variant));
   }
-  return tables.empty() ? "" : Section("objects", "Objects", Faint("Worst first.") + tables);
+  const bool are_ordered = std::ranges::any_of(page.at("variants"), [](const json& variant) {
+    return HasTrueObjects(variant.at("metrics"));
+  });
+  return tables.empty()
+             ? ""
+             : Section("objects", "Objects", (are_ordered ? Faint("Worst first.") : "") + tables);
 }
 
 std::string Signed(const json& value, int decimals) {
@@ -342,6 +366,12 @@ std::string CountsText(const json& counts) {
 }
 
 }  // namespace
+
+bool HasTrueObjects(const json& metrics) {
+  if (metrics.at("summary").at("objects") > 0) return true;
+  const json& quality = metrics.value("map_quality", json());
+  return quality.is_object() && quality.at("scores").front().at("true_objects") > 0;
+}
 
 std::string DatasetTables(const json& page) {
   if (page.at("variants").empty()) return "";

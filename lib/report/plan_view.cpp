@@ -297,7 +297,8 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
   for (size_t i = 0; i < plan.objects.size(); ++i) {
     const PlanObject& object = plan.objects[i];
     const Points footprint = screen.Place(object.footprint);
-    shapes += fmt::format("<polygon points=\"{}\"/>\n", PointsText(footprint));
+    shapes += fmt::format("<polygon{} points=\"{}\"/>\n",
+                          object.is_uncertain ? " class=\"uncertain\"" : "", PointsText(footprint));
     leaders += Leader(BoundsOf(footprint).center(), layout.cards[i]);
     cards += CardSvg(object, layout.cards[i], layout.HeightOn(object), format.font);
   }

@@ -44,6 +44,7 @@ struct PlanObject {
   // The id of an SVG element with the picture, empty without one, and its width by its height.
   std::string picture = {};
   double picture_aspect = 1.0;
+  bool is_uncertain = false;
 };
 
 struct PlanView {

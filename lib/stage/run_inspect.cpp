@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "dataset/image_path.h"
+#include "inspection/headline.h"
 #include "inspection/inspection.h"
 #include "inspection/overlay.h"
 #include "stage/image_stages.h"
@@ -153,9 +154,20 @@ bool IsOfAnotherSequence(const InspectRequest& request) {
   });
 }
 
+std::string Headline(const InspectRequest& request) {
+  const std::string kind = ReadArtefactHeader(request.file).at("kind");
+  if (kind != "map") {
+    throw SettingsError(fmt::format("{}: there is no headline of kind '{}'; expected a map",
+                                    request.file.string(), kind));
+  }
+  const fs::path sequence = request.sequence.value_or(request.file.parent_path() / "sequence.json");
+  return HeadlineOfMap(request.file, ReadSequence(sequence, PlaneNeed::kNotNeeded)) + "\n";
+}
+
 }  // namespace
 
 std::string RunInspect(const InspectRequest& request, bool is_coloured) {
+  if (request.headline) return Headline(request);
   if (request.image) WritePng(*request.image, PictureOf(request));
   if (request.image && !request.csv) return "";
   Inspection inspection = Inspect(request.file, KnownSequence(request));

@@ -12,6 +12,7 @@ namespace soslam {
 // Arguments of soslam-inspect.
 struct InspectRequest {
   std::filesystem::path file;
+  bool headline = false;                       // one line instead, of a map.json
   std::optional<std::filesystem::path> csv;    // output path of the table; "-" is standard output
   std::optional<std::filesystem::path> image;  // output path of the picture, a .png
   std::optional<std::filesystem::path> sequence;  // the sequence that the artefact was made from
@@ -21,10 +22,12 @@ struct InspectRequest {
   EdgeLayer layer = EdgeLayer::kAll;
 };
 
-// Writes the requested table and picture and returns the text for standard output: the table as CSV
-// if requested there; nothing if files were requested; otherwise a description of the artefact and
-// its table, with escape sequences if `is_coloured`. Throws InputError for a file that is no
-// artefact, SettingsError for a picture that this artefact cannot give.
+// With `headline`, returns HeadlineOfMap as a line, of the sequence.json beside the map.json unless
+// another one is given. Writes the requested table and picture and returns the text for standard
+// output: the table as CSV if requested there; nothing if files were requested; otherwise a
+// description of the artefact and its table, with escape sequences if `is_coloured`. Throws
+// InputError for a file that is no artefact, SettingsError for a picture that this artefact cannot
+// give.
 std::string RunInspect(const InspectRequest& request, bool is_coloured);
 
 }  // namespace soslam

@@ -10,7 +10,10 @@
 #include "artefact/landmarks_file.h"
 #include "artefact/metrics_file.h"
 #include "artefact/sequence_file.h"
+#include "artefact/world_file.h"
 #include "base/error.h"
+#include "base/options.h"
+#include "ground/ground_checks.h"
 #include "inspection/canvas.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
@@ -75,6 +78,51 @@ TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsNoted) {
   sequence_.name = "another";
   WriteSequence(File("sequence.json"), sequence_, {});
   EXPECT_THAT(RunInspect(request, false), HasSubstr("not the file that this was made from"));
+}
+
+TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
+  MapEstimate map;
+  for (size_t i = 0; i < 3; ++i) {
+    const auto& truth = sequence_.objects[i].ground_truth;
+    map.objects.push_back({static_cast<int>(i), 5, truth->landmark_in_world, {}, ""});
+  }
+  map.objects[0].landmark_in_world.reset();
+  map.objects[0].failure = "collapsed";
+  // Its place is known to a kilometre.
+  map.objects[1].covariance = Covariance9(1e6 * Covariance9::Identity());
+  map.objects[1].covariance->block<3, 3>(6, 6) *= 1e-9;
+  for (const Frame& frame : sequence_.frames) {
+    map.world_from_camera.push_back(frame.world_from_camera);
+  }
+  for (const SupportPlane& plane : sequence_.planes) {
+    map.planes_in_world.push_back(plane.plane_in_world);
+  }
+  WriteMap(File("map.json"), map, sequence_, {});
+  InspectRequest request = RequestOf("map.json");
+  request.headline = true;
+  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 of them uncertain\n");
+
+  GroundEstimate ground;
+  ground.scale = ScalePosterior{0.0, 0.05, -0.1, 0.1};
+  ground.known_scales = {{0.0, 0.1, "camera_height_m"}};
+  const auto write_world = [&](const std::vector<Finding>& findings) {
+    WriteWorld(File("world.json"), ground, sequence_,
+               {OptionsToJson(GroundOptions()), {}, findings});
+  };
+  write_world({});
+  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 of them uncertain, scale +- 11 %\n");
+  write_world({{kKnownScaleCheck, Severity::kWarning, "", "", "", ""}});
+  EXPECT_EQ(RunInspect(request, true),
+            "2 objects, 1 of them uncertain, scale +- 11 %, uncertain: the heights of objects "
+            "contradict the camera's height given\n");
+  EXPECT_THAT(RunInspect(RequestOf("world.json"), false),
+              testing::AllOf(HasSubstr("(95 %, +- 11 %)"),
+                             HasSubstr("scale uncertain  the heights of objects contradict the")));
+  ground.scale.reset();
+  write_world({});
+  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 of them uncertain, scale unknown\n");
+  request.file = File("metrics.json");
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"metrics", "expected a map"});
 }
 
 TEST_F(RunInspectTest, FramesWithoutImagesHavePicturesToo) {

@@ -14,6 +14,7 @@
 #include "base/options.h"
 #include "geometry/angles.h"
 #include "ground/options.h"
+#include "report/map_section.h"
 #include "report/page_html.h"
 #include "stage/result_pages.h"
 #include "support/expect_error.h"
@@ -245,6 +246,73 @@ TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
   estimate.scale.reset();
   EXPECT_THAT(section(), AllOf(HasSubstr("lengths have no unit"), HasSubstr("Up ± 0.4°"),
                                testing::Not(HasSubstr("cm ("))));
+}
+
+// Pictures of what is not placed are left out first.
+TEST_F(RunPagesTest, TheMapFromAboveKeepsToItsRoom) {
+  WriteOurs("OursS");
+  cv::Mat noise(sequence_.camera.height, sequence_.camera.width, CV_8UC3);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);
+  const ImageSource images = {[](int) { return true; }, [&](int) { return noise; }};
+  const auto section = [&](size_t max_bytes) {
+    return MapSection("Map", Folder("OursS"), sequence_, images, max_bytes, 1);
+  };
+  const std::string whole = section(kMaxPageBytes);
+  EXPECT_EQ(CountOf("<image ", whole), 4u);
+  const std::string smaller = section(whole.size() - 1);
+  EXPECT_EQ(CountOf("<image ", smaller), 3u);
+  EXPECT_THAT(smaller, HasSubstr("For lack of room pictures are left out."));
+  for (size_t max_bytes = smaller.size(); max_bytes > 0; max_bytes /= 2) {
+    EXPECT_LE(section(max_bytes).size(), max_bytes);
+  }
+  EXPECT_EQ(section(100), "");
+}
+
+TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
+  WriteOurs("OursS");
+  Run();
+  EXPECT_THAT(MarkupOf(Page()), testing::Not(HasSubstr("Photos without a pose")));
+  sequence_.images_without_pose = {"rgb/a<b.jpg", "rgb/c.jpg"};
+  WriteOurs("OursS");
+  Run();
+  EXPECT_THAT(MarkupOf(Page()),
+              AllOf(HasSubstr("<h3>Photos without a pose</h3>"), HasSubstr("2 photos were taken"),
+                    HasSubstr("rgb/a&lt;b.jpg, rgb/c.jpg.")));
+}
+
+TEST_F(RunPagesTest, UncertainObjectsAreDashedAndSaidToBe) {
+  WriteOurs("OursS");
+  MapEstimate map = ReadMap(Folder("OursS") / "map.json", sequence_);
+  for (size_t i = 0; i < Estimates().size(); ++i) {
+    map.objects[i].covariance = Covariance9(1e-4 * Covariance9::Identity());
+  }
+  WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
+  Run();
+  EXPECT_THAT(MarkupOf(Page()), testing::Not(HasSubstr("uncertain: ")));
+  map.objects[1].covariance = Covariance9(4.0 * Covariance9::Identity());
+  WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
+  Run();
+  const std::string html = MarkupOf(Page());
+  EXPECT_EQ(CountOf("uncertain: it may stand beside its outline; its depth", html), 1u);
+  EXPECT_EQ(CountOf("<polygon class=\"uncertain\"", html), 2u);  // on both plans
+  EXPECT_EQ(CountOf("Dashed objects are uncertain", html), 1u);
+}
+
+TEST_F(RunPagesTest, WithoutTrueObjectsNothingIsSaidOfThem) {
+  for (Object& object : sequence_.objects) object.ground_truth.reset();
+  for (Frame& frame : sequence_.frames) frame.true_world_from_camera.reset();
+  const Sequence without = std::exchange(sequence_, CuboidSequence(4, 6));
+  WriteOurs("OursS");
+  WriteSequence(Folder("OursS") / "sequence.json", without, {});
+  results_.WriteMetrics("room", "OursS", {});
+  EXPECT_EQ(Run().errors, "");
+  const std::string html = MarkupOf(Page());
+  for (const char* words :
+       {"IoU", "Rot", "yaw error", "Numbers", "all that is true", "ATE", "Worst first", "ruth"}) {
+    EXPECT_EQ(html.find(words, html.find("<main")), html.npos) << words;
+  }
+  EXPECT_THAT(html, AllOf(HasSubstr("<h2>Objects</h2>"), HasSubstr("yaw sigma")));
+  EXPECT_EQ(PageDataIn(Page())["has_truth"], false);
 }
 
 TEST_F(RunPagesTest, ADamagedWorldIsNamedAndTheRestIsShown) {

@@ -87,7 +87,8 @@ class ResultsFolder {
       angles += object.rotation_deg ? 1 : 0;
       observations += object.observations;
     }
-    const nlohmann::json iou_mean = iou / static_cast<double>(objects.size());
+    nlohmann::json iou_mean;
+    if (!objects.empty()) iou_mean = iou / static_cast<double>(objects.size());
     const nlohmann::json angle_mean = angles > 0 ? nlohmann::json(rotation / angles) : nullptr;
     return {{"objects", objects.size()},
             {"observations", observations},

@@ -120,11 +120,14 @@ function figuresSection(page, variants) {
   const content = [
     ...figure("Samples and mirrored pairs", "Samples are orange, the pixels that the mirror plane of the estimate takes them to white (fig. 5 of the paper).",
       pairFigures(page, ways)),
-    ...figure("Single-frame initialisation", "The first observations of some objects (fig. 6): detection dashed, ground truth green, estimate blue with its front orange.",
+    ...figure("Single-frame initialisation", "The first observations of some objects (fig. 6): detection dashed, " +
+      (page.has_truth ? "ground truth green, " : "") + "estimate blue with its front orange.",
       comparison(page, variants, ["Init1-1", "InitP", "InitS", "InitSTE"], 3)),
-    ...figure("Cost over yaw", "Which descriptor finds the yaw (fig. 7)? The tables count all observations: how far the lowest cost is from the true yaw, modulo half a turn, " +
+    ...figure("Cost over yaw", page.has_truth ?
+      "Which descriptor finds the yaw (fig. 7)? The tables count all observations: how far the lowest cost is from the true yaw, modulo half a turn, " +
       "and whether there is a cost at the true yaw at all: where too few pairs of pixels are visible at once there is none, and no descriptor can win. " +
-      "The strips show single observations, each cost over its own range: the dot is its lowest point, green within 10° of the truth, the dashed line the true yaw, the dotted one the yaw that was chosen.",
+      "The strips show single observations, each cost over its own range: the dot is its lowest point, green within 10° of the truth, the dashed line the true yaw, the dotted one the yaw that was chosen."
+      : "The strips show single observations, each cost over its own range: the dot is its lowest point, the dotted line the yaw that was chosen.",
       curveFigures(page, ways)),
     ...figure("Before and after symmetry", "The same observations before the yaw is refined and after (fig. 8).",
       [...comparison(page, variants, ["InitP", "InitPT"], 3), ...comparison(page, variants, ["InitS", "InitST", "InitSTE"], 3)]),

@@ -24,6 +24,7 @@ function framesSection(page, variants) {
   const holder = element("div"), caption = element("span", { class: "faint" });
   const shown = { estimate: true, box: false, truth: true, detection: true, grid: true };
   const detections = page.sequences[variants[0].sequence].detections;
+  const hasTruth = detections.some(({ truth }) => truth);
   let variant = variants[0];
   const framesOf = () => page.sequences[variant.sequence].frames
     .map((frame, index) => ({ frame, index })).filter(({ frame }) => frame.shown);
@@ -53,9 +54,10 @@ function framesSection(page, variants) {
     ? element("p", { class: "faint" }, "There were no images of this dataset where the page was made.") : null;
   return section("frames", "Frames",
     element("p", {}, "Detections are dashed, the thick end of an estimate points to its front. " +
-      "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."), note,
+      (hasTruth ? "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."
+        : "Estimates over several frames are seen from the estimated camera.")), note,
     element("div", { class: "bar on-image" }, choose, toggle("estimate", "estimate", "estimate"), toggle("its box", "box", "estimate"),
-      toggle("ground truth", "truth", "truth"), toggle("detection", "detection", "detection"),
+      hasTruth ? toggle("ground truth", "truth", "truth") : null, toggle("detection", "detection", "detection"),
       toggle("support planes", "grid", "grid")),
     element("div", { class: "bar" }, input, caption), holder);
 }

@@ -10,7 +10,7 @@ function showDataset(page) {
   const detailed = page.detailed.map((index) => page.variants[index]);
   const added = (id) => document.getElementById(id);
   if (detailed.length > 0) {
-    added("numbers").after(mapSection(page, detailed), framesSection(page, detailed));
+    (added("numbers") || added("remarks")).after(mapSection(page, detailed), framesSection(page, detailed));
     showEvidenceInObjects(added("objects"), page, detailed);
     const figures = figuresSection(page, detailed);
     if (figures) added("objects").after(figures);

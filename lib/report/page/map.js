@@ -279,8 +279,10 @@ function mapSection(page, variants) {
   });
   const toggle = (label, key, name) =>
     checkbox(label, key, true, (on) => { view.shows[name] = on; view.show(variant, frame); });
+  const hasTruth = page.sequences.some(({ frames, objects }) =>
+    frames.some(({ true_pose }) => true_pose) || objects.some(({ truth }) => truth));
   return section("map", "Map in three dimensions",
-    element("div", { class: "bar" }, choose, toggle("ground truth", "truth", "truth"), toggle("planes", "faint", "grid"),
+    element("div", { class: "bar" }, choose, hasTruth ? toggle("ground truth", "truth", "truth") : null, toggle("planes", "faint", "grid"),
       toggle("camera", "detection", "trajectory")),
     element("div", { class: "bar" }, input, caption),
     element("div", { class: "map" }, view.canvas, panel), mapRemarks(page.sequences[variant.sequence]));

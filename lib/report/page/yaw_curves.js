@@ -42,9 +42,9 @@ function yawStrip(name, costs, record, top) {
   }
   const lowest = known.find(({ cost }) => cost === low);
   const error = Math.abs(((lowest.deg + 90) % 180 + 180) % 180 - 90);
-  const isGood = record.true_yaw_deg != null && error <= 10;
-  parts.push(svgElement("circle", { class: isGood ? "near" : "far", cx: x(lowest.deg), cy: y(low), r: 4 }));
-  if (record.true_yaw_deg != null) {
+  const isKnown = record.true_yaw_deg != null, isGood = isKnown && error <= 10;
+  parts.push(svgElement("circle", { class: isGood ? "near" : isKnown ? "far" : "", cx: x(lowest.deg), cy: y(low), r: 4 }));
+  if (isKnown) {
     parts.push(textAt(kStrip.left + kStrip.width + 8, top + kStrip.height / 2 + 4, `${number(error, 0)}°`, { class: isGood ? "near" : "" }));
   }
   return parts;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// How often an object was detected.
+struct Sightings {
+  int frames = 0;           // in which it was
+  int frames_in_sight = 0;  // that should show it: near enough and not hidden
+};
+
+// Why an object of a map is uncertain, in words; empty where it is not. It is if most frames that
+// should show it do not, if its place is so uncertain that its centre may be outside of its body
+// (with a probability of 5 %, in some direction), or if its 95 % interval of a size includes twice
+// and half of that. The error of the scale, which all objects share, does not count.
+std::string DoubtsInWords(const ObjectEstimate& estimate,
+                          const std::optional<Sightings>& sightings);
+
+// The doubts about each of MapEstimate::objects, by map.json's folder, where associations.json is
+// if ids were estimated. Throws InputError.
+std::vector<std::string> DoubtsOfMap(const std::filesystem::path& folder, const MapEstimate& map,
+                                     const Sequence& sequence);
+
+}  // namespace soslam
