@@ -29,17 +29,16 @@ std::vector<Fact> ScaleFacts(const json& world) {
   if (!scale) {
     return {{"scale", "unknown: nothing tells it; lengths have the unit of the input's world"}};
   }
-  std::string sources = SourcesInWords(*scale);
-  const json& labels = world.at("scale").at("labels");
-  if (!labels.empty()) {
-    sources += fmt::format(" ({})", fmt::join(labels.get<std::vector<std::string>>(), ", "));
-  }
   std::vector<Fact> facts = {
       {"scale",
        fmt::format("1 unit of the input's world is {:.4g} m, {:.4g} to {:.4g} m (95 %, "
                    "+- {:.0f} %)",
                    scale->metres_per_unit, scale->low, scale->high, HalfIntervalPercent(*scale))},
-      {"scale rests on", sources}};
+      {"scale rests on", SourcesInWords(*scale)}};
+  const auto labels = world.at("scale").at("labels").get<std::vector<std::string>>();
+  if (!labels.empty()) {
+    facts.push_back({"labels of these", fmt::format("{}", fmt::join(labels, ", "))});
+  }
   const std::string contradictions = ContradictionsInWords(*scale);
   if (!contradictions.empty()) {
     facts.push_back(

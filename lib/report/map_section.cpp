@@ -299,7 +299,7 @@ class MapOfVariant {
     if (is_doubtful) {
       caption +=
           " Dashed objects are uncertain: most images that should show them do not, or by their "
-          "95 % intervals they may stand beside their outline, or be half or twice as large.";
+          "95\u00a0% intervals they may stand beside their outline, or be half or twice as large.";
     }
     if (segments > 1) caption += fmt::format(" Part {} of {}.", segment + 1, segments);
     return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) + "<figcaption>" +
