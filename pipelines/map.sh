@@ -95,7 +95,5 @@ $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/da
 "$BIN/soslam-pages" --results "$MAP_ROOT/results"
 
 map=$MAP_ROOT/results/$MAP_NAME/${MAP_VARIANT%% *}/map.json
-objects=$("$BIN/soslam-inspect" "$map" --csv - | tail -n +2 | wc -l)
-scale=
-[[ ! -e ${map%/*}/world.json ]] || scale=$("$BIN/soslam-inspect" "${map%/*}/world.json" | sed -n 's/^ *scale .*(95 %, \(+- [0-9]* %\)).*/\1/p')
-echo "$objects objects, scale ${scale:-unknown}, page: $MAP_ROOT/results/$MAP_NAME/report.html"
+headline=$("$BIN/soslam-inspect" "$map" --headline)
+echo "$headline, page: $MAP_ROOT/results/$MAP_NAME/report.html"

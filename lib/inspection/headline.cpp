@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ", scale ..., uncertain: ..."; empty for a world whose scale is given.
+// ", scale ... (uncertain: ...)"; empty for a world whose scale is given.
 std::string ScaleInHeadline(const fs::path& world, const Sequence& sequence) {
   constexpr const char* kUnknown = ", scale unknown";
   if (!Exists(world)) {
@@ -25,8 +25,8 @@ std::string ScaleInHeadline(const fs::path& world, const Sequence& sequence) {
   const auto scale = ScaleOfWorld(ReadArtefact(world, "world"));
   if (!scale) return kUnknown;
   const std::string contradictions = ContradictionsInWords(*scale);
-  return fmt::format(", scale +- {:.0f} %{}{}", HalfIntervalPercent(*scale),
-                     contradictions.empty() ? "" : ", uncertain: ", contradictions);
+  return fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
+                     contradictions.empty() ? "" : fmt::format(" (uncertain: {})", contradictions));
 }
 
 }  // namespace
@@ -40,9 +40,10 @@ std::string HeadlineOfMap(const fs::path& map, const Sequence& sequence) {
     ++placed;
     if (!doubts[i].empty()) ++uncertain;
   }
-  std::string line = Counted(placed, "object");
-  if (uncertain > 0) line += fmt::format(", {} of them uncertain", uncertain);
-  return line + ScaleInHeadline(map.parent_path() / "world.json", sequence);
+  std::string line =
+      Counted(placed, "object") + ScaleInHeadline(map.parent_path() / "world.json", sequence);
+  if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
+  return line;
 }
 
 }  // namespace soslam

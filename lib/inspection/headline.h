@@ -8,9 +8,9 @@
 
 namespace soslam {
 
-// One line on a map.json, such as "9 objects, 2 of them uncertain, scale +- 18 %": how many objects
-// it has, and how well its scale is known by the world.json beside it. It ends with "uncertain: "
-// and the reason where something contradicts the scale. Throws InputError.
+// One line on a map.json, such as "9 objects, scale +- 18 %, 2 objects uncertain": how many objects
+// it has, and how well its scale is known by the world.json beside it, with the reason where
+// something contradicts that. Throws InputError.
 std::string HeadlineOfMap(const std::filesystem::path& map, const Sequence& sequence);
 
 }  // namespace soslam

@@ -100,7 +100,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   WriteMap(File("map.json"), map, sequence_, {});
   InspectRequest request = RequestOf("map.json");
   request.headline = true;
-  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 of them uncertain\n");
+  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 object uncertain\n");
 
   GroundEstimate ground;
   ground.scale = ScalePosterior{0.0, 0.05, -0.1, 0.1};
@@ -110,17 +110,17 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
                {OptionsToJson(GroundOptions()), {}, findings});
   };
   write_world({});
-  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 of them uncertain, scale +- 11 %\n");
+  EXPECT_EQ(RunInspect(request, true), "2 objects, scale +- 11 %, 1 object uncertain\n");
   write_world({{kKnownScaleCheck, Severity::kWarning, "", "", "", ""}});
   EXPECT_EQ(RunInspect(request, true),
-            "2 objects, 1 of them uncertain, scale +- 11 %, uncertain: the heights of objects "
-            "contradict the camera's height given\n");
+            "2 objects, scale +- 11 % (uncertain: the heights of objects contradict the camera's "
+            "height given), 1 object uncertain\n");
   EXPECT_THAT(RunInspect(RequestOf("world.json"), false),
               testing::AllOf(HasSubstr("(95 %, +- 11 %)"),
                              HasSubstr("scale uncertain  the heights of objects contradict the")));
   ground.scale.reset();
   write_world({});
-  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 of them uncertain, scale unknown\n");
+  EXPECT_EQ(RunInspect(request, true), "2 objects, scale unknown, 1 object uncertain\n");
   request.file = File("metrics.json");
   ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"metrics", "expected a map"});
 }
