@@ -33,7 +33,7 @@ CAMERA_HEIGHT ?=
 
 # Some shells set NAME to that of the machine: only `make ... NAME=<map>` counts.
 ifneq ($(origin NAME),command line)
-NAME :=
+override NAME :=
 endif
 
 MAKEFLAGS += --no-print-directory
@@ -64,10 +64,12 @@ $(call one-word,DOWNLOADS,one file without spaces in its path)
 $(if $(filter-out :,$(call special-in,MIRROR)),$(error MIRROR='$(value MIRROR)': expected an address))
 $(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_PATHS: expected --allow_outside_paths))
 
-# A variable that is misspelt would be ignored. Those of compilers and of cmake pass.
+# A variable that is misspelt would be ignored without a word. A make above this one has variables of its own.
+ifeq ($(MAKELEVEL),0)
 given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
-KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX %FLAGS CMAKE_% SOSLAM_% MAKE%
-$(foreach name,$(filter-out $(KNOWN) -%,$(given-names)),$(error $(name)=...: no such variable; `make help` lists them))
+KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE%
+$(foreach name,$(filter-out $(KNOWN) -%,$(given-names)),$(warning $(name)=...: no variable of this Makefile has this name))
+endif
 
 BIN := $(BUILD)/bin
 $(call refuse-special,BIN)$(call one-word,BIN,$(ONE_FOLDER))
@@ -80,17 +82,26 @@ STATUS_COMMAND = pipelines/under-way $(RESULTS) | $(BIN)/soslam-status --results
   --under_way /dev/stdin --name '$(DATASET)' --variants '$(filter-out all,$(VARIANT))'
 
 # The name of a map of photos stands for the dataset and the folders of that map: make doctor NAME=room.
-ifneq ($(if $(filter map,$(MAKECMDGOALS)),,$(NAME)),)
+MAP_GOALS := run run-built locked-run locked-plan doctor report tables export status explain verify reproduce clean
+ifneq ($(NAME),)
+$(call one-word,NAME,one name of letters and digits)
+$(if $(findstring /,$(NAME))$(filter .%,$(NAME)),$(error NAME: found '$(NAME)'; expected letters and digits, _ and -))
+$(foreach goal,$(filter-out map build setup help $(MAP_GOALS),$(MAKECMDGOALS)),$(error make $(goal) takes no NAME))
+ifeq ($(filter map,$(MAKECMDGOALS)),)
 $(if $(wildcard $(MAPS)/$(NAME)/pipelines),,$(error NAME='$(NAME)': no such map in MAPS = $(MAPS)))
+$(foreach name,DATASET DATA_ROOT RESULTS PIPELINES,$(if $(filter command,$(origin $(name))), \
+  $(error NAME stands for the map's own $(name); expected one of them)))
 override DATASET := $(NAME)
 override DATA_ROOT := $(MAPS)/$(NAME)/data
 override RESULTS := $(MAPS)/$(NAME)/results
 override PIPELINES := $(MAPS)/$(NAME)/pipelines
 endif
+endif
 # Other settings would make a map anew, as of another dataset.
-ifneq ($(wildcard $(RESULTS)/../steps/images.txt),)
-$(if $(filter-out $(abspath $(RESULTS)/../pipelines),$(abspath $(PIPELINES))),$(error RESULTS=$(RESULTS) is of a map \
-  of photos, whose settings are not those in PIPELINES=$(PIPELINES); expected NAME=$(notdir $(abspath $(RESULTS)/..))))
+ifneq ($(and $(wildcard $(RESULTS)/../steps/images.txt),$(filter run run-built doctor,$(MAKECMDGOALS))),)
+$(if $(filter-out $(abspath $(RESULTS)/../pipelines),$(abspath $(PIPELINES))),$(error RESULTS=$(RESULTS) is of a map of \
+  photos, whose settings are not those in PIPELINES=$(PIPELINES); expected NAME=$(notdir $(abspath $(RESULTS)/..)) \
+  MAPS=$(patsubst %/,%,$(dir $(abspath $(RESULTS)/..)))))
 endif
 
 # A sweep: datasets, and each scene rendered with each seed of its noise, as dataset <scene>-seed<seed> in DATA_ROOT.
@@ -132,7 +143,7 @@ help: ## List the targets
 	@echo 'Maps of photos (see docs/photos-to-map.md): IMAGES=<folder or video>, NETWORK=<file.onnx> or'
 	@echo 'DETECTIONS=<file.csv>; VARIANT=OursS, NAME=<that of the folder or video>, MAPS=maps; where known,'
 	@echo 'CAMERA=<camera.json>, MODEL=<folder of COLMAP>, SCALE=<metres per unit of MODEL>, CAMERA_HEIGHT=<metres>.'
-	@echo 'NAME=<map> in place of DATASET, DATA_ROOT, RESULTS, PIPELINES: that map, in all other targets'
+	@echo 'NAME=<map> in place of DATASET, DATA_ROOT, RESULTS, PIPELINES: that map, to look at it or run it again'
 	@echo 'Datasets of others (see docs/data.md): MIRROR=<address of copies of the downloads>, WITHOUT=<folder of the'
 	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
@@ -172,8 +183,6 @@ ifneq ($(filter map,$(MAKECMDGOALS)),)
 MAKEOVERRIDES :=
 MAKE_PROGRAM := $(MAKE)
 override NAME := $(or $(NAME),$(shell pipelines/map-name $(call shell-word,IMAGES)))
-$(call one-word,NAME,one name of letters and digits)
-$(if $(findstring /,$(NAME))$(filter .% -%,$(NAME)),$(error NAME: found '$(NAME)'; expected letters and digits, _ and -))
 endif
 
 .PHONY: map
@@ -184,7 +193,7 @@ map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.o
 	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
 	  MAP_MODEL=$(call shell-word,MODEL) MAP_SCALE='$(SCALE)' \
 	  MAP_CAMERA_HEIGHT='$(CAMERA_HEIGHT)' MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
-	  MAP_VARIANT='$(patsubst all,OursS,$(VARIANT))' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
+	  MAP_VARIANT='$(or $(strip $(patsubst all,OursS,$(VARIANT))),OursS)' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)

@@ -6,7 +6,8 @@ folder := $(MAP_ROOT)/data/$(MAP_NAME)
 steps := $(MAP_ROOT)/steps
 QUIET ?=
 
-# Boxes first: they take seconds, and so a network that cannot run is found out before COLMAP works for minutes.
+# Boxes first: they take seconds, and a network that cannot run is found out before COLMAP works for minutes (unless
+# make runs both at once).
 .PHONY: dataset
 dataset: $(steps)/detected $(steps)/reconstructed
 

@@ -19,10 +19,13 @@ refuse() {
 for file in "$MAP_NETWORK" "$MAP_DETECTIONS" "$MAP_CAMERA"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
-mappers=$(grep --files-with-matches optimise pipelines/variants/*.json | xargs basename --multiple --suffix .json | xargs)
 for variant in $MAP_VARIANT; do
-  [[ " $mappers " == *" $variant "* ]] || refuse "VARIANT='$variant' makes no map; expected some of $mappers"
+  [[ -f pipelines/variants/$variant.json || -f $MAP_ROOT/pipelines/variants/$variant.json ]] ||
+    refuse "VARIANT='$variant': no such variant; \`make help\` lists them"
 done
+makes_no_map="VARIANT='$MAP_VARIANT': the first one makes no map; expected one that does, as OursS"
+own=pipelines/variants/${MAP_VARIANT%% *}.json
+[[ ! -f $own ]] || grep --quiet optimise "$own" || refuse "$makes_no_map"
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
 
 for name in SCALE CAMERA_HEIGHT; do
@@ -66,12 +69,12 @@ options=''
 [[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0'
 export MAP_FRAMES_OPTIONS=$options
 
-# Photos that were moved are the same ones.
-first=$(head -n 1 "$MAP_ROOT/steps/images.txt" 2> /dev/null || true)
-photos=$(listed "$MAP_IMAGES")
-[[ -z $first || $first == "${photos%%$'\n'*}" || $(< "$MAP_ROOT/steps/images.txt") == *"${photos#*$'\n'}"* ]] ||
-  refuse "$MAP_ROOT is of other images, '$first'; expected NAME=<another name>"
-{ echo "$photos" && listed "$MAP_DETECTIONS" && echo "$options"; } | keep "$MAP_ROOT/steps/images.txt"
+photos=$(listed "$MAP_IMAGES" && listed "$MAP_DETECTIONS" && echo "$options")
+known=$(cat "$MAP_ROOT/steps/images.txt" 2> /dev/null || true)
+have_moved() { [[ ${photos#*$'\n'} == "${known#*$'\n'}" ]]; }
+[[ ! -e $MAP_ROOT/steps/frames || ${photos%%$'\n'*} == "${known%%$'\n'*}" ]] || have_moved ||
+  refuse "$MAP_ROOT is of other images, '${known%%$'\n'*}'; expected NAME=<another name>"
+echo "$photos" | keep "$MAP_ROOT/steps/images.txt"
 listed "$MAP_CAMERA" | keep "$MAP_ROOT/steps/camera.txt"
 listed "$MAP_MODEL" | keep "$MAP_ROOT/steps/model.txt"
 listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
@@ -95,5 +98,6 @@ $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/da
 "$BIN/soslam-pages" --results "$MAP_ROOT/results"
 
 map=$MAP_ROOT/results/$MAP_NAME/${MAP_VARIANT%% *}/map.json
+[[ -e $map ]] || refuse "$makes_no_map" 4
 headline=$("$BIN/soslam-inspect" "$map" --headline)
 echo "$headline, page: $MAP_ROOT/results/$MAP_NAME/report.html"

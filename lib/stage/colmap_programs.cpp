@@ -58,6 +58,7 @@ std::string FileText(const fs::path& path) {
 std::string StampOf(const ColmapJob& job, const std::string& version) {
   std::string text = fmt::format("COLMAP {}\nexhaustive {}\nfixed camera {}\n", version,
                                  job.exhaustive, job.camera_is_fixed);
+  if (!job.camera_is_fixed) text += fmt::format("at most {} px\n", kMaxReprojectionErrorPx);
   if (job.camera) {
     const ColmapCameraText camera = ToColmap(*job.camera);
     text += fmt::format("{} {}\n", camera.model, camera.parameters);
@@ -195,10 +196,10 @@ std::vector<std::string> MapperWords(const ColmapJob& job, const fs::path& works
     words.insert(words.end(),
                  {"--input_path", (workspace / "given").string(), "--clear_points", "1"});
   }
-  if (!poses_are_given) {
+  if (!job.camera_is_fixed) {
     words.insert(words.end(), {"--Mapper.filter_max_reproj_error", kMaxReprojectionErrorPx});
+    return words;
   }
-  if (!job.camera_is_fixed) return words;
   // Images whose camera has a larger coefficient of distortion would be left out.
   words.insert(words.end(), {"--Mapper.max_extra_param", "1e6"});
   for (const char* option : {"focal_length", "principal_point", "extra_params"}) {

@@ -166,6 +166,7 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   EXPECT_EQ(moved.exit_code, 0) << moved.errors;
   EXPECT_EQ(Made(), made);
   fs::rename(elsewhere / photos_.filename(), photos_);
+  EXPECT_EQ(Run(WordsForPhotos()).exit_code, 0);
 
   // Other boxes: images and poses stay.
   const std::string boxes = FileBytes(detections_);
@@ -207,6 +208,10 @@ TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
   EXPECT_THAT(make({"doctor", "DATASET=it_s_my_room_1", "RESULTS=" + results}).errors,
               HasSubstr("expected NAME=it_s_my_room_1"));
   EXPECT_THAT(make({"doctor", "NAME=another"}).errors, HasSubstr("no such map"));
+  EXPECT_THAT(make({"run", "NAME=it_s_my_room_1", "RESULTS=" + results}).errors,
+              HasSubstr("expected one of them"));
+  EXPECT_THAT(make({"demo", "NAME=it_s_my_room_1"}).errors, HasSubstr("takes no NAME"));
+  EXPECT_THAT(make({"clean", "NAME=it_s_my_room_1 2"}).errors, HasSubstr("expected one name"));
   EXPECT_EQ(Made(), made);
   EXPECT_EQ(make({"verify", "NAME=it_s_my_room_1"}).exit_code, 0);
 }
@@ -235,10 +240,10 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, "NETWORK=" + detections_.string(), "CAMERA_HEIGHT=160"},
                  "expected metres");
   const std::string network = "NETWORK=" + detections_.string();
-  expect_refused({images, network, "VARIANT=InitS"}, "VARIANT='InitS' makes no map");
-  expect_refused({images, network, "VARIANT=Best"},
-                 "VARIANT='Best' makes no map; expected some of OursP OursPT");
-  expect_refused({images, network, "CAMERA_HIGHT=1.6"}, "CAMERA_HIGHT=...: no such variable");
+  expect_refused({images, network, "VARIANT=InitS"}, "the first one makes no map");
+  expect_refused({images, network, "VARIANT=OursS Best"}, "VARIANT='Best': no such variant");
+  expect_refused({"IMAGE=x", network}, "IMAGE=...: no variable of this Makefile");
+  expect_refused({images, network, "NAME=room 2"}, "expected one name of letters and digits");
   expect_refused({images, "NETWORK=x", "NAME=.."}, "expected letters and digits");
   expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
   expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");
