@@ -345,13 +345,22 @@ std::optional<UprightSolution> SolveViewsAtYaw(const MultiViewObservation& obser
   return LinearViews(observation).SolveAt(yaw);
 }
 
+double FirstYaw(const MultiViewObservation& observation) {
+  const Eigen::Vector3d& normal = observation.plane_in_world.normal;
+  const Eigen::Quaterniond& camera_from_world =
+      observation.views.front().camera_from_world.rotation;
+  const Eigen::Quaterniond upright_in_camera = UprightRotation(camera_from_world * normal, 0.0);
+  return Yaw(normal, camera_from_world.conjugate() * upright_in_camera);
+}
+
 std::vector<UprightSolution> SweepViews(const MultiViewObservation& observation, double step) {
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
+  const double first_yaw = FirstYaw(observation);
   const LinearViews views(observation);
   std::vector<std::optional<UprightSolution>> solutions;
   std::vector<double> costs;
   for (int i = 0; i < steps; ++i) {
-    solutions.push_back(views.SolveAt(i * std::numbers::pi / steps));
+    solutions.push_back(views.SolveAt(first_yaw + i * std::numbers::pi / steps));
     costs.push_back(solutions.back() ? solutions.back()->cost
                                      : std::numeric_limits<double>::quiet_NaN());
   }

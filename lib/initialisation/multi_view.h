@@ -62,8 +62,12 @@ LandmarkCosts OutlineTerms(const MultiViewObservation& observation);
 // in front of all cameras.
 std::optional<UprightSolution> SolveViewsAtYaw(const MultiViewObservation& observation, double yaw);
 
-// Local optima of SolveViewsAtYaw over half a turn in steps (rad), lowest cost first; landmarks in
-// the world.
+// The yaw (rad) at which grids of yaws begin: that of the horizontal direction from which yaws are
+// counted in the first view's camera. If the world is turned, the grids turn along.
+double FirstYaw(const MultiViewObservation& observation);
+
+// Local optima of SolveViewsAtYaw over half a turn in steps (rad) from FirstYaw, lowest cost first;
+// landmarks in the world.
 std::vector<UprightSolution> SweepViews(const MultiViewObservation& observation, double step);
 
 // The best of these optima after refinement by Levenberg-Marquardt with free yaw. Not for a free

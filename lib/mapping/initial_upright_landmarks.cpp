@@ -134,10 +134,11 @@ class ObjectFit {
 // The cheapest of each bin of yaw, cheapest first.
 std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, ObjectFit* fit) {
   std::map<long, Candidate> best;
+  const double first_yaw = FirstYaw(fit->boxes());
   for (Landmark landmark : landmarks) {
     landmark.shape_exponent = fit->boxes().ShapeExponent();  // whatever it was found with
     const double yaw = Yaw(fit->boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
-    const long bin = std::lround(YawDifferenceModuloPi(yaw, 0.0) / kYawBin);
+    const long bin = std::lround(YawDifferenceModuloPi(yaw, first_yaw) / kYawBin);
     const auto known = best.find(bin);
     const auto candidate =
         fit->IfCheaperThan(known == best.end() ? kCostOfNone : known->second.cost, landmark);

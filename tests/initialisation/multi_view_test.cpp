@@ -105,6 +105,31 @@ TEST(SolveViewsAtYaw, AKnownSizeTellsDepthFromOneBox) {
   ExpectSame(solution->landmark, world.truth, 1e-3);
 }
 
+// The grid of yaws is no coarser or finer, and begins nowhere else, in a world that is turned.
+TEST(SweepViews, TurnsAlongWithTheWorld) {
+  for (int i = 0; i < 20; ++i) {
+    World world(1.1);
+    world.AddArc(5);
+    const auto optima = SweepViews(world.Observation(world.Prior(0.3)), 10.0 * kRadPerDeg);
+    const Rigid3d turn{
+        Eigen::Quaterniond(Eigen::AngleAxisd(RandomUniform(-3, 3), Eigen::Vector3d::UnitZ())),
+        {RandomUniform(-5, 5), RandomUniform(-5, 5), 0.0}};
+    for (Frame& frame : world.sequence.frames) {
+      frame.world_from_camera = turn * frame.world_from_camera;
+    }
+    const auto turned = SweepViews(world.Observation(world.Prior(0.3)), 10.0 * kRadPerDeg);
+    ASSERT_FALSE(optima.empty());
+    ASSERT_EQ(turned.size(), optima.size());
+    for (size_t k = 0; k < optima.size(); ++k) {
+      const Landmark expected = Transform(turn, optima[k].landmark);
+      ExpectSame(turned[k].landmark, expected, 1e-6);
+      EXPECT_LT(turned[k].landmark.frame_from_object.rotation.angularDistance(
+                    expected.frame_from_object.rotation),
+                1e-6);
+    }
+  }
+}
+
 TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
   for (const double p : kShapeExponents) {
     SCOPED_TRACE(p);
