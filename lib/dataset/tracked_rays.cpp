@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/tracked_rays.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <map>
 #include <set>
@@ -9,6 +8,7 @@
 
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
+#include "geometry/triangulation.h"
 
 namespace soslam {
 namespace {
@@ -71,23 +71,14 @@ std::vector<TrackedObject> TrackedThings(const ImportView& view) {
 
 std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>& rays,
                                                    const PoseOfFrame& world_from_camera) {
-  constexpr double kSmallestEigenvalue = 1e-4;  // rays within half a degree of each other
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  size_t count = 0;
+  constexpr double kLeastSpread = 1e-4;  // rays within half a degree of each other
+  std::vector<Ray> in_world;
   for (const TrackedRay& ray : rays) {
     const auto pose = world_from_camera(ray.frame);
-    if (!pose) continue;
-    const Eigen::Vector3d direction = pose->rotation * ray.ray_in_camera;
-    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - direction * direction.transpose();
-    sum += across;
-    right += across * pose->translation;
-    ++count;
+    if (pose) in_world.push_back({pose->translation, pose->rotation * ray.ray_in_camera});
   }
-  if (count < kFewestRays) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(sum / static_cast<double>(count));
-  if (eigen.eigenvalues()(0) < kSmallestEigenvalue) return std::nullopt;
-  return sum.ldlt().solve(right);
+  if (in_world.size() < kFewestRays) return std::nullopt;
+  return NearestPointToRays(in_world, kLeastSpread);
 }
 
 std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& things,

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/triangulation.h"
+
+#include <ceres/loss_function.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/angles.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kMaxSteps = 10;
+// Steps of this fraction of the distance to the cameras end the search.
+constexpr double kSettledStep = 1e-9;
+// Rays within a tenth of a degree of each other meet anywhere.
+constexpr double kLeastSpread = 1e-6;
+
+std::optional<Eigen::Vector3d> NearestPoint(const std::vector<PointView>& views) {
+  std::vector<Ray> rays;
+  for (const PointView& view : views) {
+    const Rigid3d world_from_camera = view.camera_from_world.Inverse();
+    rays.push_back({world_from_camera.translation,
+                    world_from_camera.rotation * view.camera.Ray(view.pixel).normalized()});
+  }
+  return NearestPointToRays(rays, kLeastSpread);
+}
+
+// Reprojection errors to first order about a point.
+struct NormalEquations {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();           // J^T J
+  Eigen::Matrix3d weighted_information = Eigen::Matrix3d::Zero();  // under the loss
+  Eigen::Vector3d weighted_gradient = Eigen::Vector3d::Zero();
+  double sum_px = 0.0;
+  double nearest_depth = std::numeric_limits<double>::infinity();
+};
+
+// None behind a camera.
+std::optional<NormalEquations> Linearise(const std::vector<PointView>& views,
+                                         const Eigen::Vector3d& point_in_world,
+                                         const ceres::LossFunction& loss) {
+  NormalEquations sum;
+  for (const PointView& view : views) {
+    const Eigen::Vector3d in_camera = view.camera_from_world * point_in_world;
+    const auto pixel = view.camera.Project(in_camera);
+    if (!pixel) return std::nullopt;
+    const Eigen::Vector2d residual = *pixel - view.pixel;
+    const Eigen::Matrix<double, 2, 3> jacobian = view.camera.ProjectionJacobian(in_camera) *
+                                                 view.camera_from_world.rotation.toRotationMatrix();
+    double rho[3];
+    loss.Evaluate(residual.squaredNorm(), rho);
+    sum.information += jacobian.transpose() * jacobian;
+    sum.weighted_information += rho[1] * jacobian.transpose() * jacobian;
+    sum.weighted_gradient += rho[1] * jacobian.transpose() * residual;
+    sum.sum_px += residual.norm();
+    sum.nearest_depth = std::min(sum.nearest_depth, in_camera.z());
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3d> NearestPointToRays(const std::vector<Ray>& rays,
+                                                  double least_spread) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const Ray& ray : rays) {
+    const Eigen::Matrix3d across =
+        Eigen::Matrix3d::Identity() - ray.direction * ray.direction.transpose();
+    sum += across;
+    right += across * ray.origin;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(sum /
+                                                             static_cast<double>(rays.size()));
+  if (!(eigen.eigenvalues()(0) >= least_spread)) return std::nullopt;
+  return sum.ldlt().solve(right);
+}
+
+std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views, double huber_px) {
+  if (views.size() < 2) return std::nullopt;
+  auto point = NearestPoint(views);
+  if (!point) return std::nullopt;
+  const ceres::HuberLoss loss(huber_px);
+  auto equations = Linearise(views, *point, loss);
+  for (int i = 0; i < kMaxSteps && equations; ++i) {
+    const Eigen::Vector3d step =
+        equations->weighted_information.ldlt().solve(equations->weighted_gradient);
+    if (!step.allFinite()) return std::nullopt;
+    *point -= step;
+    const double settled = kSettledStep * equations->nearest_depth;
+    equations = Linearise(views, *point, loss);
+    if (step.norm() < settled) break;
+  }
+  if (!equations) return std::nullopt;
+  const TriangulatedPoint result = {*point, equations->information.inverse(),
+                                    equations->sum_px / static_cast<double>(views.size())};
+  return result.covariance.allFinite() ? std::optional(result) : std::nullopt;
+}
+
+double ReprojectionError(const PointView& view, const Eigen::Vector3d& point_in_world) {
+  const auto pixel = view.camera.Project(view.camera_from_world * point_in_world);
+  return pixel ? (*pixel - view.pixel).norm() : std::numeric_limits<double>::infinity();
+}
+
+double LargestAngle(const std::vector<PointView>& views, const Eigen::Vector3d& point_in_world) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const PointView& view : views) {
+    directions.push_back(view.camera_from_world.Inverse().translation - point_in_world);
+  }
+  double largest = 0.0;
+  for (size_t i = 0; i < directions.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      largest = std::max(largest, AngleBetween(directions[i], directions[k]));
+    }
+  }
+  return largest;
+}
+
+}  // namespace soslam

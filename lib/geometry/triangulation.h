@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/rigid3.h"
+
+namespace soslam {
+
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;  // of unit length
+};
+
+// The point of least squared distance from all rays. None where the rays hardly differ: the
+// smallest eigenvalue of the mean projector across them, about the mean squared angle (rad) between
+// them, must be above `least_spread`.
+std::optional<Eigen::Vector3d> NearestPointToRays(const std::vector<Ray>& rays,
+                                                  double least_spread);
+
+// Pixel of a point in one camera, without lens distortion.
+struct PointView {
+  Camera camera;
+  Rigid3d camera_from_world;
+  Eigen::Vector2d pixel;
+};
+
+// Point that is seen in several views.
+struct TriangulatedPoint {
+  Eigen::Vector3d position_in_world;
+  Eigen::Matrix3d covariance;  // m^2, of pixels with independent errors of 1 px
+  double mean_error_px;        // reprojection error
+};
+
+// The point of lowest reprojection error (Huber loss beyond `huber_px`): Gauss-Newton steps from
+// the point nearest to all rays. None with fewer than two views, where the rays hardly differ, and
+// where the point is not in front of all cameras.
+std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views, double huber_px);
+
+// Distance (px) between a view's pixel and the projection of a point; infinite behind the camera.
+double ReprojectionError(const PointView& view, const Eigen::Vector3d& point_in_world);
+
+// Largest angle (rad) at a point between the directions to two of the cameras.
+double LargestAngle(const std::vector<PointView>& views, const Eigen::Vector3d& point_in_world);
+
+}  // namespace soslam

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "artefact/points_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "cli/command_line.h"
+#include "evaluation/statistics.h"
+#include "geometry/angles.h"
+#include "geometry/distortion.h"
+#include "geometry/triangulation.h"
+#include "model/map_points.h"
+#include "stage/image_stages.h"
+
+namespace soslam {
+namespace {
+
+// Image points of one track, each with its frame.
+struct TrackViews {
+  std::vector<const Frame*> frames;
+  std::vector<PointView> views;
+};
+
+// Homography between two images of a camera that only turns: where points at infinity move.
+Eigen::Matrix3d TurnOf(const Sequence& sequence, const Frame& from, const Frame& to) {
+  const Eigen::Quaterniond to_from_from =
+      to.world_from_camera.rotation.conjugate() * from.world_from_camera.rotation;
+  return sequence.CameraOf(to).Intrinsics() * to_from_from.toRotationMatrix() *
+         sequence.CameraOf(from).Intrinsics().inverse();
+}
+
+bool MayShareFeatures(const Sequence& sequence, const Frame& one, const Frame& other) {
+  const Camera& camera = sequence.CameraOf(one);
+  const Camera& other_camera = sequence.CameraOf(other);
+  return one.segment == other.segment && camera.width == other_camera.width &&
+         camera.height == other_camera.height;
+}
+
+std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<FrameImage>& images,
+                                   const FeatureTrackOptions& options, int threads) {
+  const FrameImageReader reader(sequence);
+  FeatureTracker tracker(options);
+  Progress progress("images", static_cast<int>(images.size()));
+  const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
+  for (size_t begin = 0; begin < images.size(); begin += batch) {
+    std::vector<cv::Mat> grey(std::min(batch, images.size() - begin));
+    ParallelFor(static_cast<int>(grey.size()), threads, [&](int i) {
+      grey[static_cast<size_t>(i)] = reader.ReadGrey(images[begin + static_cast<size_t>(i)]);
+    });
+    for (size_t i = 0; i < grey.size(); ++i) {
+      const size_t index = begin + i;
+      const Frame& frame = *images[index].frame;
+      const Frame& last = index > 0 ? *images[index - 1].frame : frame;
+      if (!MayShareFeatures(sequence, last, frame)) tracker.Cut();
+      tracker.Add(grey[i], TurnOf(sequence, last, frame));
+      progress.Step();
+    }
+  }
+  return tracker.Tracks();
+}
+
+TrackViews ViewsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
+                   const FeatureTrack& track) {
+  TrackViews result;
+  for (const FeatureTrack::Place& place : track.places) {
+    const Frame& frame = *images[static_cast<size_t>(place.image)].frame;
+    result.frames.push_back(&frame);
+    result.views.push_back(
+        {sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});
+  }
+  return result;
+}
+
+// Leaves out views whose pixel is far from the point's projection.
+TrackViews NearViews(const TrackViews& all, const Eigen::Vector3d& point_in_world,
+                     double max_error_px) {
+  TrackViews near;
+  for (size_t i = 0; i < all.views.size(); ++i) {
+    if (ReprojectionError(all.views[i], point_in_world) > max_error_px) continue;
+    near.frames.push_back(all.frames[i]);
+    near.views.push_back(all.views[i]);
+  }
+  return near;
+}
+
+Eigen::Vector2d StoredPixel(const Sequence& sequence, const PointView& view) {
+  if (!sequence.image_distortion) return view.pixel;
+  return DistortPixels(view.camera, *sequence.image_distortion, {view.pixel}).front();
+}
+
+// None if a track's image points are not those of one static point, or it is too far away.
+std::optional<MapPoint> PointOf(const Sequence& sequence, const TrackViews& all,
+                                const TrackOptions& options) {
+  const double max_error_px = options.max_reprojection_error_px;
+  const auto min_views = static_cast<size_t>(options.min_views);
+  if (all.views.size() < min_views) return std::nullopt;
+  const auto first = Triangulate(all.views, 0.5 * max_error_px);
+  if (!first) return std::nullopt;
+  const TrackViews near = NearViews(all, first->position_in_world, max_error_px);
+  if (near.views.size() < min_views || 2 * near.views.size() < all.views.size()) {
+    return std::nullopt;
+  }
+  const auto point = Triangulate(near.views, 0.5 * max_error_px);
+  if (!point) return std::nullopt;
+  const auto is_far = [&](const PointView& view) {
+    return ReprojectionError(view, point->position_in_world) > max_error_px;
+  };
+  if (std::ranges::any_of(near.views, is_far) ||
+      LargestAngle(near.views, point->position_in_world) < options.min_angle_deg * kRadPerDeg) {
+    return std::nullopt;
+  }
+  MapPoint result{point->position_in_world, point->mean_error_px, {}};
+  for (size_t i = 0; i < near.views.size(); ++i) {
+    result.observations.push_back({near.frames[i]->id, StoredPixel(sequence, near.views[i])});
+  }
+  return result;
+}
+
+std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
+                               const std::vector<FeatureTrack>& tracks, const TrackOptions& options,
+                               int threads) {
+  std::vector<std::optional<MapPoint>> found(tracks.size());
+  ParallelFor(static_cast<int>(tracks.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    found[index] = PointOf(sequence, ViewsOf(sequence, images, tracks[index]), options);
+  });
+  std::vector<MapPoint> points;
+  for (auto& point : found) {
+    if (point) points.push_back(std::move(*point));
+  }
+  return points;
+}
+
+void PrintSummary(const Sequence& sequence, const std::vector<MapPoint>& points, size_t tracks) {
+  std::vector<double> errors_px, views;
+  for (const MapPoint& point : points) {
+    errors_px.push_back(point.reprojection_error_px);
+    views.push_back(static_cast<double>(point.observations.size()));
+  }
+  fmt::print(
+      "{}: {} points from {} tracks, median reprojection error {:.2f} px, in {:.0f} images\n",
+      sequence.name, points.size(), tracks, *MedianOf(std::move(errors_px)),
+      *MedianOf(std::move(views)));
+}
+
+}  // namespace
+
+void RunTrack(const TrackOptions& options, const StageFiles& files, int threads) {
+  const std::filesystem::path& sequence_file = files.at("sequence");
+  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
+  const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
+  ArtefactInfo info = {OptionsToJson(options), {sequence_file}};
+  for (const FrameImage& image : images) info.inputs.push_back(image.path);
+  const std::vector<FeatureTrack> tracks = TracksOf(sequence, images, options.features, threads);
+  const std::vector<MapPoint> points = PointsOf(sequence, images, tracks, options, threads);
+  if (points.empty()) {
+    throw NothingUsableError(fmt::format(
+        "{}: no point from {} tracks through {} images; expected some: do the poses fit "
+        "the images, and does the camera move?",
+        sequence_file.string(), tracks.size(), images.size()));
+  }
+  WritePoints(files.at("output"), points, info);
+  PrintSummary(sequence, points, tracks.size());
+}
+
+}  // namespace soslam

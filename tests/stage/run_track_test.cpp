@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage/run_track.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "artefact/points_file.h"
+#include "artefact/sequence_file.h"
+#include "base/error.h"
+#include "dataset/text_file.h"
+#include "geometry/distortion.h"
+#include "support/drawn_photos.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kFocalPx = 300.0;
+constexpr double kDepthM = 3.0;  // of the picture that all cameras look at
+constexpr int kShiftPx = 6;      // per image
+constexpr int kImages = 9;       // more than one batch of two threads
+
+// A camera that moves along a wall with a picture, and its sequence.json.
+class RunTrackTest : public testing::Test {
+ protected:
+  RunTrackTest() {
+    std::filesystem::create_directory(folder_ / "rgb");
+    sequence_.name = "wall";
+    sequence_.camera = {320, 240, kFocalPx, kFocalPx, 159.5, 119.5};
+    for (int i = 0; i < kImages; ++i) {
+      Frame frame;
+      frame.id = 5 * i;
+      frame.timestamp = 0.1 * i;
+      frame.image = "rgb/" + std::to_string(i) + ".png";
+      frame.world_from_camera.translation.x() = i * kShiftPx * kDepthM / kFocalPx;
+      sequence_.frames.push_back(frame);
+      cv::Mat soft;
+      cv::GaussianBlur(DrawnView(i * kShiftPx), soft, {}, 1.0);
+      cv::imwrite((folder_ / frame.image).string(), soft);
+    }
+  }
+
+  std::vector<MapPoint> Run(const TrackOptions& options = {}, int threads = 2,
+                            const std::string& output = "points.h5") {
+    WriteSequence(folder_ / "sequence.json", sequence_, {});
+    RunTrack(options, Files(output), threads);
+    return ReadPoints(folder_ / output);
+  }
+  StageFiles Files(const std::string& output = "points.h5") {
+    return {{"dataset", folder_.path()},
+            {"sequence", folder_ / "sequence.json"},
+            {"output", folder_ / output}};
+  }
+
+  TemporaryFolder folder_;
+  Sequence sequence_;
+};
+
+TEST_F(RunTrackTest, PointsLieOnThePicture) {
+  const std::vector<MapPoint> points = Run();
+  EXPECT_GT(points.size(), 100u);
+  size_t right = 0;
+  for (const MapPoint& point : points) {
+    EXPECT_GE(point.observations.size(), 3u);
+    EXPECT_LT(point.reprojection_error_px, 3.0);
+    if (std::abs(point.position_in_world.z() - kDepthM) < 0.05) ++right;
+  }
+  EXPECT_GT(static_cast<double>(right), 0.95 * static_cast<double>(points.size()));
+}
+
+TEST_F(RunTrackTest, ObservationsAreWhereThePointsProject) {
+  sequence_.image_distortion = Distortion{.k1 = -0.05};
+  for (const MapPoint& point : Run()) {
+    for (const PointObservation& observation : point.observations) {
+      const Frame& frame = sequence_.frames[static_cast<size_t>(observation.frame_id / 5)];
+      ASSERT_EQ(frame.id, observation.frame_id);
+      const auto pixel =
+          sequence_.camera.Project(frame.world_from_camera.Inverse() * point.position_in_world);
+      ASSERT_TRUE(pixel);
+      const auto stored = DistortPixels(sequence_.camera, *sequence_.image_distortion, {*pixel});
+      EXPECT_LT((stored.front() - observation.pixel).norm(), 3.5);
+    }
+  }
+}
+
+TEST_F(RunTrackTest, SameBytesForAnyNumberOfThreads) {
+  Run({}, 1, "one.h5");
+  Run({}, 4, "four.h5");
+  EXPECT_EQ(ReadWholeFile(folder_ / "one.h5", "artefact"),
+            ReadWholeFile(folder_ / "four.h5", "artefact"));
+}
+
+TEST_F(RunTrackTest, PointsOfASegmentAreSeenInIt) {
+  for (size_t i = 4; i < sequence_.frames.size(); ++i) sequence_.frames[i].segment = 1;
+  for (const MapPoint& point : Run()) {
+    EXPECT_EQ(point.observations.front().frame_id < 20, point.observations.back().frame_id < 20);
+  }
+}
+
+TEST_F(RunTrackTest, PosesThatDoNotFitGiveNothing) {
+  for (Frame& frame : sequence_.frames) frame.world_from_camera.translation.setZero();
+  WriteSequence(folder_ / "sequence.json", sequence_, {});
+  ExpectError<NothingUsableError>([&] { RunTrack({}, Files(), 2); },
+                                  {"sequence.json", "no point", "9 images"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "points.h5"));
+}
+
+TEST_F(RunTrackTest, AMissingImageIsNamed) {
+  std::filesystem::remove(folder_ / "rgb/3.png");
+  WriteSequence(folder_ / "sequence.json", sequence_, {});
+  ExpectError<InputError>([&] { RunTrack({}, Files(), 2); }, {"3.png"});
+}
+
+}  // namespace
+}  // namespace soslam
