@@ -24,6 +24,7 @@
 #include "ground/options.h"
 #include "image/edge_maps.h"
 #include "image/frame_choice.h"
+#include "image/track_options.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
 #include "orientation/options.h"
@@ -53,6 +54,7 @@ const std::vector<Maker>& Makers() {
       {"metrics", "evaluate", OptionsToJson(EvaluateOptions())},
       {"planes", "planes", OptionsToJson(PlanesOptions())},
       {"points", "reconstruct", OptionsToJson(ReconstructOptions())},
+      {"points", "track", OptionsToJson(TrackOptions())},
       {"reconstruction", "reconstruct", OptionsToJson(ReconstructOptions())},
       {"semantic_table", "learn-priors", OptionsToJson(LearnPriorsOptions())},
       {"sequence", "import", OptionsToJson(ImportOptions())},
