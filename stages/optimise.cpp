@@ -13,6 +13,11 @@ int main(int argc, char** argv) {
             {"table", "semantic table with the size ratio of each label"},
             {"edges",
              "edges.h5 of soslam-edges; needed when the setting symmetry or edge_alignment is true",
+             false},
+            {"points",
+             "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
+             "point_evidence "
+             "is true",
              false}},
        .outputs = {{"output", "map.json to write"}},
        .example = "soslam-optimise --sequence sequence.json --landmarks initial.json --table "

@@ -109,7 +109,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   problem.Solve();
   bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
-    if (!input.symmetry_images.empty() || !input.edge_images.empty()) {
+    if (!input.symmetry_images.empty() || !input.edge_images.empty() || !input.points.empty()) {
       has_converged = SolveWithImages(&problem);
     }
   } else if (!input.symmetry_images.empty()) {

@@ -9,6 +9,7 @@
 
 #include "constraints/symmetry.h"
 #include "initialisation/semantic_table.h"
+#include "mapping/object_points.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
@@ -28,16 +29,18 @@ struct BackEndInput {
   std::map<int, std::shared_ptr<const SymmetryImage>> symmetry_images;
   // Images whose edges are aligned, by index of the observation in Sequence::detections.
   std::map<int, std::shared_ptr<const EdgeImage>> edge_images;
+  // Points of each object (FindObjectPoints); empty: none are used.
+  std::vector<PointsOfObject> points = {};
 };
 
 // Eq. (1): the camera poses and landmarks that minimise detection, odometry, support, ratio,
 // symmetry and edge costs, beginning at the odometry's poses and the initial landmarks. With
 // detection_model quadric, all costs have a Huber loss; with tangency, those of odometry and boxes
-// do: texture and edges are bounded, and the others have no outliers. The first pose of each
-// segment is constant, as it defines the segment's world; with hold_poses all are, and odometry has
-// no cost. Objects fail with no_start without an initial landmark, with moving if they move, and
-// with collapsed if their landmark ends without HasExtent. The result does not depend on the number
-// of threads. Throws NumericalError when the solver has no usable solution.
+// do: texture, edges and points are bounded, and the others have no outliers. The first pose of
+// each segment is constant, as it defines the segment's world; with hold_poses all are, and
+// odometry has no cost. Objects fail with no_start without an initial landmark, with moving if they
+// move, and with collapsed if their landmark ends without HasExtent. The result does not depend on
+// the number of threads. Throws NumericalError when the solver has no usable solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
 
 }  // namespace soslam

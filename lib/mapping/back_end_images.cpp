@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Residuals of texture and edges of BackEndProblem.
+// Residuals of texture, edges and points of BackEndProblem.
 #include <functional>
 #include <utility>
 
@@ -15,7 +15,9 @@ namespace {
 // Kinds of residuals, and reasons for leaving something out.
 constexpr const char* kSymmetry = "symmetry";
 constexpr const char* kEdges = "edges";
+constexpr const char* kPoints = "points";
 constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
+constexpr const char* kNoPoints = "no_points";
 constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 
 }  // namespace
@@ -23,8 +25,8 @@ constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 void BackEndProblem::RenewImageResiduals() {
   for (const ceres::ResidualBlockId block : image_blocks_) problem_.RemoveResidualBlock(block);
   image_blocks_.clear();
-  for (const char* kind : {kSymmetry, kEdges}) summary_.residuals.erase(kind);
-  for (const char* reason : {kTooFewPairs, kNoEdgeCounts}) summary_.gated.erase(reason);
+  for (const char* kind : {kSymmetry, kEdges, kPoints}) summary_.residuals.erase(kind);
+  for (const char* reason : {kTooFewPairs, kNoEdgeCounts, kNoPoints}) summary_.gated.erase(reason);
   const auto is_used = [&](int detection_index) {
     const auto& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
     return input_.initial_landmarks[static_cast<size_t>(detection.object_index)].has_value();
@@ -43,6 +45,13 @@ void BackEndProblem::RenewImageResiduals() {
     detections.push_back(static_cast<size_t>(index));
     makers.push_back(
         [this, index = detections.back(), &image = image] { return EdgeBlocks(index, image); });
+  }
+  for (size_t i = 0; i < input_.points.size(); ++i) {
+    if (!input_.initial_landmarks[i]) continue;
+    for (const PointsInView& view : input_.points[i]) {
+      detections.push_back(static_cast<size_t>(view.detection_index));
+      makers.push_back([this, i, &view = view] { return PointBlocks(i, view); });
+    }
   }
   std::vector<ImageBlocks> made(makers.size());
   ParallelFor(static_cast<int>(makers.size()), threads_,
@@ -99,6 +108,20 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
         std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
                                            in_camera.shape_exponent, options_.symmetry_sigma));
   }
+  return blocks;
+}
+
+BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
+                                                        const PointsInView& view) const {
+  const Detection& detection =
+      input_.sequence.detections[static_cast<size_t>(view.detection_index)];
+  const Landmark in_camera = LandmarkInCamera(detection);
+  auto points =
+      std::make_unique<PointTerm>(view.points, in_camera, options_.points,
+                                  PointWeight(input_.points[object_index], options_.points));
+  ImageBlocks blocks{kPoints, kNoPoints, static_cast<int>(view.points.size()), {}, true};
+  blocks.functions.push_back(
+      std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponent));
   return blocks;
 }
 

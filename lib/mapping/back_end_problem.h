@@ -25,9 +25,10 @@ class BackEndProblem {
   BackEndProblem(const BackEndProblem&) = delete;
   BackEndProblem& operator=(const BackEndProblem&) = delete;
 
-  // Adds the residuals of texture and edges, and replaces those of an earlier call. Which surface
-  // points see each other in the mirror, and which edges of a body are visible, depends on the
-  // landmarks: call this when boxes and planes have converged.
+  // Adds the residuals of texture, edges and points, and replaces those of an earlier call. Which
+  // surface points see each other in the mirror, which edges of a body are visible, and how wide
+  // the densities of points are, depends on the landmarks: call this when boxes and planes have
+  // converged.
   void RenewImageResiduals();
 
   // Minimises from the present values of the variables. Throws NumericalError if the cost is not
@@ -66,6 +67,7 @@ class BackEndProblem {
   void FixPoses();
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   ImageBlocks PairBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
+  ImageBlocks PointBlocks(size_t object_index, const PointsInView& view) const;
   ImageBlocks EdgeBlocks(size_t index, const std::shared_ptr<const EdgeImage>& image) const;
   void AddImageBlocks(size_t index, ImageBlocks blocks);
   std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();

@@ -54,6 +54,7 @@ class ObjectFit {
             const OptimiseOptions& options)
       : input_(input),
         options_(options),
+        object_index_(object_index),
         detections_(views),
         boxes_(MakeMultiViewObservation(input.sequence, views, input.priors[object_index],
                                         options.detection_sigma_fraction,
@@ -122,11 +123,29 @@ class ObjectFit {
                                      options_.edges),
           view.camera_from_world, view.weight));
     }
+    AddPoints(landmark_in_world, &terms);
     return terms;
+  }
+
+  void AddPoints(const Landmark& landmark_in_world, LandmarkCosts* terms) const {
+    if (input_.points.empty()) return;
+    const PointsOfObject& points = input_.points[object_index_];
+    const double weight = PointWeight(points, options_.points);
+    for (const PointsInView& view : points) {
+      const Detection& detection =
+          input_.sequence.detections[static_cast<size_t>(view.detection_index)];
+      const Rigid3d camera_from_world =
+          input_.sequence.FrameOf(detection).world_from_camera.Inverse();
+      const Landmark in_camera = Transform(camera_from_world, landmark_in_world);
+      terms->push_back(std::make_unique<ViewCost>(
+          std::make_unique<PointTerm>(view.points, in_camera, options_.points, weight),
+          camera_from_world, 1.0));
+    }
   }
 
   const BackEndInput& input_;
   const OptimiseOptions& options_;
+  size_t object_index_;
   std::vector<int> detections_;
   MultiViewObservation boxes_;
   std::vector<Texture> textures_;

@@ -7,6 +7,7 @@
 #include "constraints/odometry.h"
 #include "constraints/variances.h"
 #include "geometry/angles.h"
+#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "orientation/options.h"
 #include "orientation/symmetry_options.h"
@@ -26,6 +27,7 @@ struct OptimiseOptions {
   bool ratio = true;
   bool symmetry = false;
   bool edge_alignment = false;
+  bool point_evidence = false;
   RatioPrior ratio_prior = RatioPrior::kTable;
   ShapeSource shape = ShapeSource::kTable;
   // The paper's numbers read in metres, unlike in one frame: with dozens of boxes to a landmark,
@@ -47,6 +49,7 @@ struct OptimiseOptions {
   bool refine_planes = true;
   EdgeOptions edges;
   TextureOptions texture;
+  PointOptions points;
   double huber_delta = 1.0;
   SymmetryOptions symmetry_options;
   bool covariances = true;
@@ -71,6 +74,9 @@ struct OptimiseOptions {
                "use the texture symmetry of some of each object's observations, eq. (16)");
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the bodies' edges with the images'");
+    visit.Flag(
+        "point_evidence", &point_evidence,
+        "use sparse points, which lie on the surfaces of objects, or behind or in front of them");
     visit.Integer(
         "symmetry_views", &symmetry_views, {1, 100000},
         "for symmetry: how many observations of each object, evenly over all from the first on");
@@ -121,6 +127,7 @@ struct OptimiseOptions {
         "quadric: standard deviation of a pair's descriptor difference, in the descriptor's unit");
     edges.Describe(visit);
     texture.Describe(visit);
+    points.Describe(visit);
     visit.Group("Solver");
     visit.Integer("max_iterations", &max_iterations, {1, 10000}, "Levenberg-Marquardt iterations");
     visit.Flag("covariances", &covariances, "compute the covariance of every landmark");

@@ -13,6 +13,7 @@
 #include "artefact/json_file.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/metrics_file.h"
+#include "artefact/points_file.h"
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
@@ -28,12 +29,18 @@
 namespace soslam {
 namespace {
 
-void CheckImageOptions(const OptimiseOptions& options, const StageFiles& files) {
+void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
   if ((options.symmetry || options.edge_alignment) && files.count("edges") == 0) {
     throw SettingsError("symmetry or edge_alignment = true needs --edges FILE; found none");
   }
   if (options.edge_alignment && options.detection_model != DetectionModel::kTangency) {
     throw SettingsError("edge_alignment = true needs detection_model = tangency; found quadric");
+  }
+  if (options.point_evidence && files.count("points") == 0) {
+    throw SettingsError("point_evidence = true needs --points FILE; found none");
+  }
+  if (options.point_evidence && options.detection_model != DetectionModel::kTangency) {
+    throw SettingsError("point_evidence = true needs detection_model = tangency; found quadric");
   }
   if (options.symmetry) CheckMirrorPlane(options.texture, options.symmetry_options.descriptor);
   if (options.symmetry && options.symmetry_options.descriptor == Descriptor::kBrief) {
@@ -98,12 +105,15 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
 }  // namespace
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
-  CheckImageOptions(options, files);
+  CheckEvidence(options, files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input{sequence, {}, priors, {}, {}};
+  if (options.point_evidence) {
+    input.points = FindObjectPoints(sequence, ReadPoints(files.at("points")), options.points);
+  }
   if (options.symmetry || options.edge_alignment) {
     ReadImages(options, files.at("edges"), threads, &input);
   }
@@ -119,6 +129,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.symmetry || options.edge_alignment) {
     info.inputs.push_back(files.at("edges"));
   }
+  if (options.point_evidence) info.inputs.push_back(files.at("points"));
   const MapEstimate map = OptimiseMap(input, options, threads);
   const LandmarkEstimates found = {{}, map.objects};
   info.findings = options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found);

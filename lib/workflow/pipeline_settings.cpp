@@ -16,6 +16,7 @@
 #include "evaluation/alignment.h"
 #include "ground/options.h"
 #include "image/edge_maps.h"
+#include "image/track_options.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
 #include "orientation/options.h"
@@ -56,13 +57,14 @@ bool AsksForAssociation(const json& settings) {
          kAssociationSourceNames[static_cast<size_t>(AssociationSource::kGiven)];
 }
 
-const std::array<PipelineStage, 9>& Stages() {
-  static const std::array<PipelineStage, 9> stages = {{
+const std::array<PipelineStage, 10>& Stages() {
+  static const std::array<PipelineStage, 10> stages = {{
       {"import", &Resolve<ImportOptions>, {}},
       {"ground", &Resolve<GroundOptions>, {"import"}, &AsksForGround},
       {"associate", &Resolve<AssociateOptions>, {"import"}, &AsksForAssociation},
       {"planes", &Resolve<PlanesOptions>, {"import"}, &AsksForPlanes},
       {"edges", &Resolve<EdgesOptions>, {"import"}},
+      {"track", &Resolve<TrackOptions>, {"import"}},
       {"initialise", &Resolve<InitialiseOptions>, {"import"}},
       {"refine", &Resolve<OrientationOptions>, {"import", "initialise", "edges"}},
       {"optimise", &Resolve<OptimiseOptions>, {"import", "initialise"}},
@@ -175,12 +177,21 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
                         ": settings 'symmetry' and 'edge_alignment' of optimise need stage 'edges' "
                         "in 'stages'");
   }
+  if (optimise != settings.options.end() && UsesPoints(optimise->second) &&
+      settings.stages.count("track") == 0) {
+    throw SettingsError(file +
+                        ": setting 'point_evidence' of optimise needs stage 'track' in 'stages'");
+  }
 }
 
 }  // namespace
 
 bool UsesImages(const json& optimise_settings) {
   return optimise_settings.at("symmetry") == true || optimise_settings.at("edge_alignment") == true;
+}
+
+bool UsesPoints(const json& optimise_settings) {
+  return optimise_settings.at("point_evidence") == true;
 }
 
 std::vector<std::string> PipelineStages() {

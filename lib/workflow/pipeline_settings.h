@@ -35,5 +35,7 @@ VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::s
 
 // True if the back end with these (resolved) settings uses images.
 bool UsesImages(const nlohmann::json& optimise_settings);
+// The same for sparse points.
+bool UsesPoints(const nlohmann::json& optimise_settings);
 
 }  // namespace soslam

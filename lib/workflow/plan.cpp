@@ -48,6 +48,8 @@ class ChainBuilder {
     if (stage == "import") return {};
     // Edge maps depend on the imported sequence only.
     if (stage == "edges") return {{"sequence", Output("import")}};
+    // The poses are those of the world that the objects are in.
+    if (stage == "track") return {{"sequence", Latest({"ground", "import"})}};
     std::vector<std::string> makers = {"planes", "associate", "ground", "import"};
     const auto same = std::ranges::find(makers, stage);
     if (same != makers.end()) makers.erase(makers.begin(), std::next(same));
@@ -59,6 +61,7 @@ class ChainBuilder {
     if (stage == "optimise") {
       inputs["landmarks"] = Latest({"refine", "initialise"});
       if (UsesImages(settings_.options.at(stage))) inputs["edges"] = Output("edges");
+      if (UsesPoints(settings_.options.at(stage))) inputs["points"] = Output("track");
     }
     if (stage == "evaluate") inputs["landmarks"] = Latest({"optimise", "refine", "initialise"});
     return inputs;
@@ -106,6 +109,7 @@ const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
       {"associate", {{"output", "sequence.json"}, {"associations", "associations.json"}}},
       {"planes", {{"output", "sequence.json"}, {"report", "planes.json"}}},
       {"edges", {{"output", "edges.h5"}}},
+      {"track", {{"output", "points.h5"}}},
       {"initialise", {{"output", "initial.json"}}},
       {"refine", {{"output", "refined.json"}, {"curves", "symmetry.h5"}}},
       {"optimise", {{"output", "map.json"}}},
@@ -116,7 +120,7 @@ const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
 }
 
 bool ReadsDataset(const std::string& stage) {
-  static const std::set<std::string> stages = {"import", "ground", "planes", "edges"};
+  static const std::set<std::string> stages = {"import", "ground", "planes", "edges", "track"};
   return stages.contains(stage);
 }
 

@@ -5,8 +5,10 @@
 
 #include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
+#include "base/error.h"
 #include "evaluation/metrics.h"
 #include "stage/map_stages.h"
+#include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 
@@ -93,6 +95,12 @@ TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {
       }
     }
   }
+}
+
+TEST_F(RunOptimiseTest, PointEvidenceNeedsPoints) {
+  WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
+  options_.point_evidence = true;
+  ExpectError<SettingsError>([&] { Run(); }, {"point_evidence", "--points"});
 }
 
 TEST_F(RunOptimiseTest, AWrongRatioPullsOnlyWhereRatiosCount) {

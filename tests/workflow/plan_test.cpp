@@ -62,6 +62,25 @@ class PlanTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(PlanTest, PointsAreThoseOfTheImportedPoses) {
+  Write("pipelines/variants/Points.json",
+        R"({"stages": ["import", "track", "initialise", "optimise", "evaluate"],
+            "planes": {"planes": "estimated"}, "optimise": {"point_evidence": true}})");
+  const Plan plan = Make({"Points"});
+  const StageInstance& track = plan.Instance(Id("Points", "track"));
+  EXPECT_EQ(track.inputs.at("sequence").instance, Id("Points", "import"));
+  const StageInstance& optimise = plan.Instance(Id("Points", "optimise"));
+  EXPECT_EQ(optimise.inputs.at("points").instance, track.Id());
+  EXPECT_EQ(optimise.inputs.at("points").file, "points.h5");
+}
+
+TEST_F(PlanTest, PointEvidenceNeedsTracks) {
+  Write("pipelines/variants/Points.json",
+        R"({"stages": ["import", "initialise", "optimise", "evaluate"],
+            "optimise": {"point_evidence": true}})");
+  ExpectRefused("Points", {"Points.json", "point_evidence", "'track'"});
+}
+
 TEST_F(PlanTest, VariantsShareWhatTheyHaveInCommon) {
   const Plan plan = Make({"Plain", "Mapped", "Full"});
   const auto& plain = plan.variants[0].instances;

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "base/options.h"
+#include "initialisation/landmark_cost.h"
+
+namespace soslam {
+
+// Sparse point that may be on the surface of an object.
+struct ObjectPoint {
+  Eigen::Vector3d position;                              // in the camera that the landmark is in
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2
+  double prior = 0.5;  // probability that it is of the object, whatever its distance from it
+};
+
+// Sparse points as evidence for objects.
+struct PointOptions {
+  double point_sigma_fraction = 0.03;
+  double point_roughness_fraction = 0.3;
+  double point_range_fraction = 0.02;
+  double point_outlier_probability = 0.1;
+  double effective_points = 6.0;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Points");
+    visit.Real("point_sigma_fraction", &point_sigma_fraction, {1e-4, 1.0},
+               "standard deviation of a point's distance from the surface, as a fraction of the "
+               "object's size (twice the cubic root of its half axes' product)");
+    visit.Real("point_roughness_fraction", &point_roughness_fraction, {1e-4, 10.0},
+               "the same for points of parts that lie inside the label's shape, as a chair's");
+    visit.Real("point_range_fraction", &point_range_fraction, {0.0, 1.0},
+               "standard deviation of a point's position because of the drift of poses, as a "
+               "fraction of its distance from the camera");
+    visit.Real("point_outlier_probability", &point_outlier_probability, {1e-6, 1.0},
+               "probability that a point behind or in front of the object was triangulated to lie "
+               "inside it");
+    visit.Real("effective_points", &effective_points, {1e-3, 1e6},
+               "independent points of an object: all of its points have the weight of at most this "
+               "many, as their errors are correlated");
+  }
+};
+
+// Negative log likelihood of points, each of which is either on the surface of the object, or
+// behind or in front of it, where nothing is known of its distance d. The density of d (positive
+// outside, SurfaceDistance) is a mixture with fixed widths:
+//
+//   outside: p S N(d / s) + (1 - p) B
+//   inside:  p S [(1 - r) N(d / s) + r N(d / t)] + (1 - p) B [(1 - e) N(d / s) + e]
+//
+// with N(x) = exp(-x^2 / 2); p the point's prior; s its own standard deviation along the surface's
+// normal combined with that of the surface, t with the roughness; S such that the first term is a
+// density; B one over the size; e the outlier probability. A body is opaque: only outliers of the
+// background are inside. The cost is zero for a point on the surface. Second derivatives are those
+// of expectation maximisation: each point pulls with its posterior probability.
+class PointTerm final : public LandmarkCost {
+ public:
+  // Widths are those of `start_in_camera`; the cost is multiplied by `weight`.
+  PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
+            const PointOptions& options, double weight);
+
+  double Value(const Landmark& landmark_in_camera) const override;
+  void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
+
+ private:
+  struct Density {
+    Eigen::Vector3d position;
+    double sigma_m;
+    double rough_sigma_m;
+    double surface;     // p S
+    double background;  // (1 - p) B
+  };
+  // Negative logarithm of the density at a distance, relative to that at the surface, and the
+  // factor w of its derivative w d.
+  std::pair<double, double> CostAndWeight(const Density& density, double distance) const;
+
+  std::vector<Density> densities_;
+  double outlier_probability_;
+  double weight_;
+};
+
+}  // namespace soslam

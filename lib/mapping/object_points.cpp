@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/object_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "geometry/angles.h"
+#include "geometry/distortion.h"
+#include "geometry/triangulation.h"
+#include "model/occlusion.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kHuberPx = 1.0;
+// Reprojection errors are not known better than this.
+constexpr double kLeastErrorPx = 0.5;
+constexpr size_t kFewestFramesInBox = 2;
+// Two image points agree with a wrong match, too, if it is along the epipolar line.
+constexpr size_t kFewestViews = 3;
+constexpr double kLeastAngle = 1.5 * kRadPerDeg;
+// Probability that a point which all frames see in the box of an object is of the object.
+constexpr double kObjectShare = 0.7;
+// Priors below this are those of points on the plane.
+constexpr double kLeastPrior = 0.01;
+
+// Image point of a point that frames of the sequence see.
+struct View {
+  int frame_index;
+  Eigen::Vector2d pixel;  // without lens distortion
+};
+
+// Image points of one point in frames with a box of an object.
+struct Sightings {
+  std::vector<int> in_box;  // detections in whose box it is
+  int frames = 0;
+};
+
+class ObjectPointFinder {
+ public:
+  ObjectPointFinder(const Sequence& sequence, const PointOptions& options)
+      : sequence_(sequence),
+        options_(options),
+        detections_in_(sequence.frames.size()),
+        found_(sequence.objects.size()) {
+    for (size_t i = 0; i < sequence.frames.size(); ++i) {
+      frame_index_of_[sequence.frames[i].id] = static_cast<int>(i);
+    }
+    for (size_t i = 0; i < sequence.detections.size(); ++i) {
+      const Detection& detection = sequence.detections[i];
+      detections_in_[static_cast<size_t>(detection.frame_index)].push_back(static_cast<int>(i));
+      nearer_boxes_.push_back(BoxesInFront(sequence, detection));
+    }
+  }
+
+  void Add(const MapPoint& point) {
+    const std::vector<View> views = ViewsOf(point);
+    std::optional<TriangulatedPoint> triangulated;
+    for (const auto& [object_index, sightings] : SightingsOf(views)) {
+      if (sightings.in_box.size() < kFewestFramesInBox) continue;
+      if (!triangulated) triangulated = TriangulateViews(views);
+      if (!triangulated) return;
+      const int anchor = sightings.in_box[sightings.in_box.size() / 2];
+      const ObjectPoint of_object = PointOf(*triangulated, views.size(), sightings, anchor);
+      if (!(of_object.prior > kLeastPrior)) continue;
+      found_[static_cast<size_t>(object_index)][anchor].push_back(of_object);
+    }
+  }
+
+  std::vector<PointsOfObject> Found() const {
+    std::vector<PointsOfObject> result(found_.size());
+    for (size_t i = 0; i < found_.size(); ++i) {
+      for (const auto& [anchor, points] : found_[i]) result[i].push_back({anchor, points});
+    }
+    return result;
+  }
+
+ private:
+  const Detection& DetectionAt(int index) const {
+    return sequence_.detections[static_cast<size_t>(index)];
+  }
+
+  std::vector<View> ViewsOf(const MapPoint& point) const {
+    std::vector<View> views;
+    for (const PointObservation& observation : point.observations) {
+      const auto found = frame_index_of_.find(observation.frame_id);
+      if (found == frame_index_of_.end()) continue;
+      std::optional<Eigen::Vector2d> pixel = observation.pixel;
+      if (sequence_.image_distortion) {
+        pixel = UndistortPixels(sequence_.camera, *sequence_.image_distortion, {*pixel}).front();
+      }
+      if (pixel) views.push_back({found->second, *pixel});
+    }
+    return views;
+  }
+
+  // Keyed by object.
+  std::map<int, Sightings> SightingsOf(const std::vector<View>& views) const {
+    std::map<int, Sightings> sightings;
+    for (const View& view : views) {
+      for (const int index : detections_in_[static_cast<size_t>(view.frame_index)]) {
+        Sightings& of_object = sightings[DetectionAt(index).object_index];
+        ++of_object.frames;
+        const auto contains = [&](const Box& box) { return box.Contains(view.pixel); };
+        if (contains(DetectionAt(index).box) &&
+            std::ranges::none_of(nearer_boxes_[static_cast<size_t>(index)], contains)) {
+          of_object.in_box.push_back(index);
+        }
+      }
+    }
+    return sightings;
+  }
+
+  std::optional<TriangulatedPoint> TriangulateViews(const std::vector<View>& views) const {
+    std::vector<PointView> in_cameras;
+    for (const View& view : views) {
+      const Frame& frame = sequence_.frames[static_cast<size_t>(view.frame_index)];
+      in_cameras.push_back(
+          {sequence_.CameraOf(frame), frame.world_from_camera.Inverse(), view.pixel});
+    }
+    if (views.size() < kFewestViews) return std::nullopt;
+    auto point = Triangulate(in_cameras, kHuberPx);
+    const bool is_known = point && LargestAngle(in_cameras, point->position_in_world) > kLeastAngle;
+    return is_known ? point : std::nullopt;
+  }
+
+  // Errors of the image points of one track are correlated: together they are as precise as two.
+  ObjectPoint PointOf(const TriangulatedPoint& point, size_t views, const Sightings& sightings,
+                      int anchor) const {
+    const Rigid3d camera_from_world =
+        sequence_.FrameOf(DetectionAt(anchor)).world_from_camera.Inverse();
+    const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
+    const double sigma_px = std::max(kLeastErrorPx, point.mean_error_px);
+    const Eigen::Matrix3d covariance_in_world =
+        0.5 * static_cast<double>(views) * sigma_px * sigma_px * point.covariance;
+    ObjectPoint result;
+    result.position = camera_from_world * point.position_in_world;
+    result.covariance = rotation * covariance_in_world * rotation.transpose();
+    const Object& object = sequence_.ObjectOf(DetectionAt(anchor));
+    result.prior =
+        kObjectShare * static_cast<double>(sightings.in_box.size()) / sightings.frames *
+        ProbabilityAbove(sequence_.planes[static_cast<size_t>(object.plane_index)].plane_in_world,
+                         point.position_in_world, covariance_in_world, result.position.norm());
+    return result;
+  }
+
+  // Probability that a point is not on the plane; 0 below it.
+  double ProbabilityAbove(const Plane& plane_in_world, const Eigen::Vector3d& position_in_world,
+                          const Eigen::Matrix3d& covariance, double range) const {
+    const Eigen::Vector3d& normal = plane_in_world.normal;
+    const double height = plane_in_world.SignedDistance(position_in_world);
+    const double sigma = std::hypot(std::sqrt(normal.dot(covariance * normal)),
+                                    options_.point_range_fraction * range);
+    const double deviations = 0.5 * height / sigma;
+    return height > 0.0 ? 1.0 - std::exp(-0.5 * deviations * deviations) : 0.0;
+  }
+
+  const Sequence& sequence_;
+  const PointOptions& options_;
+  std::map<int, int> frame_index_of_;  // by id
+  std::vector<std::vector<int>> detections_in_;
+  std::vector<std::vector<Box>> nearer_boxes_;  // by detection
+  std::vector<std::map<int, std::vector<ObjectPoint>>> found_;
+};
+
+}  // namespace
+
+std::vector<PointsOfObject> FindObjectPoints(const Sequence& sequence,
+                                             const std::vector<MapPoint>& points,
+                                             const PointOptions& options) {
+  ObjectPointFinder finder(sequence, options);
+  for (const MapPoint& point : points) finder.Add(point);
+  return finder.Found();
+}
+
+double PointWeight(const PointsOfObject& points, const PointOptions& options) {
+  double expected = 0.0;
+  for (const PointsInView& view : points) {
+    for (const ObjectPoint& point : view.points) expected += point.prior;
+  }
+  return expected > options.effective_points ? options.effective_points / expected : 1.0;
+}
+
+}  // namespace soslam

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/surface_distance.h"
+
+#include <gtest/gtest.h>
+
+#include "constraints/parameters.h"
+#include "geometry/surface.h"
+#include "support/jacobians.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+Landmark RandomBody(double shape_exponent) {
+  return {RandomRigid(), RandomVector(0.2, 1.0), shape_exponent};
+}
+
+// The distance of a point from a landmark in the world, for the check of Jacobians.
+class DistanceResidual final : public ceres::SizedCostFunction<1, kLandmarkSize> {
+ public:
+  DistanceResidual(const Eigen::Vector3d& point, double shape_exponent)
+      : point_(point), shape_exponent_(shape_exponent) {}
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    Landmark landmark = UnpackLandmark(blocks[0]);
+    landmark.shape_exponent = shape_exponent_;
+    LandmarkJacobian1 jacobian;
+    residuals[0] = SurfaceDistance(landmark, point_, &jacobian);
+    if (jacobians != nullptr) WriteLandmarkJacobian<1>(blocks[0], jacobian, jacobians[0]);
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d point_;
+  double shape_exponent_;
+};
+
+TEST(SurfaceDistanceTest, OfACuboidIsThatOfAFace) {
+  const Landmark cuboid{{}, {1.0, 2.0, 3.0}, kCuboidExponent};
+  Eigen::Vector3d normal;
+  EXPECT_NEAR(SurfaceDistance(cuboid, {1.25, 0.5, -1.0}, nullptr, &normal), 0.25, 1e-12);
+  EXPECT_LT((normal - Eigen::Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_NEAR(SurfaceDistance(cuboid, {0.5, -1.5, 0.3}, nullptr, &normal), -0.5, 1e-12);
+  EXPECT_LT((normal + Eigen::Vector3d::UnitY()).norm(), 1e-12);
+}
+
+TEST(SurfaceDistanceTest, OfASphereIsExact) {
+  const Landmark sphere{{}, {2.0, 2.0, 2.0}, kEllipsoidExponent};
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d point = RandomVector(-4.0, 4.0);
+    EXPECT_NEAR(SurfaceDistance(sphere, point, nullptr), point.norm() - 2.0, 1e-9);
+  }
+}
+
+// Points at a small distance from where a ray meets the surface.
+TEST(SurfaceDistanceTest, IsTheDistanceNearTheSurface) {
+  constexpr double kStepM = 1e-4;
+  for (int i = 0; i < 100; ++i) {
+    const Landmark body = RandomBody(RandomUniform(1.2, 2.0));
+    const BodySurface surface(body.half_axes, body.shape_exponent);
+    const Eigen::Vector3d origin = 5.0 * RandomVector(-1.0, 1.0).normalized();
+    const auto depth = surface.Entry(origin, -origin);
+    ASSERT_TRUE(depth);
+    const Eigen::Vector3d in_object = (1.0 - *depth) * origin;
+    const Eigen::Vector3d outwards = surface.Gradient(in_object).normalized();
+    for (const double step : {-kStepM, 0.0, kStepM}) {
+      Eigen::Vector3d normal;
+      const double distance = SurfaceDistance(
+          body, body.frame_from_object * (in_object + step * outwards), nullptr, &normal);
+      EXPECT_NEAR(distance, step, 1e-2 * kStepM);
+      EXPECT_LT((normal - body.frame_from_object.rotation * outwards).norm(), 1e-2);
+    }
+  }
+}
+
+TEST(SurfaceDistanceTest, MovesWithTheBody) {
+  for (int i = 0; i < 50; ++i) {
+    const Landmark body = RandomBody(RandomUniform(1.0, 2.0));
+    const Eigen::Vector3d point = body.Centre() + RandomVector(-1.0, 1.0);
+    const Rigid3d motion = RandomRigid();
+    EXPECT_NEAR(SurfaceDistance(Transform(motion, body), motion * point, nullptr),
+                SurfaceDistance(body, point, nullptr), 1e-9);
+  }
+}
+
+TEST(SurfaceDistanceTest, JacobiansAgreeWithNumbers) {
+  for (int i = 0; i < 100; ++i) {
+    const double p = i % 4 == 0 ? kCuboidExponent : RandomUniform(1.1, 2.0);
+    const Landmark body = RandomBody(p);
+    const LandmarkBlock block = ToParameterBlock(body);
+    ExpectCorrectJacobians(DistanceResidual(body.Centre() + RandomVector(-1.0, 1.0), p),
+                           {block.data()});
+  }
+}
+
+TEST(SurfaceDistanceTest, AtTheCentreIsTheShortestHalfAxis) {
+  Landmark body = RandomBody(1.5);
+  body.half_axes = {0.5, 0.3, 0.7};
+  LandmarkJacobian1 jacobian;
+  EXPECT_EQ(SurfaceDistance(body, body.Centre(), &jacobian), -0.3);
+  EXPECT_TRUE(jacobian.isZero());
+}
+
+}  // namespace
+}  // namespace soslam
