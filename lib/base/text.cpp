@@ -73,7 +73,7 @@ std::string Wrapped(const std::string& text, size_t width, size_t indent) {
   return wrapped;
 }
 
-std::string FirstOf(const std::vector<std::string>& names, size_t most) {
+std::string NamesInWords(const std::vector<std::string>& names, size_t most) {
   const size_t count = std::min(most, names.size());
   std::string text = fmt::format(
       "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(count), ", "));

@@ -25,7 +25,7 @@ size_t WidthOf(const std::string& text);
 std::string Wrapped(const std::string& text, size_t width, size_t indent = 0);
 
 // "a.jpg, b.jpg, c.jpg and 4 more", at most `most` of them by name.
-std::string FirstOf(const std::vector<std::string>& names, size_t most = 3);
+std::string NamesInWords(const std::vector<std::string>& names, size_t most = 3);
 
 // "1 object", "2 objects"
 std::string Counted(size_t count, const char* what);

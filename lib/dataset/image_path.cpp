@@ -174,7 +174,7 @@ std::vector<std::optional<int>> RowsOfPoses(const std::vector<NamedPose>& poses,
         "{}: none of the images with a pose ({}) is one of those that are listed ({}); expected "
         "the same names, apart from folders and endings: are the poses of other images, or were "
         "these renamed?",
-        poses.front().place, FirstOf(with_pose, 2), FirstOf(listed, 2)));
+        poses.front().place, NamesInWords(with_pose, 2), NamesInWords(listed, 2)));
   }
   return rows;
 }

@@ -98,6 +98,23 @@ void Summarise(const Reconstruction& reconstruction, const std::vector<ListedIma
   summary->median_triangulation_angle_deg = MedianOf(angles);
 }
 
+namespace {
+
+// The likely causes of images without a pose. They may be renamed if the model has at least as many
+// that are not listed.
+std::string WhyNotRegistered(const ReconstructionSummary& summary,
+                             const std::vector<std::string>& unlisted) {
+  std::string causes = "images that are blurred, show little texture, or overlap too little";
+  if (!summary.images_without_pose.empty() &&
+      unlisted.size() >= summary.images_without_pose.size()) {
+    causes += "; or other names than in the model, which has images that are not listed: " +
+              NamesInWords(unlisted);
+  }
+  return causes;
+}
+
+}  // namespace
+
 std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
                                          const std::vector<std::string>& unlisted) {
   constexpr double kRegistered = 0.8;
@@ -107,12 +124,8 @@ std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
     findings.push_back(
         {"images_registered", Severity::kWarning,
          fmt::format("{} of {} images are registered; the others have no pose: {}",
-                     summary.registered, summary.images, FirstOf(summary.images_without_pose)),
-         "80 % of the images at least",
-         unlisted.empty() ? "images that are blurred, show little texture, or overlap too little"
-                          : "images under other names than in the model, which has some that are "
-                            "not listed: " +
-                                FirstOf(unlisted),
+                     summary.registered, summary.images, NamesInWords(summary.images_without_pose)),
+         "80 % of the images at least", WhyNotRegistered(summary, unlisted),
          "take more images between those that are far apart, or give the poses"});
   }
   if (summary.components.size() > 1) {

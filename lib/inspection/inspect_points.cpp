@@ -79,7 +79,7 @@ Inspection InspectReconstruction(const std::filesystem::path& file) {
                               in_words(summary.median_reprojection_error_px, "px"),
                               in_words(summary.median_triangulation_angle_deg, "degrees"))}};
   if (!summary.images_without_pose.empty()) {
-    inspection.facts.push_back({"no pose", FirstOf(summary.images_without_pose, kMaxNames)});
+    inspection.facts.push_back({"no pose", NamesInWords(summary.images_without_pose, kMaxNames)});
   }
   inspection.table.columns = {{"component", ""}, {"images", ""}, {"points", ""}};
   for (size_t i = 0; i < summary.components.size(); ++i) {

@@ -345,7 +345,7 @@ class MapOfVariant {
         "<h3>Photos without a pose</h3>\n<p>The reconstruction could not tell where {} taken; what "
         "they show is not used: {}.</p>\n",
         names.size() == 1 ? "a photo was" : fmt::format("{} photos were", names.size()),
-        HtmlText(FirstOf(names, kMaxNames)));
+        HtmlText(NamesInWords(names, kMaxNames)));
   }
 
   const fs::path& folder_;

@@ -314,11 +314,12 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
           : "");
   if (!summary.images_without_pose.empty()) {
     fmt::print("{}: without a pose, and not used: {}\n", dataset.string(),
-               FirstOf(summary.images_without_pose));
+               NamesInWords(summary.images_without_pose));
   }
   if (!reconstruction.unlisted.empty()) {
     fmt::print("{}: {} in the model, but not in rgb.txt: {}\n", dataset.string(),
-               Counted(reconstruction.unlisted.size(), "image"), FirstOf(reconstruction.unlisted));
+               Counted(reconstruction.unlisted.size(), "image"),
+               NamesInWords(reconstruction.unlisted));
   }
 }
 

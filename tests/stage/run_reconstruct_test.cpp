@@ -187,7 +187,14 @@ TEST_F(RunReconstructTest, AGivenModelOfOtherNamesIsRefusedOrNamed) {
   WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/IMG_3.png\n");
   Run("again", "out/colmap/sparse");
   EXPECT_THAT(printed_, HasSubstr("1 image in the model, but not in rgb.txt: rgb/2.png\n"));
-  EXPECT_THAT(errors_, HasSubstr("under other names than in the model"));
+  EXPECT_THAT(errors_, HasSubstr("or other names than in the model, which has images that are not "
+                                 "listed: rgb/2.png"));
+  // Fewer images that are not listed than such without a pose do not explain them.
+  WriteBytes(Dataset() / "rgb.txt",
+             "0 rgb/0.png\n0.5 rgb/IMG_1.png\n1 rgb/IMG_2.png\n2 rgb/IMG_3.png\n");
+  Run("again", "out/colmap/sparse");
+  EXPECT_THAT(errors_,
+              testing::AllOf(HasSubstr("overlap too little"), Not(HasSubstr("other names"))));
 }
 
 TEST_F(RunReconstructTest, AFinishedJobIsNotRunAgain) {
