@@ -36,7 +36,7 @@ json ScaleToJson(const GroundEstimate& estimate, const std::vector<Finding>& fin
           {"found_by", scale->found_by},
           {"objects", scale->objects},
           {"contradicted_by", scale->contradicted_by},
-          {"independent_objects", estimate.independent_objects},
+          {"independent_objects", estimate.IndependentObjects()},
           {"labels", labels},
           {"misfit", estimate.scale->misfit},
           {"other_scales_probability", estimate.scale->second_mode_share}};

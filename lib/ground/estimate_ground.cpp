@@ -236,8 +236,8 @@ class Estimation {
 };
 
 // With the cameras held as their boxes say. Where fewer than half of the objects then stand on
-// planes, other ways to hold them are tried: one in which twice as many stand, on planes of twice
-// as many points, is better.
+// planes, other ways to hold them are tried: one in which more than twice as many stand, on planes
+// of more than twice as many points, is better.
 Estimation BestHeld(const Estimation& none, const UpEstimate& of_cameras,
                     const std::vector<SegmentView>& views) {
   constexpr double kMost = 0.5, kClearly = 2.0;
@@ -364,7 +364,6 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   }
   for (const MeasuredObject& object : estimation.objects) {
     result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale)));
-    result.independent_objects += result.objects.back().weight * result.objects.back().agreement;
   }
   return result;
 }

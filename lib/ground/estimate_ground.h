@@ -46,7 +46,6 @@ struct GroundEstimate {
   std::optional<ScalePosterior> scale;                     // of metres per unit of the input
   std::vector<KnownScale> known_scales;                    // by the options, of the same unit
   std::optional<ScalePosterior> scale_of_objects;          // without `scale` and `camera_height_m`
-  double independent_objects = 0.0;                        // sum of weight times agreement
   std::vector<EstimatedPlane> planes;                      // of the output
   std::vector<int> points_on_planes;
   int planes_of_points = 0;  // before planes without an object were dropped
@@ -56,6 +55,15 @@ struct GroundEstimate {
   // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {
     return static_cast<int>(std::ranges::count_if(objects, &GroundObject::AgreesWithScale));
+  }
+
+  // The sum of the weights of these.
+  double IndependentObjects() const {
+    double sum = 0.0;
+    for (const GroundObject& object : objects) {
+      if (object.AgreesWithScale()) sum += object.weight;
+    }
+    return sum;
   }
 };
 

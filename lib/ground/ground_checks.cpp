@@ -18,6 +18,16 @@ constexpr const char* kGiveScale =
     "give scale or camera_height_m (SCALE or CAMERA_HEIGHT of make map); lengths are only as good "
     "as the scale";
 
+// ", which count as ... things" where objects of one label have less weight.
+std::string IndependentInWords(const GroundEstimate& estimate) {
+  constexpr double kLeastDifference = 0.05;  // one that is seen in the words
+  const int objects = estimate.AgreeingObjects();
+  const double independent = estimate.IndependentObjects();
+  if (objects - independent < kLeastDifference) return "";
+  return fmt::format("; as heights of one label are alike, {} as {:.1f}",
+                     objects == 1 ? "this thing counts" : "these things count", independent);
+}
+
 void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kUncertain = 0.25;  // of the logarithm
   if (!estimate.scale) {
@@ -30,14 +40,11 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
     return;
   }
   if (estimate.scale->log_sigma < kUncertain) return;
+  const WorldScale scale = *WorldScaleOf(estimate, {});
   findings->push_back(
       {"scale_uncertain", Severity::kWarning,
-       fmt::format(
-           "the scale is known to +- {:.0f} % (95 %), from {} that count as {:.1f}, as heights of "
-           "one label are alike",
-           HalfIntervalPercent(*WorldScaleOf(estimate, {})),
-           Counted(static_cast<size_t>(estimate.AgreeingObjects()), "object"),
-           estimate.independent_objects),
+       fmt::format("the scale is known to +- {:.0f} % (95 %), from {}{}",
+                   HalfIntervalPercent(scale), SourcesInWords(scale), IndependentInWords(estimate)),
        fmt::format("a standard deviation below {:.0f} %", 100.0 * kUncertain),
        "too few objects whose labels have heights, or heights that vary much", kGiveScale});
 }
@@ -56,7 +63,7 @@ void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* f
     return;
   }
   findings->push_back(
-      {kObjectsCheck, Severity::kWarning,
+      {kObjectsAgainstOneAnotherCheck, Severity::kWarning,
        fmt::format("{} of {} objects agree on a scale; their heights vary {:.1f} times as much as "
                    "those of their labels; another scale has a probability of {:.0f} %",
                    agreeing, scale.agreement.size(), std::sqrt(scale.misfit),
@@ -65,30 +72,55 @@ void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* f
        "wrong labels, poses that drift, or objects of unusual size (a toy car)", kGiveScale});
 }
 
-// Known values against the heights of objects.
-void CheckKnownScale(const GroundEstimate& estimate, std::vector<Finding>* findings) {
-  constexpr double kLimit = 3.0;  // standard deviations
+// Two values of the scale may differ by this many standard deviations.
+constexpr double kContradictionSigmas = 3.0;
+
+// Settings against the heights of objects.
+void CheckObjectsAgainstSettings(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   if (!estimate.scale_of_objects) return;
   const ScalePosterior& objects = *estimate.scale_of_objects;
   std::vector<std::string> contradicted;
   for (const KnownScale& known : estimate.known_scales) {
     const double difference = known.log_scale - objects.log_scale;
     const double sigma = std::hypot(known.log_sigma, objects.log_sigma);
-    if (std::abs(difference) < kLimit * sigma) continue;
+    if (std::abs(difference) < kContradictionSigmas * sigma) continue;
     contradicted.push_back(fmt::format("{} makes objects {:.2f} times as high as their labels",
                                        known.setting, std::exp(difference)));
   }
   if (contradicted.empty()) return;
   findings->push_back(
-      {kKnownScaleCheck, Severity::kWarning,
+      {kObjectsAgainstSettingsCheck, Severity::kWarning,
        fmt::format("{}; the scale is {:.2f} times that of the objects alone",
                    fmt::join(contradicted, "; "),
                    std::exp(estimate.scale->log_scale - objects.log_scale)),
        fmt::format("1, within {} standard deviations of both; that of the objects is {:.0f} %",
-                   kLimit, 100.0 * objects.log_sigma),
+                   kContradictionSigmas, 100.0 * objects.log_sigma),
        "a value in another unit; a floor that is not seen, so that camera_height_m was measured "
        "from the floor, and the lowest plane of points is a table top; or wrong labels",
        "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave them out"});
+}
+
+// Settings against each other, whether or not objects tell the scale.
+void CheckSettingsAgainstEachOther(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+  const std::vector<KnownScale>& known = estimate.known_scales;
+  for (size_t i = 0; i < known.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      const double sigma = std::hypot(known[i].log_sigma, known[k].log_sigma);
+      if (std::abs(known[i].log_scale - known[k].log_scale) < kContradictionSigmas * sigma)
+        continue;
+      findings->push_back(
+          {kSettingsAgainstEachOtherCheck, Severity::kWarning,
+           fmt::format("1 unit of the input's world is {:.4g} m by {}, and {:.4g} m by {}",
+                       std::exp(known[k].log_scale), known[k].setting, std::exp(known[i].log_scale),
+                       known[i].setting),
+           fmt::format("values that differ by less than {} of their standard deviations, {:.0f} %",
+                       kContradictionSigmas, 100.0 * sigma),
+           "a scale of a model in another unit, or a camera height above another plane than the "
+           "lowest one of points (a table top where no floor is seen)",
+           "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave one of "
+           "them out"});
+    }
+  }
 }
 
 // A wrong up direction has few objects on its planes.
@@ -119,8 +151,9 @@ std::string HoldingInWords(CameraHolding holding) {
     case CameraHolding::kRolled270:
       return "turned anticlockwise by a quarter turn";
     case CameraHolding::kLookingDown:
+      return "looking straight down, with upright images";
     case CameraHolding::kLookingDownRolled90:
-      return "looking straight down";
+      return "looking straight down, with images turned by a quarter turn";
     default:
       return "level, as is usual";
   }
@@ -131,11 +164,12 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
   if (holding == estimate.holding_of_boxes) return;
   findings->push_back(
       {"camera_holding_of_planes", Severity::kWarning,
-       fmt::format("which way is up is not clear: objects look as if the camera was held {}, but "
-                   "flat surfaces with objects on them are found only if it was held {}, which is "
-                   "assumed. If that is wrong, the map lies on its side or is upside down, and "
-                   "heights and scale are wrong with it",
-                   HoldingInWords(estimate.holding_of_boxes), HoldingInWords(holding)),
+       fmt::format(
+           "which way is up is not clear: objects look as if the camera was held {}, but "
+           "more than twice as many objects stand on flat surfaces if it was held {}, "
+           "which is assumed. If that is wrong, the map lies on its side or is upside down, and "
+           "heights and scale are wrong with it",
+           HoldingInWords(estimate.holding_of_boxes), HoldingInWords(holding)),
        "objects and surfaces that agree on which way is up",
        "photos that were turned in different ways or look steeply down, few objects, or surfaces "
        "without texture",
@@ -166,7 +200,8 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   std::vector<Finding> findings;
   CheckScale(estimate, &findings);
   CheckContradictions(estimate, &findings);
-  CheckKnownScale(estimate, &findings);
+  CheckObjectsAgainstSettings(estimate, &findings);
+  CheckSettingsAgainstEachOther(estimate, &findings);
   CheckCameraHeight(estimate, options, &findings);
   CheckHolding(estimate, &findings);
   CheckSupport(estimate, &findings);

@@ -27,7 +27,7 @@ struct ScaleEvidence {
 struct KnownScale {
   double log_scale;
   double log_sigma;
-  std::string setting = {};  // that it is known by
+  std::string setting = {};  // the option that gives it
 };
 
 // Probability distribution of the logarithm of the scale.
@@ -37,7 +37,7 @@ struct ScalePosterior {
   double low = 0.0, high = 0.0;    // interval of 95 %
   double misfit = 1.0;             // factor by which the objects' spread widens the distribution
   double second_mode_share = 0.0;  // probability of scales that differ by more than a mode's width
-  std::vector<double> agreement;   // per object, the probability that its height is right
+  std::vector<double> agreement = {};  // per object, the probability that its height is right
 };
 
 // Bayesian estimate: the height of each object is right under one of its hypotheses, or it says

@@ -7,14 +7,13 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "ground/ground_checks.h"
 
 namespace soslam {
 namespace {
 
 constexpr const char* kObjects = "objects";
 
-// The settings that the scale is known by, in words.
+// The settings that give the scale, in words.
 std::vector<std::string> GivenInWords(const WorldScale& scale) {
   std::vector<std::string> words;
   for (const std::string& source : scale.found_by) {
@@ -38,10 +37,12 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
                    {}};
   if (scale.objects > 0) scale.found_by.emplace_back(kObjects);
   for (const KnownScale& known : estimate.known_scales) scale.found_by.push_back(known.setting);
-  // A scale that is given does not rest on objects that contradict one another.
+  // A scale that settings alone give does not rest on objects that contradict one another.
+  const bool rests_on_objects = scale.objects > 0 || estimate.known_scales.empty();
   for (const Finding& finding : findings) {
-    if (finding.check == kKnownScaleCheck ||
-        (finding.check == kObjectsCheck && estimate.known_scales.empty())) {
+    if (finding.check == kObjectsAgainstSettingsCheck ||
+        finding.check == kSettingsAgainstEachOtherCheck ||
+        (finding.check == kObjectsAgainstOneAnotherCheck && rests_on_objects)) {
       scale.contradicted_by.push_back(finding.check);
     }
   }
@@ -58,16 +59,22 @@ std::string SourcesInWords(const WorldScale& scale) {
     words.insert(words.begin(), "the usual heights of " +
                                     Counted(static_cast<size_t>(scale.objects), "detected thing"));
   }
+  if (words.empty()) return "objects that contradict one another";
   return fmt::format("{}", fmt::join(words, " and "));
 }
 
 std::string ContradictionsInWords(const WorldScale& scale) {
   std::vector<std::string> words;
   for (const std::string& check : scale.contradicted_by) {
-    const std::string what = check == kKnownScaleCheck
-                                 ? fmt::format("{}", fmt::join(GivenInWords(scale), " or "))
-                                 : "one another";
-    words.push_back("the heights of objects contradict " + what);
+    if (check == kSettingsAgainstEachOtherCheck) {
+      words.push_back(
+          fmt::format("{} contradict each other", fmt::join(GivenInWords(scale), " and ")));
+    } else if (check == kObjectsAgainstSettingsCheck) {
+      words.push_back(fmt::format("the heights of objects contradict {}",
+                                  fmt::join(GivenInWords(scale), " or ")));
+    } else {
+      words.emplace_back("the heights of objects contradict one another");
+    }
   }
   return fmt::format("{}", fmt::join(words, ", and "));
 }

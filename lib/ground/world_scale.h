@@ -10,12 +10,18 @@
 
 namespace soslam {
 
+// Checks of CheckGround whose findings contradict a scale: the heights of objects contradict the
+// settings that give it, or one another; these settings contradict each other.
+inline constexpr const char* kObjectsAgainstSettingsCheck = "scale_of_objects_differs";
+inline constexpr const char* kObjectsAgainstOneAnotherCheck = "scale_contradicted";
+inline constexpr const char* kSettingsAgainstEachOtherCheck = "settings_of_scale_differ";
+
 // The scale of a world, as world.json states it, and what it rests on.
 struct WorldScale {
   double metres_per_unit = 1.0;              // of the input's world, median
   double log_sigma = 0.0;                    // standard deviation of its logarithm
   double low = 1.0, high = 1.0;              // interval of 95 %
-  std::vector<std::string> found_by;         // "objects", and the settings that it is known by
+  std::vector<std::string> found_by;         // "objects", and the settings that give it
   int objects = 0;                           // those whose heights agree with it
   std::vector<std::string> contradicted_by;  // checks whose findings contradict it
 };
@@ -27,7 +33,8 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
 // Half the 95 % interval, in per cent of its geometric middle.
 double HalfIntervalPercent(const WorldScale& scale);
 
-// "the usual heights of 9 detected things and the camera's height given"
+// "the usual heights of 9 detected things and the camera's height given"; "objects that contradict
+// one another" where no object agrees with the scale and no setting gives it.
 std::string SourcesInWords(const WorldScale& scale);
 
 // "the heights of objects contradict the camera's height given"; empty where nothing contradicts

@@ -17,10 +17,12 @@ namespace {
 using nlohmann::json;
 
 std::string UpInWords(const json& up) {
+  const char* edges = up.at("verticals").get<bool>() ? " and by vertical edges" : "";
   return fmt::format(
       "z; to {:.2f} degrees (one standard deviation), by {}", up.at("sigma_deg").get<double>(),
-      up.at("found_by") == "planes" ? "horizontal planes of points"
-                                    : "the way cameras are held, as no support plane was found");
+      up.at("found_by") == "planes"
+          ? "horizontal planes of points"
+          : fmt::format("the way cameras are held{}, as no support plane was found", edges));
 }
 
 // What the scale is, what it rests on, and what contradicts it.

@@ -19,6 +19,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::EndsWith;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -134,7 +135,7 @@ TEST(EstimateGroundTest, KnownValuesNarrowTheScale) {
   EXPECT_NEAR(with_height.scale->log_scale, std::log(scene.metres_per_unit), 0.03);
   EXPECT_LT(with_height.scale->log_sigma, 0.031);
   EXPECT_THAT(CheckGround(with_height, options),
-              Not(Contains(Field(&Finding::check, kKnownScaleCheck))));
+              Not(Contains(Field(&Finding::check, kObjectsAgainstSettingsCheck))));
 }
 
 // Whether the objects overrule it or not.
@@ -147,13 +148,68 @@ TEST(EstimateGroundTest, AKnownValueThatObjectsContradictIsAFinding) {
       options.camera_height_log_sigma = log_sigma;
       const GroundEstimate estimate = Estimate(scene.sequence, scene.points, options);
       const auto findings = CheckGround(estimate, options);
-      EXPECT_THAT(findings, Contains(Field(&Finding::check, kKnownScaleCheck)))
+      EXPECT_THAT(findings, Contains(Field(&Finding::check, kObjectsAgainstSettingsCheck)))
           << factor << " " << log_sigma;
       const auto scale = WorldScaleOf(estimate, findings);
-      EXPECT_THAT(scale->contradicted_by, Contains(kKnownScaleCheck));
+      EXPECT_THAT(scale->contradicted_by, Contains(kObjectsAgainstSettingsCheck));
       EXPECT_THAT(ContradictionsInWords(*scale), HasSubstr("the camera's height given"));
     }
   }
+}
+
+TEST(CheckGroundTest, SettingsThatContradictEachOtherAreAFindingWithAndWithoutObjects) {
+  GroundEstimate estimate;
+  estimate.scale = ScalePosterior{.log_scale = 0.1, .log_sigma = 0.02, .low = 0.06, .high = 0.14};
+  estimate.known_scales = {{0.0, 0.03, "scale"}, {0.31, 0.1, "camera_height_m"}};  // 0.104 together
+  EXPECT_THAT(CheckGround(estimate, {}),
+              Not(Contains(Field(&Finding::check, kSettingsAgainstEachOtherCheck))));
+  estimate.known_scales[1].log_scale = 0.32;
+  const auto findings = CheckGround(estimate, {});
+  EXPECT_THAT(findings, Contains(AllOf(Field(&Finding::check, kSettingsAgainstEachOtherCheck),
+                                       Field(&Finding::found, HasSubstr("is 1 m by scale, and "
+                                                                        "1.377 m by camera")))));
+  const auto scale = WorldScaleOf(estimate, findings);
+  EXPECT_EQ(SourcesInWords(*scale), "the scale given and the camera's height given");
+  EXPECT_EQ(ContradictionsInWords(*scale),
+            "the scale given and the camera's height given contradict each other");
+}
+
+// Settings are joined with the objects that agree; they stand alone where none does.
+TEST(WorldScaleOfTest, ObjectsThatContradictOneAnotherCountWhereTheScaleRestsOnThem) {
+  const std::vector<Finding> findings = {
+      {kObjectsAgainstOneAnotherCheck, Severity::kWarning, "", "", "", ""}};
+  GroundEstimate estimate;
+  estimate.scale = ScalePosterior();
+  EXPECT_EQ(SourcesInWords(*WorldScaleOf(estimate, findings)),
+            "objects that contradict one another");
+  EXPECT_EQ(WorldScaleOf(estimate, findings)->contradicted_by.size(), 1u);
+  estimate.known_scales = {{0.0, 0.1, "camera_height_m"}};
+  EXPECT_THAT(WorldScaleOf(estimate, findings)->contradicted_by, IsEmpty());
+  estimate.objects.resize(1);
+  estimate.objects[0].agreement = 0.9;
+  EXPECT_EQ(WorldScaleOf(estimate, findings)->contradicted_by.size(), 1u);
+}
+
+TEST(CheckGroundTest, AnUncertainScaleSaysWhatItRestsOn) {
+  GroundEstimate estimate;
+  estimate.scale = ScalePosterior{.log_sigma = 0.3, .low = -0.6, .high = 0.6};
+  estimate.objects.resize(3);
+  for (GroundObject& object : estimate.objects) object.weight = 0.7;
+  estimate.objects[0].agreement = 0.9;
+  estimate.objects[1].agreement = 0.1;  // of the other two, nothing counts
+  const auto found = [&] {
+    for (const Finding& finding : CheckGround(estimate, {})) {
+      if (finding.check == "scale_uncertain") return finding.found;
+    }
+    return std::string();
+  };
+  EXPECT_THAT(found(), HasSubstr("from the usual heights of 1 detected thing; as heights of one "
+                                 "label are alike, this thing counts as 0.7"));
+  estimate.objects[1].agreement = 0.8;
+  EXPECT_THAT(found(), HasSubstr("of 2 detected things; as heights of one label are alike, these "
+                                 "things count as 1.4"));
+  for (GroundObject& object : estimate.objects) object.weight = 1.0;
+  EXPECT_THAT(found(), EndsWith("of 2 detected things"));
 }
 
 // A plane of the output has priors of its tilt and of its height at the middle of its points. They
@@ -194,7 +250,7 @@ TEST(EstimateGroundTest, ContradictingHeightsAreAFinding) {
     if (object.label < "m") object.label = "bus";
   }
   EXPECT_THAT(CheckGround(Estimate(scene.sequence, scene.points), {}),
-              Contains(Field(&Finding::check, "scale_contradicted")));
+              Contains(Field(&Finding::check, kObjectsAgainstOneAnotherCheck)));
 }
 
 TEST(EstimateGroundTest, WithoutPointsThereAreNoPlanes) {
@@ -224,7 +280,14 @@ TEST(CheckGroundTest, AnotherWayToHoldCamerasThanThatOfTheBoxesIsAFinding) {
   EXPECT_THAT(CheckGround(estimate, {}),
               Contains(AllOf(Field(&Finding::check, "camera_holding_of_planes"),
                              Field(&Finding::found, HasSubstr("turned clockwise")))));
-  estimate.holding_of_boxes = CameraHolding::kRolled90;
+  estimate.holding_of_boxes = CameraHolding::kLookingDown;
+  estimate.attitude.holding = CameraHolding::kLookingDownRolled90;
+  EXPECT_THAT(CheckGround(estimate, {}),
+              Contains(Field(&Finding::found,
+                             AllOf(HasSubstr("was held looking straight down, with upright images"),
+                                   HasSubstr("more than twice as many objects stand on flat"),
+                                   HasSubstr("down, with images turned by a quarter turn")))));
+  estimate.holding_of_boxes = CameraHolding::kLookingDownRolled90;
   EXPECT_THAT(CheckGround(estimate, {}),
               Not(Contains(Field(&Finding::check, "camera_holding_of_planes"))));
 }

@@ -103,7 +103,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   EXPECT_EQ(RunInspect(request, true), "2 objects, 1 object uncertain\n");
 
   GroundEstimate ground;
-  ground.scale = ScalePosterior{0.0, 0.05, -0.1, 0.1};
+  ground.scale = ScalePosterior{.log_sigma = 0.05, .low = -0.1, .high = 0.1};
   ground.known_scales = {{0.0, 0.1, "camera_height_m"}};
   const auto write_world = [&](const std::vector<Finding>& findings) {
     WriteWorld(File("world.json"), ground, sequence_,
@@ -111,7 +111,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   };
   write_world({});
   EXPECT_EQ(RunInspect(request, true), "2 objects, scale +- 11 %, 1 object uncertain\n");
-  write_world({{kKnownScaleCheck, Severity::kWarning, "", "", "", ""}});
+  write_world({{kObjectsAgainstSettingsCheck, Severity::kWarning, "", "", "", ""}});
   EXPECT_EQ(RunInspect(request, true),
             "2 objects, scale +- 11 % (uncertain: the heights of objects contradict the camera's "
             "height given), 1 object uncertain\n");
