@@ -40,35 +40,43 @@ bool IsColoured() {
   return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
 }
 
-void AddFiles(CLI::App* app, soslam::InspectRequest* request) {
+// Returns the option --headline, which takes no option of pictures or tables.
+CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
   app->add_option("FILE", request->file, "an artefact of any kind, JSON or HDF5")
       ->option_text("PATH")
       ->group("Files");
   const auto add = [&](const char* name, auto* path, const char* doc) {
-    app->add_option(name, *path, doc)->option_text("PATH")->group("Files");
+    return app->add_option(name, *path, doc)->option_text("PATH")->group("Files");
   };
   add("--sequence", &request->sequence,
       "sequence.json that the artefact was made from:\nfor labels of objects, and for pictures");
-  add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
-  add("--csv", &request->csv, "table to write as CSV, in full precision; - for standard output");
-  app->add_flag(
-         "--headline", request->headline,
-         "one line instead, of map.json, for scripts: how many objects\nit has, and how well "
-         "its scale is known; reads sequence.json,\nassociations.json and world.json beside "
-         "it")
-      ->group("Files");
-  add("--image", &request->image,
+  CLI::Option* dataset =
+      add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
+  CLI::Option* csv = add("--csv", &request->csv,
+                         "table to write as CSV, in full precision; - for standard output");
+  CLI::Option* headline = app->add_flag(
+      "--headline", request->headline,
+      "one line instead, of map.json, for scripts: how many objects\nit has, and how well "
+      "its scale is known; reads sequence.json,\nassociations.json and world.json beside "
+      "it");
+  headline->option_text(" ")->group("Files");
+  CLI::Option* image = add(
+      "--image", &request->image,
       "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and ground "
       "truth "
       "of a frame; of edges\nits maps; of symmetry the pairs of an observation");
+  for (CLI::Option* option : {dataset, csv, image}) headline->excludes(option);
+  return headline;
 }
 
-void AddOptions(CLI::App* app, Arguments* arguments) {
+void AddOptions(CLI::App* app, Arguments* arguments, CLI::Option* headline) {
   app->add_option("--frame", arguments->request.frame_id, "id of the frame of the picture")
       ->option_text("integer")
+      ->excludes(headline)
       ->group("Options");
   app->add_option("--object", arguments->request.object_id, "id of its object, of symmetry")
       ->option_text("integer")
+      ->excludes(headline)
       ->group("Options");
   app->add_option("--layer", arguments->layer,
                   "what of edges is in the picture\n[default all; one of all, grey, edges, "
@@ -76,6 +84,7 @@ void AddOptions(CLI::App* app, Arguments* arguments) {
       ->check(CLI::IsMember(
           std::vector<std::string>(soslam::kEdgeLayerNames.begin(), soslam::kEdgeLayerNames.end())))
       ->option_text("string")
+      ->excludes(headline)
       ->group("Options");
 }
 
@@ -125,8 +134,8 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(34);
     soslam::internal::AddOutsidePaths(&app);
     soslam::internal::AddHelpAndVersion(&app);
-    AddFiles(&app, &arguments.request);
-    AddOptions(&app, &arguments);
+    CLI::Option* headline = AddFiles(&app, &arguments.request);
+    AddOptions(&app, &arguments, headline);
     const CLI::App* diff = AddDiff(&app, &arguments);
     app.footer(HelpFooter(kExamples));
     app.parse(argc, argv);

@@ -9,11 +9,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "artefact/json_file.h"
-#include "base/error.h"
 #include "base/paths.h"
+#include "evaluation/statistics.h"
+#include "inspection/segments.h"
+#include "inspection/tracks.h"
 
 namespace soslam {
 namespace {
@@ -21,25 +22,30 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kSigmas95 = 1.96;  // half an interval of 95 %, standard deviations
-
-// True if the centre may be farther off than its body reaches, along a principal axis of its
-// covariance.
-bool IsPlaceUncertain(const Landmark& landmark, const Eigen::Matrix3d& covariance_of_centre) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance_of_centre);
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d axis = eigen.eigenvectors().col(i);
+// True if the centre may be farther off in a horizontal direction than its body reaches there,
+// along a principal axis of the horizontal part of its covariance.
+bool IsPlaceUncertain(const Landmark& landmark, const Eigen::Matrix3d& covariance_of_centre,
+                      const Eigen::Vector3d& up_in_world) {
+  Eigen::Matrix<double, 3, 2> horizontal;
+  horizontal.col(0) = up_in_world.unitOrthogonal();
+  horizontal.col(1) = up_in_world.cross(horizontal.col(0));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(horizontal.transpose() *
+                                                             covariance_of_centre * horizontal);
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector3d axis = horizontal * eigen.eigenvectors().col(i);
     const double reach = axis.dot(FindSupportPoint(landmark, axis).point - landmark.Centre());
-    if (kSigmas95 * std::sqrt(std::max(0.0, eigen.eigenvalues()(i))) > reach) return true;
+    const double sigma = std::sqrt(std::max(0.0, eigen.eigenvalues()(i)));
+    if (kHalfInterval95 * sigma > reach) return true;
   }
   return false;
 }
 
 std::vector<std::string> UncertainSizes(const Covariance9& covariance) {
   constexpr std::array kNames = {"depth", "width", "height"};  // along x, y, z
+  constexpr double kTwice = 1.0;  // half an interval that includes twice the size
   std::vector<std::string> names;
   for (int axis = 0; axis < 3; ++axis) {
-    if (kSigmas95 * std::sqrt(covariance(6 + axis, 6 + axis)) > std::numbers::ln2) {
+    if (HalfInterval95(std::sqrt(covariance(6 + axis, 6 + axis))) > kTwice) {
       names.emplace_back(kNames.at(static_cast<size_t>(axis)));
     }
   }
@@ -53,12 +59,8 @@ std::map<int, Sightings> ReadSightings(const fs::path& associations) {
   const json& tracks = document.at("tracks");
   std::map<int, Sightings> sightings;
   for (const json& object : document.at("objects")) {
-    const auto track = object.at("track").get<size_t>();
-    if (track >= tracks.size()) {
-      throw InputError(fmt::format("{}: found track {} of {}; expected one in the list",
-                                   associations.string(), track, tracks.size()));
-    }
-    const json& in_sight = tracks[track].at("frames_in_sight");
+    const json& track = TrackAt(tracks, object.at("track"), associations.string());
+    const json& in_sight = track.at("frames_in_sight");
     if (in_sight.is_null()) continue;
     sightings[object.at("object").get<int>()] = {object.at("detections").get<int>(),
                                                  in_sight.get<int>()};
@@ -68,16 +70,15 @@ std::map<int, Sightings> ReadSightings(const fs::path& associations) {
 
 }  // namespace
 
-std::string DoubtsInWords(const ObjectEstimate& estimate,
-                          const std::optional<Sightings>& sightings) {
+std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Sightings>& sightings,
+                          const Eigen::Vector3d& up_in_world) {
   std::vector<std::string> doubts;
   if (sightings && 2 * sightings->frames < sightings->frames_in_sight) {
-    doubts.push_back(fmt::format("seen in only {} of the {} images that should show it",
-                                 sightings->frames, sightings->frames_in_sight));
+    doubts.push_back(RarelyDetectedInWords(sightings->frames, sightings->frames_in_sight));
   }
   if (estimate.landmark_in_world && estimate.covariance) {
     const Covariance9& covariance = *estimate.covariance;
-    if (IsPlaceUncertain(*estimate.landmark_in_world, covariance.block<3, 3>(3, 3))) {
+    if (IsPlaceUncertain(*estimate.landmark_in_world, covariance.block<3, 3>(3, 3), up_in_world)) {
       doubts.emplace_back("it may stand beside its outline");
     }
     const std::vector<std::string> sizes = UncertainSizes(covariance);
@@ -93,11 +94,15 @@ std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& 
                                      const Sequence& sequence) {
   const std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
   std::vector<std::string> doubts;
+  std::map<int, Eigen::Vector3d> up_of_segment;
   for (const ObjectEstimate& estimate : map.objects) {
+    const int segment = SegmentOf(sequence, estimate.object_index);
+    if (!up_of_segment.contains(segment)) up_of_segment[segment] = UpOfSegment(sequence, segment);
     const auto found =
         sightings.find(sequence.objects[static_cast<size_t>(estimate.object_index)].id);
     doubts.push_back(DoubtsInWords(
-        estimate, found == sightings.end() ? std::nullopt : std::optional(found->second)));
+        estimate, found == sightings.end() ? std::nullopt : std::optional(found->second),
+        up_of_segment.at(segment)));
   }
   return doubts;
 }

@@ -13,16 +13,17 @@ namespace soslam {
 
 // How often an object was detected.
 struct Sightings {
-  int frames = 0;           // in which it was
-  int frames_in_sight = 0;  // that should show it: near enough and not hidden
+  int frames = 0;           // frames in which it was detected
+  int frames_in_sight = 0;  // frames that should show it: near enough and not hidden
 };
 
 // Why an object of a map is uncertain, in words; empty where it is not. It is if most frames that
-// should show it do not, if its place is so uncertain that its centre may be outside of its body
-// (with a probability of 5 %, in some direction), or if its 95 % interval of a size includes twice
-// and half of that. The error of the scale, which all objects share, does not count.
-std::string DoubtsInWords(const ObjectEstimate& estimate,
-                          const std::optional<Sightings>& sightings);
+// should show it do not, if its place is so uncertain that its centre may be beside its body as
+// seen from above (the 95 % interval reaches farther than the body, in a horizontal direction), or
+// if its 95 % interval of a size includes twice and half of that. The error of the scale, which all
+// objects share, does not count.
+std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Sightings>& sightings,
+                          const Eigen::Vector3d& up_in_world);
 
 // The doubts about each of MapEstimate::objects, by map.json's folder, where associations.json is
 // if ids were estimated. Throws InputError.

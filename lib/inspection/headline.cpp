@@ -19,9 +19,7 @@ namespace fs = std::filesystem;
 // ", scale ... (uncertain: ...)"; empty for a world whose scale is given.
 std::string ScaleInHeadline(const fs::path& world, const Sequence& sequence) {
   constexpr const char* kUnknown = ", scale unknown";
-  if (!Exists(world)) {
-    return sequence.odometry_world == OdometryWorld::kOwnWithScale ? kUnknown : "";
-  }
+  if (!Exists(world)) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
   const auto scale = ScaleOfWorld(ReadArtefact(world, "world"));
   if (!scale) return kUnknown;
   const std::string contradictions = ContradictionsInWords(*scale);

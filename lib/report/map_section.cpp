@@ -14,9 +14,9 @@
 #include "base/text.h"
 #include "inspection/doubts.h"
 #include "inspection/projection.h"
+#include "inspection/segments.h"
 #include "report/map_words.h"
 #include "report/not_placed.h"
-#include "report/page_geometry.h"
 #include "report/page_html.h"
 #include "report/page_sequence.h"
 #include "report/plan_view.h"
@@ -178,8 +178,8 @@ class MapOfVariant {
   // Things that are seen and not placed.
   struct NotPlacedEntries {
     std::vector<Entry> entries;
-    size_t more = 0;    // that are not listed
-    size_t single = 0;  // seen once
+    size_t more = 0;    // things seen more often that are not in `entries`
+    size_t single = 0;  // things seen once
   };
 
   std::string Section(const std::string& title, const std::vector<Entry>& entries,
@@ -193,8 +193,8 @@ class MapOfVariant {
     if (!scale_.warning.empty()) {
       html += fmt::format("<p class=\"warning\">{}</p>\n", HtmlText(scale_.warning));
     }
+    if (!note.empty()) html += fmt::format("<p class=\"faint\">{}</p>\n", note);
     if (!placed_.empty()) {
-      if (!note.empty()) html += fmt::format("<p class=\"faint\">{}</p>\n", note);
       html += PlanHtml(entries) +
               "<h3>Objects</h3>\n<p class=\"faint\">Width × depth × height, and by how "
               "much each may be off (95 %) if the label is right.</p>\n" +
@@ -354,7 +354,7 @@ class MapOfVariant {
   MapEstimate map_;
   ScaleOfMap scale_;
   std::vector<const ObjectEstimate*> placed_;
-  std::vector<std::string> doubts_;  // about these
+  std::vector<std::string> doubts_;  // the doubts about each of placed_
 };
 
 }  // namespace

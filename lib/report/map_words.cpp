@@ -11,21 +11,20 @@
 
 #include "artefact/world_file.h"
 #include "base/text.h"
-#include "report/page_geometry.h"
+#include "evaluation/statistics.h"
+#include "inspection/segments.h"
 #include "report/plan_view.h"
 
 namespace soslam {
 
 using nlohmann::json;
 
-double HalfInterval95(double log_sigma) { return std::expm1(1.96 * log_sigma); }
-
 ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
   constexpr const char* kNoUnit =
       "Nothing tells the scale of this map: lengths have no unit, only their proportions count.";
   ScaleOfMap scale;
   if (world.is_null()) {
-    scale.in_metres = sequence.odometry_world != OdometryWorld::kOwnWithScale;
+    scale.in_metres = IsInMetresWithoutWorld(sequence);
     if (!scale.in_metres) scale.sentence = kNoUnit;
     return scale;
   }
@@ -44,13 +43,6 @@ ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
   scale.sentence += fmt::format(" Up ± {:.1f}° (one standard deviation).",
                                 world.at("up").at("sigma_deg").get<double>());
   return scale;
-}
-
-int SegmentOf(const Sequence& sequence, int object_index) {
-  for (const Detection& detection : sequence.detections) {
-    if (detection.object_index == object_index) return sequence.FrameOf(detection).segment;
-  }
-  return 0;
 }
 
 std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale) {

@@ -22,10 +22,6 @@ struct ScaleOfMap {
 // `world`: world.json, or null without it.
 ScaleOfMap ScaleFromWorld(const nlohmann::json& world, const Sequence& sequence);
 
-// Half the 95 % interval of a quantity, as a part of it, by the standard deviation of its
-// logarithm: exp(1.96 sigma) - 1, the longer of its two sides.
-double HalfInterval95(double log_sigma);
-
 // Width, depth and height with their 95 % intervals: "52 × 61 × 86 cm (± 5 × 6 × 8)". The
 // covariance of a map is for the scale that it has; the error of the scale is independent.
 std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale);
@@ -34,9 +30,6 @@ std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale)
 // label is certain. An object has a label that a box has; where another one is more probable by its
 // size, this is said.
 std::string LabelsInWords(const Object& object);
-
-// The segment in which an object was detected.
-int SegmentOf(const Sequence& sequence, int object_index);
 
 // Least cosine of the angle between up and the normal of a plane that is no wall.
 inline constexpr double kLevel = 0.7;

@@ -12,6 +12,7 @@
 #include "artefact/landmarks_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "inspection/tracks.h"
 #include "report/page_html.h"
 
 namespace soslam {
@@ -20,17 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const json& TrackAt(const json& tracks, const json& index) {
-  if (index.is_number() && index.get<size_t>() < tracks.size()) return tracks[index.get<size_t>()];
-  throw InputError(fmt::format("associations.json: found track {} of {}; expected one in the list",
-                               index.dump(), tracks.size()));
-}
+constexpr const char* kAssociations = "associations.json";
 
 // The row of the track that has the boxes of this one after merging.
 const json& AfterMerging(const json& tracks, const json& index) {
-  const json* row = &TrackAt(tracks, index);
+  const json* row = &TrackAt(tracks, index, kAssociations);
   for (size_t merges = 0; merges < tracks.size() && row->at("merge").is_object(); ++merges) {
-    row = &TrackAt(tracks, row->at("merge").at("into_track"));
+    row = &TrackAt(tracks, row->at("merge").at("into_track"), kAssociations);
   }
   return *row;
 }
@@ -70,8 +67,8 @@ std::string FateInWords(const json& track, const json& settings) {
                        settings.value("min_observations", json()).dump());
   }
   if (fate == "rarely_detected") {
-    return fmt::format("detected in only {} of the {} images that should show it",
-                       track.at("detections").dump(), track.at("frames_in_sight").dump());
+    return RarelyDetectedInWords(track.at("detections").get<int>(),
+                                 track.at("frames_in_sight").get<int>());
   }
   const std::map<std::string, std::string> words = {
       {"never_whole", "no image shows it whole"},
@@ -196,8 +193,8 @@ std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate
                                        const Sequence& sequence) {
   std::vector<NotPlaced> things = ObjectsLeftOut(folder, map, sequence);
   std::ranges::move(LeftOutByPlanes(sequence), std::back_inserter(things));
-  if (Exists(folder / "associations.json")) {
-    const json associations = ReadArtefact(folder / "associations.json", "associations");
+  if (Exists(folder / kAssociations)) {
+    const json associations = ReadArtefact(folder / kAssociations, "associations");
     for (NotPlaced& thing : TracksLeftOut(associations, sequence)) {
       things.push_back(std::move(thing));
     }

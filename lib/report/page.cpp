@@ -99,6 +99,8 @@ class DatasetPage {
              {"problems", json::array()},         {"differences", PageDifferences(dataset)},
              {"findings", PageFindings(dataset)}, {"map_section", ""}};
     for (const VariantResult& variant : dataset.variants) Add(variant);
+    data_["has_true_objects"] = std::ranges::any_of(sequences_, HasTrueObjects);
+    data_["has_true_poses"] = std::ranges::any_of(sequences_, HasTruePoses);
   }
 
   json Fitted(size_t max_bytes, int threads) {
@@ -112,9 +114,6 @@ class DatasetPage {
     const auto least = static_cast<size_t>(kLeastShareOfImages * static_cast<double>(max_bytes));
     FitPageData(max_bytes - (has_images ? least : 0), PageBytes, &data_);
     data_["detailed"] = DetailedVariants(data_);
-    data_["has_truth"] = std::ranges::any_of(data_["variants"], [](const json& variant) {
-      return HasTrueObjects(variant.at("metrics"));
-    });
     if (!data_["sequences"].front()["frames"].empty()) {
       AddImages(first, source, max_bytes, threads);
     }
@@ -127,6 +126,21 @@ class DatasetPage {
     Sequence sequence;
     PageSelection selection;
   };
+
+  static bool HasTrueObjects(const LoadedSequence& loaded) {
+    return std::ranges::any_of(
+               loaded.sequence.objects,
+               [](const Object& object) { return object.ground_truth.has_value(); }) ||
+           std::ranges::any_of(loaded.sequence.detections, [](const Detection& detection) {
+             return detection.true_landmark_in_camera.has_value();
+           });
+  }
+
+  static bool HasTruePoses(const LoadedSequence& loaded) {
+    return std::ranges::any_of(loaded.sequence.frames, [](const Frame& frame) {
+      return frame.true_world_from_camera.has_value();
+    });
+  }
 
   void Add(const VariantResult& result) {
     std::string state =
@@ -250,8 +264,10 @@ json OverviewData(const std::vector<json>& pages) {
   json datasets = json::array();
   for (const json& page : pages) {
     json dataset = {{"counts", nullptr}, {"variants", json::array()}};
-    for (const char* key : {"dataset", "url", "unfinished", "notes", "problems", "findings"})
+    for (const char* key :
+         {"dataset", "url", "has_true_objects", "unfinished", "notes", "problems", "findings"}) {
       dataset[key] = page.at(key);
+    }
     for (const json& variant : page.at("variants")) {
       json metrics = variant.at("metrics");
       metrics.erase("objects");

@@ -34,7 +34,8 @@ using ImageSourceOf = std::function<ImageSource(const Sequence& sequence)>;
 //   unfinished: name, state ("failed: ...", "incomplete: ...") and is_shown of variants that
 //     differ from the plan, or cannot be shown
 //   detailed: see DetailedVariants; findings: see PageFindings
-//   has_truth: whether a variant was measured against true objects
+//   has_true_objects, has_true_poses: whether a sequence has the truth of some of its objects, and
+//     of some camera's pose
 //   notes: sentences on what was left out for lack of room
 //   problems: sentences on images that cannot be shown
 //   differences: see PageDifferences

@@ -69,9 +69,6 @@ json PageOutline(const Camera& camera, const Landmark& landmark_in_camera) {
 
 namespace {
 
-// Planes that are less upright than this are walls.
-constexpr double kMinUprightCosine = 0.2;
-
 using PointsByPlane = std::vector<std::vector<Eigen::Vector3d>>;
 
 PlaneGrids GridsAround(const PointsByPlane& points, const std::vector<Plane>& planes_in_world) {
@@ -161,30 +158,6 @@ Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection) {
   const Rigid3d correction = {Eigen::Quaterniond::FromTwoVectors(by_odometry.normal, seen.normal),
                               (by_odometry.offset - seen.offset) * seen.normal};
   return correction * camera_from_world;
-}
-
-Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
-  Eigen::Vector3d upright = Eigen::Vector3d::Zero();
-  for (const Frame& frame : sequence.frames) {
-    if (frame.segment == segment) {
-      upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
-    }
-  }
-  if (upright.norm() < kMinUprightCosine)
-    upright = Eigen::Vector3d::UnitZ();  // the camera looks in all directions
-  upright.normalize();
-  Eigen::Vector3d up = upright;
-  double best = kMinUprightCosine;
-  if (sequence.planes.empty()) return up;
-  for (const Detection& detection : sequence.detections) {
-    if (sequence.FrameOf(detection).segment != segment) continue;
-    const auto plane = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
-    const Eigen::Vector3d& normal = sequence.planes[plane].plane_in_world.normal;
-    if (normal.dot(upright) <= best) continue;
-    best = normal.dot(upright);
-    up = normal;
-  }
-  return up;
 }
 
 }  // namespace soslam

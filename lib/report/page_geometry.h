@@ -53,8 +53,4 @@ nlohmann::json PageGridInFrame(
 // moves the plane to the detection's plane_in_camera, with which odometry need not agree.
 Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 
-// The up direction in a segment's world: the normal of that plane of its detections which is
-// closest to upright in its images; without such planes, the mean upright direction of its images.
-Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment);
-
 }  // namespace soslam

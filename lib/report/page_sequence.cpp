@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "inspection/segments.h"
 #include "model/label_groups.h"
 #include "report/page_geometry.h"
 

@@ -84,18 +84,16 @@ void AddColumn(const PageColumn& column, const std::vector<json>& variants, Tabl
   }
 }
 
-// Empty where there is no ground truth that any of the variants could be measured against.
-std::string MetricsTable(const std::vector<json>& variants) {
-  const bool has_objects = std::ranges::any_of(
-      variants, [](const json& variant) { return HasTrueObjects(variant.at("metrics")); });
+// Empty where there is nothing that any of the variants could be measured against.
+std::string MetricsTable(const std::vector<json>& variants, bool has_true_objects) {
   Table table;
   table.name = "metrics";
   table.header = {"variant"};
-  if (has_objects) table.header.insert(table.header.end(), {"objects", "observations"});
+  if (has_true_objects) table.header.insert(table.header.end(), {"objects", "observations"});
   for (const json& variant : variants) {
     const json& summary = variant.at("metrics").at("summary");
     table.rows.push_back({variant.at("name").get<std::string>()});
-    if (!has_objects) continue;
+    if (!has_true_objects) continue;
     for (const char* key : {"objects", "observations"}) {
       table.rows.back().emplace_back(summary.at(key).dump());
     }
@@ -104,7 +102,22 @@ std::string MetricsTable(const std::vector<json>& variants) {
   return table.header.size() == 1 ? "" : HtmlTable(table);
 }
 
-// Empty without ground truth.
+// What the columns of MetricsTable mean.
+std::string NumbersExplained(const json& page) {
+  std::string text;
+  if (page.at("has_true_objects")) {
+    text +=
+        "Means over objects, the best in bold. IoU: overlap of the cuboids around estimate and "
+        "truth. Rot: the smallest turn that brings the axes of one onto any of the other. Yaw "
+        "error: modulo half a turn. ";
+  } else {
+    text += "The best is bold. ";
+  }
+  if (page.at("has_true_poses")) text += "ATE: root mean square error of the camera's positions.";
+  return Faint(text);
+}
+
+// Empty where nothing was measured.
 std::string NumbersSection(const json& page) {
   constexpr std::array<std::array<const char*, 2>, 3> kKinds = {
       {{"map", "Maps: all frames, landmarks and poses together"},
@@ -116,16 +129,11 @@ std::string NumbersSection(const json& page) {
     for (const json& variant : page.at("variants")) {
       if (variant.at("kind") == kind) variants.push_back(variant);
     }
-    const std::string table = MetricsTable(variants);
+    const std::string table = MetricsTable(variants, page.at("has_true_objects"));
     if (!table.empty()) tables += fmt::format("<h3>{}</h3>\n{}", title, table);
   }
   if (tables.empty()) return "";
-  return Section("numbers", "Numbers",
-                 Faint("Means over objects, the best in bold. IoU: overlap of the cuboids around "
-                       "estimate and truth. Rot: the smallest turn that brings the axes of one "
-                       "onto any of the other. Yaw error: modulo half a turn. ATE: root mean "
-                       "square error of the camera's positions.") +
-                     tables);
+  return Section("numbers", "Numbers", NumbersExplained(page) + tables);
 }
 
 // Comparison of a dataset's maps with all true objects, independent of ids; empty without maps or
@@ -133,7 +141,6 @@ std::string NumbersSection(const json& page) {
 std::string QualityHtml(const std::string& dataset, const std::vector<json>& variants) {
   std::vector<NamedMetrics> named;
   for (const json& variant : variants) {
-    if (!HasTrueObjects(variant.at("metrics"))) continue;
     named.emplace_back(variant.at("name").get<std::string>(), variant.at("metrics"));
   }
   std::string html;
@@ -197,15 +204,14 @@ std::vector<ObjectRow> WorstFirst(const json& objects, const json& variant) {
   return rows;
 }
 
-std::string ObjectsTable(const json& objects, const json& variant) {
+std::string ObjectsTable(const json& objects, const json& variant, bool has_true_objects) {
   const std::vector<ObjectRow> rows = WorstFirst(objects, variant);
   const auto failure = [](const ObjectRow& row) {
     return WithBlanks(row.estimate.at("failure").get<std::string>());
   };
   Table table;
   table.header = {"object", "observations"};
-  const bool is_measured = HasTrueObjects(variant.at("metrics"));
-  if (is_measured) {
+  if (has_true_objects) {
     table.header.insert(table.header.end(), {"IoU", "centre error, m", "Rot, °", "yaw error, °"});
   }
   table.header.emplace_back("yaw sigma, °");
@@ -222,7 +228,7 @@ std::string ObjectsTable(const json& objects, const json& variant) {
     table.rows.push_back(
         {fmt::format("{} {}", object.at("label").get<std::string>(), object.at("id").dump()),
          metrics.value("observations", row.estimate.at("observations")).dump()});
-    if (is_measured) {
+    if (has_true_objects) {
       table.rows.back().insert(table.rows.back().end(),
                                {number("iou", 3), number("centre_m", 3), number("rotation_deg", 2),
                                 number("yaw_error_deg", 2)});
@@ -236,6 +242,7 @@ std::string ObjectsTable(const json& objects, const json& variant) {
 
 // A table for each variant; scripts show one of them at a time.
 std::string ObjectsSection(const json& page) {
+  const bool has_true_objects = page.at("has_true_objects");
   std::string tables;
   for (const size_t index : DetailedVariants(page)) {
     const json& variant = page.at("variants")[index];
@@ -243,14 +250,10 @@ std::string ObjectsSection(const json& page) {
     tables +=
         fmt::format("<details{}><summary>{}</summary>\n{}</details>\n",
                     tables.empty() ? " open" : "", HtmlText(variant.at("name").get<std::string>()),
-                    ObjectsTable(sequence.at("objects"), variant));
+                    ObjectsTable(sequence.at("objects"), variant, has_true_objects));
   }
-  const bool are_ordered = std::ranges::any_of(page.at("variants"), [](const json& variant) {
-    return HasTrueObjects(variant.at("metrics"));
-  });
-  return tables.empty()
-             ? ""
-             : Section("objects", "Objects", (are_ordered ? Faint("Worst first.") : "") + tables);
+  if (tables.empty()) return "";
+  return Section("objects", "Objects", (has_true_objects ? Faint("Worst first.") : "") + tables);
 }
 
 std::string Signed(const json& value, int decimals) {
@@ -367,12 +370,6 @@ std::string CountsText(const json& counts) {
 
 }  // namespace
 
-bool HasTrueObjects(const json& metrics) {
-  if (metrics.at("summary").at("objects") > 0) return true;
-  const json& quality = metrics.value("map_quality", json());
-  return quality.is_object() && quality.at("scores").front().at("true_objects") > 0;
-}
-
 std::string DatasetTables(const json& page) {
   if (page.at("variants").empty()) return "";
   const json& sequence = page.at("sequences").front();
@@ -405,7 +402,7 @@ std::string OverviewTables(const json& overview) {
     content += Remarks(dataset);
     if (!dataset.at("variants").empty()) {
       const std::string quality = QualityHtml(dataset.at("dataset"), dataset.at("variants"));
-      content += MetricsTable(dataset.at("variants"));
+      content += MetricsTable(dataset.at("variants"), dataset.at("has_true_objects"));
       if (!quality.empty()) content += "<h3>Maps against all that is true</h3>\n" + quality;
     }
     sections += Section(url, dataset.at("dataset").get<std::string>(), content);

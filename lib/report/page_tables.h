@@ -11,7 +11,4 @@ namespace soslam {
 std::string DatasetTables(const nlohmann::json& page);
 std::string OverviewTables(const nlohmann::json& overview);
 
-// True if a metrics.json has been measured against true objects.
-bool HasTrueObjects(const nlohmann::json& metrics);
-
 }  // namespace soslam

@@ -160,6 +160,12 @@ std::string Headline(const InspectRequest& request) {
     throw SettingsError(fmt::format("{}: there is no headline of kind '{}'; expected a map",
                                     request.file.string(), kind));
   }
+  if (IsOfAnotherSequence(request)) {
+    throw InputError(
+        fmt::format("{}: was not made from --sequence {}; expected its sequence.json, "
+                    "which is beside it in a results folder",
+                    request.file.string(), request.sequence->string()));
+  }
   const fs::path sequence = request.sequence.value_or(request.file.parent_path() / "sequence.json");
   return HeadlineOfMap(request.file, ReadSequence(sequence, PlaneNeed::kNotNeeded)) + "\n";
 }

@@ -50,6 +50,8 @@ json Page() {
       {"problems", json::array()},
       {"differences", json::array()},
       {"map_section", ""},
+      {"has_true_objects", true},
+      {"has_true_poses", true},
       {"sequences", {sequence}},
       {"variants",
        {Variant("InitP", "frames", 0.4, nullptr), ours, Variant("OursS", "map", 0.5, nullptr)}}};
@@ -67,6 +69,20 @@ TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
       html, HasSubstr("<td>OursS</td><td>2</td><td>9</td><td class=\"best\">0.500</td><td>–</td>"));
   EXPECT_THAT(html,
               HasSubstr("<td>InitP</td><td>2</td><td>9</td><td class=\"best\">0.400</td></tr>"));
+}
+
+TEST(DatasetTables, ExplainOnlyWhatIsMeasured) {
+  json page = Page();
+  EXPECT_THAT(DatasetTables(page), AllOf(HasSubstr("IoU: overlap of the cuboids"),
+                                         HasSubstr("ATE: root"), HasSubstr("Worst first")));
+  page["has_true_objects"] = false;
+  for (json& variant : page["variants"]) variant["metrics"]["summary"]["iou_mean"] = nullptr;
+  const std::string html = DatasetTables(page);
+  EXPECT_THAT(html, AllOf(HasSubstr("<td>OursP</td><td class=\"best\">0.0123</td>"),
+                          HasSubstr("ATE: root")));
+  for (const char* words : {"cuboids", "Rot", "yaw error", "Yaw error", "Worst first"}) {
+    EXPECT_THAT(html, Not(HasSubstr(words)));
+  }
 }
 
 TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {

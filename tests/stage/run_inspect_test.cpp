@@ -13,7 +13,7 @@
 #include "artefact/world_file.h"
 #include "base/error.h"
 #include "base/options.h"
-#include "ground/ground_checks.h"
+#include "ground/world_scale.h"
 #include "inspection/canvas.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
@@ -121,6 +121,12 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   ground.scale.reset();
   write_world({});
   EXPECT_EQ(RunInspect(request, true), "2 objects, scale unknown, 1 object uncertain\n");
+  Sequence other = sequence_;
+  other.name = "another";
+  WriteSequence(File("other.json"), other, {});
+  request.sequence = File("other.json");
+  ExpectError<InputError>([&] { RunInspect(request, false); },
+                          {"map.json: was not made from", "other.json"});
   request.file = File("metrics.json");
   ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"metrics", "expected a map"});
 }

@@ -268,6 +268,24 @@ TEST_F(RunPagesTest, TheMapFromAboveKeepsToItsRoom) {
   EXPECT_EQ(section(100), "");
 }
 
+TEST_F(RunPagesTest, PicturesThatAreLeftOutAreMissedWhereNothingIsPlaced) {
+  WriteOurs("OursS");
+  MapEstimate map = ReadMap(Folder("OursS") / "map.json", sequence_);
+  for (ObjectEstimate& estimate : map.objects) estimate.landmark_in_world.reset();
+  WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
+  const cv::Mat grey(sequence_.camera.height, sequence_.camera.width, CV_8UC3, cv::Scalar::all(9));
+  const ImageSource images = {[](int) { return true; }, [&](int) { return grey; }};
+  const auto section = [&](size_t max_bytes) {
+    return MapSection("Map", Folder("OursS"), sequence_, images, max_bytes, 1);
+  };
+  const std::string whole = section(kMaxPageBytes);
+  EXPECT_EQ(CountOf("<image ", whole), 4u);
+  EXPECT_THAT(whole, testing::Not(HasSubstr("For lack of room")));
+  const std::string smaller = section(whole.size() - 1);
+  EXPECT_EQ(CountOf("<image ", smaller), 0u);
+  EXPECT_THAT(smaller, HasSubstr("For lack of room pictures are left out."));
+}
+
 TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
   WriteOurs("OursS");
   Run();
@@ -312,7 +330,8 @@ TEST_F(RunPagesTest, WithoutTrueObjectsNothingIsSaidOfThem) {
     EXPECT_EQ(html.find(words, html.find("<main")), html.npos) << words;
   }
   EXPECT_THAT(html, AllOf(HasSubstr("<h2>Objects</h2>"), HasSubstr("yaw sigma")));
-  EXPECT_EQ(PageDataIn(Page())["has_truth"], false);
+  EXPECT_EQ(PageDataIn(Page())["has_true_objects"], false);
+  EXPECT_EQ(PageDataIn(Page())["has_true_poses"], false);
 }
 
 TEST_F(RunPagesTest, ADamagedWorldIsNamedAndTheRestIsShown) {

@@ -121,9 +121,9 @@ function figuresSection(page, variants) {
     ...figure("Samples and mirrored pairs", "Samples are orange, the pixels that the mirror plane of the estimate takes them to white (fig. 5 of the paper).",
       pairFigures(page, ways)),
     ...figure("Single-frame initialisation", "The first observations of some objects (fig. 6): detection dashed, " +
-      (page.has_truth ? "ground truth green, " : "") + "estimate blue with its front orange.",
+      (page.has_true_objects ? "ground truth green, " : "") + "estimate blue with its front orange.",
       comparison(page, variants, ["Init1-1", "InitP", "InitS", "InitSTE"], 3)),
-    ...figure("Cost over yaw", page.has_truth ?
+    ...figure("Cost over yaw", page.has_true_objects ?
       "Which descriptor finds the yaw (fig. 7)? The tables count all observations: how far the lowest cost is from the true yaw, modulo half a turn, " +
       "and whether there is a cost at the true yaw at all: where too few pairs of pixels are visible at once there is none, and no descriptor can win. " +
       "The strips show single observations, each cost over its own range: the dot is its lowest point, green within 10° of the truth, the dashed line the true yaw, the dotted one the yaw that was chosen."

@@ -24,7 +24,6 @@ function framesSection(page, variants) {
   const holder = element("div"), caption = element("span", { class: "faint" });
   const shown = { estimate: true, box: false, truth: true, detection: true, grid: true };
   const detections = page.sequences[variants[0].sequence].detections;
-  const hasTruth = detections.some(({ truth }) => truth);
   let variant = variants[0];
   const framesOf = () => page.sequences[variant.sequence].frames
     .map((frame, index) => ({ frame, index })).filter(({ frame }) => frame.shown);
@@ -54,10 +53,10 @@ function framesSection(page, variants) {
     ? element("p", { class: "faint" }, "There were no images of this dataset where the page was made.") : null;
   return section("frames", "Frames",
     element("p", {}, "Detections are dashed, the thick end of an estimate points to its front. " +
-      (hasTruth ? "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."
+      (page.has_true_objects ? "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."
         : "Estimates over several frames are seen from the estimated camera.")), note,
     element("div", { class: "bar on-image" }, choose, toggle("estimate", "estimate", "estimate"), toggle("its box", "box", "estimate"),
-      hasTruth ? toggle("ground truth", "truth", "truth") : null, toggle("detection", "detection", "detection"),
+      page.has_true_objects ? toggle("ground truth", "truth", "truth") : null, toggle("detection", "detection", "detection"),
       toggle("support planes", "grid", "grid")),
     element("div", { class: "bar" }, input, caption), holder);
 }

@@ -279,8 +279,7 @@ function mapSection(page, variants) {
   });
   const toggle = (label, key, name) =>
     checkbox(label, key, true, (on) => { view.shows[name] = on; view.show(variant, frame); });
-  const hasTruth = page.sequences.some(({ frames, objects }) =>
-    frames.some(({ true_pose }) => true_pose) || objects.some(({ truth }) => truth));
+  const hasTruth = page.has_true_objects || page.has_true_poses;
   return section("map", "Map in three dimensions",
     element("div", { class: "bar" }, choose, hasTruth ? toggle("ground truth", "truth", "truth") : null, toggle("planes", "faint", "grid"),
       toggle("camera", "detection", "trajectory")),

@@ -26,7 +26,7 @@ function objectNumbers(page, variant, index) {
     rows.push(["sigma of yaw, °", number(estimate.sigma_yaw_deg, 2)]);
   }
   if (object.truth) rows.push(["true half axes, m", triple(object.truth.half_axes, 2)]);
-  if (metrics && page.has_truth) {
+  if (metrics && page.has_true_objects) {
     rows.push(["IoU", number(metrics.iou, 3)], ["Rot, °", number(metrics.rotation_deg, 2)],
       ["yaw error, °", number(metrics.yaw_error_deg, 2)], ["centre error, m", number(metrics.centre_m, 3)]);
   }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "inspection/segments.h"
+
+namespace soslam {
+
+int SegmentOf(const Sequence& sequence, int object_index) {
+  for (const Detection& detection : sequence.detections) {
+    if (detection.object_index == object_index) return sequence.FrameOf(detection).segment;
+  }
+  return 0;
+}
+
+namespace {
+
+// Least cosine of the angle between up and the upright direction of a segment's images.
+constexpr double kMinUprightCosine = 0.2;
+
+}  // namespace
+
+Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
+  Eigen::Vector3d upright = Eigen::Vector3d::Zero();
+  for (const Frame& frame : sequence.frames) {
+    if (frame.segment == segment) {
+      upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
+    }
+  }
+  if (upright.norm() < kMinUprightCosine)
+    upright = Eigen::Vector3d::UnitZ();  // the camera looks in all directions
+  upright.normalize();
+  Eigen::Vector3d up = upright;
+  double best = kMinUprightCosine;
+  if (sequence.planes.empty()) return up;
+  for (const Detection& detection : sequence.detections) {
+    if (sequence.FrameOf(detection).segment != segment) continue;
+    const int plane = sequence.ObjectOf(detection).plane_index;
+    if (plane == kNoPlane) continue;
+    const Eigen::Vector3d& normal =
+        sequence.planes[static_cast<size_t>(plane)].plane_in_world.normal;
+    if (normal.dot(upright) <= best) continue;
+    best = normal.dot(upright);
+    up = normal;
+  }
+  return up;
+}
+
+}  // namespace soslam
