@@ -13,8 +13,7 @@ std::array<BoxEdge, 4> VisibleEdges(const std::array<BoxEdge, 4>& edges,
       if (!bound.is_bound) continue;
       const Eigen::Vector3d tangent_point =
           FindSupportPoint(landmark_in_camera, edges[i].plane).point;
-      const bool is_in_front = tangent_point.z() > 0.0;
-      if (is_in_front && bound.plane.dot(tangent_point) > 0.0) visible[i].is_bound = true;
+      if (bound.plane.dot(tangent_point) > 0.0) visible[i].is_bound = true;
     }
   }
   return visible;
