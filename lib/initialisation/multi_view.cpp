@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "constraints/loss.h"
-#include "constraints/visible_edges.h"
 #include "initialisation/landmark_terms.h"
 #include "initialisation/view_weights.h"
 #include "initialisation/yaw_sweep.h"
@@ -132,11 +131,6 @@ std::unique_ptr<const LandmarkTerm> TermOfView(const MultiViewObservation& obser
                                           observation.huber_delta, view.weight);
 }
 
-std::array<BoxEdge, 4> EdgesOf(const MultiViewObservation& observation, const BoxView& view,
-                               const Landmark& landmark_in_camera) {
-  return observation.cut_outlines ? VisibleEdges(view.edges, landmark_in_camera) : view.edges;
-}
-
 // Gauss-Newton over the views of an observation, in the foot and the half axes at a fixed yaw.
 class LinearViews {
  public:
@@ -226,7 +220,7 @@ class LinearViews {
     Row at;
     at << body.foot, body.half_axes,
         Eigen::Matrix<double, kUnknowns - 5, 1>::Constant(body.height_m);
-    for (const BoxEdge& edge : is_first ? view.edges : EdgesOf(observation_, view, landmark)) {
+    for (const BoxEdge& edge : view.edges) {
       // The initial guess is too rough to decide which bounds are active and which edges are
       // outliers.
       if (is_first && edge.is_bound) continue;
@@ -278,8 +272,8 @@ class LinearViews {
     double cost = 0.0;
     for (const BoxView& view : observation_.views) {
       const Landmark in_camera = Transform(view.camera_from_world, landmark);
-      auto box = std::make_unique<BoxTerm>(EdgesOf(observation_, view, in_camera), in_camera);
-      cost += TermOfView(observation_, view, std::move(box))->Value(landmark);
+      cost += TermOfView(observation_, view, std::make_unique<BoxTerm>(view.edges, in_camera))
+                  ->Value(landmark);
     }
     if (ratio_) cost += RatioTerm(*observation_.prior).Value(landmark);
     if (HasSize(observation_)) cost += HeightTerm(*observation_.prior->height_m).Value(landmark);
@@ -333,8 +327,7 @@ LandmarkCosts ViewTerms(const MultiViewObservation& observation, const Landmark&
     const Landmark in_camera = Transform(view.camera_from_world, start_in_world);
     if (!IsInFront(in_camera)) continue;
     terms.push_back(
-        TermOfView(observation, view,
-                   std::make_unique<BoxTerm>(EdgesOf(observation, view, in_camera), in_camera)));
+        TermOfView(observation, view, std::make_unique<BoxTerm>(view.edges, in_camera)));
   }
   return terms;
 }

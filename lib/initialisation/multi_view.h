@@ -32,7 +32,6 @@ struct MultiViewObservation {
   std::optional<Eigen::Vector3d> scene_axis_in_world = std::nullopt;
   double axes_weight = 0.0;  // see AxisTerm
   double huber_delta = 1.0;
-  bool cut_outlines = false;  // edges are VisibleEdges of the landmark
 
   double ShapeExponent() const { return prior ? prior->shape_exponent : kCuboidExponent; }
 };

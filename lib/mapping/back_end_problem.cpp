@@ -16,7 +16,6 @@
 #include "constraints/support.h"
 #include "constraints/tangency.h"
 #include "constraints/upright_on_plane.h"
-#include "constraints/visible_edges.h"
 #include "geometry/angles.h"
 #include "initialisation/landmark_terms.h"
 #include "initialisation/view_weights.h"
@@ -215,10 +214,9 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
   }
   view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
   const auto& prior = input_.priors[static_cast<size_t>(detection.object_index)];
-  const auto edges = VisibleEdges(
+  const auto edges =
       BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction,
-               prior ? prior->edge_bias : EdgeBias()),
-      initial_in_camera);
+               prior ? prior->edge_bias : EdgeBias());
   for (size_t side = 0; side < edges.size(); ++side) {
     // A body so near that it reaches behind the camera has no tangent point in view.
     if (!(FindTangentDepth(edges[side], initial_in_camera).depth_m > 0.0)) {

@@ -62,7 +62,6 @@ class ObjectFit {
     boxes_.ratio_is_free = !options.ratio;
     boxes_.axes_weight = options.axes_weight;
     boxes_.huber_delta = options.huber_delta;
-    boxes_.cut_outlines = true;
     for (size_t i = 0; i < detections_.size(); ++i) {
       const auto image = input.symmetry_images.find(detections_[i]);
       if (image == input.symmetry_images.end()) continue;
