@@ -46,10 +46,8 @@ class ChainBuilder {
 
   std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
     if (stage == "import") return {};
-    // Edge maps depend on the imported sequence only.
-    if (stage == "edges") return {{"sequence", Output("import")}};
-    // The poses are those of the world that the objects are in.
-    if (stage == "track") return {{"sequence", Latest({"ground", "import"})}};
+    // Neither edge maps nor points depend on the world or its unit.
+    if (stage == "edges" || stage == "track") return {{"sequence", Output("import")}};
     std::vector<std::string> makers = {"planes", "associate", "ground", "import"};
     const auto same = std::ranges::find(makers, stage);
     if (same != makers.end()) makers.erase(makers.begin(), std::next(same));
