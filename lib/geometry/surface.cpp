@@ -64,11 +64,15 @@ double StepToSurface(double excess, double slope, double q) {
 
 }  // namespace
 
+double DualExponent(double shape_exponent) {
+  const double q = shape_exponent / (shape_exponent - 1.0);
+  return shape_exponent > 1.0 && q <= kLargestQ ? q : std::numeric_limits<double>::infinity();
+}
+
 BodySurface::BodySurface(const Eigen::Vector3d& half_axes, double shape_exponent)
     : inverse_axes_(half_axes.cwiseInverse()),
-      q_(shape_exponent > 1.0 ? shape_exponent / (shape_exponent - 1.0)
-                              : std::numeric_limits<double>::infinity()),
-      is_cuboid_(q_ > kLargestQ) {}
+      q_(DualExponent(shape_exponent)),
+      is_cuboid_(std::isinf(q_)) {}
 
 std::optional<double> BodySurface::Entry(const Eigen::Vector3d& origin,
                                          const Eigen::Vector3d& direction) const {

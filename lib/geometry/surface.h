@@ -16,9 +16,13 @@ struct RayBatch {
   BatchOfVectors gradient;  // see BodySurface::Gradient
 };
 
-// The surface of a body in its own frame: F(x) = || (x / a, y / b, z / c) ||_q = 1 with
-// 1 / p + 1 / q = 1, p the shape exponent of SupportFunction. p = 2 is the paper's quadric (eq.
-// 13), p = 1 the cuboid, for which F is the largest |component|.
+// q of 1 / p + 1 / q = 1, p the shape exponent of SupportFunction. Infinite for the cuboid, p = 1,
+// and for superquadrics whose edges are too sharp to distinguish from it.
+double DualExponent(double shape_exponent);
+
+// The surface of a body in its own frame: F(x) = || (x / a, y / b, z / c) ||_q = 1, q the
+// DualExponent of p. p = 2 is the paper's quadric (eq. 13), p = 1 the cuboid, for which F is the
+// largest |component|.
 class BodySurface {
  public:
   BodySurface(const Eigen::Vector3d& half_axes, double shape_exponent);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/point_term.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,23 +16,43 @@ constexpr double kRoughShare = 0.6;
 
 double Bell(double x) { return std::exp(-0.5 * x * x); }
 
+// Integral (m) of the density of an object's points over the distance, where it is 1 at the
+// surface.
+double Width(double sigma_m, double rough_sigma_m) {
+  return std::sqrt(0.5 * std::numbers::pi) *
+         ((2.0 - kRoughShare) * sigma_m + kRoughShare * rough_sigma_m);
+}
+
+// Smallest variance along any direction.
+double LeastVariance(const Eigen::Matrix3d& covariance) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
+}
+
 }  // namespace
 
+double SizeForPoints(const Landmark& landmark) {
+  return 2.0 * std::cbrt(landmark.half_axes.prod());
+}
+
 PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
-                     const PointOptions& options, double weight)
+                     double size_m, const PointOptions& options, double weight)
     : outlier_probability_(options.point_outlier_probability), weight_(weight) {
-  const double size = 2.0 * std::cbrt(start_in_camera.half_axes.prod());
   for (const ObjectPoint& point : points) {
+    const double of_range_m = options.point_range_fraction * point.position.norm();
+    const auto sigmas_m = [&](double variance) {
+      const double of_position_m = std::hypot(std::sqrt(std::max(0.0, variance)), of_range_m);
+      return std::pair(std::hypot(options.point_sigma_fraction * size_m, of_position_m),
+                       std::hypot(options.point_roughness_fraction * size_m, of_position_m));
+    };
     Eigen::Vector3d normal;
     SurfaceDistance(start_in_camera, point.position, nullptr, &normal);
-    const double of_position = std::hypot(std::sqrt(normal.dot(point.covariance * normal)),
-                                          options.point_range_fraction * point.position.norm());
-    const double sigma = std::hypot(options.point_sigma_fraction * size, of_position);
-    const double rough_sigma = std::hypot(options.point_roughness_fraction * size, of_position);
-    const double width = std::sqrt(0.5 * std::numbers::pi) *
-                         ((2.0 - kRoughShare) * sigma + kRoughShare * rough_sigma);
-    densities_.push_back(
-        {point.position, sigma, rough_sigma, point.prior / width, (1.0 - point.prior) / size});
+    const auto [sigma, rough_sigma] = sigmas_m(normal.dot(point.covariance * normal));
+    const auto [least, rough_least] = sigmas_m(LeastVariance(point.covariance));
+    const double background = (1.0 - point.prior) / size_m;
+    densities_.push_back({point.position, sigma, rough_sigma,
+                          point.prior / Width(sigma, rough_sigma), background,
+                          point.prior / Width(least, rough_least) + background});
   }
 }
 
@@ -47,7 +69,7 @@ std::pair<double, double> PointTerm::CostAndWeight(const Density& density, doubl
   const double weight = (sharp / (density.sigma_m * density.sigma_m) +
                          rough / (density.rough_sigma_m * density.rough_sigma_m)) /
                         sum;
-  return {-std::log(sum / (density.surface + density.background)), weight};
+  return {-std::log(sum / density.highest), weight};
 }
 
 double PointTerm::Value(const Landmark& landmark_in_camera) const {

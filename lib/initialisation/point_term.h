@@ -44,6 +44,10 @@ struct PointOptions {
   }
 };
 
+// Size (m) of an object for the widths of PointTerm: twice the cubic root of its half axes'
+// product.
+double SizeForPoints(const Landmark& landmark);
+
 // Negative log likelihood of points, each of which is either on the surface of the object, or
 // behind or in front of it, where nothing is known of its distance d. The density of d (positive
 // outside, SurfaceDistance) is a mixture with fixed widths:
@@ -54,12 +58,15 @@ struct PointOptions {
 // with N(x) = exp(-x^2 / 2); p the point's prior; s its own standard deviation along the surface's
 // normal combined with that of the surface, t with the roughness; S such that the first term is a
 // density; B one over the size; e the outlier probability. A body is opaque: only outliers of the
-// background are inside. The cost is zero for a point on the surface. Second derivatives are those
-// of expectation maximisation: each point pulls with its posterior probability.
+// background are inside. A constant of each point, which depends on the size but not on the
+// landmark, makes the cost zero for a point on the surface with the smallest standard deviation of
+// any normal, and positive otherwise: costs with one size can be compared. Second derivatives are
+// those of expectation maximisation: each point pulls with its posterior probability.
 class PointTerm final : public LandmarkCost {
  public:
-  // Widths are those of `start_in_camera`; the cost is multiplied by `weight`.
-  PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
+  // Widths are those of an object of this size along the normals of `start_in_camera`; the cost is
+  // multiplied by `weight`.
+  PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera, double size_m,
             const PointOptions& options, double weight);
 
   double Value(const Landmark& landmark_in_camera) const override;
@@ -72,9 +79,10 @@ class PointTerm final : public LandmarkCost {
     double rough_sigma_m;
     double surface;     // p S
     double background;  // (1 - p) B
+    double highest;     // no density is higher
   };
-  // Negative logarithm of the density at a distance, relative to that at the surface, and the
-  // factor w of its derivative w d.
+  // Negative logarithm of the density at a distance, relative to the highest, and the factor w of
+  // its derivative w d.
   std::pair<double, double> CostAndWeight(const Density& density, double distance) const;
 
   std::vector<Density> densities_;

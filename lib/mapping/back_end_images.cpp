@@ -17,7 +17,7 @@ constexpr const char* kSymmetry = "symmetry";
 constexpr const char* kEdges = "edges";
 constexpr const char* kPoints = "points";
 constexpr const char* kTooFewPairs = "symmetry_with_too_few_visible_pairs";
-constexpr const char* kNoPoints = "no_points";
+constexpr const char* kNoPoints = "objects_without_points";
 constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 
 }  // namespace
@@ -48,6 +48,7 @@ void BackEndProblem::RenewImageResiduals() {
   }
   for (size_t i = 0; i < input_.points.size(); ++i) {
     if (!input_.initial_landmarks[i]) continue;
+    if (input_.points[i].empty()) ++summary_.gated[kNoPoints];
     for (const PointsInView& view : input_.points[i]) {
       detections.push_back(static_cast<size_t>(view.detection_index));
       makers.push_back([this, i, &view = view] { return PointBlocks(i, view); });
@@ -117,9 +118,9 @@ BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
       input_.sequence.detections[static_cast<size_t>(view.detection_index)];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto points =
-      std::make_unique<PointTerm>(view.points, in_camera, options_.points,
+      std::make_unique<PointTerm>(view.points, in_camera, SizeForPoints(in_camera), options_.points,
                                   PointWeight(input_.points[object_index], options_.points));
-  ImageBlocks blocks{kPoints, kNoPoints, static_cast<int>(view.points.size()), {}, true};
+  ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
   blocks.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponent));
   return blocks;

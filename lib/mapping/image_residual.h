@@ -11,11 +11,11 @@
 
 namespace soslam {
 
-// The cost of a landmark in one image, texture or edges, as a few residuals in place of one for
-// each of hundreds of pixels. Of a cost c with gradient g = J^T r and Gauss-Newton information H =
-// J^T J = R^T R, these are nine residuals R^-T g with the Jacobian R, and one with a Jacobian of
-// zero that holds the rest of the cost, sqrt(2 c - |R^-T g|^2): cost, gradient and information are
-// those of all pixels.
+// The cost of a landmark in one image, of texture, edges or points, as a few residuals in place of
+// one for each of hundreds of pixels or points. Of a cost c with gradient g = J^T r and
+// Gauss-Newton information H = J^T J = R^T R, these are nine residuals R^-T g with the Jacobian R,
+// and one with a Jacobian of zero that holds the rest of the cost, sqrt(2 c - |R^-T g|^2): cost,
+// gradient and information are those of all of them.
 //
 // Residuals: 10. Blocks: world_from_camera, landmark in the world. Without Jacobians, all of the
 // cost is in the last residual.

@@ -73,6 +73,10 @@ class ObjectFit {
 
   const MultiViewObservation& boxes() const { return boxes_; }
 
+  // Size of the object for the widths of PointTerm: one for all landmarks, as costs with different
+  // ones cannot be compared.
+  void SetPointSize(double size_m) { point_size_m_ = size_m; }
+
   std::optional<Candidate> IfCheaperThan(const FitCost& other, const Landmark& landmark_in_world) {
     const auto behind =
         std::count_if(boxes_.views.begin(), boxes_.views.end(), [&](const BoxView& view) {
@@ -137,7 +141,8 @@ class ObjectFit {
           input_.sequence.FrameOf(detection).world_from_camera.Inverse();
       const Landmark in_camera = Transform(camera_from_world, landmark_in_world);
       terms->push_back(std::make_unique<ViewCost>(
-          std::make_unique<PointTerm>(view.points, in_camera, options_.points, weight),
+          std::make_unique<PointTerm>(view.points, in_camera, point_size_m_, options_.points,
+                                      weight),
           camera_from_world, 1.0));
     }
   }
@@ -147,6 +152,7 @@ class ObjectFit {
   size_t object_index_;
   std::vector<int> detections_;
   MultiViewObservation boxes_;
+  double point_size_m_ = 1.0;
   std::vector<Texture> textures_;
 };
 
@@ -191,12 +197,22 @@ std::vector<std::vector<Landmark>> HypothesesOf(const Sequence& sequence,
   return hypotheses;
 }
 
+double MedianSize(const std::vector<Landmark>& landmarks) {
+  std::vector<double> sizes;
+  for (const Landmark& landmark : landmarks) sizes.push_back(SizeForPoints(landmark));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return *middle;
+}
+
 std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses, ObjectFit* fit) {
   if (fit->boxes().views.size() >= kMinViews) {
     for (const UprightSolution& solution : SweepViews(fit->boxes(), kYawStep)) {
       hypotheses.push_back(solution.landmark);
     }
   }
+  if (hypotheses.empty()) return std::nullopt;
+  fit->SetPointSize(MedianSize(hypotheses));
   std::optional<Candidate> best;
   for (const Candidate& start : BestOfEachYaw(hypotheses, fit)) {
     const auto landmark = fit->Fit(start.landmark_in_world);

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/angles.h"
 #include "geometry/distortion.h"
 #include "geometry/triangulation.h"
 #include "model/occlusion.h"
@@ -19,9 +18,6 @@ constexpr double kHuberPx = 1.0;
 // Reprojection errors are not known better than this.
 constexpr double kLeastErrorPx = 0.5;
 constexpr size_t kFewestFramesInBox = 2;
-// Two image points agree with a wrong match, too, if it is along the epipolar line.
-constexpr size_t kFewestViews = 3;
-constexpr double kLeastAngle = 1.5 * kRadPerDeg;
 // Probability that a point which all frames see in the box of an object is of the object.
 constexpr double kObjectShare = 0.7;
 // Priors below this are those of points on the plane.
@@ -57,7 +53,19 @@ class ObjectPointFinder {
   }
 
   void Add(const MapPoint& point) {
-    const std::vector<View> views = ViewsOf(point);
+    for (const auto& [segment, views] : ViewsBySegment(point)) AddViews(views);
+  }
+
+  std::vector<PointsOfObject> Found() const {
+    std::vector<PointsOfObject> result(found_.size());
+    for (size_t i = 0; i < found_.size(); ++i) {
+      for (const auto& [anchor, points] : found_[i]) result[i].push_back({anchor, points});
+    }
+    return result;
+  }
+
+ private:
+  void AddViews(const std::vector<View>& views) {
     std::optional<TriangulatedPoint> triangulated;
     for (const auto& [object_index, sightings] : SightingsOf(views)) {
       if (sightings.in_box.size() < kFewestFramesInBox) continue;
@@ -70,21 +78,13 @@ class ObjectPointFinder {
     }
   }
 
-  std::vector<PointsOfObject> Found() const {
-    std::vector<PointsOfObject> result(found_.size());
-    for (size_t i = 0; i < found_.size(); ++i) {
-      for (const auto& [anchor, points] : found_[i]) result[i].push_back({anchor, points});
-    }
-    return result;
-  }
-
- private:
   const Detection& DetectionAt(int index) const {
     return sequence_.detections[static_cast<size_t>(index)];
   }
 
-  std::vector<View> ViewsOf(const MapPoint& point) const {
-    std::vector<View> views;
+  // Each segment has its own world.
+  std::map<int, std::vector<View>> ViewsBySegment(const MapPoint& point) const {
+    std::map<int, std::vector<View>> views;
     for (const PointObservation& observation : point.observations) {
       const auto found = frame_index_of_.find(observation.frame_id);
       if (found == frame_index_of_.end()) continue;
@@ -92,7 +92,8 @@ class ObjectPointFinder {
       if (sequence_.image_distortion) {
         pixel = UndistortPixels(sequence_.camera, *sequence_.image_distortion, {*pixel}).front();
       }
-      if (pixel) views.push_back({found->second, *pixel});
+      const int segment = sequence_.frames[static_cast<size_t>(found->second)].segment;
+      if (pixel) views[segment].push_back({found->second, *pixel});
     }
     return views;
   }
@@ -121,10 +122,7 @@ class ObjectPointFinder {
       in_cameras.push_back(
           {sequence_.CameraOf(frame), frame.world_from_camera.Inverse(), view.pixel});
     }
-    if (views.size() < kFewestViews) return std::nullopt;
-    auto point = Triangulate(in_cameras, kHuberPx);
-    const bool is_known = point && LargestAngle(in_cameras, point->position_in_world) > kLeastAngle;
-    return is_known ? point : std::nullopt;
+    return Triangulate(in_cameras, kHuberPx);
   }
 
   // Errors of the image points of one track are correlated: together they are as precise as two.

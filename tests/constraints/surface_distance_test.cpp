@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "constraints/parameters.h"
 #include "geometry/surface.h"
 #include "support/jacobians.h"
@@ -39,7 +42,7 @@ TEST(SurfaceDistanceTest, OfACuboidIsThatOfAFace) {
   Eigen::Vector3d normal;
   EXPECT_NEAR(SurfaceDistance(cuboid, {1.25, 0.5, -1.0}, nullptr, &normal), 0.25, 1e-12);
   EXPECT_LT((normal - Eigen::Vector3d::UnitX()).norm(), 1e-12);
-  EXPECT_NEAR(SurfaceDistance(cuboid, {0.5, -1.5, 0.3}, nullptr, &normal), -0.5, 1e-12);
+  EXPECT_NEAR(SurfaceDistance(cuboid, {0.2, -1.5, 0.3}, nullptr, &normal), -0.5, 1e-12);
   EXPECT_LT((normal + Eigen::Vector3d::UnitY()).norm(), 1e-12);
 }
 
@@ -89,6 +92,33 @@ TEST(SurfaceDistanceTest, JacobiansAgreeWithNumbers) {
     const LandmarkBlock block = ToParameterBlock(body);
     ExpectCorrectJacobians(DistanceResidual(body.Centre() + RandomVector(-1.0, 1.0), p),
                            {block.data()});
+  }
+}
+
+// Also where the nearest face changes, inside and outside.
+TEST(SurfaceDistanceTest, OfACuboidChangesByAtMostTheStep) {
+  for (int i = 0; i < 2000; ++i) {
+    const Landmark cuboid = RandomBody(kCuboidExponent);
+    const Eigen::Vector3d point = cuboid.Centre() + RandomVector(-1.2, 1.2);
+    const Eigen::Vector3d near = point + RandomVector(-0.05, 0.05);
+    EXPECT_LE(
+        std::abs(SurfaceDistance(cuboid, point, nullptr) - SurfaceDistance(cuboid, near, nullptr)),
+        (point - near).norm() + 1e-12);
+  }
+}
+
+TEST(SurfaceDistanceTest, OfAPointInsideACuboidIsThatOfTheNearestFace) {
+  for (int i = 0; i < 100; ++i) {
+    const Landmark cuboid = RandomBody(kCuboidExponent);
+    const Eigen::Vector3d in_object = cuboid.half_axes.cwiseProduct(RandomVector(-1.0, 1.0));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        nearest = std::min(nearest, std::abs(side * cuboid.half_axes[axis] - in_object[axis]));
+      }
+    }
+    EXPECT_NEAR(SurfaceDistance(cuboid, cuboid.frame_from_object * in_object, nullptr), -nearest,
+                1e-12);
   }
 }
 

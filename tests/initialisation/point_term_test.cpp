@@ -42,14 +42,14 @@ std::vector<ObjectPoint> PointsOnFaces(const Landmark& cuboid, int count) {
 TEST(PointTermTest, GradientAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const Landmark body = BodyInCamera(RandomUniform(1.2, 2.0));
-    const PointTerm term(RandomPoints(body, 30), body, {}, 0.3);
+    const PointTerm term(RandomPoints(body, 30), body, SizeForPoints(body), {}, 0.3);
     ExpectCorrectGradient(term, Moved(body, 0.02 * LandmarkModel::Vector::Random()));
   }
 }
 
 TEST(PointTermTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
   const Landmark cuboid = BodyInCamera(kCuboidExponent);
-  const PointTerm term(PointsOnFaces(cuboid, 60), cuboid, {}, 1.0);
+  const PointTerm term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);
   EXPECT_NEAR(term.Value(cuboid), 0.0, 1e-9);
   for (int i = 0; i < 50; ++i) {
     const Landmark moved = Moved(cuboid, 0.05 * LandmarkModel::Vector::Random());
@@ -61,25 +61,61 @@ TEST(PointTermTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething)
 TEST(PointTermTest, IsProportionalToItsWeight) {
   const Landmark body = BodyInCamera(1.5);
   const std::vector<ObjectPoint> points = RandomPoints(body, 20);
-  const double one = PointTerm(points, body, {}, 1.0).Value(body);
-  EXPECT_NEAR(PointTerm(points, body, {}, 0.25).Value(body), 0.25 * one, 1e-12);
+  const double one = PointTerm(points, body, 1.0, {}, 1.0).Value(body);
+  EXPECT_NEAR(PointTerm(points, body, 1.0, {}, 0.25).Value(body), 0.25 * one, 1e-12);
 }
 
-// exp(-cost) of a point along a line through a face is a density up to a constant: with a prior of
-// nearly one and without outliers, half of the surface's mass outside is narrow.
-TEST(PointTermTest, SurfaceDensityHasItsWidth) {
-  Landmark cuboid{{}, {1.0, 1.0, 1.0}, kCuboidExponent};
-  cuboid.frame_from_object.translation.z() = 10.0;
+// The cost of a point 4 m in front of the camera at a signed distance from the face of a body of
+// this size (m), which is deep enough for all widths.
+double CostAtDistance(double distance, double prior, double size_m, const PointOptions& options) {
+  constexpr double kHalfAxisM = 10.0;
+  Landmark cuboid{{}, Eigen::Vector3d::Constant(kHalfAxisM), kCuboidExponent};
+  cuboid.frame_from_object.translation = {-kHalfAxisM - distance, 0.0, 4.0};
+  const ObjectPoint point{{0.0, 0.0, 4.0}, Eigen::Matrix3d::Zero(), prior};
+  return PointTerm({point}, cuboid, size_m, options, 1.0).Value(cuboid);
+}
+
+// Where all points inside may be outliers, the background has one density (1 - p) / size
+// everywhere, and what is above it is of the object: p in all.
+TEST(PointTermTest, SurfaceDensityHasTheMassOfThePrior) {
   PointOptions options;
-  options.point_range_fraction = 0.0;
-  const double sigma = options.point_sigma_fraction * 2.0;
-  const auto cost = [&](double distance) {
-    const ObjectPoint point{{1.0 + distance, 0.0, 10.0}, Eigen::Matrix3d::Zero(), 1.0 - 1e-12};
-    return PointTerm({point}, cuboid, options, 1.0).Value(cuboid);
+  options.point_outlier_probability = 1.0;
+  constexpr double kStepM = 1e-3;
+  for (const double size_m : {0.3, 1.0}) {
+    for (const double prior : {0.05, 0.3, 0.7}) {
+      const double far = CostAtDistance(9.0, prior, size_m, options);
+      double mass = 0.0;
+      for (double distance = -4.0; distance < 4.0; distance += kStepM) {
+        const double ratio = std::exp(far - CostAtDistance(distance, prior, size_m, options));
+        mass += kStepM * (ratio - 1.0) * (1.0 - prior) / size_m;
+      }
+      EXPECT_NEAR(mass, prior, 0.01 * prior);
+    }
+  }
+}
+
+// With the default options: what is swallowed costs more than what is left outside if it is deep
+// or its prior is low. Points of the rough inside of an object are otherwise as likely there.
+TEST(PointTermTest, SwallowedPointsCostSomethingIfTheyAreDeepOrUnlikely) {
+  const auto excess = [&](double depth, double prior) {
+    return CostAtDistance(-depth, prior, 1.0, {}) - CostAtDistance(5.0, prior, 1.0, {});
   };
-  EXPECT_NEAR(cost(sigma), 0.5, 1e-6);
-  EXPECT_NEAR(cost(2.0 * sigma), 2.0, 1e-6);
-  EXPECT_LT(cost(-2.0 * sigma), 2.0);  // parts may lie inside the shape
+  EXPECT_GT(excess(0.3, 0.3), 0.1);
+  EXPECT_LT(excess(0.3, 0.6), -0.1);
+  EXPECT_GT(excess(0.5, 0.5), 0.1);
+  EXPECT_GT(excess(0.8, 0.7), 0.1);
+}
+
+// The constant of a point does not depend on the landmark that the term starts at.
+TEST(PointTermTest, CostsWithOneSizeCanBeCompared) {
+  Landmark body = BodyInCamera(kCuboidExponent);
+  const ObjectPoint far{body.Centre() + Eigen::Vector3d(50.0, 0.0, 0.0),
+                        Eigen::Vector3d(1e-4, 1e-2, 1.0).asDiagonal(), 0.5};
+  const double cost = PointTerm({far}, body, 1.0, {}, 1.0).Value(body);
+  for (int i = 0; i < 20; ++i) {
+    const Landmark other = BodyInCamera(RandomUniform(1.2, 2.0));
+    EXPECT_NEAR(PointTerm({far}, other, 1.0, {}, 1.0).Value(other), cost, 1e-9);
+  }
 }
 
 // The cost of what is far away is bounded outside, by the background, and higher inside, where only
@@ -92,7 +128,7 @@ TEST(PointTermTest, ABodyIsOpaque) {
   options.point_range_fraction = 0.0;
   const auto cost = [&](double x) {
     const ObjectPoint point{{x, 0.0, 10.0}, Eigen::Matrix3d::Zero(), 0.1};
-    return PointTerm({point}, cuboid, options, 1.0).Value(cuboid);
+    return PointTerm({point}, cuboid, 2.0, options, 1.0).Value(cuboid);
   };
   EXPECT_NEAR(cost(5.0), cost(50.0), 1e-9);
   EXPECT_GT(cost(0.01), cost(50.0) + 1.0);
@@ -109,7 +145,7 @@ TEST(PointTermTest, PointsDetermineACuboid) {
       if (SurfaceDistance(truth, point, nullptr) > 0.0) points.push_back({point});
     }
     Landmark landmark = Moved(truth, 0.03 * LandmarkModel::Vector::Random());
-    const PointTerm term(points, landmark, {}, 1.0);
+    const PointTerm term(points, landmark, SizeForPoints(landmark), {}, 1.0);
     for (int step = 0; step < 50; ++step) {
       LandmarkModel model;
       term.AddTo(landmark, &model);

@@ -86,6 +86,28 @@ TEST(FindObjectPointsTest, TheWorldOfThePointsDoesNotMatter) {
   EXPECT_LT((in_world - top).norm(), 1e-6);
 }
 
+// The worlds of segments have nothing in common.
+TEST(FindObjectPointsTest, ViewsOfOtherSegmentsDoNotMatter) {
+  const Sequence sequence = CuboidSequence(1, 12);
+  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
+                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
+  const MapPoint point = Seen(sequence, top);
+  Sequence two = sequence;
+  for (size_t i = 6; i < two.frames.size(); ++i) {
+    two.frames[i].segment = 1;
+    two.frames[i].world_from_camera = RandomRigid() * two.frames[i].world_from_camera;
+  }
+  const auto found = FindObjectPoints(two, {point}, {});
+  bool is_in_first = false;
+  for (const PointsInView& view : found[0]) {
+    const Frame& frame = two.FrameOf(two.detections[static_cast<size_t>(view.detection_index)]);
+    if (frame.segment != 0) continue;
+    is_in_first = true;
+    EXPECT_LT((frame.world_from_camera * view.points[0].position - top).norm(), 1e-6);
+  }
+  EXPECT_TRUE(is_in_first);
+}
+
 TEST(PointWeightTest, BoundsTheExpectedNumber) {
   PointOptions options;
   options.effective_points = 6.0;
@@ -119,6 +141,32 @@ TEST(TangencyBackEnd, PointsImproveWhatBoxesSay) {
   input.points = FindObjectPoints(noisy, PointsOnObjects(sequence, 100), options.points);
   const double points = mean_iou();
   EXPECT_GT(points, boxes + 0.02);
+}
+
+// With the options as they are shipped, points that are exact do not harm boxes with errors.
+TEST(TangencyBackEnd, PointsWithDefaultWeightsDoNoHarm) {
+  const Sequence sequence = CuboidSequence(3, 8);
+  Sequence noisy = sequence;
+  for (Detection& detection : noisy.detections) {
+    detection.box.x_max += RandomUniform(-6, 6);
+    detection.box.y_min += RandomUniform(-6, 6);
+  }
+  BackEndInput input = TruthInput(noisy);
+  for (auto& prior : input.priors) prior->log_sigma = {0.3, 0.3};
+  const OptimiseOptions options = TangencyOptions();
+  const auto mean_iou = [&] {
+    return EvaluateMap(sequence, OptimiseMap(input, options)).summary.iou_mean.value();
+  };
+  const double boxes = mean_iou();
+  input.points = FindObjectPoints(noisy, PointsOnObjects(sequence, 100), options.points);
+  EXPECT_GT(mean_iou(), boxes - 0.01);
+}
+
+TEST(TangencyBackEnd, ObjectsWithoutPointsAreCounted) {
+  const Sequence sequence = CuboidSequence(3, 8);
+  BackEndInput input = TruthInput(sequence);
+  input.points.resize(sequence.objects.size());
+  EXPECT_EQ(OptimiseMap(input, TangencyOptions()).solver.gated.at("objects_without_points"), 3);
 }
 
 }  // namespace
