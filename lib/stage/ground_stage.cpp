@@ -33,8 +33,8 @@ std::string ScaleInWords(const std::optional<WorldScale>& scale) {
                      contradictions.empty() ? "" : ", uncertain: ", contradictions);
 }
 
-void PrintSummary(const Sequence& sequence, const GroundEstimate& estimate,
-                  const std::optional<WorldScale>& scale) {
+void PrintGroundSummary(const Sequence& sequence, const GroundEstimate& estimate,
+                        const std::optional<WorldScale>& scale) {
   fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
              kDegPerRad * estimate.tilt_sigma, ScaleInWords(scale),
              Counted(estimate.planes.size(), "support plane"));
@@ -74,7 +74,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   }
   SetSceneAxes(views, options.view_correlation_deg * kRadPerDeg, &grounded);
   WriteSequence(files.at("output"), grounded, info);
-  PrintSummary(sequence, estimate, WorldScaleOf(estimate, info.findings));
+  PrintGroundSummary(sequence, estimate, WorldScaleOf(estimate, info.findings));
 }
 
 }  // namespace soslam

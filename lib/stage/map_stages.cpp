@@ -102,6 +102,27 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
   }
 }
 
+// Points of another dataset, or of other images, would be no evidence in silence. None at all is
+// what soslam-track has warned of.
+std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files) {
+  std::vector<MapPoint> points = ReadPoints(files.at("points"));
+  std::set<int> frame_ids;
+  for (const Frame& frame : sequence.frames) frame_ids.insert(frame.id);
+  const auto is_seen = [&](const MapPoint& point) {
+    return std::ranges::any_of(point.observations, [&](const PointObservation& observation) {
+      return frame_ids.contains(observation.frame_id);
+    });
+  };
+  if (!points.empty() && std::ranges::none_of(points, is_seen)) {
+    throw InputError(fmt::format(
+        "{}: observation_frame: none of {} points is seen in a frame of {}; expected ids of its {} "
+        "frames: were the points made from another dataset?",
+        files.at("points").string(), points.size(), files.at("sequence").string(),
+        sequence.frames.size()));
+  }
+  return points;
+}
+
 }  // namespace
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
@@ -112,7 +133,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input{sequence, {}, priors, {}, {}};
   if (options.point_evidence) {
-    input.points = FindObjectPoints(sequence, ReadPoints(files.at("points")), options.points);
+    input.points = FindObjectPoints(sequence, ReadPointsOf(sequence, files), options.points);
   }
   if (options.symmetry || options.edge_alignment) {
     ReadImages(options, files.at("edges"), threads, &input);

@@ -10,14 +10,15 @@
 
 #include "artefact/points_file.h"
 #include "artefact/sequence_file.h"
-#include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "geometry/distortion.h"
 #include "geometry/triangulation.h"
+#include "model/finding.h"
 #include "model/map_points.h"
 #include "stage/image_stages.h"
 
@@ -140,7 +141,54 @@ std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<Frame
   return points;
 }
 
-void PrintSummary(const Sequence& sequence, const std::vector<MapPoint>& points, size_t tracks) {
+// Whether all cameras are in one place, up to rounding.
+bool IsAtRest(const std::vector<FrameImage>& images) {
+  constexpr double kRounding = 1e-9;
+  return std::ranges::all_of(images, [&](const FrameImage& image) {
+    const Eigen::Vector3d& first = images.front().frame->world_from_camera.translation;
+    const Eigen::Vector3d& place = image.frame->world_from_camera.translation;
+    return (place - first).norm() <= kRounding * (1.0 + first.norm());
+  });
+}
+
+// Why no track gives a point.
+std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
+                                 const std::vector<FrameImage>& images,
+                                 const std::vector<FeatureTrack>& tracks,
+                                 const TrackOptions& options) {
+  if (!points.empty()) return {};
+  const auto is_long = [&](const FeatureTrack& track) {
+    return track.places.size() >= static_cast<size_t>(options.min_views);
+  };
+  Finding finding;
+  finding.check = "no_points";
+  finding.found = fmt::format("no point from {} tracks through {}", tracks.size(),
+                              Counted(images.size(), "image"));
+  finding.expected = "some";
+  if (images.size() < static_cast<size_t>(options.min_views)) {
+    finding.cause = fmt::format("a point is seen in at least {} images", options.min_views);
+    finding.remedy = "more images of the same place";
+  } else if (std::ranges::none_of(tracks, is_long)) {
+    finding.cause =
+        fmt::format("no track over {} images: they show little texture, or have little in common",
+                    options.min_views);
+    finding.remedy = "images closer together";
+  } else if (IsAtRest(images)) {
+    finding.cause = "the camera does not move: all poses have one place";
+    finding.remedy = "images from several places";
+  } else {
+    finding.cause = "the poses do not fit the images, or the camera hardly moves";
+    finding.remedy = "check that poses and images have the same order and time stamps";
+  }
+  return {finding};
+}
+
+void PrintTrackSummary(const Sequence& sequence, const std::vector<MapPoint>& points,
+                       size_t tracks) {
+  if (points.empty()) {
+    fmt::print("{}: no point from {} tracks\n", sequence.name, tracks);
+    return;
+  }
   std::vector<double> errors_px, views;
   for (const MapPoint& point : points) {
     errors_px.push_back(point.reprojection_error_px);
@@ -162,14 +210,10 @@ void RunTrack(const TrackOptions& options, const StageFiles& files, int threads)
   for (const FrameImage& image : images) info.inputs.push_back(image.path);
   const std::vector<FeatureTrack> tracks = TracksOf(sequence, images, options.features, threads);
   const std::vector<MapPoint> points = PointsOf(sequence, images, tracks, options, threads);
-  if (points.empty()) {
-    throw NothingUsableError(fmt::format(
-        "{}: no point from {} tracks through {} images; expected some: do the poses fit "
-        "the images, and does the camera move?",
-        sequence_file.string(), tracks.size(), images.size()));
-  }
+  info.findings = CheckPoints(points, images, tracks, options);
+  ReportFindings("track", info.findings);
   WritePoints(files.at("output"), points, info);
-  PrintSummary(sequence, points, tracks.size());
+  PrintTrackSummary(sequence, points, tracks.size());
 }
 
 }  // namespace soslam

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "artefact/landmarks_file.h"
+#include "artefact/points_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "evaluation/metrics.h"
@@ -59,6 +60,9 @@ class RunOptimiseTest : public testing::Test {
   MapEstimate Run() const {
     StageFiles files;
     for (const char* name : {"sequence", "landmarks", "table", "output"}) files[name] = File(name);
+    if (options_.point_evidence && std::filesystem::exists(File("points"))) {
+      files["points"] = File("points");
+    }
     RunOptimise(options_, files, 1);
     return ReadMap(File("output"), sequence_);
   }
@@ -66,13 +70,20 @@ class RunOptimiseTest : public testing::Test {
     return EvaluateMap(sequence_, map).summary.iou_mean.value();
   }
 
+  // One point that frames of these ids see.
+  void WritePoint(const std::vector<int>& frame_ids) const {
+    MapPoint point{Eigen::Vector3d::Zero(), 0.5, {}};
+    for (const int id : frame_ids) point.observations.push_back({id, {10.0, 10.0}});
+    WritePoints(File("points"), {point}, {});
+  }
+
   OptimiseOptions options_;
+  Sequence sequence_ = CuboidSequence(kObjects, 12);
 
  private:
   std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
 
   TemporaryFolder folder_;
-  Sequence sequence_ = CuboidSequence(kObjects, 12);
 };
 
 TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {
@@ -101,6 +112,15 @@ TEST_F(RunOptimiseTest, PointEvidenceNeedsPoints) {
   WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
   options_.point_evidence = true;
   ExpectError<SettingsError>([&] { Run(); }, {"point_evidence", "--points"});
+}
+
+TEST_F(RunOptimiseTest, PointsOfOtherFramesAreRefused) {
+  WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
+  options_.point_evidence = true;
+  WritePoint({90001, 90002});
+  ExpectError<InputError>([&] { Run(); }, {"points", "none of 1 points", "sequence", "another"});
+  WritePoint({sequence_.frames[0].id, 90002});
+  EXPECT_EQ(Run().solver.gated.at("objects_without_points"), kObjects);
 }
 
 TEST_F(RunOptimiseTest, AWrongRatioPullsOnlyWhereRatiosCount) {

@@ -100,12 +100,28 @@ TEST_F(RunTrackTest, PointsOfASegmentAreSeenInIt) {
   }
 }
 
-TEST_F(RunTrackTest, PosesThatDoNotFitGiveNothing) {
+// Without points, the file is empty, and the warning has the cause.
+TEST_F(RunTrackTest, WithoutPointsTheCauseIsNamed) {
+  const auto expect_warning = [&](const std::vector<std::string>& words) {
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(Run().empty());
+    const std::string warning = testing::internal::GetCapturedStderr();
+    for (const std::string& word : words) EXPECT_NE(warning.find(word), std::string::npos) << word;
+  };
+  const std::vector<Frame> frames = sequence_.frames;
   for (Frame& frame : sequence_.frames) frame.world_from_camera.translation.setZero();
-  WriteSequence(folder_ / "sequence.json", sequence_, {});
-  ExpectError<NothingUsableError>([&] { RunTrack({}, Files(), 2); },
-                                  {"sequence.json", "no point", "9 images"});
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "points.h5"));
+  expect_warning({"no point", "9 images", "does not move"});
+  sequence_.frames = frames;
+  for (Frame& frame : sequence_.frames) {
+    frame.world_from_camera.translation =
+        frame.world_from_camera.translation.x() * Eigen::Vector3d(0.0, 20.0, 0.0);
+  }
+  expect_warning({"no point", "poses do not fit"});
+  sequence_.frames = frames;
+  for (size_t i = 0; i < frames.size(); ++i) sequence_.frames[i].segment = static_cast<int>(i);
+  expect_warning({"no track over 3 images"});
+  sequence_.frames = {frames[0]};
+  expect_warning({"1 image", "at least 3 images"});
 }
 
 TEST_F(RunTrackTest, AMissingImageIsNamed) {
