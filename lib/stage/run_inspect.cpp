@@ -183,7 +183,7 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
     }
     return FormatInspection(inspection, is_coloured);
   }
-  const std::string csv = FormatCsv(inspection.table);
+  std::string csv = FormatCsv(inspection.table);
   if (*request.csv == "-") return csv;
   WriteTextFile(*request.csv, csv);
   return "";
