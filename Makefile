@@ -68,7 +68,8 @@ $(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_
 ifeq ($(MAKELEVEL),0)
 given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE%
-$(foreach name,$(filter-out $(KNOWN) -%,$(given-names)),$(warning $(name)=...: no variable of this Makefile has this name))
+$(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
+  $(warning $(name)=...: no variable of this Makefile has this name))
 endif
 
 BIN := $(BUILD)/bin
@@ -193,7 +194,8 @@ map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.o
 	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
 	  MAP_MODEL=$(call shell-word,MODEL) MAP_SCALE='$(SCALE)' \
 	  MAP_CAMERA_HEIGHT='$(CAMERA_HEIGHT)' MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
-	  MAP_VARIANT='$(or $(strip $(patsubst all,OursS,$(VARIANT))),OursS)' BIN=$(BIN) BUILD=$(BUILD) MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
+	  MAP_VARIANT='$(or $(strip $(patsubst all,OursS,$(VARIANT))),OursS)' BIN=$(BIN) BUILD=$(BUILD) \
+	  MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
 SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)

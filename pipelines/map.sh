@@ -19,6 +19,7 @@ refuse() {
 for file in "$MAP_NETWORK" "$MAP_DETECTIONS" "$MAP_CAMERA"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
+# The page compares all variants; the map is that of the first one, which needs the stage "optimise".
 for variant in $MAP_VARIANT; do
   [[ -f pipelines/variants/$variant.json || -f $MAP_ROOT/pipelines/variants/$variant.json ]] ||
     refuse "VARIANT='$variant': no such variant; \`make help\` lists them"
@@ -69,6 +70,8 @@ options=''
 [[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0'
 export MAP_FRAMES_OPTIONS=$options
 
+# The list of photos and boxes, which begins with the path of the photos: if nothing else differs from the list of the
+# map that is there, the photos have moved.
 photos=$(listed "$MAP_IMAGES" && listed "$MAP_DETECTIONS" && echo "$options")
 known=$(cat "$MAP_ROOT/steps/images.txt" 2> /dev/null || true)
 have_moved() { [[ ${photos#*$'\n'} == "${known#*$'\n'}" ]]; }

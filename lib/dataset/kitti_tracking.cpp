@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "base/upper_median.h"
 #include "dataset/dataset_files.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
@@ -19,12 +20,6 @@
 namespace soslam {
 namespace {
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Median of each coordinate.
 template <typename Vector>
 Eigen::Vector3d Median(const std::vector<Landmark>& landmarks, const Vector& vector) {
@@ -32,7 +27,7 @@ Eigen::Vector3d Median(const std::vector<Landmark>& landmarks, const Vector& vec
   for (int i = 0; i < 3; ++i) {
     std::vector<double> values;
     for (const Landmark& landmark : landmarks) values.push_back(vector(landmark)[i]);
-    median[i] = Median(std::move(values));
+    median[i] = UpperMedian(std::move(values));
   }
   return median;
 }

@@ -8,14 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/levenberg_marquardt.h"
 #include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
-constexpr int kMaxSteps = 10;
-// Steps of this fraction of the distance to the cameras end the search.
-constexpr double kSettledStep = 1e-9;
 // Rays within a tenth of a degree of each other meet anywhere.
 constexpr double kLeastSpread = 1e-6;
 
@@ -29,36 +27,38 @@ std::optional<Eigen::Vector3d> NearestPoint(const std::vector<PointView>& views)
   return NearestPointToRays(rays, kLeastSpread);
 }
 
-// Reprojection errors to first order about a point.
-struct NormalEquations {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();           // J^T J
-  Eigen::Matrix3d weighted_information = Eigen::Matrix3d::Zero();  // under the loss
-  Eigen::Vector3d weighted_gradient = Eigen::Vector3d::Zero();
+// Reprojection errors (px) to first order about a point: cost, gradient and J^T J under the loss.
+struct ReprojectionModel {
+  double cost = 0.0;  // not finite behind a camera
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d information_without_loss = Eigen::Matrix3d::Zero();
   double sum_px = 0.0;
-  double nearest_depth = std::numeric_limits<double>::infinity();
 };
 
-// None behind a camera.
-std::optional<NormalEquations> Linearise(const std::vector<PointView>& views,
-                                         const Eigen::Vector3d& point_in_world,
-                                         const ceres::LossFunction& loss) {
-  NormalEquations sum;
+ReprojectionModel Linearise(const std::vector<PointView>& views,
+                            const Eigen::Vector3d& point_in_world,
+                            const ceres::LossFunction& loss) {
+  ReprojectionModel model;
   for (const PointView& view : views) {
     const Eigen::Vector3d in_camera = view.camera_from_world * point_in_world;
     const auto pixel = view.camera.Project(in_camera);
-    if (!pixel) return std::nullopt;
+    if (!pixel) {
+      model.cost = std::numeric_limits<double>::infinity();
+      return model;
+    }
     const Eigen::Vector2d residual = *pixel - view.pixel;
     const Eigen::Matrix<double, 2, 3> jacobian = view.camera.ProjectionJacobian(in_camera) *
                                                  view.camera_from_world.rotation.toRotationMatrix();
     double rho[3];
     loss.Evaluate(residual.squaredNorm(), rho);
-    sum.information += jacobian.transpose() * jacobian;
-    sum.weighted_information += rho[1] * jacobian.transpose() * jacobian;
-    sum.weighted_gradient += rho[1] * jacobian.transpose() * residual;
-    sum.sum_px += residual.norm();
-    sum.nearest_depth = std::min(sum.nearest_depth, in_camera.z());
+    model.cost += 0.5 * rho[0];
+    model.gradient += rho[1] * jacobian.transpose() * residual;
+    model.information += rho[1] * jacobian.transpose() * jacobian;
+    model.information_without_loss += jacobian.transpose() * jacobian;
+    model.sum_px += residual.norm();
   }
-  return sum;
+  return model;
 }
 
 }  // namespace
@@ -84,19 +84,15 @@ std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views
   auto point = NearestPoint(views);
   if (!point) return std::nullopt;
   const ceres::HuberLoss loss(huber_px);
-  auto equations = Linearise(views, *point, loss);
-  for (int i = 0; i < kMaxSteps && equations; ++i) {
-    const Eigen::Vector3d step =
-        equations->weighted_information.ldlt().solve(equations->weighted_gradient);
-    if (!step.allFinite()) return std::nullopt;
-    *point -= step;
-    const double settled = kSettledStep * equations->nearest_depth;
-    equations = Linearise(views, *point, loss);
-    if (step.norm() < settled) break;
-  }
-  if (!equations) return std::nullopt;
-  const TriangulatedPoint result = {*point, equations->information.inverse(),
-                                    equations->sum_px / static_cast<double>(views.size())};
+  const ReprojectionModel at =
+      MinimiseSquares([&](const Eigen::Vector3d& state) { return Linearise(views, state, loss); },
+                      [](const Eigen::Vector3d& state, const Eigen::Vector3d& step) {
+                        return std::optional<Eigen::Vector3d>(state + step);
+                      },
+                      {}, &*point);
+  if (!std::isfinite(at.cost)) return std::nullopt;
+  const TriangulatedPoint result = {*point, at.information_without_loss.inverse(),
+                                    at.sum_px / static_cast<double>(views.size())};
   return result.covariance.allFinite() ? std::optional(result) : std::nullopt;
 }
 

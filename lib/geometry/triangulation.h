@@ -35,8 +35,8 @@ struct TriangulatedPoint {
   double mean_error_px;        // reprojection error
 };
 
-// The point of lowest reprojection error (Huber loss beyond `huber_px`): Gauss-Newton steps from
-// the point nearest to all rays. None with fewer than two views, where the rays hardly differ, and
+// The point of lowest reprojection error (Huber loss beyond `huber_px`), found from the point
+// nearest to all rays. None with fewer than two views, where the rays hardly differ, and
 // where the point is not in front of all cameras.
 std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views, double huber_px);
 

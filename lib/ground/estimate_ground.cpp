@@ -6,18 +6,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/upper_median.h"
 #include "geometry/angles.h"
 #include "ground/group_boxes.h"
 #include "ground/horizontal_planes.h"
 
 namespace soslam {
 namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // Leaves out the boxes of some frames if very many have boxes.
 Sequence WithFewerBoxes(Sequence sequence) {
@@ -51,7 +46,7 @@ Similarity NormalisedFromInput(const Sequence& sequence, const std::vector<Groun
       distances.push_back((frame.world_from_camera.translation - first.translation).norm());
     }
   }
-  const double unit = Median(std::move(distances));
+  const double unit = UpperMedian(std::move(distances));
   const double scale = unit > 0.0 ? 1.0 / unit : 1.0;
   const Rigid3d inverse = first.Inverse();
   return {scale, {inverse.rotation, scale * inverse.translation}};
@@ -189,7 +184,7 @@ class Estimation {
         heights.push_back(
             planes.up_in_world.dot(frame.world_from_camera.translation - *on_lowest_plane_));
       }
-      const double height = Median(std::move(heights));
+      const double height = UpperMedian(std::move(heights));
       if (height > 0.0) {
         known.push_back({std::log(options_.camera_height_m / height),
                          options_.camera_height_log_sigma, "camera_height_m"});

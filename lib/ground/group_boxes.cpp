@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/upper_median.h"
 
 namespace soslam {
 namespace {
@@ -258,9 +259,7 @@ class Grouping {
       for (const Place& place : group) {
         values.push_back(i < 3 ? place.centre_in_world(i) : std::max(place.width, place.height));
       }
-      std::ranges::nth_element(values,
-                               values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-      median(i) = values[values.size() / 2];
+      median(i) = UpperMedian(std::move(values));
     }
     return median;
   }

@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "base/upper_median.h"
+
 namespace soslam {
 
 cv::Size SizeWithin(const cv::Size& size, int longer_side) {
@@ -29,13 +31,6 @@ double VarianceOfLaplacian(const cv::Mat& grey) {
   cv::Scalar mean, deviation;
   cv::meanStdDev(laplacian, mean, deviation);
   return deviation[0] * deviation[0];
-}
-
-template <typename Value>
-Value Median(std::vector<Value> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 using Points = cv::Mat_<cv::Point2f>;
@@ -80,7 +75,7 @@ std::optional<double> MotionTracker::MedianDisplacement(const cv::Mat& small) co
   if (kMinFoundFraction * displacements.size() < static_cast<size_t>(from.rows)) {
     return std::nullopt;
   }
-  return Median(std::move(displacements)) / std::max(small_.cols, small_.rows);
+  return UpperMedian(std::move(displacements)) / std::max(small_.cols, small_.rows);
 }
 
 void DistinctFrames::Add(FrameCandidate candidate) {
@@ -106,7 +101,8 @@ std::vector<bool> AreBlurred(const std::vector<FrameCandidate>& candidates, doub
     for (size_t j = i < kNeighbours ? 0 : i - kNeighbours; j < end; ++j) {
       around.push_back(candidates[j].view.sharpness);
     }
-    are_blurred.push_back(candidates[i].view.sharpness < min_sharpness * Median(std::move(around)));
+    are_blurred.push_back(candidates[i].view.sharpness <
+                          min_sharpness * UpperMedian(std::move(around)));
   }
   return are_blurred;
 }

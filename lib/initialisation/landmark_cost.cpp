@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "initialisation/levenberg_marquardt.h"
+#include "base/levenberg_marquardt.h"
 
 namespace soslam {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "initialisation/levenberg_marquardt.h"
+#include "base/levenberg_marquardt.h"
 
 namespace soslam {
 namespace {

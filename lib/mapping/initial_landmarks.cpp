@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/upper_median.h"
+
 namespace soslam {
 namespace {
 
@@ -19,9 +21,7 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
         sequence.CameraOf(frame), Transform(frame.world_from_camera.Inverse(), landmark_in_world),
         detection.box));
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return UpperMedian(std::move(distances));
 }
 
 }  // namespace

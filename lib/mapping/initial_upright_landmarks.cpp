@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "base/upper_median.h"
 #include "geometry/angles.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
@@ -200,9 +201,7 @@ std::vector<std::vector<Landmark>> HypothesesOf(const Sequence& sequence,
 double MedianSize(const std::vector<Landmark>& landmarks) {
   std::vector<double> sizes;
   for (const Landmark& landmark : landmarks) sizes.push_back(SizeForPoints(landmark));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  return *middle;
+  return UpperMedian(std::move(sizes));
 }
 
 std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses, ObjectFit* fit) {

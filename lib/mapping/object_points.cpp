@@ -30,7 +30,7 @@ struct View {
 };
 
 // Image points of one point in frames with a box of an object.
-struct Sightings {
+struct PlacesInBoxes {
   std::vector<int> in_box;  // detections in whose box it is
   int frames = 0;
 };
@@ -67,12 +67,12 @@ class ObjectPointFinder {
  private:
   void AddViews(const std::vector<View>& views) {
     std::optional<TriangulatedPoint> triangulated;
-    for (const auto& [object_index, sightings] : SightingsOf(views)) {
-      if (sightings.in_box.size() < kFewestFramesInBox) continue;
+    for (const auto& [object_index, places] : PlacesOf(views)) {
+      if (places.in_box.size() < kFewestFramesInBox) continue;
       if (!triangulated) triangulated = TriangulateViews(views);
       if (!triangulated) return;
-      const int anchor = sightings.in_box[sightings.in_box.size() / 2];
-      const ObjectPoint of_object = PointOf(*triangulated, views.size(), sightings, anchor);
+      const int anchor = places.in_box[places.in_box.size() / 2];
+      const ObjectPoint of_object = PointOf(*triangulated, views.size(), places, anchor);
       if (!(of_object.prior > kLeastPrior)) continue;
       found_[static_cast<size_t>(object_index)][anchor].push_back(of_object);
     }
@@ -99,11 +99,11 @@ class ObjectPointFinder {
   }
 
   // Keyed by object.
-  std::map<int, Sightings> SightingsOf(const std::vector<View>& views) const {
-    std::map<int, Sightings> sightings;
+  std::map<int, PlacesInBoxes> PlacesOf(const std::vector<View>& views) const {
+    std::map<int, PlacesInBoxes> places;
     for (const View& view : views) {
       for (const int index : detections_in_[static_cast<size_t>(view.frame_index)]) {
-        Sightings& of_object = sightings[DetectionAt(index).object_index];
+        PlacesInBoxes& of_object = places[DetectionAt(index).object_index];
         ++of_object.frames;
         const auto contains = [&](const Box& box) { return box.Contains(view.pixel); };
         if (contains(DetectionAt(index).box) &&
@@ -112,7 +112,7 @@ class ObjectPointFinder {
         }
       }
     }
-    return sightings;
+    return places;
   }
 
   std::optional<TriangulatedPoint> TriangulateViews(const std::vector<View>& views) const {
@@ -126,7 +126,7 @@ class ObjectPointFinder {
   }
 
   // Errors of the image points of one track are correlated: together they are as precise as two.
-  ObjectPoint PointOf(const TriangulatedPoint& point, size_t views, const Sightings& sightings,
+  ObjectPoint PointOf(const TriangulatedPoint& point, size_t views, const PlacesInBoxes& places,
                       int anchor) const {
     const Rigid3d camera_from_world =
         sequence_.FrameOf(DetectionAt(anchor)).world_from_camera.Inverse();
@@ -139,7 +139,7 @@ class ObjectPointFinder {
     result.covariance = rotation * covariance_in_world * rotation.transpose();
     const Object& object = sequence_.ObjectOf(DetectionAt(anchor));
     result.prior =
-        kObjectShare * static_cast<double>(sightings.in_box.size()) / sightings.frames *
+        kObjectShare * static_cast<double>(places.in_box.size()) / places.frames *
         ProbabilityAbove(sequence_.planes[static_cast<size_t>(object.plane_index)].plane_in_world,
                          point.position_in_world, covariance_in_world, result.position.norm());
     return result;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "initialisation/levenberg_marquardt.h"
+#include "base/levenberg_marquardt.h"
 #include "initialisation/upright.h"
 #include "planes/plane_heights.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/levenberg_marquardt.h"
+#include "base/levenberg_marquardt.h"
 
 #include <gtest/gtest.h>
 
