@@ -100,8 +100,9 @@ endif
 endif
 # Other settings would make a map anew, as of another dataset.
 ifneq ($(and $(wildcard $(RESULTS)/../steps/images.txt),$(filter run run-built doctor,$(MAKECMDGOALS))),)
-$(if $(filter-out $(abspath $(RESULTS)/../pipelines),$(abspath $(PIPELINES))),$(error RESULTS=$(RESULTS) is of a map of \
-  photos, whose settings are not those in PIPELINES=$(PIPELINES); expected NAME=$(notdir $(abspath $(RESULTS)/..)) \
+$(if $(filter-out $(abspath $(RESULTS)/../pipelines),$(abspath $(PIPELINES))),$(error \
+  RESULTS=$(RESULTS) is of a map of photos, whose settings are not those in PIPELINES=$(PIPELINES); \
+  expected NAME=$(notdir $(abspath $(RESULTS)/..)) \
   MAPS=$(patsubst %/,%,$(dir $(abspath $(RESULTS)/..)))))
 endif
 
