@@ -52,6 +52,18 @@ struct GroundEstimate {
   int points = 0;
   std::vector<GroundObject> objects;
 
+  // True if boxes alone tell how the cameras are held: there are no planes that contradict the
+  // boxes, nor any on which at least half of the objects stand.
+  bool IsUpByBoxes() const {
+    const bool planes_agree = !planes.empty() && 2 * StandingObjects() >= std::ssize(objects);
+    return attitude.holding == holding_of_boxes && !planes_agree;
+  }
+
+  std::ptrdiff_t StandingObjects() const {
+    return std::ranges::count_if(
+        objects, [](const GroundObject& object) { return object.plane != kNoPlane; });
+  }
+
   // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {
     return static_cast<int>(std::ranges::count_if(objects, &GroundObject::AgreesWithScale));

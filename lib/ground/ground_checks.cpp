@@ -127,8 +127,7 @@ void CheckSettingsAgainstEachOther(const GroundEstimate& estimate, std::vector<F
 void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr size_t kFewest = 5;
   constexpr double kFew = 0.25;
-  const auto on_planes = std::ranges::count_if(
-      estimate.objects, [](const GroundObject& object) { return object.plane != kNoPlane; });
+  const auto on_planes = estimate.StandingObjects();
   if (estimate.objects.size() < kFewest || estimate.planes.empty() ||
       static_cast<double>(on_planes) >= kFew * static_cast<double>(estimate.objects.size())) {
     return;

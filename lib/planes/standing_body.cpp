@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "base/levenberg_marquardt.h"
+#include "base/parallel.h"
 #include "initialisation/upright.h"
 #include "planes/plane_heights.h"
 

@@ -61,7 +61,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
       EstimateGround(sequence, ReadPoints(files.at("points")), views,
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
-  if (estimate.attitude.holding == estimate.holding_of_boxes) {
+  if (estimate.IsUpByBoxes()) {
     std::ranges::move(CheckUp(estimate.attitude.holding, estimate.attitude.holdings,
                               estimate.attitude.holding_tilt_variance),
                       std::back_inserter(info.findings));

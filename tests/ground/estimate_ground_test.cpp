@@ -356,5 +356,19 @@ TEST(SlowGroundTest, TrueScalesAreWithinTheirIntervals) {
   EXPECT_LE(wrong, 0.05 * planes) << summary;
 }
 
+TEST(EstimateGroundTest, UpIsByBoxesUnlessPlanesTell) {
+  GroundEstimate estimate;
+  estimate.objects.resize(4);
+  EXPECT_TRUE(estimate.IsUpByBoxes());
+  estimate.planes.emplace_back();
+  estimate.objects[0].plane = 0;
+  EXPECT_TRUE(estimate.IsUpByBoxes());
+  estimate.objects[2].plane = 0;
+  EXPECT_FALSE(estimate.IsUpByBoxes());
+  estimate.planes.clear();
+  estimate.attitude.holding = CameraHolding::kRolled90;
+  EXPECT_FALSE(estimate.IsUpByBoxes());
+}
+
 }  // namespace
 }  // namespace soslam

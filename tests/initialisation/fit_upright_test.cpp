@@ -7,8 +7,8 @@
 #include <limits>
 #include <memory>
 
-#include "initialisation/closed_form.h"
 #include "base/levenberg_marquardt.h"
+#include "initialisation/closed_form.h"
 #include "initialisation/upright.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
