@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/world_file.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "artefact/model_json.h"
@@ -14,13 +18,14 @@ namespace {
 using nlohmann::json;
 
 json UpToJson(const GroundEstimate& estimate) {
-  return {{"up_in_input", VectorToJson(estimate.up_in_input)},
-          {"sigma_deg", kDegPerRad * estimate.tilt_sigma},
-          {"found_by", estimate.planes.empty() ? "cameras" : "planes"},
-          {"cameras_held", NameOf(estimate.attitude.holding)},
-          {"verticals", estimate.verticals},
-          {"sigma_of_cameras_deg", kDegPerRad * estimate.attitude_tilt_sigma},
-          {"angle_to_cameras_deg", kDegPerRad * estimate.attitude_tilt}};
+  return {
+      {"up_in_input", VectorToJson(estimate.up_in_input)},
+      {"sigma_deg", kDegPerRad * estimate.tilt_sigma},
+      {"found_by", estimate.planes.empty() ? "cameras" : "planes"},
+      {"cameras_held", estimate.cameras_are_turned ? "turned" : NameOf(estimate.attitude.holding)},
+      {"verticals", estimate.verticals},
+      {"sigma_of_cameras_deg", kDegPerRad * estimate.attitude_tilt_sigma},
+      {"angle_to_cameras_deg", kDegPerRad * estimate.attitude_tilt}};
 }
 
 json ScaleToJson(const GroundEstimate& estimate, const std::vector<Finding>& findings) {
@@ -98,6 +103,20 @@ std::optional<WorldScale> ScaleOfWorld(const json& world) {
                     scale.at("found_by").get<std::vector<std::string>>(),
                     scale.at("objects").get<int>(),
                     scale.value("contradicted_by", std::vector<std::string>())};
+}
+
+std::string DoubtOfUp(const json& world) {
+  const std::map<std::string, std::string> doubts = {
+      {"camera_holding_of_planes", "objects and flat surfaces contradict each other"},
+      {"cameras_turned", "the photos are turned in many ways"},
+      {"few_objects_on_planes", "few objects stand on flat surfaces"},
+      {"up_direction", "objects look alike in other ways to hold the camera"}};
+  std::vector<std::string> words;
+  for (const json& finding : world.value("findings", json::array())) {
+    const auto doubt = doubts.find(finding.at("check").get<std::string>());
+    if (doubt != doubts.end()) words.push_back(doubt->second);
+  }
+  return fmt::format("{}", fmt::join(words, ", and "));
 }
 
 }  // namespace soslam

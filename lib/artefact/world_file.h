@@ -19,6 +19,9 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
 // The scale of a world.json that was read; none where it is unknown.
 std::optional<WorldScale> ScaleOfWorld(const nlohmann::json& world);
 
+// Why up may be wrong by more than its standard deviation, in words; empty where nothing says so.
+std::string DoubtOfUp(const nlohmann::json& world);
+
 // True if the lengths of a sequence without a world.json are in metres.
 inline bool IsInMetresWithoutWorld(const Sequence& sequence) {
   return sequence.odometry_world != OdometryWorld::kOwnWithScale;

@@ -86,16 +86,23 @@ class Estimation {
   void Run(const UpEstimate& held, const std::vector<SegmentView>& views) {
     of_cameras = held;
     FindAttitude(views);
-    planes = FindHorizontalPlanes(points_, attitude, 1.0);
-    CheckVerticals();
-    planes_of_points = static_cast<int>(planes.planes.size());
-    if (planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
-    const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
-    Measure(groups);
-    if (DropPlanesWithoutObjects()) {
-      planes = Refined(planes, points_, attitude, 1.0);
-      Measure(groups);
+    Run();
+  }
+
+  // The same for cameras that are turned in many ways. They only tell that up is within 45 degrees
+  // of halfway between up in their images and away from what they look at.
+  void RunTurned(const UpEstimate& held) {
+    constexpr double kSigma = 30.0 * kRadPerDeg;
+    of_cameras = held;
+    cameras_are_turned = true;
+    Eigen::Vector3d up = Eigen::Vector3d::Zero();  // halfway between level and looking down
+    for (const Frame& frame : sequence_.frames) {
+      up -= frame.world_from_camera.rotation * Eigen::Vector3d(0.0, 1.0, 1.0);
     }
+    up.normalize();
+    attitude = {(Eigen::Matrix3d::Identity() - up * up.transpose()) / (kSigma * kSigma), up};
+    without_verticals = attitude;
+    Run();
   }
 
   // Sum of the probabilities of objects to stand on planes.
@@ -109,6 +116,7 @@ class Estimation {
   UpPrior without_verticals;
   UpEstimate of_cameras;
   bool uses_verticals = false;
+  bool cameras_are_turned = false;
   HorizontalPlanes planes;
   int planes_of_points = 0;
   std::vector<MeasuredObject> objects;
@@ -116,6 +124,19 @@ class Estimation {
   std::vector<KnownScale> known_scales;
 
  private:
+  void Run() {
+    planes = FindHorizontalPlanes(points_, attitude, 1.0);
+    CheckVerticals();
+    planes_of_points = static_cast<int>(planes.planes.size());
+    if (planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
+    const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
+    Measure(groups);
+    if (DropPlanesWithoutObjects()) {
+      planes = Refined(planes, points_, attitude, 1.0);
+      Measure(groups);
+    }
+  }
+
   void FindAttitude(const std::vector<SegmentView>& views) {
     std::vector<Rigid3d> poses;
     for (const Frame& frame : sequence_.frames) poses.push_back(frame.world_from_camera);
@@ -231,24 +252,35 @@ class Estimation {
 };
 
 // With the cameras held as their boxes say. Where fewer than half of the objects then stand on
-// planes, other ways to hold them are tried: one in which more than twice as many stand, on planes
-// of more than twice as many points, is better.
+// planes, other ways to hold them are tried, cameras that are turned in many ways last: one in
+// which more than twice as many stand, on planes of more than twice as many points, is better.
 Estimation BestHeld(const Estimation& none, const UpEstimate& of_cameras,
                     const std::vector<SegmentView>& views) {
   constexpr double kMost = 0.5, kClearly = 2.0;
   std::optional<Estimation> best(none);
+  const auto most_stand = [&] {
+    return best->StandingObjects() >= kMost * static_cast<double>(best->objects.size());
+  };
+  const auto take_if_better = [&](Estimation other) {
+    if (other.StandingObjects() > kClearly * best->StandingObjects() &&
+        other.planes.PointCount() > kClearly * best->planes.PointCount()) {
+      best.emplace(std::move(other));
+    }
+  };
   best->Run(of_cameras, views);
   for (const CameraHolding holding : kCameraHoldings) {
-    if (best->StandingObjects() >= kMost * static_cast<double>(best->objects.size())) break;
+    if (most_stand()) break;
     if (holding == of_cameras.holding) continue;
     UpEstimate held = of_cameras;
     held.holding = holding;
     Estimation other = none;
     other.Run(held, views);
-    if (other.StandingObjects() > kClearly * best->StandingObjects() &&
-        other.planes.PointCount() > kClearly * best->planes.PointCount()) {
-      best.emplace(std::move(other));
-    }
+    take_if_better(std::move(other));
+  }
+  if (!most_stand()) {
+    Estimation turned = none;
+    turned.RunTurned(of_cameras);
+    take_if_better(std::move(turned));
   }
   return *std::move(best);
 }
@@ -351,6 +383,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   result.known_scales = estimation.known_scales;
   for (KnownScale& known : result.known_scales) known.log_scale -= log_units;
   result.holding_of_boxes = of_cameras.holding;
+  result.cameras_are_turned = estimation.cameras_are_turned;
   result.points = static_cast<int>(ground_points.size());
   result.planes_of_points = estimation.planes_of_points;
   for (const PlaneOfPoints& plane : estimation.planes.planes) {

@@ -42,6 +42,7 @@ struct GroundEstimate {
   double attitude_tilt = 0.0;        // from that up to the final one (rad)
   UpEstimate attitude;               // from the cameras alone
   CameraHolding holding_of_boxes = CameraHolding::kLevel;  // where planes do not contradict it
+  bool cameras_are_turned = false;                         // in many ways: only planes tell up
   bool verticals = false;                                  // vertical edges were used
   std::optional<ScalePosterior> scale;                     // of metres per unit of the input
   std::vector<KnownScale> known_scales;                    // by the options, of the same unit
@@ -56,7 +57,7 @@ struct GroundEstimate {
   // boxes, nor any on which at least half of the objects stand.
   bool IsUpByBoxes() const {
     const bool planes_agree = !planes.empty() && 2 * StandingObjects() >= std::ssize(objects);
-    return attitude.holding == holding_of_boxes && !planes_agree;
+    return attitude.holding == holding_of_boxes && !cameras_are_turned && !planes_agree;
   }
 
   std::ptrdiff_t StandingObjects() const {

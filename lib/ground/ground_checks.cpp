@@ -158,7 +158,23 @@ std::string HoldingInWords(CameraHolding holding) {
   }
 }
 
+constexpr const char* kSeeWhetherUpright =
+    "see in the map from the side whether objects stand upright. If not, take photos with the "
+    "camera always held level, looking ahead, with more of the floor or table and of upright "
+    "edges in them, such as door frames and table legs";
+
 void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+  if (estimate.cameras_are_turned) {
+    findings->push_back(
+        {"cameras_turned", Severity::kWarning,
+         "which way is up is not clear: however the camera was held, most objects stand on no flat "
+         "surface; the flat surfaces with most points and objects are taken to be level. If that "
+         "is wrong, the map is tilted, and heights and scale are wrong with it",
+         "cameras that are all held alike",
+         "photos that were turned in different ways, or taken from one place, which makes "
+         "surfaces of points come out tilted",
+         kSeeWhetherUpright});
+  }
   const CameraHolding holding = estimate.attitude.holding;
   if (holding == estimate.holding_of_boxes) return;
   findings->push_back(
@@ -172,9 +188,7 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
        "objects and surfaces that agree on which way is up",
        "photos that were turned in different ways or look steeply down, few objects, or surfaces "
        "without texture",
-       "see in the map from the side whether objects stand upright. If not, take photos with the "
-       "camera always held level, looking ahead, with more of the floor or table and of upright "
-       "edges in them, such as door frames and table legs"});
+       kSeeWhetherUpright});
 }
 
 void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,

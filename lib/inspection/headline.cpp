@@ -16,15 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ", scale ... (uncertain: ...)"; empty for a world whose scale is given.
-std::string ScaleInHeadline(const fs::path& world, const Sequence& sequence) {
+std::string InBrackets(const std::string& doubts) {
+  return doubts.empty() ? "" : fmt::format(" (uncertain: {})", doubts);
+}
+
+// ", scale ... (uncertain: ...), up (uncertain: ...)", up only if it is uncertain; empty for
+// a world whose scale is given.
+std::string WorldInHeadline(const fs::path& path, const Sequence& sequence) {
   constexpr const char* kUnknown = ", scale unknown";
-  if (!Exists(world)) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
-  const auto scale = ScaleOfWorld(ReadArtefact(world, "world"));
-  if (!scale) return kUnknown;
-  const std::string contradictions = ContradictionsInWords(*scale);
-  return fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
-                     contradictions.empty() ? "" : fmt::format(" (uncertain: {})", contradictions));
+  if (!Exists(path)) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
+  const nlohmann::json world = ReadArtefact(path, "world");
+  std::string words = kUnknown;
+  if (const auto scale = ScaleOfWorld(world)) {
+    words = fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
+                        InBrackets(ContradictionsInWords(*scale)));
+  }
+  const std::string doubt = DoubtOfUp(world);
+  return doubt.empty() ? words : words + ", up" + InBrackets(doubt);
 }
 
 }  // namespace
@@ -39,7 +47,7 @@ std::string HeadlineOfMap(const fs::path& map, const Sequence& sequence) {
     if (!doubts[i].empty()) ++uncertain;
   }
   std::string line =
-      Counted(placed, "object") + ScaleInHeadline(map.parent_path() / "world.json", sequence);
+      Counted(placed, "object") + WorldInHeadline(map.parent_path() / "world.json", sequence);
   if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
   return line;
 }

@@ -72,6 +72,10 @@ Inspection InspectWorld(const std::filesystem::path& file) {
   return ReadArtefactAs(file, "world", [](const json& document) {
     Inspection inspection;
     inspection.facts = {{"dataset", document.at("dataset")}, {"up", UpInWords(document.at("up"))}};
+    const std::string doubt = DoubtOfUp(document);
+    if (!doubt.empty()) {
+      inspection.facts.push_back({"up uncertain", doubt + "; it may be wrong by more than that"});
+    }
     for (const Fact& fact : ScaleFacts(document)) inspection.facts.push_back(fact);
     inspection.facts.push_back(
         {"support planes",

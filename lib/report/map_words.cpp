@@ -42,6 +42,11 @@ ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
   }
   scale.sentence += fmt::format(" Up ± {:.1f}° (one standard deviation).",
                                 world.at("up").at("sigma_deg").get<double>());
+  const std::string doubt = DoubtOfUp(world);
+  if (!doubt.empty()) {
+    if (!scale.warning.empty()) scale.warning += " ";
+    scale.warning += fmt::format("Up may be wrong by more than that: {}.", doubt);
+  }
   return scale;
 }
 

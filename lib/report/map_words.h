@@ -16,7 +16,7 @@ struct ScaleOfMap {
   bool in_metres = true;
   double log_sigma = 0.0;    // standard deviation of the logarithm of the scale; 0: exact
   std::string sentence;      // empty where scale and up are given
-  std::string warning = {};  // what contradicts the scale, if anything
+  std::string warning = {};  // what contradicts scale and up, if anything
 };
 
 // `world`: world.json, or null without it.

@@ -292,6 +292,19 @@ TEST(CheckGroundTest, AnotherWayToHoldCamerasThanThatOfTheBoxesIsAFinding) {
               Not(Contains(Field(&Finding::check, "camera_holding_of_planes"))));
 }
 
+TEST(CheckGroundTest, CamerasThatAreTurnedInManyWaysAreAFinding) {
+  GroundEstimate estimate;
+  estimate.cameras_are_turned = true;
+  EXPECT_THAT(CheckGround(estimate, {}), Contains(Field(&Finding::check, "cameras_turned")));
+}
+
+TEST(EstimateGroundTest, PlanesTellUpWhereCamerasAreTurnedInManyWays) {
+  const PriorScene scene = PriorSceneBuilder(ShippedTable(), 3, {.roll_sigma_deg = 30.0}).Build();
+  const GroundEstimate estimate = Estimate(scene.sequence, scene.points);
+  EXPECT_TRUE(estimate.cameras_are_turned);
+  EXPECT_LT(AngleBetweenDeg(estimate.up_in_input, scene.up_in_world), 0.5);
+}
+
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {
   const PriorScene scene = SceneOf(5);
   HorizontalPlanes none;

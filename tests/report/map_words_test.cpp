@@ -37,7 +37,7 @@ TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
   EXPECT_EQ(scale.warning, "");
 }
 
-TEST(ScaleFromWorld, SaysWhatContradictsIt) {
+TEST(ScaleFromWorld, SaysWhatContradictsScaleAndUp) {
   json scale = Scale({"objects", "camera_height_m"});
   scale["contradicted_by"] = {"scale_of_objects_differs"};
   EXPECT_EQ(ScaleFromWorld(World(scale), {}).warning,
@@ -45,8 +45,11 @@ TEST(ScaleFromWorld, SaysWhatContradictsIt) {
             "camera's height given.");
   scale = Scale({"objects"});
   scale["contradicted_by"] = {"scale_contradicted"};
-  EXPECT_NE(ScaleFromWorld(World(scale), {}).warning.find("contradict one another"),
-            std::string::npos);
+  json world = World(scale);
+  world["findings"] = {{{"check", "cameras_turned"}}};
+  EXPECT_EQ(ScaleFromWorld(world, {}).warning,
+            "The scale may be wrong by more than that: the heights of objects contradict one "
+            "another. Up may be wrong by more than that: the photos are turned in many ways.");
 }
 
 TEST(ScaleFromWorld, SaysPlainlyThatItIsUnknown) {

@@ -119,6 +119,13 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
               testing::AllOf(HasSubstr("(95 %, +- 11 %)"),
                              HasSubstr("scale uncertain  the heights of objects contradict the")));
   ground.scale.reset();
+  write_world({{"few_objects_on_planes", Severity::kWarning, "", "", "", ""}});
+  EXPECT_EQ(
+      RunInspect(request, true),
+      "2 objects, scale unknown, up (uncertain: few objects stand on flat surfaces), 1 object "
+      "uncertain\n");
+  EXPECT_THAT(RunInspect(RequestOf("world.json"), false),
+              HasSubstr("up uncertain    few objects stand on flat surfaces; it may be wrong"));
   write_world({});
   EXPECT_EQ(RunInspect(request, true), "2 objects, scale unknown, 1 object uncertain\n");
   Sequence other = sequence_;
