@@ -143,7 +143,7 @@ help: ## List the targets
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>"'
 	@echo 'Maps of photos (see docs/photos-to-map.md): IMAGES=<folder or video>, NETWORK=<file.onnx> or'
-	@echo 'DETECTIONS=<file.csv>; VARIANT=OursS, NAME=<that of the folder or video>, MAPS=maps; where known,'
+	@echo 'DETECTIONS=<file.csv>; VARIANT=OursSP, NAME=<that of the folder or video>, MAPS=maps; where known,'
 	@echo 'CAMERA=<camera.json>, MODEL=<folder of COLMAP>, SCALE=<metres per unit of MODEL>, CAMERA_HEIGHT=<metres>.'
 	@echo 'NAME=<map> in place of DATASET, DATA_ROOT, RESULTS, PIPELINES: that map, to look at it or run it again'
 	@echo 'Datasets of others (see docs/data.md): MIRROR=<address of copies of the downloads>, WITHOUT=<folder of the'
@@ -195,7 +195,7 @@ map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.o
 	  MAP_DETECTIONS=$(call shell-word,DETECTIONS) MAP_CAMERA=$(call shell-word,CAMERA) \
 	  MAP_MODEL=$(call shell-word,MODEL) MAP_SCALE='$(SCALE)' \
 	  MAP_CAMERA_HEIGHT='$(CAMERA_HEIGHT)' MAP_ROOT=$(MAPS)/$(NAME) MAP_NAME=$(NAME) MAP_THREADS=$(THREADS) \
-	  MAP_VARIANT='$(or $(strip $(patsubst all,OursS,$(VARIANT))),OursS)' BIN=$(BIN) BUILD=$(BUILD) \
+	  MAP_VARIANT='$(or $(strip $(patsubst all,OursSP,$(VARIANT))),OursSP)' BIN=$(BIN) BUILD=$(BUILD) \
 	  MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.

@@ -24,7 +24,7 @@ for variant in $MAP_VARIANT; do
   [[ -f pipelines/variants/$variant.json || -f $MAP_ROOT/pipelines/variants/$variant.json ]] ||
     refuse "VARIANT='$variant': no such variant; \`make help\` lists them"
 done
-makes_no_map="VARIANT='$MAP_VARIANT': the first one makes no map; expected one that does, as OursS"
+makes_no_map="VARIANT='$MAP_VARIANT': the first one makes no map; expected one that does, as OursSP"
 own=pipelines/variants/${MAP_VARIANT%% *}.json
 [[ ! -f $own ]] || grep --quiet optimise "$own" || refuse "$makes_no_map"
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
