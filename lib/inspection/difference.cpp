@@ -19,27 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-// Compares two arrays of numbers of the same length; none when all are equal.
-std::optional<Difference> CompareNumbers(const std::string& place, const std::vector<double>& one,
-                                         const std::vector<double>& two, double tolerance) {
-  Difference found{place, "", "", 0.0, 0.0, 0, one.size()};
-  for (size_t i = 0; i < one.size(); ++i) {
-    if (one[i] == two[i] || (std::isnan(one[i]) && std::isnan(two[i]))) continue;
-    const double absolute = std::abs(one[i] - two[i]);
-    const double size = std::max(std::abs(one[i]), std::abs(two[i]));
-    if (absolute <= tolerance * std::max(size, 1.0)) continue;
-    ++found.differing;
-    // NaN counts as a larger difference than any other.
-    if (found.one.empty() || absolute > *found.absolute || std::isnan(absolute)) {
-      found.absolute = absolute;
-      found.one = fmt::format("{}", one[i]);
-      found.two = fmt::format("{}", two[i]);
-    }
-    found.relative = std::max(*found.relative, absolute / size);
-  }
-  return found.differing > 0 ? std::optional(found) : std::nullopt;
-}
-
 // Appends the numbers of nested arrays; false if there is anything other than numbers.
 bool Flatten(const json& value, std::vector<double>* numbers) {
   if (value.is_number()) numbers->push_back(value.get<double>());
@@ -52,17 +31,16 @@ bool HaveOneShape(const json& one, const json& two) {
   return one.size() == two.size() && std::equal(one.begin(), one.end(), two.begin(), &HaveOneShape);
 }
 
-class JsonComparison {
+// Collects the differences of two documents or files.
+class Comparison {
  public:
-  JsonComparison(double tolerance, std::vector<Difference>* differences)
+  Comparison(double tolerance, std::vector<Difference>* differences)
       : tolerance_(tolerance), differences_(differences) {}
 
   void Compare(const json& one, const json& two, const json::json_pointer& place) {
     std::vector<double> numbers, others;
     if (HaveOneShape(one, two) && Flatten(one, &numbers) && Flatten(two, &others)) {
-      if (const auto difference = CompareNumbers(place.to_string(), numbers, others, tolerance_)) {
-        differences_->push_back(*difference);
-      }
+      CompareNumbers(place.to_string(), numbers, others);
     } else if (one.is_object() && two.is_object()) {
       CompareObjects(one, two, place);
     } else if (one.is_array() && two.is_array()) {
@@ -71,11 +49,58 @@ class JsonComparison {
                      place / i);
       }
     } else if (one != two) {
-      differences_->push_back({place.to_string(), Excerpt(one), Excerpt(two), {}, {}});
+      Report(place.to_string(), Excerpt(one), Excerpt(two));
+    }
+  }
+
+  // Compares a group of two HDF5 files, which ends in a slash and is in both.
+  void CompareGroup(const Hdf5File& one, const Hdf5File& two, const std::string& group) {
+    Compare(Attributes(one, group), Attributes(two, group),
+            json::json_pointer(group.substr(0, group.size() - 1)));
+    const std::vector<std::string> names = one.Children(group), others = two.Children(group);
+    std::set<std::string> all(names.begin(), names.end());
+    all.insert(others.begin(), others.end());
+    for (const std::string& name : all) {
+      const std::string place = group + name;
+      const std::string kind = KindOf(one, place), other_kind = KindOf(two, place);
+      if (kind.empty() || other_kind.empty()) {
+        Report(place, kind.empty() ? "" : "present", other_kind.empty() ? "" : "present");
+      } else if (kind != other_kind) {
+        Report(place, kind, other_kind);
+      } else if (one.IsGroup(place)) {
+        CompareGroup(one, two, place + "/");
+      } else {
+        CompareDataSets(one.ReadNumbers(place), two.ReadNumbers(place), place);
+      }
     }
   }
 
  private:
+  void Report(const std::string& place, const std::string& one, const std::string& two) {
+    differences_->push_back({place, one, two, {}, {}});
+  }
+
+  // Compares two arrays of the same length.
+  void CompareNumbers(const std::string& place, const std::vector<double>& one,
+                      const std::vector<double>& two) {
+    Difference found{place, "", "", 0.0, 0.0, 0, one.size()};
+    for (size_t i = 0; i < one.size(); ++i) {
+      if (one[i] == two[i] || (std::isnan(one[i]) && std::isnan(two[i]))) continue;
+      const double absolute = std::abs(one[i] - two[i]);
+      const double size = std::max(std::abs(one[i]), std::abs(two[i]));
+      if (absolute <= tolerance_ * std::max(size, 1.0)) continue;
+      ++found.differing;
+      // NaN counts as a larger difference than any other.
+      if (found.one.empty() || absolute > *found.absolute || std::isnan(absolute)) {
+        found.absolute = absolute;
+        found.one = fmt::format("{}", one[i]);
+        found.two = fmt::format("{}", two[i]);
+      }
+      found.relative = std::max(*found.relative, absolute / size);
+    }
+    if (found.differing > 0) differences_->push_back(found);
+  }
+
   void CompareObjects(const json& one, const json& two, const json::json_pointer& place) {
     const auto find = [](const json& object, const std::string& key) {
       return object.contains(key) ? &object[key] : nullptr;
@@ -91,47 +116,13 @@ class JsonComparison {
   void CompareItems(const json* one, const json* two, const json::json_pointer& place) {
     if (one != nullptr && two != nullptr) return Compare(*one, *two, place);
     const auto text = [](const json* value) { return value == nullptr ? "" : Excerpt(*value); };
-    differences_->push_back({place.to_string(), text(one), text(two), {}, {}});
+    Report(place.to_string(), text(one), text(two));
   }
 
-  double tolerance_;
-  std::vector<Difference>* differences_;
-};
-
-std::string ShapeInWords(const Hdf5File::Numbers& numbers) {
-  return fmt::format("{} values", fmt::join(numbers.shape, " x "));
-}
-
-class Hdf5Comparison {
- public:
-  Hdf5Comparison(const Hdf5File& one, const Hdf5File& two, double tolerance,
-                 std::vector<Difference>* differences)
-      : one_(one), two_(two), tolerance_(tolerance), differences_(differences) {}
-
-  // `group` ends in a slash and is in both files.
-  void CompareGroup(const std::string& group) {
-    CompareAttributes(group);
-    for (const std::string& name : Union(one_.Children(group), two_.Children(group))) {
-      const std::string place = group + name;
-      if (!one_.Has(place) || !two_.Has(place)) {
-        Report(place, one_.Has(place) ? "present" : "", two_.Has(place) ? "present" : "");
-      } else if (one_.IsGroup(place) != two_.IsGroup(place)) {
-        Report(place, one_.IsGroup(place) ? "group" : "data set",
-               two_.IsGroup(place) ? "group" : "data set");
-      } else if (one_.IsGroup(place)) {
-        CompareGroup(place + "/");
-      } else {
-        CompareDataSet(place);
-      }
-    }
-  }
-
- private:
-  static std::set<std::string> Union(const std::vector<std::string>& one,
-                                     const std::vector<std::string>& two) {
-    std::set<std::string> all(one.begin(), one.end());
-    all.insert(two.begin(), two.end());
-    return all;
+  // Empty where there is nothing.
+  static std::string KindOf(const Hdf5File& file, const std::string& place) {
+    if (!file.Has(place)) return "";
+    return file.IsGroup(place) ? "group" : "data set";
   }
 
   // All attributes except the artefact's header.
@@ -145,55 +136,33 @@ class Hdf5Comparison {
     return attributes;
   }
 
-  void CompareAttributes(const std::string& owner) {
-    const json::json_pointer place(owner == "/" ? "" : owner.substr(0, owner.size() - 1));
-    JsonComparison(tolerance_, differences_)
-        .Compare(Attributes(one_, owner), Attributes(two_, owner), place);
+  void CompareDataSets(const Hdf5File::Numbers& one, const Hdf5File::Numbers& two,
+                       const std::string& place) {
+    if (one.shape == two.shape) return CompareNumbers(place, one.values, two.values);
+    const auto shape_in_words = [](const Hdf5File::Numbers& numbers) {
+      return fmt::format("{} values", fmt::join(numbers.shape, " x "));
+    };
+    Report(place, shape_in_words(one), shape_in_words(two));
   }
 
-  void CompareDataSet(const std::string& place) {
-    const Hdf5File::Numbers one = one_.ReadNumbers(place);
-    const Hdf5File::Numbers two = two_.ReadNumbers(place);
-    if (one.shape != two.shape) {
-      Report(place, ShapeInWords(one), ShapeInWords(two));
-    } else {
-      AddNumbers(place, one.values, two.values);
-    }
-  }
-
-  void AddNumbers(const std::string& place, const std::vector<double>& one,
-                  const std::vector<double>& two) {
-    if (const auto difference = CompareNumbers(place, one, two, tolerance_)) {
-      differences_->push_back(*difference);
-    }
-  }
-  void Report(const std::string& place, const std::string& one, const std::string& two) {
-    differences_->push_back({place, one, two, {}, {}});
-  }
-
-  const Hdf5File& one_;
-  const Hdf5File& two_;
   double tolerance_;
   std::vector<Difference>* differences_;
 };
 
 void CompareContent(const std::filesystem::path& one, const std::filesystem::path& two,
-                    double tolerance, Differences* differences) {
-  const std::string& kind = differences->kind;
+                    const std::string& kind, Comparison* comparison) {
   if (IsHdf5(one) && IsHdf5(two)) {
     const Hdf5File file_one = OpenArtefact(one, kind);
     const Hdf5File file_two = OpenArtefact(two, kind);
     file_one.RequireWalkable();
     file_two.RequireWalkable();
-    Hdf5Comparison(file_one, file_two, tolerance, &differences->content).CompareGroup("/");
-    return;
+    return comparison->CompareGroup(file_one, file_two, "/");
   }
   json document_one = ReadArtefact(one, kind);
   json document_two = ReadArtefact(two, kind);
   document_one.erase("artefact");
   document_two.erase("artefact");
-  JsonComparison(tolerance, &differences->content)
-      .Compare(document_one, document_two, json::json_pointer());
+  comparison->Compare(document_one, document_two, json::json_pointer());
 }
 
 Value NumberCell(const std::optional<double>& number) {
@@ -204,8 +173,7 @@ Value TextCell(const std::string& text) { return text.empty() ? Value() : Value(
 
 std::string FormatPlaces(const std::vector<Difference>& places, bool is_coloured) {
   ValueTable table;
-  table.columns = {{"place", ""},    {"one", ""},      {"two", ""},
-                   {"absolute", ""}, {"relative", ""}, {"numbers", ""}};
+  table.columns = {{"place"}, {"one"}, {"two"}, {"absolute"}, {"relative"}, {"numbers"}};
   for (const Difference& place : places) {
     table.rows.push_back(
         {place.place, TextCell(place.one), TextCell(place.two), NumberCell(place.absolute),
@@ -228,9 +196,10 @@ Differences CompareArtefacts(const std::filesystem::path& one, const std::filesy
   }
   Differences differences{header_one["kind"], {}, {}};
   constexpr double kExactly = 0.0;
-  JsonComparison(kExactly, &differences.provenance)
+  Comparison(kExactly, &differences.provenance)
       .Compare(header_one, header_two, json::json_pointer("/artefact"));
-  CompareContent(one, two, tolerance, &differences);
+  Comparison content(tolerance, &differences.content);
+  CompareContent(one, two, differences.kind, &content);
   return differences;
 }
 

@@ -11,10 +11,10 @@
 #include <map>
 
 #include "artefact/json_file.h"
+#include "base/error.h"
 #include "base/paths.h"
 #include "evaluation/statistics.h"
 #include "inspection/segments.h"
-#include "inspection/tracks.h"
 
 namespace soslam {
 namespace {
@@ -69,6 +69,17 @@ std::map<int, Sightings> ReadSightings(const fs::path& associations) {
 }
 
 }  // namespace
+
+const json& TrackAt(const json& tracks, const json& index, const std::string& file) {
+  if (index.is_number() && index.get<size_t>() < tracks.size()) return tracks[index.get<size_t>()];
+  throw InputError(fmt::format("{}: found track {} of {}; expected one in the list", file,
+                               index.dump(), tracks.size()));
+}
+
+std::string RarelyDetectedInWords(int frames, int frames_in_sight) {
+  return fmt::format("detected in only {} of the {} images that should show it", frames,
+                     frames_in_sight);
+}
 
 std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Sightings>& sightings,
                           const Eigen::Vector3d& up_in_world) {

@@ -23,24 +23,24 @@ namespace {
 using nlohmann::json;
 
 std::vector<ValueColumn> EstimateColumns() {
-  return {{"frame", ""},
-          {"object", ""},
-          {"label", ""},
-          {"views", ""},
+  return {{"frame"},
+          {"object"},
+          {"label"},
+          {"views"},
           {"x", "m", 3},
           {"y", "m", 3},
           {"z", "m", 3},
           {"a", "m", 3},
           {"b", "m", 3},
           {"c", "m", 3},
-          {"p", "", 2},
+          {"p"},
           {"yaw", "deg", 1},
           {"sigma_centre", "m", 3},
           {"sigma_yaw", "deg", 2},
           {"sigma_size", "%", 1},
-          {"cost", "", 2},
-          {"hypotheses", ""},
-          {"failure", ""}};
+          {"cost"},
+          {"hypotheses"},
+          {"failure"}};
 }
 
 // Centre, half axes, shape exponent and yaw about the object's own z axis; empty cells if there is
@@ -247,14 +247,14 @@ std::string CurvesInWords(const std::vector<SymmetryRecord>& records) {
 Inspection InspectEdges(const std::filesystem::path& file) {
   const EdgesReader reader(file);
   Inspection inspection;
-  inspection.table.columns = {{"frame", ""},
+  inspection.table.columns = {{"frame"},
                               {"width", "px"},
                               {"height", "px"},
                               {"edges", "px"},
                               {"edge_share", "%", 1},
                               {"mean_distance", "px", 1},
                               {"largest_distance", "px", 1},
-                              {"corners", ""}};
+                              {"corners"}};
   const std::vector<int> frames = reader.FrameIds();
   for (const int frame_id : frames) {
     inspection.table.rows.push_back(FrameRow(frame_id, reader.Read(frame_id)));
@@ -269,16 +269,16 @@ Inspection InspectSymmetry(const std::filesystem::path& file,
   Inspection inspection;
   inspection.facts = {{"observations", fmt::format("{}", records.size())},
                       {"curves", CurvesInWords(records)}};
-  inspection.table.columns = {{"frame", ""},
-                              {"object", ""},
-                              {"label", ""},
-                              {"pairs", ""},
+  inspection.table.columns = {{"frame"},
+                              {"object"},
+                              {"label"},
+                              {"pairs"},
                               {"initial_yaw", "deg", 1},
                               {"refined_yaw", "deg", 1},
                               {"sigma_yaw", "deg", 1},
                               {"true_yaw", "deg", 1},
                               {"yaw_error", "deg", 1},
-                              {"mirror_planes", ""}};
+                              {"mirror_planes"}};
   for (const SymmetryRecord& record : records) {
     inspection.table.rows.push_back(ObservationRow(record, sequence));
   }

@@ -26,13 +26,12 @@ Inspection InspectFrames(const std::filesystem::path& file) {
          hint.is_null()
              ? "not known"
              : FillIn("{focal_px:.0f} px, a guess from the EXIF data of {images} photos", hint)}};
-    inspection.table.columns = {
-        {"image", ""}, {"source", ""}, {"frame", ""}, {"time", "s", 3}, {"sharpness", "", 1}};
-    for (const json& frame : document.at("frames")) {
-      inspection.table.rows.push_back({frame.at("image"), frame.at("source"),
-                                       frame.at("frame_number"), frame.at("time_s"),
-                                       frame.at("sharpness")});
-    }
+    inspection.table = TableOf({{"image"},
+                                {"source"},
+                                {"frame", "", 2, "frame_number"},
+                                {"time", "s", 3, "time_s"},
+                                {"sharpness", "", 1}},
+                               document.at("frames"));
     return inspection;
   });
 }

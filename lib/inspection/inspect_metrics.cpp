@@ -95,30 +95,21 @@ std::vector<Fact> MapQualityFacts(const json& quality) {
 
 // One row for each landmark.
 ValueTable MapQualityTable(const json& quality) {
-  ValueTable table;
-  table.columns = {{"object", ""},           {"label", ""},         {"fate", ""},
-                   {"true_object", ""},      {"iou", "", 3},        {"centre_error", "m", 3},
-                   {"log_scale", "", 3},     {"yaw_error", "deg"},  {"up_error", "deg"},
-                   {"plane_offset", "m", 3}, {"plane_tilt", "deg"}, {"iou_in_frames", "", 3},
-                   {"wrong_part", ""},       {"reason", ""}};
-  for (const json& row : quality.at("landmarks")) {
-    const json errors = row.at("errors").is_null() ? json::object() : row["errors"];
-    const json in_frames = row.at("in_frames").is_null() ? json::object() : row["in_frames"];
-    const json wrong = row.at("wrong_part").is_null() ? json::object() : row["wrong_part"];
-    table.rows.push_back({row.at("object"), row.at("label"), row.at("fate"), row.at("true_object"),
-                          errors.value("iou", json()), errors.value("centre_m", json()),
-                          errors.value("log_scale", json()), errors.value("yaw_error_deg", json()),
-                          errors.value("up_error_deg", json()), row.at("plane_offset_m"),
-                          row.at("plane_tilt_deg"), in_frames.value("iou_mean", json()),
-                          wrong.value("part", json()), row.at("reason")});
-  }
-  return table;
-}
-
-std::vector<Value> Cells(const json& object, const std::vector<const char*>& fields) {
-  std::vector<Value> cells;
-  for (const char* field : fields) cells.push_back(object.value(field, json()));
-  return cells;
+  return TableOf({{"object"},
+                  {"label"},
+                  {"fate"},
+                  {"true_object"},
+                  {"iou", "", 3, "errors/iou"},
+                  {"centre_error", "m", 3, "errors/centre_m"},
+                  {"log_scale", "", 3, "errors/log_scale"},
+                  {"yaw_error", "deg", 2, "errors/yaw_error_deg"},
+                  {"up_error", "deg", 2, "errors/up_error_deg"},
+                  {"plane_offset", "m", 3, "plane_offset_m"},
+                  {"plane_tilt", "deg", 2, "plane_tilt_deg"},
+                  {"iou_in_frames", "", 3, "in_frames/iou_mean"},
+                  {"wrong_part", "", 2, "wrong_part/part"},
+                  {"reason"}},
+                 quality.at("landmarks"));
 }
 
 // One row per object with ground truth, and per landmark that was evaluated in held-out frames.
@@ -127,27 +118,22 @@ ValueTable ObjectTable(const json& document) {
   for (const json& object : document.at("objects")) by_id[object.at("object")] = object;
   const json held_out = document.value("held_out", json::object());
   for (const json& object : held_out.value("objects", json::array())) {
-    json& merged = by_id[object.at("object")];
-    for (const auto& [name, value] : object.items()) merged[name] = value;
+    by_id[object.at("object")].update(object);
   }
-  ValueTable table;
-  table.columns = {{"object", ""},
-                   {"label", ""},
-                   {"observations", ""},
-                   {"estimates", ""},
-                   {"iou", "", 3},
-                   {"centre_error", "m", 3},
-                   {"rotation_error", "deg"},
-                   {"yaw_error", "deg"},
-                   {"held_out_in_sight", ""},
-                   {"held_out_matched", ""},
-                   {"held_out_iou", "", 3}};
-  for (const auto& [id, object] : by_id) {
-    table.rows.push_back(
-        Cells(object, {"object", "label", "observations", "estimates", "iou", "centre_m",
-                       "rotation_deg", "yaw_error_deg", "in_sight", "matched", "iou_mean"}));
-  }
-  return table;
+  json objects = json::array();
+  for (const auto& [id, object] : by_id) objects.push_back(object);
+  return TableOf({{"object"},
+                  {"label"},
+                  {"observations"},
+                  {"estimates"},
+                  {"iou", "", 3},
+                  {"centre_error", "m", 3, "centre_m"},
+                  {"rotation_error", "deg", 2, "rotation_deg"},
+                  {"yaw_error", "deg", 2, "yaw_error_deg"},
+                  {"held_out_in_sight", "", 2, "in_sight"},
+                  {"held_out_matched", "", 2, "matched"},
+                  {"held_out_iou", "", 3, "iou_mean"}},
+                 objects);
 }
 
 }  // namespace

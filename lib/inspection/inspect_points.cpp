@@ -54,7 +54,7 @@ Inspection InspectPoints(const std::filesystem::path& file) {
         {"98 % lie within", fmt::format("x {}, y {}, z {} m", RangeInWords(points, 0),
                                         RangeInWords(points, 1), RangeInWords(points, 2))});
   }
-  inspection.table.columns = {{"frame", ""}, {"points", ""}, {"median_error", "px", 2}};
+  inspection.table.columns = {{"frame"}, {"points"}, {"median_error", "px", 2}};
   for (const auto& [frame, of_frame] : errors_of_frame) {
     inspection.table.rows.push_back({frame, of_frame.size(), *MedianOf(of_frame)});
   }
@@ -81,7 +81,7 @@ Inspection InspectReconstruction(const std::filesystem::path& file) {
   if (!summary.images_without_pose.empty()) {
     inspection.facts.push_back({"no pose", NamesInWords(summary.images_without_pose, kMaxNames)});
   }
-  inspection.table.columns = {{"component", ""}, {"images", ""}, {"points", ""}};
+  inspection.table.columns = {{"component"}, {"images"}, {"points"}};
   for (size_t i = 0; i < summary.components.size(); ++i) {
     inspection.table.rows.push_back(
         {i + 1, summary.components[i].images, summary.components[i].points});

@@ -138,14 +138,14 @@ Inspection InspectAssociations(const std::filesystem::path& file) {
     inspection.facts = {{"agreement", FillIn(kAgreement, document.at("agreement"))},
                         {"detections", FrequenciesInWords(document.at("detections"), "decision")},
                         {"tracks", FrequenciesInWords(document.at("tracks"), "fate")}};
-    inspection.table.columns = {{"object", ""},     {"label", ""},        {"track", ""},
-                                {"detections", ""}, {"given_object", ""}, {"label_votes", ""}};
-    for (const json& object : document.at("objects")) {
-      inspection.table.rows.push_back(
-          {object.at("object"), object.at("label"), object.at("track"), object.at("detections"),
-           object.at("given_object"),
-           CountsInWords(object.at("label_votes").get<std::map<std::string, int>>())});
+    json objects = document.at("objects");
+    for (json& object : objects) {
+      json& votes = object["label_votes"];
+      votes = CountsInWords(votes.get<std::map<std::string, int>>());
     }
+    inspection.table = TableOf(
+        {{"object"}, {"label"}, {"track"}, {"detections"}, {"given_object"}, {"label_votes"}},
+        objects);
     return inspection;
   });
 }
@@ -166,21 +166,6 @@ std::string ObjectsOn(const json& plane, const json& objects) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::vector<Value> PlaneRow(const json& fields, const json& objects) {
-  const Plane plane = fields.at("plane_in_world").get<Plane>();
-  const json error = fields.at("error").is_null() ? json::object() : fields.at("error");
-  return {fields.at("plane"),
-          plane.normal.x(),
-          plane.normal.y(),
-          plane.normal.z(),
-          plane.offset,
-          fields.at("tilt_sigma_deg"),
-          fields.at("height_sigma_m"),
-          error.value("angle_deg", json()),
-          error.value("offset_m", json()),
-          ObjectsOn(fields, objects)};
-}
-
 }  // namespace
 
 Inspection InspectPlanes(const std::filesystem::path& file) {
@@ -199,19 +184,19 @@ Inspection InspectPlanes(const std::filesystem::path& file) {
     if (!document.at("cost").is_null()) {
       inspection.facts.push_back({"cost", FillIn("{cost:.6g}", document)});
     }
-    inspection.table.columns = {{"plane", ""},
-                                {"normal_x", "", 4},
-                                {"normal_y", "", 4},
-                                {"normal_z", "", 4},
-                                {"offset", "m", 3},
-                                {"sigma_tilt", "deg", 2},
-                                {"sigma_height", "m", 3},
-                                {"tilt_error", "deg", 2},
-                                {"height_error", "m", 3},
-                                {"objects", ""}};
-    for (const json& plane : document.at("planes")) {
-      inspection.table.rows.push_back(PlaneRow(plane, objects));
-    }
+    json planes = document.at("planes");
+    for (json& plane : planes) plane["objects"] = ObjectsOn(plane, objects);
+    inspection.table = TableOf({{"plane"},
+                                {"normal_x", "", 4, "plane_in_world/normal/0"},
+                                {"normal_y", "", 4, "plane_in_world/normal/1"},
+                                {"normal_z", "", 4, "plane_in_world/normal/2"},
+                                {"offset", "m", 3, "plane_in_world/offset"},
+                                {"sigma_tilt", "deg", 2, "tilt_sigma_deg"},
+                                {"sigma_height", "m", 3, "height_sigma_m"},
+                                {"tilt_error", "deg", 2, "error/angle_deg"},
+                                {"height_error", "m", 3, "error/offset_m"},
+                                {"objects"}},
+                               planes);
     return inspection;
   });
 }
@@ -249,19 +234,19 @@ Inspection InspectSemanticTable(const std::filesystem::path& file) {
       {"what", rows.description},
       {"labels", fmt::format("{}, {} of them from samples; {} for others", rows.rows.size(),
                              learned, rows.default_row ? "a default" : "nothing")}};
-  inspection.table.columns = {{"label", ""},
-                              {"a_by_c", ""},
-                              {"b_by_c", ""},
-                              {"a_by_c_log_sigma", ""},
-                              {"b_by_c_log_sigma", ""},
-                              {"log_correlation", ""},
+  inspection.table.columns = {{"label"},
+                              {"a_by_c"},
+                              {"b_by_c"},
+                              {"a_by_c_log_sigma"},
+                              {"b_by_c_log_sigma"},
+                              {"log_correlation"},
                               {"height", "m"},
-                              {"height_log_sigma", ""},
-                              {"p", ""},
-                              {"mount", ""},
-                              {"samples", ""},
-                              {"aliases", ""},
-                              {"source", ""}};
+                              {"height_log_sigma"},
+                              {"p"},
+                              {"mount"},
+                              {"samples"},
+                              {"aliases"},
+                              {"source"}};
   if (rows.default_row) inspection.table.rows.push_back(RowOf(*rows.default_row));
   for (const SemanticRow& row : rows.rows) inspection.table.rows.push_back(RowOf(row));
   return inspection;

@@ -49,21 +49,16 @@ std::vector<Fact> ScaleFacts(const json& world) {
   return facts;
 }
 
-// The scale of an object by its label alone is log-normal.
-std::vector<Value> RowOfObject(const json& object) {
-  Value scale, sigma;
-  if (object.at("log_scale").is_number()) {
-    scale = std::exp(object.at("log_scale").get<double>());
-    sigma = 100.0 * object.at("log_sigma").get<double>();
+// The objects with their scales by their labels alone, which are log-normal, and percentages.
+json ObjectsOf(const json& world) {
+  json objects = world.at("objects");
+  for (json& object : objects) {
+    object["agreement"] = 100.0 * object["agreement"].get<double>();
+    if (!object.at("log_scale").is_number()) continue;
+    object["scale"] = std::exp(object["log_scale"].get<double>());
+    object["sigma"] = 100.0 * object.at("log_sigma").get<double>();
   }
-  return {object.at("label"),
-          object.at("boxes"),
-          object.at("plane"),
-          object.at("height_m"),
-          scale,
-          sigma,
-          object.at("weight"),
-          100.0 * object.at("agreement").get<double>()};
+  return objects;
 }
 
 }  // namespace
@@ -89,12 +84,15 @@ Inspection InspectWorld(const std::filesystem::path& file) {
          "its label; sigma: standard deviation of that. weight: below 1 for several of one label, "
          "which may be of one model. agrees: probability that its height is right at the scale of "
          "the map; objects below 50 % do not count"});
-    inspection.table.columns = {{"label", ""},     {"boxes", ""},     {"plane", ""},
-                                {"height", "m"},   {"scale", "m", 3}, {"sigma", "%", 0},
-                                {"weight", "", 2}, {"agrees", "%", 0}};
-    for (const json& object : document.at("objects")) {
-      inspection.table.rows.push_back(RowOfObject(object));
-    }
+    inspection.table = TableOf({{"label"},
+                                {"boxes"},
+                                {"plane"},
+                                {"height", "m", 2, "height_m"},
+                                {"scale", "m", 3},
+                                {"sigma", "%", 0},
+                                {"weight"},
+                                {"agrees", "%", 0, "agreement"}},
+                               ObjectsOf(document));
     return inspection;
   });
 }

@@ -69,6 +69,18 @@ std::string PrintedLine(const std::vector<PrintedColumn>& columns, size_t line) 
 
 }  // namespace
 
+ValueTable TableOf(const std::vector<ValueColumn>& columns, const nlohmann::json& objects) {
+  ValueTable table{columns, {}};
+  for (const nlohmann::json& object : objects) {
+    std::vector<Value>& row = table.rows.emplace_back();
+    for (const ValueColumn& column : columns) {
+      const std::string& field = column.field.empty() ? column.name : column.field;
+      row.push_back(object.value(nlohmann::json::json_pointer("/" + field), Value()));
+    }
+  }
+  return table;
+}
+
 std::string FormatTable(const ValueTable& table, bool is_coloured) {
   const std::vector<PrintedColumn> columns = PrintedColumns(table);
   std::string text;

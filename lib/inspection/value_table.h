@@ -12,8 +12,9 @@ using Value = nlohmann::json;
 
 struct ValueColumn {
   std::string name;
-  std::string unit;  // "m", "deg", "px", "%"; empty without one
-  int decimals = 2;  // of numbers that are not whole, in text for people
+  std::string unit = {};   // "m", "deg", "px", "%"; empty without one
+  int decimals = 2;        // of numbers that are not whole, in text for people
+  std::string field = {};  // of the JSON objects of TableOf, "errors/iou"; empty: the name
 };
 
 // Rows have one cell per column.
@@ -21,6 +22,9 @@ struct ValueTable {
   std::vector<ValueColumn> columns;
   std::vector<std::vector<Value>> rows;
 };
+
+// The table with a row for each of these JSON objects; fields that are absent have no value.
+ValueTable TableOf(const std::vector<ValueColumn>& columns, const nlohmann::json& objects);
 
 // Text for a terminal: a line of names, one of units, and the rows, in aligned columns; columns
 // without any value are left out. `is_coloured`: with escape sequences.

@@ -12,7 +12,7 @@
 #include "artefact/landmarks_file.h"
 #include "base/error.h"
 #include "base/paths.h"
-#include "inspection/tracks.h"
+#include "inspection/doubts.h"
 #include "report/page_html.h"
 
 namespace soslam {
