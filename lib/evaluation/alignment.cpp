@@ -30,26 +30,14 @@ struct Centres {
   Eigen::Vector3d mean_estimated, mean_truth;
 
   explicit Centres(const std::vector<PosePair>& pairs)
-      : estimated(3, pairs.size()), truth(3, pairs.size()) {
-    for (size_t i = 0; i < pairs.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      estimated.col(column) = pairs[i].estimated.translation;
-      truth.col(column) = pairs[i].truth.translation;
-    }
-    mean_estimated = estimated.rowwise().mean();
-    mean_truth = truth.rowwise().mean();
-  }
+      : estimated(CentresOf(pairs, &PosePair::estimated)),
+        truth(CentresOf(pairs, &PosePair::truth)),
+        mean_estimated(estimated.rowwise().mean()),
+        mean_truth(truth.rowwise().mean()) {}
+
   Eigen::Matrix3Xd CentredEstimated() const { return estimated.colwise() - mean_estimated; }
   Eigen::Matrix3Xd CentredTruth() const { return truth.colwise() - mean_truth; }
 };
-
-// The root mean square distance of truth and estimate, moved and scaled as fits best.
-double BestResidual(const Centres& centres) {
-  const Eigen::Matrix4d fit = Eigen::umeyama(centres.estimated, centres.truth, true);
-  const Eigen::Matrix3Xd moved =
-      (fit.topLeftCorner<3, 3>() * centres.estimated).colwise() + fit.topRightCorner<3, 1>();
-  return (moved - centres.truth).norm() / std::sqrt(static_cast<double>(moved.cols()));
-}
 
 CameraPath PathOf(const Centres& centres) {
   if (centres.truth.cols() < 2) return CameraPath::kFewPoses;
@@ -58,7 +46,7 @@ CameraPath PathOf(const Centres& centres) {
   const double spread = truth.norm() / std::sqrt(count);
   if (spread < kStillM) return CameraPath::kStill;
   if (centres.CentredEstimated().norm() == 0.0) return CameraPath::kUnrelated;
-  const double residual = BestResidual(centres);
+  const double residual = ResidualOfFit(centres.estimated, centres.truth, /*with_scale=*/true);
   if (!(residual <= kUnlikeShare * spread)) return CameraPath::kUnrelated;
   const Eigen::Vector3d variances =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(truth * truth.transpose()).eigenvalues() /

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "base/assignment.h"
@@ -20,113 +21,103 @@ using Fate = LandmarkRow::Fate;
 class RowMaker {
  public:
   // The arguments must outlive this object.
-  RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views);
+  RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views)
+      : sequence_(sequence), map_(map), views_(views), detections_(DetectionsByObject(sequence)) {}
 
   // One for each landmark: found as `input` matches it; otherwise ignored if things are there that
   // are ignored and it is not to blame for a wanted object, or false, with the reason.
-  std::vector<LandmarkRow> Rows(const ReasonInput& input) const;
+  std::vector<LandmarkRow> Rows(const ReasonInput& input) const {
+    std::vector<LandmarkRow> rows;
+    for (size_t i = 0; i < map_.landmarks.size(); ++i) {
+      const int truth = input.truth_of_landmark[i];
+      rows.push_back(truth == kUnassigned ? NotFound(input, i) : Found(i, truth));
+    }
+    return rows;
+  }
 
  private:
-  LandmarkRow Found(size_t landmark, int true_index) const;
-  LandmarkRow NotFound(const ReasonInput& input, size_t landmark) const;
+  LandmarkRow Found(size_t landmark, int true_index) const {
+    LandmarkRow row;
+    row.object_index = map_.landmarks[landmark].object_index;
+    row.fate = LandmarkRow::Fate::kFound;
+    row.true_index = true_index;
+    CompareInWorld(landmark, &row);
+    CompareInFrames(landmark, &row);
+    row.wrong = DominantError(sequence_, map_, static_cast<int>(landmark), true_index);
+    row.id_agrees = MostIdsAgree(row);
+    return row;
+  }
+
+  LandmarkRow NotFound(const ReasonInput& input, size_t landmark) const {
+    LandmarkRow row;
+    row.object_index = map_.landmarks[landmark].object_index;
+    const Explanation why = ExplainFalse(input, static_cast<int>(landmark));
+    const bool is_of_wanted =
+        why.true_object && sequence_.true_objects[static_cast<size_t>(*why.true_object)].IsWanted();
+    const std::string& label = sequence_.objects[static_cast<size_t>(row.object_index)].label;
+    if (!is_of_wanted && IsIgnored(sequence_, label, map_.landmarks[landmark])) {
+      row.fate = LandmarkRow::Fate::kIgnored;
+      return row;
+    }
+    row.why_false = why;
+    row.true_index = why.true_object;
+    if (!is_of_wanted) return row;
+    CompareInWorld(landmark, &row);
+    if (IsWrong(why.reason)) CompareInFrames(landmark, &row);
+    return row;
+  }
+
   // Compares the row's landmark with its true object in the world.
-  void CompareInWorld(size_t landmark, LandmarkRow* row) const;
+  void CompareInWorld(size_t landmark, LandmarkRow* row) const {
+    const TrueObject& object = sequence_.true_objects[static_cast<size_t>(row->true_index.value())];
+    const Landmark& truth = object.truth.landmark_in_world;
+    row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
+    row->label_agrees =
+        AreSameLabel(sequence_.objects[static_cast<size_t>(row->object_index)].label, object.label);
+    if (const auto& plane = map_.plane_of_landmark[landmark])
+      row->plane = ComparePlane(*plane, truth);
+  }
+
   // Compares them in the frames of its observations, if the true object's place there is known.
-  void CompareInFrames(size_t landmark, LandmarkRow* row) const;
-  std::optional<bool> MostIdsAgree(const LandmarkRow& row) const;
+  void CompareInFrames(size_t landmark, LandmarkRow* row) const {
+    const int true_index = row->true_index.value();
+    const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
+    std::vector<double> ious, centres;
+    for (const int index : detections_[static_cast<size_t>(row->object_index)]) {
+      const int frame = sequence_.detections[static_cast<size_t>(index)].frame_index;
+      const auto truth_in_camera = views_.KnownInCamera(frame, true_index);
+      if (!truth_in_camera) continue;
+      const Landmark estimate_in_camera =
+          Transform(map_.world_from_camera[static_cast<size_t>(frame)].Inverse(),
+                    map_.landmarks[landmark].landmark_in_world);
+      const LandmarkErrors errors =
+          CompareLandmarks(estimate_in_camera, object.truth, *truth_in_camera);
+      ious.push_back(errors.iou);
+      centres.push_back(errors.centre_m);
+    }
+    if (ious.empty()) return;
+    row->in_frames = InFrames{static_cast<int>(ious.size()), *MeanOf(ious), *MeanOf(centres)};
+  }
+
+  // True if most of the boxes with a true object id in the dataset have that of the row's true
+  // object; none if no box has an id.
+  std::optional<bool> MostIdsAgree(const LandmarkRow& row) const {
+    const int true_id = sequence_.true_objects[static_cast<size_t>(row.true_index.value())].id;
+    int known = 0;
+    int agreeing = 0;
+    for (const int index : detections_[static_cast<size_t>(row.object_index)]) {
+      const auto& id = sequence_.detections[static_cast<size_t>(index)].true_object_id;
+      known += id ? 1 : 0;
+      agreeing += id == true_id ? 1 : 0;
+    }
+    return known > 0 ? std::optional(2 * agreeing > known) : std::nullopt;
+  }
 
   const Sequence& sequence_;
   const AlignedMap& map_;
   const TrueViews& views_;
   std::vector<std::vector<int>> detections_;  // by object
 };
-
-RowMaker::RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views)
-    : sequence_(sequence), map_(map), views_(views), detections_(DetectionsByObject(sequence)) {}
-
-// True if most of the boxes with a true object id in the dataset have that of the row's true
-// object; none if no box has an id.
-std::optional<bool> RowMaker::MostIdsAgree(const LandmarkRow& row) const {
-  const int true_id = sequence_.true_objects[static_cast<size_t>(row.true_index.value())].id;
-  int known = 0;
-  int agreeing = 0;
-  for (const int index : detections_[static_cast<size_t>(row.object_index)]) {
-    const auto& id = sequence_.detections[static_cast<size_t>(index)].true_object_id;
-    known += id ? 1 : 0;
-    agreeing += id == true_id ? 1 : 0;
-  }
-  return known > 0 ? std::optional(2 * agreeing > known) : std::nullopt;
-}
-
-void RowMaker::CompareInFrames(size_t landmark, LandmarkRow* row) const {
-  const int true_index = row->true_index.value();
-  const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
-  std::vector<double> ious, centres;
-  for (const int index : detections_[static_cast<size_t>(row->object_index)]) {
-    const int frame = sequence_.detections[static_cast<size_t>(index)].frame_index;
-    const auto truth_in_camera = views_.KnownInCamera(frame, true_index);
-    if (!truth_in_camera) continue;
-    const Landmark estimate_in_camera =
-        Transform(map_.world_from_camera[static_cast<size_t>(frame)].Inverse(),
-                  map_.landmarks[landmark].landmark_in_world);
-    const LandmarkErrors errors =
-        CompareLandmarks(estimate_in_camera, object.truth, *truth_in_camera);
-    ious.push_back(errors.iou);
-    centres.push_back(errors.centre_m);
-  }
-  if (ious.empty()) return;
-  row->in_frames = InFrames{static_cast<int>(ious.size()), *MeanOf(ious), *MeanOf(centres)};
-}
-
-void RowMaker::CompareInWorld(size_t landmark, LandmarkRow* row) const {
-  const TrueObject& object = sequence_.true_objects[static_cast<size_t>(row->true_index.value())];
-  const Landmark& truth = object.truth.landmark_in_world;
-  row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
-  row->label_agrees =
-      AreSameLabel(sequence_.objects[static_cast<size_t>(row->object_index)].label, object.label);
-  if (const auto& plane = map_.plane_of_landmark[landmark])
-    row->plane = ComparePlane(*plane, truth);
-}
-
-LandmarkRow RowMaker::Found(size_t landmark, int true_index) const {
-  LandmarkRow row;
-  row.object_index = map_.landmarks[landmark].object_index;
-  row.fate = LandmarkRow::Fate::kFound;
-  row.true_index = true_index;
-  CompareInWorld(landmark, &row);
-  CompareInFrames(landmark, &row);
-  row.wrong = DominantError(sequence_, map_, static_cast<int>(landmark), true_index);
-  row.id_agrees = MostIdsAgree(row);
-  return row;
-}
-
-LandmarkRow RowMaker::NotFound(const ReasonInput& input, size_t landmark) const {
-  LandmarkRow row;
-  row.object_index = map_.landmarks[landmark].object_index;
-  const Explanation why = ExplainFalse(input, static_cast<int>(landmark));
-  const bool is_of_wanted =
-      why.true_object && sequence_.true_objects[static_cast<size_t>(*why.true_object)].IsWanted();
-  const std::string& label = sequence_.objects[static_cast<size_t>(row.object_index)].label;
-  if (!is_of_wanted && IsIgnored(sequence_, label, map_.landmarks[landmark])) {
-    row.fate = LandmarkRow::Fate::kIgnored;
-    return row;
-  }
-  row.why_false = why;
-  row.true_index = why.true_object;
-  if (!is_of_wanted) return row;
-  CompareInWorld(landmark, &row);
-  if (IsWrong(why.reason)) CompareInFrames(landmark, &row);
-  return row;
-}
-
-std::vector<LandmarkRow> RowMaker::Rows(const ReasonInput& input) const {
-  std::vector<LandmarkRow> rows;
-  for (size_t i = 0; i < map_.landmarks.size(); ++i) {
-    const int truth = input.truth_of_landmark[i];
-    rows.push_back(truth == kUnassigned ? NotFound(input, i) : Found(i, truth));
-  }
-  return rows;
-}
 
 std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const ViewsOfTruth& views,
                                       const std::vector<int>& truth_of_landmark) {
@@ -154,40 +145,35 @@ std::optional<double> MeanOver(const std::vector<LandmarkRow>& rows, const Value
   return MeanOf(values);
 }
 
-FoundSummary Summarise(const std::vector<LandmarkRow>& rows) {
+FoundSummary Summarise(std::vector<LandmarkRow> rows) {
+  std::erase_if(rows, [](const LandmarkRow& row) { return row.fate != Fate::kFound; });
   const auto mean = [&](const auto& of_errors) {
-    return MeanOver(rows, [&](const LandmarkRow& row) -> std::optional<double> {
-      if (row.fate != Fate::kFound) return std::nullopt;
-      return of_errors(row.errors.value());
+    return MeanOver(rows,
+                    [&](const LandmarkRow& row) { return std::invoke(of_errors, *row.errors); });
+  };
+  const auto plane_mean = [&](const auto& of_errors) {
+    return MeanOver(rows, [&](const LandmarkRow& row) {
+      return row.plane ? std::optional(of_errors(*row.plane)) : std::nullopt;
     });
   };
   FoundSummary summary;
-  summary.iou_mean = mean([](const BodyErrors& errors) { return errors.iou; });
-  summary.centre_m_mean = mean([](const BodyErrors& errors) { return errors.centre_m; });
-  summary.centre_relative_mean =
-      mean([](const BodyErrors& errors) { return errors.centre_relative; });
+  summary.iou_mean = mean(&BodyErrors::iou);
+  summary.centre_m_mean = mean(&BodyErrors::centre_m);
+  summary.centre_relative_mean = mean(&BodyErrors::centre_relative);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<size_t>(axis);
     summary.log_size_mean[i] = mean([&](const BodyErrors& e) { return e.log_size[axis]; });
     summary.log_size_abs_mean[i] =
         mean([&](const BodyErrors& e) { return std::abs(e.log_size[axis]); });
   }
-  summary.log_scale_mean = mean([](const BodyErrors& errors) { return errors.log_scale; });
-  summary.log_scale_abs_mean =
-      mean([](const BodyErrors& errors) { return std::abs(errors.log_scale); });
-  summary.yaw_error_deg_mean = mean([](const BodyErrors& errors) { return errors.yaw_deg; });
-  summary.up_error_deg_mean = mean([](const BodyErrors& errors) { return errors.up_deg; });
-  const auto plane_mean = [&](const auto& of_errors) {
-    return MeanOver(rows, [&](const LandmarkRow& row) -> std::optional<double> {
-      if (row.fate != Fate::kFound || !row.plane) return std::nullopt;
-      return of_errors(*row.plane);
-    });
-  };
+  summary.log_scale_mean = mean(&BodyErrors::log_scale);
+  summary.log_scale_abs_mean = mean([](const BodyErrors& e) { return std::abs(e.log_scale); });
+  summary.yaw_error_deg_mean = mean(&BodyErrors::yaw_deg);
+  summary.up_error_deg_mean = mean(&BodyErrors::up_deg);
   summary.plane_offset_m_abs_mean =
       plane_mean([](const PlaneErrors& plane) { return std::abs(plane.offset_m); });
   summary.plane_tilt_deg_mean = plane_mean([](const PlaneErrors& plane) { return plane.tilt_deg; });
   for (const LandmarkRow& row : rows) {
-    if (row.fate != Fate::kFound) continue;
     summary.quarter_turned += row.errors->is_quarter_turned ? 1 : 0;
     summary.labels_agree += row.label_agrees ? 1 : 0;
     summary.ids_known += row.id_agrees ? 1 : 0;
@@ -228,26 +214,16 @@ MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
 }
 
 DriftSummary SummariseInFrames(const std::vector<LandmarkRow>& rows) {
-  const auto mean = [&](const auto& value_of) {
-    return MeanOver(rows, [&](const LandmarkRow& row) -> std::optional<double> {
-      if (!row.in_frames) return std::nullopt;
-      return value_of(row);
-    });
-  };
-  DriftSummary summary;
-  summary.landmarks = static_cast<int>(std::ranges::count_if(
-      rows, [](const LandmarkRow& row) { return row.in_frames.has_value(); }));
-  summary.iou_mean = mean([](const LandmarkRow& row) { return row.in_frames->iou_mean; });
-  summary.iou_mean_in_world = mean([](const LandmarkRow& row) { return row.errors->iou; });
-  std::vector<double> in_frames, in_world;
+  std::vector<double> ious, ious_in_world, centres, centres_in_world;
   for (const LandmarkRow& row : rows) {
     if (!row.in_frames) continue;
-    in_frames.push_back(row.in_frames->centre_m_mean);
-    in_world.push_back(row.errors->centre_m);
+    ious.push_back(row.in_frames->iou_mean);
+    ious_in_world.push_back(row.errors->iou);
+    centres.push_back(row.in_frames->centre_m_mean);
+    centres_in_world.push_back(row.errors->centre_m);
   }
-  summary.centre_m_median = MedianOf(in_frames);
-  summary.centre_m_median_in_world = MedianOf(in_world);
-  return summary;
+  return {static_cast<int>(ious.size()), MeanOf(ious), MeanOf(ious_in_world), MedianOf(centres),
+          MedianOf(centres_in_world)};
 }
 
 void ExplainMisses(const ReasonInput& input, MapQuality* quality) {

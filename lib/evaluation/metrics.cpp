@@ -144,11 +144,15 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentC
       sequence.frames.front().segment != sequence.frames.back().segment) {
     return metrics;
   }
-  std::vector<std::optional<Rigid3d>> truth;
-  for (const Frame& frame : sequence.frames) truth.push_back(frame.true_world_from_camera);
-  const auto optimised_error = AbsoluteTrajectoryError(map.world_from_camera, truth);
-  const auto odometry_error = AbsoluteTrajectoryError(OdometryPoses(sequence), truth);
-  if (optimised_error && odometry_error) metrics.trajectory = {*optimised_error, *odometry_error};
+  std::vector<PosePair> optimised, odometry;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const Frame& frame = sequence.frames[i];
+    if (!frame.true_world_from_camera) continue;
+    optimised.push_back({map.world_from_camera[i], *frame.true_world_from_camera});
+    odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
+  }
+  const auto error = AbsoluteTrajectoryError(optimised);
+  if (error) metrics.trajectory = {*error, *AbsoluteTrajectoryError(odometry)};
   return metrics;
 }
 

@@ -105,12 +105,19 @@ std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relativ
        "look at these objects' boxes: soslam-inspect, or the report page"}};
 }
 
-std::vector<Eigen::Vector3d> HalfAxesOfLandmarks(const LandmarkEstimates& estimates) {
-  std::vector<Eigen::Vector3d> half_axes;
+// A warning on the landmarks with such half axes, if there are any; `finding` has what they are.
+template <typename IsBad>
+std::vector<Finding> CheckHalfAxes(const LandmarkEstimates& estimates, const IsBad& is_bad,
+                                   Finding finding) {
+  int landmarks = 0, bad = 0;
   for (const ObjectEstimate& object : estimates.objects) {
-    if (object.landmark_in_world) half_axes.push_back(object.landmark_in_world->half_axes);
+    if (!object.landmark_in_world) continue;
+    ++landmarks;
+    bad += is_bad(object.landmark_in_world->half_axes) ? 1 : 0;
   }
-  return half_axes;
+  if (bad == 0) return {};
+  finding.found = fmt::format("{} of {} landmarks {}", bad, landmarks, finding.found);
+  return {finding};
 }
 
 }  // namespace
@@ -152,32 +159,25 @@ std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequen
 
 std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates) {
   constexpr double kThinnest = 1e-2;
-  const auto half_axes = HalfAxesOfLandmarks(estimates);
-  const auto degenerate = std::ranges::count_if(half_axes, [](const Eigen::Vector3d& axes) {
-    return axes.minCoeff() < kThinnest * axes.maxCoeff();
-  });
-  if (degenerate == 0) return {};
-  return {{"degenerate", Severity::kWarning,
-           fmt::format("{} of {} landmarks are a hundred times as long as thick, or more",
-                       degenerate, half_axes.size()),
-           "landmarks with three axes of about one size",
-           "views that do not determine all axes, where neither support nor size ratios do",
-           "views from more sides, or a variant with support and ratios"}};
+  return CheckHalfAxes(
+      estimates,
+      [](const Eigen::Vector3d& axes) { return axes.minCoeff() < kThinnest * axes.maxCoeff(); },
+      {"degenerate", Severity::kWarning, "are a hundred times as long as thick, or more",
+       "landmarks with three axes of about one size",
+       "views that do not determine all axes, where neither support nor size ratios do",
+       "views from more sides, or a variant with support and ratios"});
 }
 
 std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates) {
   constexpr double kSmallestM = 1e-3;
-  const auto half_axes = HalfAxesOfLandmarks(estimates);
-  const auto collapsed = std::ranges::count_if(
-      half_axes, [](const Eigen::Vector3d& axes) { return axes.maxCoeff() < kSmallestM; });
-  if (collapsed == 0) return {};
-  return {{"collapsed", Severity::kWarning,
-           fmt::format("{} of {} landmarks have three half axes below 1 mm", collapsed,
-                       half_axes.size()),
-           "landmarks as large as things that a camera sees",
-           "poses, planes or boxes that contradict each other, boxes of several things under one "
-           "id, or a trajectory that is much smaller than in metres",
-           "look at the findings of the import and at the boxes of these objects: soslam-inspect"}};
+  return CheckHalfAxes(
+      estimates, [](const Eigen::Vector3d& axes) { return axes.maxCoeff() < kSmallestM; },
+      {"collapsed", Severity::kWarning, "have three half axes below 1 mm",
+       "landmarks as large as things that a camera sees",
+       "poses, planes or boxes that contradict each other, boxes of several things under one id, "
+       "or "
+       "a trajectory that is much smaller than in metres",
+       "look at the findings of the import and at the boxes of these objects: soslam-inspect"});
 }
 
 std::vector<Finding> CheckCost(const SolverSummary& solver) {

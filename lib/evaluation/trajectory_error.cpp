@@ -66,27 +66,28 @@ bool AreInOneWorld(const std::vector<PosePair>& pairs) {
   return IsDrift(GapOf(pairs), ExtentOf(pairs, &PosePair::truth)) && HaveSameScale(pairs);
 }
 
-std::optional<double> AbsoluteTrajectoryError(
-    const std::vector<Rigid3d>& world_from_camera,
-    const std::vector<std::optional<Rigid3d>>& true_world_from_camera) {
-  std::vector<size_t> with_truth;
-  for (size_t i = 0; i < world_from_camera.size(); ++i) {
-    if (true_world_from_camera[i]) with_truth.push_back(i);
+Eigen::Matrix3Xd CentresOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
+  Eigen::Matrix3Xd centres(3, pairs.size());
+  for (Eigen::Index i = 0; i < centres.cols(); ++i) {
+    centres.col(i) = (pairs[static_cast<size_t>(i)].*pose).translation;
   }
-  if (with_truth.size() < 3) return std::nullopt;
-  Eigen::Matrix3Xd estimated(3, with_truth.size());
-  Eigen::Matrix3Xd truth(3, with_truth.size());
-  for (size_t i = 0; i < with_truth.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    estimated.col(column) = world_from_camera[with_truth[i]].translation;
-    truth.col(column) = true_world_from_camera[with_truth[i]]->translation;
-  }
-  const Eigen::Matrix4d truth_from_estimated = Eigen::umeyama(estimated, truth, false);
+  return centres;
+}
+
+double ResidualOfFit(const Eigen::Matrix3Xd& estimated, const Eigen::Matrix3Xd& truth,
+                     bool with_scale) {
+  const Eigen::Matrix4d truth_from_estimated = Eigen::umeyama(estimated, truth, with_scale);
   const Eigen::Matrix3Xd residuals =
       ((truth_from_estimated.topLeftCorner<3, 3>() * estimated).colwise() +
        Eigen::Vector3d(truth_from_estimated.topRightCorner<3, 1>())) -
       truth;
-  return std::sqrt(residuals.squaredNorm() / static_cast<double>(with_truth.size()));
+  return std::sqrt(residuals.squaredNorm() / static_cast<double>(truth.cols()));
+}
+
+std::optional<double> AbsoluteTrajectoryError(const std::vector<PosePair>& pairs) {
+  if (pairs.size() < 3) return std::nullopt;
+  return ResidualOfFit(CentresOf(pairs, &PosePair::estimated), CentresOf(pairs, &PosePair::truth),
+                       /*with_scale=*/false);
 }
 
 }  // namespace soslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -34,11 +35,16 @@ bool IsDrift(const TrajectoryGap& gap, double extent_m);
 // True if both trajectories are in the same world and unit, apart from drift.
 bool AreInOneWorld(const std::vector<PosePair>& pairs);
 
-// Absolute trajectory error, m: the root mean square distance between estimated and true camera
-// centres after the rigid alignment that makes it smallest (Umeyama, no scale). Frames without
-// truth are left out. None with fewer than three true poses.
-std::optional<double> AbsoluteTrajectoryError(
-    const std::vector<Rigid3d>& world_from_camera,
-    const std::vector<std::optional<Rigid3d>>& true_world_from_camera);
+// Camera centres, in columns.
+Eigen::Matrix3Xd CentresOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
+
+// The root mean square distance of the truth from the estimate, moved and perhaps scaled so that it
+// is smallest (Umeyama).
+double ResidualOfFit(const Eigen::Matrix3Xd& estimated, const Eigen::Matrix3Xd& truth,
+                     bool with_scale);
+
+// Absolute trajectory error, m: ResidualOfFit of camera centres, without scale. None with fewer
+// than three poses.
+std::optional<double> AbsoluteTrajectoryError(const std::vector<PosePair>& pairs);
 
 }  // namespace soslam

@@ -6,6 +6,7 @@
 #include "evaluation/trajectory_error.h"
 #include "support/random.h"
 #include "support/scene.h"
+#include "support/true_map.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
@@ -90,19 +91,6 @@ TEST(Metrics, TheTruthOfADetectionGoesBeforeThatOfItsObject) {
   EXPECT_NEAR(*EvaluateLandmarks(sequence, estimates).summary.iou_mean, 0.75, 1e-6);
 }
 
-MapEstimate TrueMap(const Sequence& sequence) {
-  MapEstimate map;
-  for (const Frame& frame : sequence.frames)
-    map.world_from_camera.push_back(frame.world_from_camera);
-  for (size_t i = 0; i < sequence.objects.size(); ++i) {
-    ObjectEstimate object;
-    object.object_index = static_cast<int>(i);
-    object.landmark_in_world = sequence.objects[i].ground_truth->landmark_in_world;
-    map.objects.push_back(object);
-  }
-  return map;
-}
-
 TEST(Metrics, AnObjectThatMovesHasNoPlaceInAMap) {
   Sequence sequence = TestSequence();
   sequence.objects[2].is_static = false;
@@ -130,32 +118,27 @@ TEST(Metrics, AnObjectThatWasNotObservedDoesNotCount) {
 }
 
 TEST(AbsoluteTrajectoryError, DoesNotCountARigidMotionOfTheWhole) {
-  std::vector<Rigid3d> estimated;
-  std::vector<std::optional<Rigid3d>> truth;
   const Rigid3d motion = RandomRigid();
-  for (int i = 0; i < 20; ++i) {
-    truth.push_back(RandomRigid());
-    estimated.push_back(motion * *truth.back());
+  std::vector<PosePair> pairs(20);
+  for (auto& [estimated, truth] : pairs) {
+    truth = RandomRigid();
+    estimated = motion * truth;
   }
-  EXPECT_NEAR(*AbsoluteTrajectoryError(estimated, truth), 0.0, 1e-9);
-  truth[3].reset();
-  truth.resize(20);
-  EXPECT_NEAR(*AbsoluteTrajectoryError(estimated, truth), 0.0, 1e-9);
+  EXPECT_NEAR(*AbsoluteTrajectoryError(pairs), 0.0, 1e-9);
 }
 
 // Four corners of a square, two opposite ones lifted by 0.1 m and two lowered: no rigid motion
 // helps.
 TEST(AbsoluteTrajectoryError, IsTheRootMeanSquareDistance) {
-  std::vector<Rigid3d> estimated;
-  std::vector<std::optional<Rigid3d>> truth;
-  for (const auto& [x, y] : {std::pair(1, 1), {1, -1}, {-1, -1}, {-1, 1}}) {
-    truth.push_back(Rigid3d{Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, 0)});
-    estimated.push_back({Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, 0.1 * x * y)});
+  std::vector<PosePair> pairs(4);
+  for (size_t i = 0; i < 4; ++i) {
+    const double x = i < 2 ? 1.0 : -1.0, y = i % 3 == 0 ? 1.0 : -1.0;
+    pairs[i].truth.translation = {x, y, 0.0};
+    pairs[i].estimated.translation = {x, y, 0.1 * x * y};
   }
-  EXPECT_NEAR(*AbsoluteTrajectoryError(estimated, truth), 0.1, 1e-9);
-  truth.resize(2);
-  estimated.resize(2);
-  EXPECT_FALSE(AbsoluteTrajectoryError(estimated, truth));
+  EXPECT_NEAR(*AbsoluteTrajectoryError(pairs), 0.1, 1e-9);
+  pairs.resize(2);
+  EXPECT_FALSE(AbsoluteTrajectoryError(pairs));
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "model/estimates.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// The poses, planes and true landmarks of a sequence as a map of it.
+inline MapEstimate TrueMap(const Sequence& sequence) {
+  MapEstimate map;
+  for (const Frame& frame : sequence.frames) {
+    map.world_from_camera.push_back(frame.world_from_camera);
+  }
+  for (const SupportPlane& plane : sequence.planes) {
+    map.planes_in_world.push_back(plane.plane_in_world);
+  }
+  for (const Object& object : sequence.objects) {
+    const int index = static_cast<int>(map.objects.size());
+    map.objects.push_back({index, 3, object.ground_truth->landmark_in_world, {}, ""});
+  }
+  return map;
+}
+
+}  // namespace soslam
