@@ -7,6 +7,7 @@
 
 #include "artefact/model_json.h"
 #include "evaluation/alignment.h"
+#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -27,15 +28,6 @@ std::vector<World> WorldsOfFrames(const Sequence& sequence,
   return worlds;
 }
 
-// The segment of an object with these detections: the only segment, or that of the first detection;
-// none if unknown.
-std::optional<int> SegmentOf(const Sequence& sequence, const std::vector<int>& detections) {
-  const int first_segment = sequence.frames.front().segment;
-  if (sequence.frames.back().segment == first_segment) return first_segment;
-  if (detections.empty()) return std::nullopt;
-  return sequence.FrameOf(sequence.detections[static_cast<size_t>(detections.front())]).segment;
-}
-
 double MeanScore(const Sequence& sequence, const std::vector<int>& detections) {
   if (detections.empty()) return 1.0;
   double sum = 0.0;
@@ -47,11 +39,12 @@ void AddObjects(const Sequence& sequence, const std::vector<ObjectEstimate>& est
                 const std::vector<Plane>& planes_in_world, std::vector<World>* worlds) {
   if (worlds->empty()) return;
   const std::vector<std::vector<int>> detections_by_object = DetectionsByObject(sequence);
+  const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   for (const ObjectEstimate& estimate : estimates) {
     const auto index = static_cast<size_t>(estimate.object_index);
     const Object& object = sequence.objects[index];
     const std::vector<int>& detections = detections_by_object[index];
-    const std::optional<int> segment = SegmentOf(sequence, detections);
+    const std::optional<int>& segment = segments[index];
     World& world =
         segment ? *std::ranges::find(*worlds, *segment, &World::segment) : worlds->front();
     world.objects.push_back({object.id, object.label, segment,

@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "evaluation/statistics.h"
-#include "inspection/segments.h"
+#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -104,10 +104,11 @@ std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Si
 std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& map,
                                      const Sequence& sequence) {
   const std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
+  const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   std::vector<std::string> doubts;
   std::map<int, Eigen::Vector3d> up_of_segment;
   for (const ObjectEstimate& estimate : map.objects) {
-    const int segment = SegmentOf(sequence, estimate.object_index);
+    const int segment = segments[static_cast<size_t>(estimate.object_index)].value_or(0);
     if (!up_of_segment.contains(segment)) up_of_segment[segment] = UpOfSegment(sequence, segment);
     const auto found =
         sightings.find(sequence.objects[static_cast<size_t>(estimate.object_index)].id);

@@ -75,27 +75,25 @@ void Append(const std::vector<Value>& cells, std::vector<Value>* row) {
 
 Value FailureOf(const std::string& failure) { return failure.empty() ? Value() : Value(failure); }
 
-std::vector<Value> ObservationRow(const json& observation,
-                                  const std::optional<Sequence>& sequence) {
+// The label of an object is that of the sequence, if it is known.
+std::vector<Value> ObservationRow(const json& observation) {
   const json& hypotheses = observation.at("hypotheses");
-  const int object_id = observation.at("object");
   std::optional<Landmark> best;
   Value cost;
   if (!hypotheses.empty()) {
     best = LandmarkFromJson(hypotheses[0].at("landmark"), "camera");
     cost = hypotheses[0].at("cost").get<double>();
   }
-  std::vector<Value> row = {observation.at("frame"), object_id, LabelOf(sequence, object_id), {}};
+  std::vector<Value> row = {observation.at("frame"), observation.at("object"), {}, {}};
   Append(CellsOf(best), &row);
   Append(std::vector<Value>(3), &row);
   Append({cost, hypotheses.size(), FailureOf(observation.at("failure"))}, &row);
   return row;
 }
 
-std::vector<Value> ObjectRow(const json& fields, const std::optional<Sequence>& sequence) {
+std::vector<Value> ObjectRow(const json& fields) {
   const ObjectEstimate estimate = ObjectEstimateFromJson(fields);
-  const int object_id = fields.at("object");
-  std::vector<Value> row = {{}, object_id, LabelOf(sequence, object_id), estimate.observations};
+  std::vector<Value> row = {{}, fields.at("object"), {}, estimate.observations};
   Append(CellsOf(estimate.landmark_in_world), &row);
   Append(SigmasOf(estimate), &row);
   const bool is_improper = estimate.landmark_in_world && !estimate.proper_ellipsoid;
@@ -152,43 +150,38 @@ std::string TrajectoryInWords(const json& trajectory) {
 
 }  // namespace
 
-Inspection InspectLandmarks(const std::filesystem::path& file,
-                            const std::optional<Sequence>& sequence) {
-  return ReadArtefactAs(file, "landmarks", [&](const json& document) {
-    Inspection inspection;
-    inspection.table.columns = EstimateColumns();
-    const json& observations = document.at("observations");
-    const json& objects = document.at("objects");
-    const auto add = [&](const json& rows, const char* name, const char* field) {
-      if (!rows.empty()) inspection.facts.push_back({"found", FoundInWords(rows, name, field)});
-    };
-    add(observations, "observations have a landmark (camera frame; the best hypothesis)",
-        "hypotheses");
-    add(objects, "objects have a landmark (world frame)", "landmark");
-    inspection.facts.push_back(
-        {"failures", CountsInWords(document.at("failures").get<std::map<std::string, int>>())});
-    for (const json& row : observations) {
-      inspection.table.rows.push_back(ObservationRow(row, sequence));
-    }
-    for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row, sequence));
-    return inspection;
-  });
+Inspection InspectLandmarks(const json& document) {
+  Inspection inspection;
+  inspection.table.columns = EstimateColumns();
+  const json& observations = document.at("observations");
+  const json& objects = document.at("objects");
+  const auto add = [&](const json& rows, const char* name, const char* field) {
+    if (!rows.empty()) inspection.facts.push_back({"found", FoundInWords(rows, name, field)});
+  };
+  add(observations, "observations have a landmark (camera frame; the best hypothesis)",
+      "hypotheses");
+  add(objects, "objects have a landmark (world frame)", "landmark");
+  inspection.facts.push_back(
+      {"failures", CountsInWords(document.at("failures").get<std::map<std::string, int>>())});
+  for (const json& row : observations) {
+    inspection.table.rows.push_back(ObservationRow(row));
+  }
+  for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row));
+  return inspection;
 }
 
-Inspection InspectMap(const std::filesystem::path& file, const std::optional<Sequence>& sequence) {
-  return ReadArtefactAs(file, "map", [&](const json& document) {
-    Inspection inspection;
-    inspection.table.columns = EstimateColumns();
-    const json& objects = document.at("objects");
-    inspection.facts = {
-        {"found", FoundInWords(objects, "objects have a landmark (world frame)", "landmark")},
-        {"failures", CountsInWords(FailuresOf(objects))}};
-    const std::vector<Fact> solver = SolverInWords(document.at("solver"));
-    inspection.facts.insert(inspection.facts.end(), solver.begin(), solver.end());
-    inspection.facts.push_back({"trajectory", TrajectoryInWords(document.at("trajectory"))});
-    for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row, sequence));
-    return inspection;
-  });
+Inspection InspectMap(const json& document) {
+  Inspection inspection;
+  inspection.table.columns = EstimateColumns();
+  const json& objects = document.at("objects");
+  inspection.facts = {
+      {"found", FoundInWords(objects, "objects have a landmark (world frame)", "landmark")},
+      {"failures", CountsInWords(FailuresOf(objects))}};
+  const std::vector<Fact> solver = SolverInWords(document.at("solver"));
+  inspection.facts.insert(inspection.facts.end(), solver.begin(), solver.end());
+  inspection.facts.push_back({"trajectory", TrajectoryInWords(document.at("trajectory"))});
+  for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row));
+  return inspection;
 }
 
 // Results from images: rows are the frames for edges, the observations for symmetry.
@@ -213,8 +206,7 @@ std::vector<Value> FrameRow(int frame_id, const EdgeMaps& maps) {
 
 Value Degrees(double angle) { return std::isfinite(angle) ? Value(kDegPerRad * angle) : Value(); }
 
-std::vector<Value> ObservationRow(const SymmetryRecord& record,
-                                  const std::optional<Sequence>& sequence) {
+std::vector<Value> ObservationRow(const SymmetryRecord& record) {
   Value true_yaw, error;
   if (record.true_yaw) {
     true_yaw = Degrees(*record.true_yaw);
@@ -222,7 +214,7 @@ std::vector<Value> ObservationRow(const SymmetryRecord& record,
   }
   return {record.frame_id,
           record.object_id,
-          LabelOf(sequence, record.object_id),
+          {},
           record.samples.size(),
           Degrees(record.initial_yaw),
           Degrees(record.refined_yaw),
@@ -263,8 +255,7 @@ Inspection InspectEdges(const std::filesystem::path& file) {
   return inspection;
 }
 
-Inspection InspectSymmetry(const std::filesystem::path& file,
-                           const std::optional<Sequence>& sequence) {
+Inspection InspectSymmetry(const std::filesystem::path& file) {
   const std::vector<SymmetryRecord> records = ReadSymmetry(file);
   Inspection inspection;
   inspection.facts = {{"observations", fmt::format("{}", records.size())},
@@ -280,7 +271,7 @@ Inspection InspectSymmetry(const std::filesystem::path& file,
                               {"yaw_error", "deg", 1},
                               {"mirror_planes"}};
   for (const SymmetryRecord& record : records) {
-    inspection.table.rows.push_back(ObservationRow(record, sequence));
+    inspection.table.rows.push_back(ObservationRow(record));
   }
   return inspection;
 }

@@ -138,25 +138,23 @@ ValueTable ObjectTable(const json& document) {
 
 }  // namespace
 
-Inspection InspectMetrics(const std::filesystem::path& file) {
-  return ReadArtefactAs(file, "metrics", [](const json& document) {
-    Inspection inspection;
-    inspection.facts = {{"dataset", document.at("dataset")},
-                        {"all", FillIn(kSummary, document.at("summary"))}};
-    const auto add = [&](const std::string& name, const char* field, const char* text) {
-      const json part = document.value(field, json());
-      if (!part.is_null()) inspection.facts.push_back({name, FillIn(text, part)});
-    };
-    add("first views", "first_observation", kSummary);
-    add("trajectory", "trajectory", kTrajectory);
-    add("held out", "held_out", kHeldOut);
-    inspection.table = ObjectTable(document);
-    if (const json quality = document.value("map_quality", json()); !quality.is_null()) {
-      std::ranges::move(MapQualityFacts(quality), std::back_inserter(inspection.facts));
-      if (inspection.table.rows.empty()) inspection.table = MapQualityTable(quality);
-    }
-    return inspection;
-  });
+Inspection InspectMetrics(const json& document) {
+  Inspection inspection;
+  inspection.facts = {{"dataset", document.at("dataset")},
+                      {"all", FillIn(kSummary, document.at("summary"))}};
+  const auto add = [&](const std::string& name, const char* field, const char* text) {
+    const json part = document.value(field, json());
+    if (!part.is_null()) inspection.facts.push_back({name, FillIn(text, part)});
+  };
+  add("first views", "first_observation", kSummary);
+  add("trajectory", "trajectory", kTrajectory);
+  add("held out", "held_out", kHeldOut);
+  inspection.table = ObjectTable(document);
+  if (const json quality = document.value("map_quality", json()); !quality.is_null()) {
+    std::ranges::move(MapQualityFacts(quality), std::back_inserter(inspection.facts));
+    if (inspection.table.rows.empty()) inspection.table = MapQualityTable(quality);
+  }
+  return inspection;
 }
 
 }  // namespace soslam

@@ -132,22 +132,20 @@ constexpr const char* kAgreement =
 
 }  // namespace
 
-Inspection InspectAssociations(const std::filesystem::path& file) {
-  return ReadArtefactAs(file, "associations", [](const json& document) {
-    Inspection inspection;
-    inspection.facts = {{"agreement", FillIn(kAgreement, document.at("agreement"))},
-                        {"detections", FrequenciesInWords(document.at("detections"), "decision")},
-                        {"tracks", FrequenciesInWords(document.at("tracks"), "fate")}};
-    json objects = document.at("objects");
-    for (json& object : objects) {
-      json& votes = object["label_votes"];
-      votes = CountsInWords(votes.get<std::map<std::string, int>>());
-    }
-    inspection.table = TableOf(
-        {{"object"}, {"label"}, {"track"}, {"detections"}, {"given_object"}, {"label_votes"}},
-        objects);
-    return inspection;
-  });
+Inspection InspectAssociations(const json& document) {
+  Inspection inspection;
+  inspection.facts = {{"agreement", FillIn(kAgreement, document.at("agreement"))},
+                      {"detections", FrequenciesInWords(document.at("detections"), "decision")},
+                      {"tracks", FrequenciesInWords(document.at("tracks"), "fate")}};
+  json objects = document.at("objects");
+  for (json& object : objects) {
+    json& votes = object["label_votes"];
+    votes = CountsInWords(votes.get<std::map<std::string, int>>());
+  }
+  inspection.table =
+      TableOf({{"object"}, {"label"}, {"track"}, {"detections"}, {"given_object"}, {"label_votes"}},
+              objects);
+  return inspection;
 }
 
 // Estimated planes: rows are planes.
@@ -168,37 +166,35 @@ std::string ObjectsOn(const json& plane, const json& objects) {
 
 }  // namespace
 
-Inspection InspectPlanes(const std::filesystem::path& file) {
-  return ReadArtefactAs(file, "planes", [](const json& document) {
-    const json& objects = document.at("objects");
-    std::map<std::string, int> reasons;
-    for (const json& object : objects) ++reasons[object.at("reason")];
-    Inspection inspection;
-    inspection.facts = {
-        {"dataset", document.at("dataset")},
-        {"found",
-         fmt::format("planes: {}, objects: {}; {} after {} rounds", document.at("planes").size(),
-                     objects.size(), document.at("settled").get<bool>() ? "settled" : "NOT settled",
-                     document.at("rounds").get<int>())},
-        {"decided by", CountsInWords(reasons)}};
-    if (!document.at("cost").is_null()) {
-      inspection.facts.push_back({"cost", FillIn("{cost:.6g}", document)});
-    }
-    json planes = document.at("planes");
-    for (json& plane : planes) plane["objects"] = ObjectsOn(plane, objects);
-    inspection.table = TableOf({{"plane"},
-                                {"normal_x", "", 4, "plane_in_world/normal/0"},
-                                {"normal_y", "", 4, "plane_in_world/normal/1"},
-                                {"normal_z", "", 4, "plane_in_world/normal/2"},
-                                {"offset", "m", 3, "plane_in_world/offset"},
-                                {"sigma_tilt", "deg", 2, "tilt_sigma_deg"},
-                                {"sigma_height", "m", 3, "height_sigma_m"},
-                                {"tilt_error", "deg", 2, "error/angle_deg"},
-                                {"height_error", "m", 3, "error/offset_m"},
-                                {"objects"}},
-                               planes);
-    return inspection;
-  });
+Inspection InspectPlanes(const json& document) {
+  const json& objects = document.at("objects");
+  std::map<std::string, int> reasons;
+  for (const json& object : objects) ++reasons[object.at("reason")];
+  Inspection inspection;
+  inspection.facts = {
+      {"dataset", document.at("dataset")},
+      {"found",
+       fmt::format("planes: {}, objects: {}; {} after {} rounds", document.at("planes").size(),
+                   objects.size(), document.at("settled").get<bool>() ? "settled" : "NOT settled",
+                   document.at("rounds").get<int>())},
+      {"decided by", CountsInWords(reasons)}};
+  if (!document.at("cost").is_null()) {
+    inspection.facts.push_back({"cost", FillIn("{cost:.6g}", document)});
+  }
+  json planes = document.at("planes");
+  for (json& plane : planes) plane["objects"] = ObjectsOn(plane, objects);
+  inspection.table = TableOf({{"plane"},
+                              {"normal_x", "", 4, "plane_in_world/normal/0"},
+                              {"normal_y", "", 4, "plane_in_world/normal/1"},
+                              {"normal_z", "", 4, "plane_in_world/normal/2"},
+                              {"offset", "m", 3, "plane_in_world/offset"},
+                              {"sigma_tilt", "deg", 2, "tilt_sigma_deg"},
+                              {"sigma_height", "m", 3, "height_sigma_m"},
+                              {"tilt_error", "deg", 2, "error/angle_deg"},
+                              {"height_error", "m", 3, "error/offset_m"},
+                              {"objects"}},
+                             planes);
+  return inspection;
 }
 
 // Semantic tables: rows are labels.

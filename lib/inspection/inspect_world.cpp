@@ -63,38 +63,36 @@ json ObjectsOf(const json& world) {
 
 }  // namespace
 
-Inspection InspectWorld(const std::filesystem::path& file) {
-  return ReadArtefactAs(file, "world", [](const json& document) {
-    Inspection inspection;
-    inspection.facts = {{"dataset", document.at("dataset")}, {"up", UpInWords(document.at("up"))}};
-    const std::string doubt = DoubtOfUp(document);
-    if (!doubt.empty()) {
-      inspection.facts.push_back({"up uncertain", doubt + "; it may be wrong by more than that"});
-    }
-    for (const Fact& fact : ScaleFacts(document)) inspection.facts.push_back(fact);
-    inspection.facts.push_back(
-        {"support planes",
-         fmt::format("{} with objects on them, of {} horizontal ones in {} points",
-                     document.at("planes").size(), document.at("planes_of_points").get<int>(),
-                     document.at("points").get<int>())});
-    inspection.facts.push_back(
-        {"columns",
-         "one row per group of boxes that are taken for one object. plane: that it stands on, none "
-         "at a free height. height: in the map. scale: metres per unit if its height is that of "
-         "its label; sigma: standard deviation of that. weight: below 1 for several of one label, "
-         "which may be of one model. agrees: probability that its height is right at the scale of "
-         "the map; objects below 50 % do not count"});
-    inspection.table = TableOf({{"label"},
-                                {"boxes"},
-                                {"plane"},
-                                {"height", "m", 2, "height_m"},
-                                {"scale", "m", 3},
-                                {"sigma", "%", 0},
-                                {"weight"},
-                                {"agrees", "%", 0, "agreement"}},
-                               ObjectsOf(document));
-    return inspection;
-  });
+Inspection InspectWorld(const json& document) {
+  Inspection inspection;
+  inspection.facts = {{"dataset", document.at("dataset")}, {"up", UpInWords(document.at("up"))}};
+  const std::string doubt = DoubtOfUp(document);
+  if (!doubt.empty()) {
+    inspection.facts.push_back({"up uncertain", doubt + "; it may be wrong by more than that"});
+  }
+  for (const Fact& fact : ScaleFacts(document)) inspection.facts.push_back(fact);
+  inspection.facts.push_back(
+      {"support planes",
+       fmt::format("{} with objects on them, of {} horizontal ones in {} points",
+                   document.at("planes").size(), document.at("planes_of_points").get<int>(),
+                   document.at("points").get<int>())});
+  inspection.facts.push_back(
+      {"columns",
+       "one row per group of boxes that are taken for one object. plane: that it stands on, none "
+       "at a free height. height: in the map. scale: metres per unit if its height is that of "
+       "its label; sigma: standard deviation of that. weight: below 1 for several of one label, "
+       "which may be of one model. agrees: probability that its height is right at the scale of "
+       "the map; objects below 50 % do not count"});
+  inspection.table = TableOf({{"label"},
+                              {"boxes"},
+                              {"plane"},
+                              {"height", "m", 2, "height_m"},
+                              {"scale", "m", 3},
+                              {"sigma", "%", 0},
+                              {"weight"},
+                              {"agrees", "%", 0, "agreement"}},
+                             ObjectsOf(document));
+  return inspection;
 }
 
 }  // namespace soslam

@@ -6,8 +6,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string_view>
 
@@ -129,48 +129,52 @@ std::vector<Fact> Provenance(const json& header) {
 
 constexpr size_t kLineWidth = 100;
 
-using Reader = std::function<Inspection(const std::filesystem::path& file,
-                                        const std::optional<Sequence>& sequence)>;
-
 struct Kind {
   const char* name;
   const char* title;
-  Reader read;
+  Inspection (*of_document)(const json& document) = nullptr;
+  Inspection (*of_file)(const std::filesystem::path& file) = nullptr;
 };
 
-template <typename Function>
-Reader WithoutSequence(Function function) {
-  return [function](const auto& file, const auto&) { return function(file); };
-}
-
-const std::vector<Kind>& Kinds() {
-  static const std::vector<Kind> kinds = {
-      {"associations", "which detections are of the same object, and why",
-       WithoutSequence(&InspectAssociations)},
-      {"edges", "edges, distances and corners of images", WithoutSequence(&InspectEdges)},
-      {"frames", "images chosen from photos or a video", WithoutSequence(&InspectFrames)},
-      {"landmarks", "estimated landmarks", &InspectLandmarks},
-      {"map", "landmarks and trajectory of the back end", &InspectMap},
-      {"metrics", "errors against ground truth", WithoutSequence(&InspectMetrics)},
-      {"planes", "estimated support planes", WithoutSequence(&InspectPlanes)},
-      {"points", "sparse points of structure from motion", WithoutSequence(&InspectPoints)},
-      {"reconstruction", "poses, camera and points by structure from motion",
-       WithoutSequence(&InspectReconstruction)},
-      {"semantic_table", "sizes and shapes by label", WithoutSequence(&InspectSemanticTable)},
-      {"sequence", "a dataset, checked and gated", WithoutSequence(&InspectSequence)},
-      {"symmetry", "what symmetry and edges say about the yaw of observations", &InspectSymmetry},
-      {"world", "up, scale and support planes of a world that had neither",
-       WithoutSequence(&InspectWorld)}};
-  return kinds;
-}
+constexpr std::array<Kind, 13> kKinds = {{
+    {"associations", "which detections are of the same object, and why", &InspectAssociations},
+    {"edges", "edges, distances and corners of images", nullptr, &InspectEdges},
+    {"frames", "images chosen from photos or a video", &InspectFrames},
+    {"landmarks", "estimated landmarks", &InspectLandmarks},
+    {"map", "landmarks and trajectory of the back end", &InspectMap},
+    {"metrics", "errors against ground truth", &InspectMetrics},
+    {"planes", "estimated support planes", &InspectPlanes},
+    {"points", "sparse points of structure from motion", nullptr, &InspectPoints},
+    {"reconstruction", "poses, camera and points by structure from motion", nullptr,
+     &InspectReconstruction},
+    {"semantic_table", "sizes and shapes by label", nullptr, &InspectSemanticTable},
+    {"sequence", "a dataset, checked and gated", nullptr, &InspectSequence},
+    {"symmetry", "what symmetry and edges say about the yaw of observations", nullptr,
+     &InspectSymmetry},
+    {"world", "up, scale and support planes of a world that had neither", &InspectWorld},
+}};
 
 const Kind& FindKind(std::string_view name, const std::filesystem::path& file) {
-  const auto found = std::ranges::find(Kinds(), name, &Kind::name);
-  if (found != Kinds().end()) return *found;
+  const auto* found = std::ranges::find(kKinds, name, &Kind::name);
+  if (found != kKinds.end()) return *found;
   std::vector<std::string> known;
-  for (const Kind& kind : Kinds()) known.emplace_back(kind.name);
+  for (const Kind& kind : kKinds) known.emplace_back(kind.name);
   throw InputError(fmt::format("{}: artefact kind is \"{}\"; expected one of {}", file.string(),
                                name, fmt::join(known, ", ")));
+}
+
+// Adds the labels of objects where the artefact has none.
+void AddLabels(const Sequence& sequence, ValueTable* table) {
+  const auto column = [&](const char* name) {
+    const auto found = std::ranges::find(table->columns, name, &ValueColumn::name);
+    return static_cast<size_t>(found - table->columns.begin());
+  };
+  const size_t object = column("object"), label = column("label");
+  if (std::max(object, label) == table->columns.size()) return;
+  for (std::vector<Value>& row : table->rows) {
+    const auto found = std::ranges::find(sequence.objects, row[object].get<int>(), &Object::id);
+    if (row[label].is_null() && found != sequence.objects.end()) row[label] = found->label;
+  }
 }
 
 std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
@@ -189,7 +193,10 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   const nlohmann::json header = ReadArtefactHeader(file);
   const Kind& kind = FindKind(header.at("kind").get_ref<const std::string&>(), file);
   CheckArtefactHeader(header, kind.name, file.string());
-  Inspection inspection = kind.read(file, sequence);
+  Inspection inspection = kind.of_file != nullptr
+                              ? kind.of_file(file)
+                              : ReadArtefactAs(file, kind.name, kind.of_document);
+  if (sequence) AddLabels(*sequence, &inspection.table);
   inspection.title = fmt::format("{}: {} ({})", file.string(), kind.name, kind.title);
   try {
     const std::vector<Fact> provenance = Provenance(header);
@@ -248,13 +255,6 @@ std::string FillIn(std::string_view text, const json& fields) {
     text.remove_prefix(end + 1);
   }
   return filled += text;
-}
-
-Value LabelOf(const std::optional<Sequence>& sequence, int object_id) {
-  if (!sequence) return {};
-  const auto found = std::ranges::lower_bound(sequence->objects, object_id, {}, &Object::id);
-  if (found == sequence->objects.end() || found->id != object_id) return {};
-  return found->label;
 }
 
 }  // namespace soslam

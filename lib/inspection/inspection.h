@@ -43,24 +43,20 @@ std::string CountsInWords(const std::map<std::string, int>& counts);
 // a field that is missing.
 std::string FillIn(std::string_view text, const nlohmann::json& fields);
 
-// Contents of an artefact of each kind; Inspect adds title and provenance. Errors as there.
-Inspection InspectAssociations(const std::filesystem::path& file);
+// Contents of an artefact of each kind, by its file or document; Inspect adds title, provenance and
+// labels of objects. Errors as there; json::exception for a field that is missing.
+Inspection InspectAssociations(const nlohmann::json& document);
 Inspection InspectEdges(const std::filesystem::path& file);
-Inspection InspectFrames(const std::filesystem::path& file);
-Inspection InspectLandmarks(const std::filesystem::path& file,
-                            const std::optional<Sequence>& sequence);
-Inspection InspectMap(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
-Inspection InspectMetrics(const std::filesystem::path& file);
-Inspection InspectPlanes(const std::filesystem::path& file);
-Inspection InspectWorld(const std::filesystem::path& file);
+Inspection InspectFrames(const nlohmann::json& document);
+Inspection InspectLandmarks(const nlohmann::json& document);
+Inspection InspectMap(const nlohmann::json& document);
+Inspection InspectMetrics(const nlohmann::json& document);
+Inspection InspectPlanes(const nlohmann::json& document);
 Inspection InspectPoints(const std::filesystem::path& file);
 Inspection InspectReconstruction(const std::filesystem::path& file);
 Inspection InspectSemanticTable(const std::filesystem::path& file);
 Inspection InspectSequence(const std::filesystem::path& file);
-Inspection InspectSymmetry(const std::filesystem::path& file,
-                           const std::optional<Sequence>& sequence);
-
-// The label of an object by its id; null without a sequence that has it.
-Value LabelOf(const std::optional<Sequence>& sequence, int object_id);
+Inspection InspectSymmetry(const std::filesystem::path& file);
+Inspection InspectWorld(const nlohmann::json& document);
 
 }  // namespace soslam

@@ -214,11 +214,7 @@ void DrawOverlay(const OverlayInput& input, cv::Mat* image) {
   }
   for (const auto& body : input.landmarks) DrawBody(body, input.camera, &canvas);
   for (const auto& [box, caption] : input.detections) {
-    canvas.Lines({{box.x_min, box.y_min},
-                  {box.x_max, box.y_min},
-                  {box.x_max, box.y_max},
-                  {box.x_min, box.y_max}},
-                 true, kDetectionStroke);
+    canvas.Lines(CornersOf(box), true, kDetectionStroke);
   }
   DrawCaptions(input, &canvas);
 }

@@ -14,6 +14,13 @@ constexpr double kGridMarginM = 0.5;  // around the contact points
 
 }  // namespace
 
+Polygon CornersOf(const Box& box) {
+  return {{box.x_min, box.y_min},
+          {box.x_max, box.y_min},
+          {box.x_max, box.y_max},
+          {box.x_min, box.y_max}};
+}
+
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera) {
   if (!IsInFront(landmark_in_camera)) return {};
   std::vector<Eigen::Vector3d> points_in_camera;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 #include "geometry/wireframe.h"
@@ -14,6 +15,8 @@ namespace soslam {
 
 using Polygon = std::vector<Eigen::Vector2d>;         // px, closed by its first point
 using LineSegment2 = std::array<Eigen::Vector2d, 2>;  // px
+
+Polygon CornersOf(const Box& box);
 
 // The silhouette of the landmark in the image, from its corners or 90 directions; empty unless the
 // whole landmark is in front of the camera.

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/segments.h"
+#include "model/segments.h"
 
 namespace soslam {
 
-int SegmentOf(const Sequence& sequence, int object_index) {
+std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
+  std::vector<std::optional<int>> segments(sequence.objects.size());
+  if (sequence.frames.empty()) return segments;
+  const int first = sequence.frames.front().segment;
+  if (sequence.frames.back().segment == first) segments.assign(segments.size(), first);
   for (const Detection& detection : sequence.detections) {
-    if (detection.object_index == object_index) return sequence.FrameOf(detection).segment;
+    auto& segment = segments[static_cast<size_t>(detection.object_index)];
+    if (!segment) segment = sequence.FrameOf(detection).segment;
   }
-  return 0;
+  return segments;
 }
 
-namespace {
-
-// Least cosine of the angle between up and the upright direction of a segment's images.
-constexpr double kMinUprightCosine = 0.2;
-
-}  // namespace
-
 Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
+  // Least cosine of the angle between up and the upright direction of the segment's images.
+  constexpr double kMinUprightCosine = 0.2;
   Eigen::Vector3d upright = Eigen::Vector3d::Zero();
   for (const Frame& frame : sequence.frames) {
     if (frame.segment == segment) {

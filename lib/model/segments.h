@@ -2,13 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <vector>
 
 #include "model/sequence.h"
 
 namespace soslam {
 
-// The segment in which an object was detected.
-int SegmentOf(const Sequence& sequence, int object_index);
+// The segment of each object: the only one, or that of its first detection; none if unknown.
+std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence);
 
 // The up direction in a segment's world: the normal of that plane of its detections which is
 // closest to upright in its images; without such planes, the mean upright direction of its images.

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "evaluation/map_reasons.h"
+#include "report/page_html.h"
 
 namespace soslam {
 namespace {
@@ -167,30 +168,16 @@ std::string OdometryNote(const std::vector<NamedMetrics>& maps) {
                                           : fmt::format("{}", fmt::join(sources, ", ")));
 }
 
-// The name of a map, with its alignment where those of others differ.
-std::string NameOf(const NamedMetrics& map, bool with_alignment) {
-  const json& alignments = map.second["map_quality"].at("alignments");
-  return with_alignment
-             ? fmt::format("{} ({})", map.first, alignments.front().at("kind").get<std::string>())
-             : map.first;
-}
-
-bool AreAlignedAlike(const std::vector<NamedMetrics>& maps) {
-  const auto kind = [](const NamedMetrics& map) {
-    return map.second["map_quality"].at("alignments").front().at("kind");
-  };
-  return std::ranges::all_of(
-      maps, [&](const NamedMetrics& map) { return kind(map) == kind(maps.front()); });
+std::string KindOfAlignment(const NamedMetrics& map) {
+  return map.second["map_quality"].at("alignments").front().at("kind");
 }
 
 void AddMistakes(const char* kind, const json& rows, const char* id, Table* table) {
   for (const json& row : rows) {
     if (row.at("reason").is_null()) continue;
-    auto reason = row.at("reason").get<std::string>();
-    std::ranges::replace(reason, '_', ' ');
     table->rows.push_back(
         {kind, fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>()),
-         reason, row.at("detail").get<std::string>()});
+         WithBlanks(row.at("reason")), row.at("detail").get<std::string>()});
   }
 }
 
@@ -216,8 +203,12 @@ std::vector<Table> QualityTables(const std::string& dataset,
   errors.header = {"variant", "centre m",    "centre / size", "log size x, y, z", "log scale",
                    "yaw deg", "up deg",      "plane m",       "plane deg",        "labels",
                    "ids",     "IoU, frames", "IoU, world"};
+  const bool are_alike = std::ranges::all_of(maps, [&](const NamedMetrics& map) {
+    return KindOfAlignment(map) == KindOfAlignment(maps.front());
+  });
   for (const NamedMetrics& map : maps) {
-    const std::string name = NameOf(map, !AreAlignedAlike(maps));
+    const std::string name =
+        are_alike ? map.first : fmt::format("{} ({})", map.first, KindOfAlignment(map));
     quality.rows.push_back(QualityRow(name, map.second["map_quality"]));
     errors.rows.push_back(ErrorsRow(name, map.second["map_quality"]));
   }

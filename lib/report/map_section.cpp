@@ -14,7 +14,7 @@
 #include "base/text.h"
 #include "inspection/doubts.h"
 #include "inspection/projection.h"
-#include "inspection/segments.h"
+#include "model/segments.h"
 #include "report/map_words.h"
 #include "report/not_placed.h"
 #include "report/page_html.h"
@@ -36,13 +36,6 @@ struct Picture {
   bool is_body = false;   // the outline is that of the landmark
   std::string jpeg = {};  // base 64; empty where there is none
 };
-
-Polygon Corners(const Box& box) {
-  return {{box.x_min, box.y_min},
-          {box.x_max, box.y_min},
-          {box.x_max, box.y_max},
-          {box.x_min, box.y_max}};
-}
 
 // The part of the image around a box, no flatter or slimmer than a picture should be.
 cv::Rect Around(const Box& box, const Camera& camera) {
@@ -79,7 +72,7 @@ Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
   const SeenBox* best = BestBox(boxes, images);
   if (best == nullptr) return {};
   const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(best->frame_index)]);
-  return {{best->frame_index, Around(best->box, camera)}, Corners(best->box)};
+  return {{best->frame_index, Around(best->box, camera)}, CornersOf(best->box)};
 }
 
 // A thing in one of the section's lists.
@@ -133,10 +126,6 @@ void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* ent
   for (size_t i = 0; i < jpegs.size(); ++i) (*entries)[i].picture.jpeg = std::move(jpegs[i]);
 }
 
-void RemovePictures(std::vector<Entry>* entries) {
-  for (Entry& entry : *entries) entry.picture.jpeg.clear();
-}
-
 std::string AndMore(size_t more) {
   return more == 0 ? "" : fmt::format("<p class=\"faint\">And {} more.</p>\n", more);
 }
@@ -168,7 +157,7 @@ class MapOfVariant {
     std::string html = Section(title, placed, not_placed, "");
     for (std::vector<Entry>* entries : {&not_placed.entries, &placed}) {
       if (html.size() <= max_bytes) break;
-      RemovePictures(entries);
+      for (Entry& entry : *entries) entry.picture.jpeg.clear();
       html = Section(title, placed, not_placed, "For lack of room pictures are left out.");
     }
     return html.size() <= max_bytes ? html : "";
@@ -238,12 +227,16 @@ class MapOfVariant {
 
   // The plan of the segment of the first object.
   std::string PlanHtml(const std::vector<Entry>& entries) const {
-    const int segment = SegmentOf(sequence_, placed_.front()->object_index);
+    const auto segments = SegmentsOfObjects(sequence_);
+    const auto segment_of = [&](const ObjectEstimate* estimate) {
+      return segments[static_cast<size_t>(estimate->object_index)].value_or(0);
+    };
+    const int segment = segment_of(placed_.front());
     const Eigen::Vector3d up = UpOfSegment(sequence_, segment);
     std::vector<Eigen::Vector3d> centres, cameras;
     std::vector<size_t> shown;
     for (size_t i = 0; i < entries.size(); ++i) {
-      if (SegmentOf(sequence_, placed_[i]->object_index) != segment) continue;
+      if (segment_of(placed_[i]) != segment) continue;
       shown.push_back(i);
       centres.push_back(placed_[i]->landmark_in_world->Centre());
     }
@@ -287,7 +280,6 @@ class MapOfVariant {
 
   std::string PlanFigure(const PlanView& plan, int segment) const {
     const int segments = sequence_.frames.back().segment + 1;
-    const bool is_doubtful = std::ranges::any_of(plan.objects, &PlanObject::is_uncertain);
     const auto key = [](const char* colour, const char* text) {
       return fmt::format("<span class=\"key\" style=\"background: var(--{})\"></span> {}", colour,
                          text);
@@ -296,7 +288,7 @@ class MapOfVariant {
                                       key("detection",
                                           "path of the camera from its first place "
                                           "(dot)"));
-    if (is_doubtful) {
+    if (std::ranges::any_of(plan.objects, &PlanObject::is_uncertain)) {
       caption +=
           " Dashed objects are uncertain: most images that should show them do not, or by their "
           "95\u00a0% intervals they may stand beside their outline, or be half or twice as large.";

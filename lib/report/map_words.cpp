@@ -12,7 +12,7 @@
 #include "artefact/world_file.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
-#include "inspection/segments.h"
+#include "model/segments.h"
 #include "report/plan_view.h"
 
 namespace soslam {
@@ -123,8 +123,9 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
       sequence.planes.size() >= sequence.objects.size()) {
     return "on the ground";
   }
-  const int segment = SegmentOf(sequence, estimate.object_index);
-  const std::set<int> level = LevelPlanesOf(sequence, map, segment);
+  const auto segments = SegmentsOfObjects(sequence);
+  const std::set<int> level = LevelPlanesOf(
+      sequence, map, segments[static_cast<size_t>(estimate.object_index)].value_or(0));
   if (!level.contains(own)) return "on a wall or ceiling";
   const auto height_above = [&](int plane) {
     return map.planes_in_world[static_cast<size_t>(plane)].SignedDistance(

@@ -32,6 +32,11 @@ const json& AfterMerging(const json& tracks, const json& index) {
   return *row;
 }
 
+std::string InWords(const std::map<std::string, std::string>& words, const std::string& name) {
+  const auto found = words.find(name);
+  return found == words.end() ? WithBlanks(name) : found->second;
+}
+
 std::string MostFrequent(const std::map<std::string, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
 }
@@ -70,29 +75,29 @@ std::string FateInWords(const json& track, const json& settings) {
     return RarelyDetectedInWords(track.at("detections").get<int>(),
                                  track.at("frames_in_sight").get<int>());
   }
-  const std::map<std::string, std::string> words = {
-      {"never_whole", "no image shows it whole"},
-      {"no_landmark", "its boxes do not agree on one body"},
-      {"no_support", "it fits better above or below all support planes: it may hang on a wall"},
-      {"moves", "things of this kind move"},
-      {"low_scores", "the detector was never sure of it"}};
-  const auto found = words.find(fate);
-  return found == words.end() ? WithBlanks(fate) : found->second;
+  return InWords(
+      {{"never_whole", "no image shows it whole"},
+       {"no_landmark", "its boxes do not agree on one body"},
+       {"no_support", "it fits better above or below all support planes: it may hang on a wall"},
+       {"moves", "things of this kind move"},
+       {"low_scores", "the detector was never sure of it"}},
+      fate);
 }
 
 std::string FailureInWords(const std::string& failure) {
-  const std::map<std::string, std::string> words = {
-      {kMovingObject, "it moves, or may move"},
-      {"collapsed", "its size vanished in the optimisation"},
-      {"not_determined_by_its_views", "its views are too alike to tell how far away it is"},
-      {"fewer_than_three_views", "seen in fewer than three images"},
-      {"fewer_than_three_measured_edges", "too many of its edges are cut off"},
-      {"no_ratio_for_label", "the semantic table does not have its label"},
-      {"no_finite_quadric", "its boxes do not agree on one body"},
-      {"no_solution", "its boxes do not agree on one body"}};
-  const auto found = words.find(failure);
-  if (found != words.end()) return found->second;
-  return failure.empty() || failure == "no_start" ? "no initial estimate" : WithBlanks(failure);
+  constexpr const char* kNone = "no initial estimate";
+  return InWords(
+      {{"", kNone},
+       {"no_start", kNone},
+       {kMovingObject, "it moves, or may move"},
+       {"collapsed", "its size vanished in the optimisation"},
+       {"not_determined_by_its_views", "its views are too alike to tell how far away it is"},
+       {"fewer_than_three_views", "seen in fewer than three images"},
+       {"fewer_than_three_measured_edges", "too many of its edges are cut off"},
+       {"no_ratio_for_label", "the semantic table does not have its label"},
+       {"no_finite_quadric", "its boxes do not agree on one body"},
+       {"no_solution", "its boxes do not agree on one body"}},
+      failure);
 }
 
 std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& sequence) {

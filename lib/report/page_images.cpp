@@ -82,13 +82,6 @@ size_t TotalBytes(const std::vector<EncodedImages::Image>& images) {
   return bytes;
 }
 
-// Keeps every other image.
-void Halve(std::vector<EncodedImages::Image>* images) {
-  std::vector<EncodedImages::Image> kept;
-  for (size_t i = 1; i < images->size(); i += 2) kept.push_back(std::move((*images)[i]));
-  *images = std::move(kept);
-}
-
 }  // namespace
 
 EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
@@ -100,7 +93,10 @@ EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& so
     if (width < kWidthsPx.front()) encoded.scaled_to_px = width;
     if (TotalBytes(encoded.images) <= max_bytes) break;
   }
-  while (TotalBytes(encoded.images) > max_bytes) Halve(&encoded.images);
+  while (TotalBytes(encoded.images) > max_bytes) {  // keep every other image
+    size_t i = 0;
+    std::erase_if(encoded.images, [&](const auto&) { return i++ % 2 == 0; });
+  }
   encoded.left_out = read.frames.size() - encoded.images.size();
   encoded.failures = std::move(read.failures);
   return encoded;

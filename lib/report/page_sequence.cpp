@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "inspection/segments.h"
 #include "model/label_groups.h"
+#include "model/segments.h"
 #include "report/page_geometry.h"
 
 namespace soslam {
@@ -77,20 +77,6 @@ using nlohmann::json;
 Landmark AsCuboid(Landmark landmark) {
   landmark.shape_exponent = kCuboidExponent;
   return landmark;
-}
-
-// The segment of each object, in their order: the one in which it was detected; for an object
-// without detections the only segment, if there is just one.
-std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
-  std::vector<std::optional<int>> segments(sequence.objects.size());
-  for (const Detection& detection : sequence.detections) {
-    segments[static_cast<size_t>(detection.object_index)] = sequence.FrameOf(detection).segment;
-  }
-  if (sequence.frames.empty()) return segments;
-  const int only_segment = sequence.frames.front().segment;
-  if (sequence.frames.back().segment != only_segment) return segments;
-  for (std::optional<int>& segment : segments) segment = only_segment;
-  return segments;
 }
 
 json PageFrame(const Sequence& sequence, const Frame& frame, bool is_shown) {

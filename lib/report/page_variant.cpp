@@ -193,8 +193,7 @@ json PageVariant(const VariantResult& result, const Sequence& sequence,
 
 std::vector<size_t> DetailedVariants(const json& page) {
   const json& variants = page.at("variants");
-  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
-  names.insert(names.end(), kShapeVariants.begin(), kShapeVariants.end());
+  std::vector<std::string> names = KnownVariants();
   std::ranges::reverse(names);
   const std::array<std::string, 3> kinds = {"map", "views", "frames"};
   const auto place = [](const auto& in, const json& name) {

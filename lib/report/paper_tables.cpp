@@ -30,12 +30,9 @@ Published ReadPublished(const std::filesystem::path& path) {
 
 namespace {
 
-// The observations of an object that are used, for single-frame variants.
-enum class Observations { kAll, kFirst };
-
-// Kind of a row of measured values: its observations and its name.
+// A kind of rows of measured values.
 struct RowKind {
-  Observations observations;
+  const char* summary;  // of metrics.json, "/summary/"
   const char* title;
 };
 
@@ -52,9 +49,9 @@ constexpr const char* kBoldNote =
     "Bold: the best measured value of a row, if over all of its objects. Values over fewer objects "
     "have their number in brackets.";
 
-const std::vector<RowKind> kSingleFrameRows = {{Observations::kAll, "all observations"},
-                                               {Observations::kFirst, "first observation"}};
-const std::vector<RowKind> kMapRows = {{Observations::kAll, "measured"}};
+const std::vector<RowKind> kSingleFrameRows = {{"/summary/", "all observations"},
+                                               {"/first_observation/", "first observation"}};
+const std::vector<RowKind> kMapRows = {{"/summary/", "measured"}};
 
 std::vector<Layout> Layouts() {
   return {{"I",
@@ -94,9 +91,7 @@ bool HasAny(const Means& means) {
 // number of objects is that of objects with an angle in any observation, as metrics.json does not
 // have it for first observations.
 std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
-                                          Observations observations) {
-  const std::string summary =
-      observations == Observations::kAll ? "/summary/" : "/first_observation/";
+                                          const std::string& summary) {
   const auto mean = MetricsNumber(variant, summary + quantity.key + "_mean");
   const auto count = MetricsNumber(variant, summary + "observations");
   const int objects = static_cast<int>(ObjectValues(variant, quantity).size());
@@ -108,7 +103,7 @@ Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind&
   Means means;
   for (const std::string& name : layout.variants) {
     const VariantResult* const variant = dataset.Evaluated(name);
-    means.push_back(variant ? MeanOverObjects(*variant, layout.quantity, kind.observations)
+    means.push_back(variant ? MeanOverObjects(*variant, layout.quantity, kind.summary)
                             : std::nullopt);
   }
   return means;
@@ -173,21 +168,20 @@ struct Complete {
 
 Complete CompleteDatasets(const std::vector<DatasetResult>& datasets, const Layout& layout,
                           const RowKind& kind) {
-  std::vector<bool> is_used(layout.variants.size(), false);
   std::vector<Means> means;
+  Means any(layout.variants.size());
   for (const DatasetResult& dataset : datasets) {
     means.push_back(MeansOf(dataset, layout, kind));
-    for (size_t i = 0; i < is_used.size(); ++i) {
-      if (means.back()[i]) is_used[i] = true;
+    for (size_t i = 0; i < any.size(); ++i) {
+      if (means.back()[i]) any[i] = means.back()[i];
     }
   }
+  const auto values = [](const Means& of) {
+    return std::ranges::count_if(of, [](const auto& mean) { return mean.has_value(); });
+  };
   Complete complete;
   for (size_t k = 0; k < datasets.size(); ++k) {
-    bool is_complete = HasAny(means[k]);
-    for (size_t i = 0; i < is_used.size(); ++i) {
-      if (is_used[i] && !means[k][i]) is_complete = false;
-    }
-    if (!is_complete) continue;
+    if (!HasAny(means[k]) || values(means[k]) < values(any)) continue;
     complete.datasets.push_back(datasets[k].name);
     complete.means.push_back(means[k]);
   }
@@ -220,15 +214,13 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
   std::vector<PublishedRow> published_rows;
   if (published) published_rows = published->rows;
   for (const PublishedRow& row : published_rows) {
-    for (const DatasetResult& dataset : datasets) {
-      if (dataset.name == row.dataset) add_measured(dataset);
-    }
+    const auto measured = std::ranges::find(datasets, row.dataset, &DatasetResult::name);
+    if (measured != datasets.end()) add_measured(*measured);
     table->rows.push_back(PublishedRowOf(row, layout));
   }
   for (const DatasetResult& dataset : datasets) {
-    const bool is_published = std::ranges::any_of(
-        published_rows, [&](const PublishedRow& row) { return row.dataset == dataset.name; });
-    if (!is_published) add_measured(dataset);
+    const auto row = std::ranges::find(published_rows, dataset.name, &PublishedRow::dataset);
+    if (row == published_rows.end()) add_measured(dataset);
   }
 }
 

@@ -34,6 +34,13 @@ std::vector<std::string> RunsIn(const fs::path& list) {
   return runs;
 }
 
+std::vector<std::string> KnownVariants() {
+  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
+  names.insert(names.end(),
+               {"MultiView", "InitS", "InitST", "InitSTE", "OursS", "OursST", "OursSTE"});
+  return names;
+}
+
 std::string StageOf(const std::string& run) { return run.substr(0, run.rfind('-')); }
 
 std::string FailureIn(const fs::path& run_folder) {
@@ -48,11 +55,9 @@ namespace {
 using nlohmann::json;
 
 // Rank in the order of variants; equal for all that are neither the paper's nor ours.
-size_t VariantRank(const std::string& name) {
-  const auto paper = std::ranges::find(kPaperVariants, name);
-  if (paper != kPaperVariants.end()) return static_cast<size_t>(paper - kPaperVariants.begin());
-  const auto shape = std::ranges::find(kShapeVariants, name);
-  return kPaperVariants.size() + static_cast<size_t>(shape - kShapeVariants.begin());
+auto VariantRank(const VariantResult& variant) {
+  static const std::vector<std::string> known = KnownVariants();
+  return std::ranges::find(known, variant.name) - known.begin();
 }
 
 std::optional<StageTiming> ReadTiming(const fs::path& file) {
@@ -94,9 +99,7 @@ std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles da
     if (!Exists(folder / "metrics.json") && !Exists(folder / "stages.txt")) continue;
     variants.push_back(ReadVariant(dataset, folder, damaged));
   }
-  std::ranges::stable_sort(variants, [](const auto& a, const auto& b) {
-    return VariantRank(a.name) < VariantRank(b.name);
-  });
+  std::ranges::stable_sort(variants, {}, VariantRank);
   return variants;
 }
 

@@ -25,9 +25,8 @@ std::string FailureIn(const std::filesystem::path& run_folder);
 // The methods that the paper compares, in its order.
 inline constexpr std::array kPaperVariants = {"SVD",     "Init1-1", "InitP", "InitPT",
                                               "Quadric", "OursP",   "OursPT"};
-// Variants that this project adds: the same steps with superquadrics.
-inline constexpr std::array kShapeVariants = {"MultiView", "InitS",  "InitST", "InitSTE",
-                                              "OursS",     "OursST", "OursSTE"};
+// These, then the variants that this project adds: the same steps with superquadrics.
+std::vector<std::string> KnownVariants();
 
 // An error that metrics.json has for each object and, as a mean over objects, in its summaries.
 struct Quantity {

@@ -62,22 +62,23 @@ std::string MachineText(const StageTiming& timing) {
                      timing.threads);
 }
 
-std::string MachineNote(const std::vector<DatasetResult>& datasets) {
-  std::set<std::string> machines;
+// The runs of all variants.
+std::vector<StageRun> RunsOf(const std::vector<DatasetResult>& datasets) {
+  std::vector<StageRun> runs;
   for (const DatasetResult& dataset : datasets) {
     for (const VariantResult& variant : dataset.variants) {
-      for (const StageRun& run : variant.stages) {
-        if (run.timing) machines.insert(MachineText(*run.timing));
-      }
+      runs.insert(runs.end(), variant.stages.begin(), variant.stages.end());
     }
   }
-  return fmt::format("Measured on: {}.", fmt::join(machines, "; "));
+  return runs;
 }
 
-std::vector<std::string> TimedVariants() {
-  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
-  names.insert(names.end(), kShapeVariants.begin(), kShapeVariants.end());
-  return names;
+std::string MachineNote(const std::vector<DatasetResult>& datasets) {
+  std::set<std::string> machines;
+  for (const StageRun& run : RunsOf(datasets)) {
+    if (run.timing) machines.insert(MachineText(*run.timing));
+  }
+  return fmt::format("Measured on: {}.", fmt::join(machines, "; "));
 }
 
 struct TimeRow {
@@ -88,12 +89,12 @@ constexpr std::array<TimeRow, 3> kTimeRows = {{{"wall ms", &LandmarkTime::wall_m
                                                {"CPU ms", &LandmarkTime::cpu_ms},
                                                {"observations", &LandmarkTime::observations}}};
 
-// Times in the order of TimedVariants(). Variants share sequences, which can be large: each is read
+// Times in the order of KnownVariants(). Variants share sequences, which can be large: each is read
 // once.
 std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
   std::map<std::filesystem::path, SequenceCounts> counts;
   std::vector<std::optional<LandmarkTime>> times;
-  for (const std::string& name : TimedVariants()) {
+  for (const std::string& name : KnownVariants()) {
     const VariantResult* const variant = dataset.Evaluated(name);
     times.emplace_back();
     if (!variant || !Exists(variant->folder / "sequence.json")) continue;
@@ -121,7 +122,7 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
   if (published.values.empty()) return;
   std::vector<Cell> times = {published.dataset, "published ms"};
   std::vector<Cell> observations = {published.dataset, "published observations"};
-  for (const std::string& name : TimedVariants()) {
+  for (const std::string& name : KnownVariants()) {
     const auto time = std::ranges::find(published.values, name, &PublishedTime::variant);
     const bool is_published = time != published.values.end();
     times.emplace_back(is_published ? fmt::format("{:.1f} ± {:.1f}", time->ms_mean, time->ms_sigma)
@@ -135,17 +136,12 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
 
 // Stages that any variant has, in the order of the pipeline.
 std::vector<std::string> StagesOf(const std::vector<DatasetResult>& datasets) {
-  std::vector<std::string> stages;
-  for (const char* stage : {"import", "ground", "associate", "planes", "edges", "initialise",
-                            "refine", "optimise", "evaluate"}) {
-    const bool occurs = std::ranges::any_of(datasets, [&](const auto& dataset) {
-      return std::ranges::any_of(dataset.variants, [&](const auto& variant) {
-        return std::ranges::any_of(variant.stages,
-                                   [&](const StageRun& run) { return run.stage == stage; });
-      });
-    });
-    if (occurs) stages.emplace_back(stage);
-  }
+  const std::vector<StageRun> runs = RunsOf(datasets);
+  std::vector<std::string> stages = {"import",     "ground", "associate", "planes",  "edges",
+                                     "initialise", "refine", "optimise",  "evaluate"};
+  std::erase_if(stages, [&](const std::string& stage) {
+    return std::ranges::find(runs, stage, &StageRun::stage) == runs.end();
+  });
   return stages;
 }
 
@@ -180,8 +176,8 @@ SequenceCounts CountObservations(const std::filesystem::path& sequence_file) {
 std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
                                             const SequenceCounts& counts) {
   if (variant.metrics.is_null()) return std::nullopt;
-  const bool is_map = std::ranges::any_of(
-      variant.stages, [](const StageRun& run) { return run.stage == kMapStage; });
+  const bool is_map =
+      std::ranges::find(variant.stages, kMapStage, &StageRun::stage) != variant.stages.end();
   const std::vector<StageRun> runs = LandmarkRuns(variant, is_map);
   const auto wall_s = TotalSeconds(runs, kWallClock);
   const auto cpu_s = TotalSeconds(runs, kCpuClock);
@@ -195,7 +191,7 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
 
 Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published) {
   Table table = {"table_5_time", "Time per landmark (Table V)", {"dataset", "values"}, {}, 2, {}};
-  for (const std::string& name : TimedVariants()) table.header.push_back(name);
+  for (const std::string& name : KnownVariants()) table.header.push_back(name);
   for (const DatasetResult& dataset : datasets) AddMeasuredTimes(dataset, &table);
   if (table.rows.empty()) return table;
   table.notes = {

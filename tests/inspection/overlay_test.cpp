@@ -7,6 +7,7 @@
 
 #include "support/random.h"
 #include "support/scene.h"
+#include "support/true_map.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
@@ -134,17 +135,7 @@ TEST_F(OverlayOfSceneTest, TheBestHypothesisOfEachObservationIsShown) {
 }
 
 TEST_F(OverlayOfSceneTest, ObjectsThatAreNotDetectedHaveCaptions) {
-  MapEstimate map;
-  for (int i = 0; i < 3; ++i) {
-    const Object& object = sequence_.objects[static_cast<size_t>(i)];
-    map.objects.push_back({i, 6, object.ground_truth->landmark_in_world, {}, "", true});
-  }
-  for (const Frame& frame : sequence_.frames) {
-    map.world_from_camera.push_back(frame.world_from_camera);
-  }
-  for (const SupportPlane& plane : sequence_.planes) {
-    map.planes_in_world.push_back(plane.plane_in_world);
-  }
+  const MapEstimate map = TrueMap(sequence_);
   const Detection missed = sequence_.detections.front();
   sequence_.detections.erase(sequence_.detections.begin());
   const OverlayInput input = OverlayOfMap(sequence_, map, missed.frame_index);

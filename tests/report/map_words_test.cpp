@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "support/scene.h"
+#include "support/true_map.h"
 
 namespace soslam {
 namespace {
@@ -130,16 +131,13 @@ class SupportInWordsTest : public testing::Test {
     const Plane floor = sequence_.planes[0].plane_in_world;
     sequence_.planes.push_back({7, {floor.normal, floor.offset - 0.724}});
     sequence_.planes.push_back({8, {floor.normal.unitOrthogonal(), 3.0}});
-    for (const SupportPlane& plane : sequence_.planes) {
-      map_.planes_in_world.push_back(plane.plane_in_world);
-    }
+    map_ = TrueMap(sequence_);
     for (int i = 0; i < 3; ++i) {
-      Object& object = sequence_.objects[static_cast<size_t>(i)];
-      object.plane_index = i;
-      map_.objects.push_back({i, 3, object.ground_truth->landmark_in_world, {}, ""});
-      map_.objects.back().landmark_in_world->half_axes.z() = 0.2;
+      sequence_.objects[static_cast<size_t>(i)].plane_index = i;
+      map_.objects[static_cast<size_t>(i)].landmark_in_world->half_axes.z() = 0.2;
     }
   }
+
   std::string Words(size_t object, const ScaleOfMap& scale = {}) const {
     return SupportInWords(map_.objects[object], sequence_, map_, scale);
   }

@@ -25,6 +25,13 @@ size_t Bytes(const EncodedImages& encoded) {
 
 const ImageSource kNoises = {[](int) { return true; }, [](int) { return Noise(); }};
 
+// Frame 1 has no image, that of frame 2 is damaged.
+const ImageSource kFaulty = {[](int frame) { return frame != 1; },
+                             [](int frame) {
+                               if (frame == 2) throw InputError("2.png: is empty");
+                               return Noise();
+                             }};
+
 TEST(EncodeImages, AreAsLargeAsThereIsRoom) {
   const EncodedImages large = EncodeImages({0, 1, 2}, kNoises, 10'000'000, 2);
   const EncodedImages small = EncodeImages({0, 1, 2}, kNoises, 300'000, 2);
@@ -47,12 +54,7 @@ TEST(EncodeImages, AreFewerWhenTheSmallestAreTooLarge) {
 }
 
 TEST(EncodeImages, LeaveOutWhatIsNotThereAndNameWhatIsDamaged) {
-  const ImageSource source = {[](int frame) { return frame != 1; },
-                              [](int frame) {
-                                if (frame == 2) throw InputError("2.png: is empty");
-                                return Noise();
-                              }};
-  const EncodedImages encoded = EncodeImages({0, 1, 2, 3}, source, 10'000'000, 2);
+  const EncodedImages encoded = EncodeImages({0, 1, 2, 3}, kFaulty, 10'000'000, 2);
   ASSERT_EQ(encoded.images.size(), 2u);
   EXPECT_EQ(encoded.images[1].frame_index, 3);
   EXPECT_EQ(encoded.failures, std::vector<std::string>{"2.png: is empty"});
@@ -77,14 +79,9 @@ cv::Size SizeOf(const std::string& base64) {
 }
 
 TEST(EncodeCrops, AreSmallAndInTheOrderOfTheCrops) {
-  const ImageSource source = {[](int frame) { return frame != 1; },
-                              [](int frame) {
-                                if (frame == 2) throw InputError("damaged");
-                                return Noise();
-                              }};
   const cv::Rect large(0, 0, 320, 200), tall(600, 0, 100, 480), small(10, 10, 40, 30);
   const std::vector<std::string> crops =
-      EncodeCrops({{0, large}, {1, large}, {2, large}, {3, tall}, {3, small}, {3, {}}}, source, 2);
+      EncodeCrops({{0, large}, {1, large}, {2, large}, {3, tall}, {3, small}, {3, {}}}, kFaulty, 2);
   ASSERT_EQ(crops.size(), 6u);
   EXPECT_EQ(SizeOf(crops[0]), cv::Size(160, 100));
   EXPECT_EQ(crops[1], "");

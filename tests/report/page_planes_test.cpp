@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "inspection/segments.h"
+#include "model/segments.h"
 #include "report/page_geometry.h"
 #include "support/random.h"
 #include "support/scene.h"

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/paired_differences.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
+#include "support/table_cells.h"
 
 namespace soslam {
 namespace {
 
-std::vector<std::string> Texts(const std::vector<Cell>& row) {
-  std::vector<std::string> texts;
-  for (const Cell& cell : row) texts.push_back(cell.text);
-  return texts;
-}
-
-using Row = std::vector<std::string>;
+using testing::ElementsAre;
 
 // The 97.5 % quantiles of printed tables, to their three decimals.
 TEST(StudentT95, IsThatOfPrintedTables) {
@@ -50,7 +46,7 @@ TEST(ParseComparisons, EachVariantWithThoseBeforeItInItsList) {
   for (const Comparison& comparison : ParseComparisons("A B C, D Init1-1")) {
     texts.push_back(comparison.variant + " " + comparison.baseline);
   }
-  EXPECT_EQ(texts, (Row{"B A", "C A", "C B", "Init1-1 D"}));
+  EXPECT_THAT(texts, ElementsAre("B A", "C A", "C B", "Init1-1 D"));
   EXPECT_TRUE(ParseComparisons("").empty());
 }
 
@@ -68,13 +64,9 @@ TEST(DifferencesTable, PairsByObjectWithinAndOverDatasets) {
   results.WriteMetrics("shed", "B", {{.id = 1, .iou = 0.5}});
   const Table table =
       DifferencesTable(ReadResults(results.path()), ParseComparisons("A B, A C"), kIou);
-  ASSERT_EQ(table.rows.size(), 3u);
-  EXPECT_EQ(Texts(table.rows[0]), (Row{"desk", "B", "A", "2", "+0.100", "+0.100", "+0.100"}));
-  EXPECT_EQ(Texts(table.rows[1]), (Row{"room", "B", "A", "1", "+0.100", "-", "-"}));
-  EXPECT_EQ(Texts(table.rows[2]),
-            (Row{"all datasets", "B", "A", "3", "+0.100", "+0.100", "+0.100"}));
-  EXPECT_TRUE(table.rows[0][4].bold);
-  EXPECT_FALSE(table.rows[1][4].bold);
+  EXPECT_THAT(CellTexts(table),
+              ElementsAre("desk B A 2 *+0.100* +0.100 +0.100", "room B A 1 +0.100 - -",
+                          "all datasets B A 3 *+0.100* +0.100 +0.100"));
 }
 
 TEST(DifferencesTable, OnlyIntervalsWithoutZeroAreBold) {
@@ -87,10 +79,8 @@ TEST(DifferencesTable, OnlyIntervalsWithoutZeroAreBold) {
                         {.id = 3, .rotation_deg = 1.0}});
   const Table table =
       DifferencesTable(ReadResults(results.path()), ParseComparisons("A B"), kRotation);
-  ASSERT_EQ(table.rows.size(), 1u);
   // Differences 3 and -1: mean 1, standard error 2, t of one degree of freedom 12.706.
-  EXPECT_EQ(Texts(table.rows[0]), (Row{"desk", "B", "A", "2", "+1.00", "-24.41", "+26.41"}));
-  EXPECT_FALSE(table.rows[0][4].bold);
+  EXPECT_THAT(CellTexts(table), ElementsAre("desk B A 2 +1.00 -24.41 +26.41"));
 }
 
 }  // namespace
