@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -61,55 +59,11 @@ void DrawCaptions(const OverlayInput& input, Canvas* canvas) {
   }
 }
 
-// A square grid on a plane. Lines are parallel to its axes, `cell` (m) apart.
-struct Grid {
-  Rigid3d camera_from_plane;
-  double cell;
-  Eigen::Vector2i first, last;  // numbers of lines, counted from the plane's origin
-};
-
-// A grid around the contact points, with cells large enough for few lines, and wide enough to be
-// seen from the camera.
-Grid GridOf(const OverlayInput::Ground& ground) {
-  constexpr std::array kCells = {0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0};
-  constexpr double kMaxCells = 10.0;
-  constexpr double kMinExtentPerDepth = 0.3;
-  const Plane& plane = ground.plane_in_camera;
-  const Rigid3d camera_from_plane = {UprightRotation(plane.normal, 0.0),
-                                     -plane.offset * plane.normal};
-  const Rigid3d plane_from_camera = camera_from_plane.Inverse();
-  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array2d high = -low;
-  double extent = 0.0;
-  for (const Eigen::Vector3d& foot : ground.feet_in_camera) {
-    const Eigen::Array2d place = (plane_from_camera * foot).head<2>();
-    low = low.min(place);
-    high = high.max(place);
-    extent = std::max(extent, kMinExtentPerDepth * foot.z());
-  }
-  extent = std::max(extent, (high - low).maxCoeff());
-  const auto fits = [&](double cell) { return extent <= kMaxCells * cell; };
-  const auto found = std::ranges::find_if(kCells, fits);
-  const double cell = found == kCells.end() ? extent / kMaxCells : *found;
-  return {camera_from_plane, cell, (low / cell).floor().cast<int>() - 1,
-          (high / cell).ceil().cast<int>() + 1};
-}
-
-void DrawGrid(const Grid& grid, const Camera& camera, cv::Mat* image) {
+void DrawGrid(const OverlayInput::Ground& ground, const Camera& camera, cv::Mat* image) {
   cv::Mat drawn = image->clone();
   Canvas canvas(camera, &drawn);
-  const auto line = [&](const Eigen::Vector2i& begin, const Eigen::Vector2i& end) {
-    const auto point = [&](const Eigen::Vector2i& crossing) {
-      return grid.camera_from_plane *
-             Eigen::Vector3d(grid.cell * crossing.x(), grid.cell * crossing.y(), 0.0);
-    };
-    canvas.Segment(point(begin), point(end), {palette::kWhite, 1});
-  };
-  for (int x = grid.first.x(); x <= grid.last.x(); ++x) {
-    line({x, grid.first.y()}, {x, grid.last.y()});
-  }
-  for (int y = grid.first.y(); y <= grid.last.y(); ++y) {
-    line({grid.first.x(), y}, {grid.last.x(), y});
+  for (const auto& [begin, end] : GridAround(ground.plane_in_camera, ground.feet_in_camera).lines) {
+    canvas.Segment(begin, end, {palette::kWhite, 1});
   }
   *image = (1.0 - kGridOpacity) * *image + kGridOpacity * drawn;
 }
@@ -206,7 +160,7 @@ OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int 
 }
 
 void DrawOverlay(const OverlayInput& input, cv::Mat* image) {
-  for (const auto& ground : input.grounds) DrawGrid(GridOf(ground), input.camera, image);
+  for (const auto& ground : input.grounds) DrawGrid(ground, input.camera, image);
   Canvas canvas(input.camera, image);
   for (const Landmark& truth : input.truths_in_camera) {
     DrawCircumscribedBox(truth, kTruthStroke, &canvas);
@@ -228,7 +182,7 @@ std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input) {
   add(input.landmarks.size(), "estimated (arrow: front)", kLandmarkStroke.colour);
   add(input.truths_in_camera.size(), "true (box around it)", kTruthStroke.colour);
   std::map<double, size_t> grounds_by_cell;
-  for (const auto& ground : input.grounds) ++grounds_by_cell[GridOf(ground).cell];
+  for (const auto& [plane, feet] : input.grounds) ++grounds_by_cell[GridAround(plane, feet).cell];
   for (const auto& [cell, count] : grounds_by_cell) {
     add(count, fmt::format("x support plane, cells of {:.3g} m", cell), palette::kWhite);
   }

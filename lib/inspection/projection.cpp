@@ -72,8 +72,7 @@ std::optional<LineSegment2> ProjectSegment(const Camera& camera, const LineSegme
   return LineSegment2{*camera.Project(visible[0]), *camera.Project(visible[1])};
 }
 
-std::vector<LineSegment3> PlaneGrid(const Plane& plane,
-                                    const std::vector<Eigen::Vector3d>& points) {
+Grid GridAround(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
   const Rigid3d frame_from_plane = {UprightRotation(plane.normal, 0.0),
                                     -plane.offset * plane.normal};
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
@@ -87,7 +86,7 @@ std::vector<LineSegment3> PlaneGrid(const Plane& plane,
   const double spacing = kGridSpacingM * std::ceil(squares / kMaxGridLines);
   low = (low / spacing).floor() * spacing;
   high = (high / spacing).ceil() * spacing;
-  std::vector<LineSegment3> lines;
+  Grid grid{spacing, {}};
   for (Eigen::Index along = 0; along < 2; ++along) {
     const Eigen::Index across = 1 - along;
     const auto count = static_cast<int>(std::lround((high[across] - low[across]) / spacing));
@@ -97,10 +96,10 @@ std::vector<LineSegment3> PlaneGrid(const Plane& plane,
       Eigen::Vector3d end = begin;
       begin[along] = low[along];
       end[along] = high[along];
-      lines.push_back({frame_from_plane * begin, frame_from_plane * end});
+      grid.lines.push_back({frame_from_plane * begin, frame_from_plane * end});
     }
   }
-  return lines;
+  return grid;
 }
 
 }  // namespace soslam

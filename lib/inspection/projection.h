@@ -32,10 +32,15 @@ std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
 inline constexpr double kNearM = 0.05;
 std::optional<LineSegment2> ProjectSegment(const Camera& camera, const LineSegment3& in_camera);
 
-// Lines in both directions of a square grid on the plane, around points on or near it. Half a metre
-// apart, or by a multiple that keeps the number of lines within kMaxGridLines. `points` must not be
-// empty. In the plane's frame.
+// A square grid on a plane: lines in both directions, `cell` (m) apart.
+struct Grid {
+  double cell = 0.0;
+  std::vector<LineSegment3> lines;
+};
+
+// The grid around points on or near a plane, in the plane's frame. Cells of half a metre, or of a
+// multiple that keeps the number of lines within kMaxGridLines. `points` must not be empty.
 inline constexpr int kMaxGridLines = 12;
-std::vector<LineSegment3> PlaneGrid(const Plane& plane, const std::vector<Eigen::Vector3d>& points);
+Grid GridAround(const Plane& plane, const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace soslam

@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "inspection/projection.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -74,7 +72,7 @@ using PointsByPlane = std::vector<std::vector<Eigen::Vector3d>>;
 PlaneGrids GridsAround(const PointsByPlane& points, const std::vector<Plane>& planes_in_world) {
   PlaneGrids grids(points.size());
   for (size_t i = 0; i < grids.size(); ++i) {
-    if (!points[i].empty()) grids[i] = PlaneGrid(planes_in_world[i], points[i]);
+    if (!points[i].empty()) grids[i] = GridAround(planes_in_world[i], points[i]).lines;
   }
   return grids;
 }

@@ -61,7 +61,7 @@ TEST(ProjectSegment, EndsWhereTheCameraIs) {
   EXPECT_FALSE(ProjectSegment(camera, {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, -2)}));
 }
 
-TEST(PlaneGrid, IsOnThePlaneAroundThePoints) {
+TEST(GridAround, IsOnThePlaneAroundThePoints) {
   for (const double extent : {0.2, 3.0, 60.0}) {
     const Plane plane = RandomPlane();
     const Rigid3d frame_from_plane = {UprightRotation(plane.normal, 0.0),
@@ -70,7 +70,7 @@ TEST(PlaneGrid, IsOnThePlaneAroundThePoints) {
     for (int i = 0; i < 5; ++i) {
       points.push_back(frame_from_plane * RandomVector(-extent, extent));
     }
-    const auto lines = PlaneGrid(plane, points);
+    const auto lines = GridAround(plane, points).lines;
     EXPECT_LE(lines.size(), static_cast<size_t>(2 * (kMaxGridLines + 2)));
     Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
     for (const LineSegment3& line : lines) {
