@@ -8,7 +8,6 @@
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "geometry/landmark.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {

@@ -7,8 +7,6 @@
 #include <string>
 
 #include "base/assignment.h"
-#include "evaluation/landmark_errors.h"
-#include "evaluation/map_reasons.h"
 #include "evaluation/statistics.h"
 #include "initialisation/semantic_table.h"
 

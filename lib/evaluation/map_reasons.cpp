@@ -11,7 +11,6 @@
 #include <set>
 
 #include "base/assignment.h"
-#include "evaluation/landmark_errors.h"
 #include "geometry/iou.h"
 #include "initialisation/semantic_table.h"
 
@@ -92,12 +91,6 @@ std::optional<int> LandmarkOfObject(const AlignedMap& map, int object_index) {
   const auto found = std::ranges::find(map.landmarks, object_index, &AlignedLandmark::object_index);
   if (found == map.landmarks.end()) return std::nullopt;
   return static_cast<int>(found - map.landmarks.begin());
-}
-
-std::optional<int> LandmarkOfTruth(const ReasonInput& input, int true_index) {
-  const auto found = std::ranges::find(input.truth_of_landmark, true_index);
-  if (found == input.truth_of_landmark.end()) return std::nullopt;
-  return static_cast<int>(found - input.truth_of_landmark.begin());
 }
 
 // Counts of an object's boxes by true object (Sequence::true_objects).
@@ -297,7 +290,9 @@ Explanation ExplainFalse(const ReasonInput& input, int landmark) {
           fmt::format("its boxes are of {} ({}), which was not asked for", object.id, object.label),
           *owner};
     }
-    if (!LandmarkOfTruth(input, *owner)) return ExplainWrong(input, landmark, *owner);
+    const bool is_found =
+        std::ranges::find(input.truth_of_landmark, *owner) != input.truth_of_landmark.end();
+    if (!is_found) return ExplainWrong(input, landmark, *owner);
     return {MapReason::kSplit, "another landmark matches the object of its boxes", *owner};
   }
   if (owners.AreMixed()) {

@@ -2,7 +2,6 @@
 #include "evaluation/statistics.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace soslam {
 

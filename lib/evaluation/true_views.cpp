@@ -18,17 +18,17 @@ struct RawBox {
 
 std::vector<std::vector<RawBox>> RawBoxesByFrame(const Sequence& sequence) {
   std::vector<std::vector<RawBox>> by_frame(sequence.frames.size());
+  const auto add = [&](const TrueView& view, double score, const Box& box) {
+    if (score < kMinViewScore) return;
+    by_frame[static_cast<size_t>(view.frame_index)].push_back({view, box});
+  };
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
-    const Detection& detection = sequence.detections[i];
-    if (detection.score < kMinViewScore) continue;
-    by_frame[static_cast<size_t>(detection.frame_index)].push_back(
-        {{detection.frame_index, static_cast<int>(i), std::nullopt}, detection.box});
+    const Detection& seen = sequence.detections[i];
+    add({seen.frame_index, static_cast<int>(i), std::nullopt}, seen.score, seen.box);
   }
   for (size_t i = 0; i < sequence.rejected.size(); ++i) {
-    const RejectedDetection& rejected = sequence.rejected[i];
-    if (rejected.score < kMinViewScore) continue;
-    by_frame[static_cast<size_t>(rejected.frame_index)].push_back(
-        {{rejected.frame_index, std::nullopt, static_cast<int>(i)}, rejected.box});
+    const RejectedDetection& seen = sequence.rejected[i];
+    add({seen.frame_index, std::nullopt, static_cast<int>(i)}, seen.score, seen.box);
   }
   return by_frame;
 }

@@ -10,7 +10,6 @@
 
 #include "artefact/model_json.h"
 #include "base/hash.h"
-#include "exchange/meshes.h"
 #include "geometry/angles.h"
 
 namespace soslam {

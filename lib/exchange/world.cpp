@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 #include "artefact/model_json.h"
 #include "evaluation/alignment.h"

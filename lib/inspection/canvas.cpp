@@ -115,31 +115,26 @@ cv::Mat WithCaption(const cv::Mat& picture, const std::vector<CaptionEntry>& ent
   constexpr int kLineLength = 24;
   constexpr int kGap = 12;
   const int line_height = SizeOf("Ag").size.height + kTextMargin;
-  struct Placed {
-    CaptionEntry entry;
-    cv::Point corner;
-  };
-  std::vector<Placed> placed;
+  std::vector<cv::Point> corners;
   cv::Point corner(kTextMargin, kTextMargin);
-  for (CaptionEntry entry : entries) {
-    entry.text = AsciiOf(entry.text);
-    const int width = SizeOf(entry.text).size.width + (entry.has_line ? kLineLength : 0);
+  for (const CaptionEntry& entry : entries) {
+    const int width = SizeOf(AsciiOf(entry.text)).size.width + (entry.has_line ? kLineLength : 0);
     if (corner.x > kTextMargin && corner.x + width > picture.cols) {
       corner = {kTextMargin, corner.y + line_height};
     }
-    placed.push_back({entry, corner});
+    corners.push_back(corner);
     corner.x += width + kGap;
   }
   cv::Mat band(corner.y + line_height, picture.cols, CV_8UC3, palette::kDark);
-  for (const auto& [entry, place] : placed) {
-    cv::Point text = place;
-    if (entry.has_line) {
-      const cv::Point middle(0, line_height / 2);
-      cv::line(band, text + middle, text + middle + cv::Point(kLineLength - kTextMargin, 0),
-               entry.colour, 2, cv::LINE_AA);
+  for (size_t i = 0; i < entries.size(); ++i) {
+    cv::Point text = corners[i];
+    if (entries[i].has_line) {
+      const cv::Point begin = text + cv::Point(0, line_height / 2);
+      cv::line(band, begin, begin + cv::Point(kLineLength - kTextMargin, 0), entries[i].colour, 2,
+               cv::LINE_AA);
       text.x += kLineLength;
     }
-    PutText(entry.text, text, entry.colour, &band);
+    PutText(AsciiOf(entries[i].text), text, entries[i].colour, &band);
   }
   cv::Mat captioned;
   cv::vconcat(picture, band, captioned);

@@ -7,9 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <map>
-#include <string_view>
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/model_json.h"
@@ -36,33 +33,28 @@ namespace {
 
 using nlohmann::json;
 
-// A stage that writes artefacts of a kind.
+// A stage, the kinds of its artefacts, and its options.
 struct Maker {
-  const char* kind;
   const char* stage;
+  std::vector<std::string> kinds;
   json defaults;
 };
 
 const std::vector<Maker>& Makers() {
   static const std::vector<Maker> makers = {
-      {"associations", "associate", OptionsToJson(AssociateOptions())},
-      {"edges", "edges", OptionsToJson(EdgesOptions())},
-      {"frames", "frames", OptionsToJson(FrameOptions())},
-      {"landmarks", "initialise", OptionsToJson(InitialiseOptions())},
-      {"landmarks", "refine", OptionsToJson(OrientationOptions())},
-      {"map", "optimise", OptionsToJson(OptimiseOptions())},
-      {"metrics", "evaluate", OptionsToJson(EvaluateOptions())},
-      {"planes", "planes", OptionsToJson(PlanesOptions())},
-      {"points", "reconstruct", OptionsToJson(ReconstructOptions())},
-      {"points", "track", OptionsToJson(TrackOptions())},
-      {"reconstruction", "reconstruct", OptionsToJson(ReconstructOptions())},
-      {"semantic_table", "learn-priors", OptionsToJson(LearnPriorsOptions())},
-      {"sequence", "import", OptionsToJson(ImportOptions())},
-      {"sequence", "associate", OptionsToJson(AssociateOptions())},
-      {"sequence", "planes", OptionsToJson(PlanesOptions())},
-      {"sequence", "ground", OptionsToJson(GroundOptions())},
-      {"symmetry", "refine", OptionsToJson(OrientationOptions())},
-      {"world", "ground", OptionsToJson(GroundOptions())}};
+      {"frames", {"frames"}, OptionsToJson(FrameOptions())},
+      {"reconstruct", {"points", "reconstruction"}, OptionsToJson(ReconstructOptions())},
+      {"track", {"points"}, OptionsToJson(TrackOptions())},
+      {"import", {"sequence"}, OptionsToJson(ImportOptions())},
+      {"associate", {"associations", "sequence"}, OptionsToJson(AssociateOptions())},
+      {"planes", {"planes", "sequence"}, OptionsToJson(PlanesOptions())},
+      {"ground", {"sequence", "world"}, OptionsToJson(GroundOptions())},
+      {"edges", {"edges"}, OptionsToJson(EdgesOptions())},
+      {"initialise", {"landmarks"}, OptionsToJson(InitialiseOptions())},
+      {"refine", {"landmarks", "symmetry"}, OptionsToJson(OrientationOptions())},
+      {"optimise", {"map"}, OptionsToJson(OptimiseOptions())},
+      {"evaluate", {"metrics"}, OptionsToJson(EvaluateOptions())},
+      {"learn-priors", {"semantic_table"}, OptionsToJson(LearnPriorsOptions())}};
   return makers;
 }
 
@@ -72,7 +64,7 @@ const Maker* MakerOf(const std::string& kind, const json& settings) {
   const Maker* best = nullptr;
   size_t most = 0;
   for (const Maker& maker : Makers()) {
-    if (maker.kind != kind) continue;
+    if (std::ranges::find(maker.kinds, kind) == maker.kinds.end()) continue;
     size_t shared = 0;
     for (const auto& item : settings.items()) shared += maker.defaults.count(item.key());
     if (best == nullptr || shared > most) {

@@ -41,10 +41,6 @@ std::string MostFrequent(const std::map<std::string, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
 }
 
-int FrameIdOf(const Sequence& sequence, const RejectedDetection& rejected) {
-  return sequence.frames[static_cast<size_t>(rejected.frame_index)].id;
-}
-
 // Rejected detections have no record of the edges that are cut off.
 SeenBox BoxOf(const Sequence& sequence, const RejectedDetection& rejected) {
   const Camera& camera =
@@ -112,8 +108,10 @@ std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& s
   const InputError other("associations.json: its unused detections are not those of sequence.json");
   for (const json& detection : associations.at("detections")) {
     if (!detection.at("object").is_null()) continue;
-    if (next == rejected.end() || detection.at("frame") != FrameIdOf(sequence, **next)) throw other;
+    if (next == rejected.end()) throw other;
     const RejectedDetection& seen = **next++;
+    const Frame& frame = sequence.frames[static_cast<size_t>(seen.frame_index)];
+    if (detection.at("frame") != frame.id) throw other;
     if (detection.at("track").is_null()) continue;  // a second box of something
     const json* track = &AfterMerging(associations.at("tracks"), detection.at("track"));
     if (track->at("fate") == "object") continue;

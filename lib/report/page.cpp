@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/sequence_file.h"
@@ -22,7 +20,6 @@
 #include "report/page_tables.h"
 #include "report/page_variant.h"
 #include "report/paired_differences.h"
-#include "report/results_tree.h"
 
 namespace soslam {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -83,13 +84,13 @@ bool IsKnownAtTruth(const SymmetryRecord& record, const std::vector<double>& cos
 
 void AddRecord(const SymmetryRecord& record, std::map<std::string, DescriptorFacts>* facts) {
   for (const auto& [name, cost] : record.cost) {
-    size_t lowest = cost.size();
-    for (size_t i = 0; i < cost.size(); ++i) {
-      if (std::isfinite(cost[i]) && (lowest == cost.size() || cost[i] < cost[lowest])) lowest = i;
-    }
-    if (lowest == cost.size()) continue;
+    const auto known = [](double value) {
+      return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+    };
+    const auto lowest = std::ranges::min_element(cost, {}, known);
+    if (lowest == cost.end() || !std::isfinite(*lowest)) continue;
     DescriptorFacts& of_name = (*facts)[name];
-    of_name.errors_deg.push_back(ErrorDeg(record, lowest));
+    of_name.errors_deg.push_back(ErrorDeg(record, static_cast<size_t>(lowest - cost.begin())));
     if (IsKnownAtTruth(record, cost)) {
       of_name.errors_where_known_deg.push_back(of_name.errors_deg.back());
     }

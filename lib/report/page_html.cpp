@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <map>
 #include <utility>
-#include <vector>
 
 #include "artefact/json_file.h"
 #include "base/error.h"

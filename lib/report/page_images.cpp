@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -27,10 +26,6 @@ cv::Mat Scaled(const cv::Mat& image, int size, int max_size) {
   return scaled;
 }
 
-cv::Mat ScaledTo(const cv::Mat& image, int max_width) {
-  return Scaled(image, image.cols, max_width);
-}
-
 std::string EncodeJpeg(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
@@ -50,7 +45,8 @@ ReadImages ReadAll(std::vector<int> frames, const ImageSource& source, int threa
   ParallelFor(static_cast<int>(frames.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
     try {
-      images[index] = ScaledTo(source.read(frames[index]), kWidthsPx.front());
+      const cv::Mat image = source.read(frames[index]);
+      images[index] = Scaled(image, image.cols, kWidthsPx.front());
     } catch (const InputError& error) {
       failures[index] = error.what();
     }
@@ -71,7 +67,8 @@ std::vector<EncodedImages::Image> EncodeAll(const ReadImages& read, int width, i
   std::vector<EncodedImages::Image> encoded(read.frames.size());
   ParallelFor(static_cast<int>(encoded.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
-    encoded[index] = {read.frames[index], EncodeJpeg(ScaledTo(read.images[index], width))};
+    encoded[index] = {read.frames[index],
+                      EncodeJpeg(Scaled(read.images[index], read.images[index].cols, width))};
   });
   return encoded;
 }

@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "base/table.h"
 #include "base/text.h"
@@ -159,7 +157,7 @@ std::string Mistakes(const std::vector<json>& variants) {
     if (table.rows.empty()) continue;
     html += fmt::format(
         "<details><summary>{}: what is missed or false, and why</summary>\n{}</details>\n",
-        HtmlText(variant.at("name").get<std::string>()), HtmlTable(table));
+        HtmlText(variant.at("name")), HtmlTable(table));
   }
   return html;
 }
@@ -175,14 +173,14 @@ std::string QualitySection(const json& page) {
                      table + Mistakes(page.at("variants")));
 }
 
-// An object of a variant; its metrics are null if there are none.
+// An object of a variant; its metrics are empty if there are none.
 struct ObjectRow {
   size_t index;
   json metrics;
   json estimate;
 
   double Iou() const {
-    const json iou = metrics.is_null() ? json() : metrics.value("iou", json());
+    const json iou = metrics.value("iou", json());
     return iou.is_number() ? iou.get<double>() : std::numeric_limits<double>::infinity();
   }
 };
@@ -196,8 +194,9 @@ std::vector<ObjectRow> WorstFirst(const json& objects, const json& variant) {
   std::vector<ObjectRow> rows;
   for (size_t i = 0; i < objects.size(); ++i) {
     const json& estimate = variant.at("objects").at(i);
-    const json& metrics = metrics_of[objects[i].at("id").get<int>()];
-    const bool is_seen = !metrics.is_null() && metrics.at("observations") > 0;
+    const auto found = metrics_of.find(objects[i].at("id").get<int>());
+    const json metrics = found == metrics_of.end() ? json::object() : found->second;
+    const bool is_seen = metrics.value("observations", 0) > 0;
     if (is_seen || !estimate.at("landmark").is_null()) rows.push_back({i, metrics, estimate});
   }
   std::ranges::stable_sort(rows, {}, &ObjectRow::Iou);
@@ -206,9 +205,7 @@ std::vector<ObjectRow> WorstFirst(const json& objects, const json& variant) {
 
 std::string ObjectsTable(const json& objects, const json& variant, bool has_true_objects) {
   const std::vector<ObjectRow> rows = WorstFirst(objects, variant);
-  const auto failure = [](const ObjectRow& row) {
-    return WithBlanks(row.estimate.at("failure").get<std::string>());
-  };
+  const auto failure = [](const ObjectRow& row) { return WithBlanks(row.estimate.at("failure")); };
   Table table;
   table.header = {"object", "observations"};
   if (has_true_objects) {
@@ -221,13 +218,12 @@ std::string ObjectsTable(const json& objects, const json& variant, bool has_true
   std::vector<size_t> indices;
   for (const ObjectRow& row : rows) {
     const json& object = objects[row.index];
-    const json metrics = row.metrics.is_null() ? json::object() : row.metrics;
     const auto number = [&](const char* key, int decimals) {
-      return NumberOrDash(metrics.value(key, json()), decimals);
+      return NumberOrDash(row.metrics.value(key, json()), decimals);
     };
     table.rows.push_back(
         {fmt::format("{} {}", object.at("label").get<std::string>(), object.at("id").dump()),
-         metrics.value("observations", row.estimate.at("observations")).dump()});
+         row.metrics.value("observations", row.estimate.at("observations")).dump()});
     if (has_true_objects) {
       table.rows.back().insert(table.rows.back().end(),
                                {number("iou", 3), number("centre_m", 3), number("rotation_deg", 2),
@@ -247,10 +243,9 @@ std::string ObjectsSection(const json& page) {
   for (const size_t index : DetailedVariants(page)) {
     const json& variant = page.at("variants")[index];
     const json& sequence = page.at("sequences").at(variant.at("sequence").get<size_t>());
-    tables +=
-        fmt::format("<details{}><summary>{}</summary>\n{}</details>\n",
-                    tables.empty() ? " open" : "", HtmlText(variant.at("name").get<std::string>()),
-                    ObjectsTable(sequence.at("objects"), variant, has_true_objects));
+    tables += fmt::format("<details{}><summary>{}</summary>\n{}</details>\n",
+                          tables.empty() ? " open" : "", HtmlText(variant.at("name")),
+                          ObjectsTable(sequence.at("objects"), variant, has_true_objects));
   }
   if (tables.empty()) return "";
   return Section("objects", "Objects", (has_true_objects ? Faint("Worst first.") : "") + tables);
@@ -350,7 +345,7 @@ std::string UnfinishedTable(const json& unfinished) {
 std::string Remarks(const json& page) {
   std::string remarks = FindingsHtml(page.at("findings")) + UnfinishedTable(page.at("unfinished"));
   for (const char* key : {"problems", "notes"}) {
-    for (const json& text : page.at(key)) remarks += Faint(text.get<std::string>());
+    for (const json& text : page.at(key)) remarks += Faint(text);
   }
   return remarks;
 }
@@ -380,8 +375,8 @@ std::string DatasetTables(const json& page) {
   if (shown < sequence.at("counts").at("frames"))
     counts += fmt::format("; {} frames are shown", shown);
   if (!sequence.at("rejected").empty()) counts += "; not used: " + ListOf(sequence.at("rejected"));
-  return fmt::format("<h1>{}</h1>\n", HtmlText(page.at("dataset").get<std::string>())) +
-         Faint(counts) + LinkToFindings(page) + page.at("map_section").get<std::string>() +
+  return fmt::format("<h1>{}</h1>\n", HtmlText(page.at("dataset"))) + Faint(counts) +
+         LinkToFindings(page) + page.at("map_section").get<std::string>() +
          "<div id=\"remarks\">\n" + Remarks(page) + "</div>\n" +
          "<noscript><p class=\"faint\">The map in three dimensions, frames, charts and figures "
          "need JavaScript; all else is here.</p></noscript>\n" +
@@ -405,7 +400,7 @@ std::string OverviewTables(const json& overview) {
       content += MetricsTable(dataset.at("variants"), dataset.at("has_true_objects"));
       if (!quality.empty()) content += "<h3>Maps against all that is true</h3>\n" + quality;
     }
-    sections += Section(url, dataset.at("dataset").get<std::string>(), content);
+    sections += Section(url, dataset.at("dataset"), content);
   }
   return "<h1>Results</h1>\n" + sections;
 }

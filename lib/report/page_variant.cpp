@@ -6,13 +6,11 @@
 #include <cmath>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "artefact/landmarks_file.h"
 #include "evaluation/metrics.h"
 #include "geometry/angles.h"
 #include "report/page_geometry.h"
-#include "report/results_tree.h"
 
 namespace soslam {
 namespace {

@@ -8,7 +8,6 @@
 #include <map>
 #include <numbers>
 #include <sstream>
-#include <vector>
 
 #include "base/error.h"
 #include "evaluation/statistics.h"

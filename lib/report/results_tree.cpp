@@ -43,12 +43,18 @@ std::vector<std::string> KnownVariants() {
 
 std::string StageOf(const std::string& run) { return run.substr(0, run.rfind('-')); }
 
-std::string FailureIn(const fs::path& run_folder) {
-  std::ifstream stream(run_folder / "failed");
+namespace {
+
+std::string FirstLineOf(const fs::path& file) {
+  std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
   return line;
 }
+
+}  // namespace
+
+std::string FailureIn(const fs::path& run_folder) { return FirstLineOf(run_folder / "failed"); }
 
 namespace {
 
@@ -123,10 +129,7 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
 }
 
 fs::path DatasetFolderOf(const fs::path& results_of_dataset) {
-  std::ifstream list(results_of_dataset / "shared" / "dataset.txt");
-  std::string folder;
-  std::getline(list, folder);
-  return folder;
+  return FirstLineOf(results_of_dataset / "shared" / "dataset.txt");
 }
 
 std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles damaged) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 
 #include "geometry/box.h"
@@ -11,6 +12,7 @@
 namespace soslam {
 
 enum class Shape { kBox, kEllipsoid, kCylinder };
+inline constexpr std::array kShapeNames = {"box", "ellipsoid", "cylinder"};  // in files
 
 // A solid with the pose and half axes of a landmark: the ellipsoid itself, the box around it, or
 // the upright (elliptic) cylinder between them, with its axis along z.

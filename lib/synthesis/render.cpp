@@ -10,7 +10,6 @@
 #include <optional>
 #include <random>
 #include <utility>
-#include <vector>
 
 namespace soslam {
 namespace {
@@ -144,87 +143,96 @@ double PlaneDepth(const Plane& plane, const Eigen::Vector3d& origin,
   return approach > 0.0 ? plane.SignedDistance(origin) / approach : kInfinity;
 }
 
-}  // namespace
-
-Surroundings::Surroundings(const Scene& scene) : scene_(scene) {
-  for (const ScenePlane& plane : scene.planes) {
-    plane_from_world_.push_back(WorldFromPlane(plane.plane_in_world).Inverse());
+// Appearance of the scene apart from its objects: floors, walls and tables in faint textures that
+// an edge detector overlooks, under one soft light. Keeps a reference to the scene.
+class Surroundings {
+ public:
+  explicit Surroundings(const Scene& scene) : scene_(scene) {
+    for (const ScenePlane& plane : scene.planes) {
+      plane_from_world_.push_back(WorldFromPlane(plane.plane_in_world).Inverse());
+    }
+    // Light from above, a little from the side, so that the faces of a box differ.
+    light_in_world_ = WorldFromPlane(scene.planes.at(0).plane_in_world).rotation *
+                      Eigen::Vector3d(-0.42, -0.25, 0.87).normalized();
   }
-  // Light from above, a little from the side, so that the faces of a box differ.
-  light_in_world_ = WorldFromPlane(scene.planes.at(0).plane_in_world).rotation *
-                    Eigen::Vector3d(-0.42, -0.25, 0.87).normalized();
-}
 
-double Surroundings::Light(const Eigen::Vector3d& normal_in_world) const {
-  return 0.84 + 0.16 * normal_in_world.dot(light_in_world_);
-}
-
-Colour Surroundings::TableColour(const Eigen::Vector3d& point_in_world,
-                                 const Eigen::Vector3d& normal_in_world) const {
-  constexpr double kTolerance = 1e-6;  // metres: rounding, far less than a table's thickness
-  const double light = Light(normal_in_world);
-  for (size_t i = 0; i < scene_.planes.size(); ++i) {
-    const Plane& plane_in_world = scene_.planes[i].plane_in_world;
-    const bool is_top = scene_.planes[i].table &&
-                        normal_in_world.dot(plane_in_world.normal) > 0.5 &&
-                        std::abs(plane_in_world.SignedDistance(point_in_world)) < kTolerance;
-    if (!is_top) continue;
-    const Eigen::Vector3d point_in_plane = plane_from_world_[i] * point_in_world;
-    return light * ContactShadow(static_cast<int>(i), point_in_plane) *
-           (kTableColour.array() + GrainPattern(point_in_plane)).matrix();
+  // Brightness of a surface with that normal, as a factor on its colour, at most 1.
+  double Light(const Eigen::Vector3d& normal_in_world) const {
+    return 0.84 + 0.16 * normal_in_world.dot(light_in_world_);
   }
-  return light * kTableColour;
-}
 
-Colour Surroundings::BackgroundColour(const Eigen::Vector3d& origin_in_world,
-                                      const Eigen::Vector3d& direction_in_world) const {
-  const Eigen::Vector3d direction = direction_in_world.normalized();
-  double distance = kInfinity;
-  Colour colour = kHazeColour;
-  for (size_t i = 0; i < scene_.planes.size(); ++i) {
-    const double depth = PlaneDepth(scene_.planes[i].plane_in_world, origin_in_world, direction);
-    if (scene_.planes[i].table || !(depth < distance)) continue;
-    distance = depth;
-    colour = FloorColour(static_cast<int>(i), origin_in_world + depth * direction, depth);
+  // Lit colour of a table at a point of its surface.
+  Colour TableColour(const Eigen::Vector3d& point_in_world,
+                     const Eigen::Vector3d& normal_in_world) const {
+    constexpr double kTolerance = 1e-6;  // metres: rounding, far less than a table's thickness
+    const double light = Light(normal_in_world);
+    for (size_t i = 0; i < scene_.planes.size(); ++i) {
+      const Plane& plane_in_world = scene_.planes[i].plane_in_world;
+      const bool is_top = scene_.planes[i].table &&
+                          normal_in_world.dot(plane_in_world.normal) > 0.5 &&
+                          std::abs(plane_in_world.SignedDistance(point_in_world)) < kTolerance;
+      if (!is_top) continue;
+      const Eigen::Vector3d point_in_plane = plane_from_world_[i] * point_in_world;
+      return light * ContactShadow(static_cast<int>(i), point_in_plane) *
+             (kTableColour.array() + GrainPattern(point_in_plane)).matrix();
+    }
+    return light * kTableColour;
   }
-  for (const Plane& wall_in_world : scene_.walls_in_world) {
-    const double depth = PlaneDepth(wall_in_world, origin_in_world, direction);
-    if (!(depth < distance)) continue;
-    distance = depth;
-    colour = WallColour(wall_in_world, origin_in_world + depth * direction);
+
+  // Lit colour of the floor or wall that a ray meets first, or of the haze.
+  Colour BackgroundColour(const Eigen::Vector3d& origin_in_world,
+                          const Eigen::Vector3d& direction_in_world) const {
+    const Eigen::Vector3d direction = direction_in_world.normalized();
+    double distance = kInfinity;
+    Colour colour = kHazeColour;
+    for (size_t i = 0; i < scene_.planes.size(); ++i) {
+      const double depth = PlaneDepth(scene_.planes[i].plane_in_world, origin_in_world, direction);
+      if (scene_.planes[i].table || !(depth < distance)) continue;
+      distance = depth;
+      colour = FloorColour(static_cast<int>(i), origin_in_world + depth * direction, depth);
+    }
+    for (const Plane& wall_in_world : scene_.walls_in_world) {
+      const double depth = PlaneDepth(wall_in_world, origin_in_world, direction);
+      if (!(depth < distance)) continue;
+      distance = depth;
+      colour = WallColour(wall_in_world, origin_in_world + depth * direction);
+    }
+    const double clarity = std::exp(-distance / kHazeDistance);
+    return clarity * colour + (1.0 - clarity) * kHazeColour;
   }
-  const double clarity = std::exp(-distance / kHazeDistance);
-  return clarity * colour + (1.0 - clarity) * kHazeColour;
-}
 
-Colour Surroundings::FloorColour(int plane_index, const Eigen::Vector3d& point_in_world,
-                                 double distance) const {
-  const Eigen::Vector3d point_in_plane = plane_from_world_[plane_index] * point_in_world;
-  return ContactShadow(plane_index, point_in_plane) *
-         (kFloorColour.array() + TilePattern(point_in_plane, distance)).matrix();
-}
-
-Colour Surroundings::WallColour(const Plane& wall_in_world,
-                                const Eigen::Vector3d& point_in_world) const {
-  const double height = scene_.planes[0].plane_in_world.SignedDistance(point_in_world);
-  const double light =
-      0.95 + 0.07 * wall_in_world.normal.dot(light_in_world_) + 0.03 * SmoothStep(0.0, 2.5, height);
-  return light * (height < kSkirtingHeight ? kSkirtingColour : kWallColour);
-}
-
-double Surroundings::ContactShadow(int plane_index, const Eigen::Vector3d& point_in_plane) const {
-  double shadow = 1.0;
-  for (const SceneObject& object : scene_.objects) {
-    if (object.plane_index != plane_index) continue;
-    const Eigen::Vector2d from_object =
-        Eigen::Rotation2Dd(-object.yaw) * (point_in_plane.head<2>() - object.position_on_plane);
-    const double distance = from_object.cwiseQuotient(object.half_axes.head<2>()).norm();
-    shadow *= 1.0 - 0.3 * (1.0 - SmoothStep(0.2, 1.5, distance));
+ private:
+  Colour FloorColour(int plane_index, const Eigen::Vector3d& point_in_world,
+                     double distance) const {
+    const Eigen::Vector3d point_in_plane = plane_from_world_[plane_index] * point_in_world;
+    return ContactShadow(plane_index, point_in_plane) *
+           (kFloorColour.array() + TilePattern(point_in_plane, distance)).matrix();
   }
-  return shadow;
-}
 
-namespace {
+  Colour WallColour(const Plane& wall_in_world, const Eigen::Vector3d& point_in_world) const {
+    const double height = scene_.planes[0].plane_in_world.SignedDistance(point_in_world);
+    const double light = 0.95 + 0.07 * wall_in_world.normal.dot(light_in_world_) +
+                         0.03 * SmoothStep(0.0, 2.5, height);
+    return light * (height < kSkirtingHeight ? kSkirtingColour : kWallColour);
+  }
+
+  // Soft shadow under and around the objects on the plane, as a factor on its colour.
+  double ContactShadow(int plane_index, const Eigen::Vector3d& point_in_plane) const {
+    double shadow = 1.0;
+    for (const SceneObject& object : scene_.objects) {
+      if (object.plane_index != plane_index) continue;
+      const Eigen::Vector2d from_object =
+          Eigen::Rotation2Dd(-object.yaw) * (point_in_plane.head<2>() - object.position_on_plane);
+      const double distance = from_object.cwiseQuotient(object.half_axes.head<2>()).norm();
+      shadow *= 1.0 - 0.3 * (1.0 - SmoothStep(0.2, 1.5, distance));
+    }
+    return shadow;
+  }
+
+  const Scene& scene_;
+  std::vector<Rigid3d> plane_from_world_;  // one per plane of the scene
+  Eigen::Vector3d light_in_world_;
+};
 
 constexpr int kSamplesPerSide = 3;
 

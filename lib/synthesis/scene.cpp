@@ -184,11 +184,6 @@ std::vector<ScenePlane> ParsePlanes(const json& entries, const std::string& wher
   return planes;
 }
 
-Shape ParseShape(const std::string& name) {
-  if (name == "box") return Shape::kBox;
-  return name == "ellipsoid" ? Shape::kEllipsoid : Shape::kCylinder;
-}
-
 std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<ScenePlane>& planes,
                                       const std::string& where) {
   CheckUniqueIds(entries, where);
@@ -198,7 +193,8 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     SceneObject object;
     object.id = entry.at("id").get<int>();
     object.label = entry.at("label").get<std::string>();
-    object.shape = ParseShape(entry.at("shape").get<std::string>());
+    const auto shape = std::ranges::find(kShapeNames, entry.at("shape").get<std::string>());
+    object.shape = static_cast<Shape>(shape - kShapeNames.begin());
     object.half_axes = VectorFromJson(entry.at("half_axes"));
     object.position_on_plane = Vector2(entry.at("position"));
     object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -85,14 +84,13 @@ std::string PlanesText(const Scene& scene) {
 }
 
 std::string ObjectsText(const Scene& scene) {
-  constexpr const char* kShapeNames[] = {"box", "ellipsoid", "cylinder"};
   ordered_json entries = ordered_json::array();
   for (const SceneObject& object : scene.objects) {
     const GroundTruth truth = ObjectGroundTruth(scene, object);
     const Rigid3d& world_from_object = truth.landmark_in_world.frame_from_object;
     entries.push_back({{"id", object.id},
                        {"label", object.label},
-                       {"model", kShapeNames[static_cast<int>(object.shape)]},
+                       {"model", kShapeNames[static_cast<size_t>(object.shape)]},
                        {"center", Numbers(world_from_object.translation)},
                        {"quaternion_xyzw", Numbers(world_from_object.rotation.coeffs())},
                        {"half_axes", Numbers(truth.landmark_in_world.half_axes)},

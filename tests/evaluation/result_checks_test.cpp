@@ -11,6 +11,17 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+// One landmark with each of these half axes.
+LandmarkEstimates Landmarks(const std::vector<Eigen::Vector3d>& half_axes) {
+  LandmarkEstimates estimates;
+  for (const Eigen::Vector3d& axes : half_axes) {
+    ObjectEstimate& estimate = estimates.objects.emplace_back();
+    estimate.object_index = static_cast<int>(estimates.objects.size()) - 1;
+    estimate.landmark_in_world = Landmark{{}, axes};
+  }
+  return estimates;
+}
+
 // Objects of label "crate", which are 0.5 m high give or take a fifth.
 class ResultChecksTest : public testing::Test {
  protected:
@@ -22,21 +33,14 @@ class ResultChecksTest : public testing::Test {
 
   // One object of each height.
   std::string SizeFindings(const std::vector<double>& heights) {
-    LandmarkEstimates estimates;
+    std::vector<Eigen::Vector3d> half_axes;
     Sequence sequence;
     for (size_t i = 0; i < heights.size(); ++i) {
-      Object crate;
-      crate.id = static_cast<int>(i) + 10;
-      crate.label = "crate";
-      sequence.objects.push_back(crate);
-      ObjectEstimate estimate;
-      estimate.object_index = static_cast<int>(i);
-      estimate.landmark_in_world = Landmark();
-      estimate.landmark_in_world->half_axes = {0.2, 0.2, 0.5 * heights[i]};
-      estimates.objects.push_back(estimate);
+      sequence.objects.push_back({static_cast<int>(i) + 10, "crate", 0, {}});
+      half_axes.emplace_back(0.2, 0.2, 0.5 * heights[i]);
     }
     std::string words;
-    for (const Finding& finding : CheckSizes(estimates, sequence, table)) {
+    for (const Finding& finding : CheckSizes(Landmarks(half_axes), sequence, table)) {
       words += finding.check + ": " + InWords(finding);
     }
     return words;
@@ -76,43 +80,24 @@ TEST(CheckFailuresTest, MoreThanAThirdWithoutALandmark) {
 }
 
 TEST(CheckDegenerateTest, LandmarksThatViewsDoNotDetermine) {
-  LandmarkEstimates estimates;
-  for (const double height : {0.1, 1e-9, 1.0}) {
-    ObjectEstimate estimate;
-    estimate.landmark_in_world = Landmark();
-    estimate.landmark_in_world->half_axes = {0.2, 0.3, height};
-    estimates.objects.push_back(estimate);
-  }
-  ASSERT_EQ(CheckDegenerate(estimates).size(), 1u);
-  EXPECT_THAT(CheckDegenerate(estimates)[0].found, HasSubstr("1 of 3 landmarks"));
-  estimates.objects.erase(estimates.objects.begin() + 1);
-  EXPECT_THAT(CheckDegenerate(estimates), IsEmpty());
+  const Eigen::Vector3d low(0.2, 0.3, 0.1), flat(0.2, 0.3, 1e-9), high(0.2, 0.3, 1.0);
+  const auto findings = CheckDegenerate(Landmarks({low, flat, high}));
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].found, HasSubstr("1 of 3 landmarks are a hundred times"));
+  EXPECT_THAT(CheckDegenerate(Landmarks({low, high})), IsEmpty());
 }
 
 TEST(CheckCollapsedTest, LandmarksThatShrankToAPoint) {
-  LandmarkEstimates estimates;
-  for (const double size : {0.1, 1e-4, 1.0}) {
-    ObjectEstimate estimate;
-    estimate.landmark_in_world = Landmark();
-    estimate.landmark_in_world->half_axes = {2e-4, 3e-4, size};
-    if (size > 0.5) estimate.landmark_in_world->half_axes = {size, size, size};
-    estimates.objects.push_back(estimate);
-  }
-  ASSERT_EQ(CheckCollapsed(estimates).size(), 1u);
-  EXPECT_THAT(CheckCollapsed(estimates)[0].found, HasSubstr("1 of 3 landmarks"));
-  estimates.objects.erase(estimates.objects.begin() + 1);
-  EXPECT_THAT(CheckCollapsed(estimates), IsEmpty());
+  const Eigen::Vector3d thin(2e-4, 3e-4, 0.1), point(2e-4, 3e-4, 1e-4), large(1.0, 1.0, 1.0);
+  const auto findings = CheckCollapsed(Landmarks({thin, point, large}));
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].found, HasSubstr("1 of 3 landmarks have three half axes below"));
+  EXPECT_THAT(CheckCollapsed(Landmarks({thin, large})), IsEmpty());
 }
 
 TEST(CheckFailuresTest, MovingObjectsAreNoFailures) {
-  LandmarkEstimates estimates;
-  for (int i = 0; i < 3; ++i) {
-    ObjectEstimate estimate;
-    estimate.object_index = i;
-    estimate.failure = i < 2 ? kMovingObject : "";
-    if (i == 2) estimate.landmark_in_world = Landmark();
-    estimates.objects.push_back(estimate);
-  }
+  LandmarkEstimates estimates = Landmarks({Eigen::Vector3d::Ones()});
+  for (const int index : {1, 2}) estimates.objects.push_back({index, 0, {}, {}, kMovingObject});
   EXPECT_THAT(CheckFailures(estimates), IsEmpty());
 }
 

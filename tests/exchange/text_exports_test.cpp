@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <map>
+#include <sstream>
 
+#include "dataset/csv_table.h"
 #include "dataset/trajectories.h"
 #include "geometry/angles.h"
 #include "support/exported_world.h"
@@ -14,40 +16,23 @@
 namespace soslam {
 namespace {
 
-// A table by RFC 4180, with \n as line ends: rows of fields by column.
-std::vector<std::map<std::string, std::string>> ParseCsv(const std::string& text) {
-  std::vector<std::vector<std::string>> rows(1, {""});
-  bool quoted = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    std::string& field = rows.back().back();
-    if (text[i] == '"' && quoted && text[i + 1] == '"') {
-      field += text[i++];
-    } else if (text[i] == '"') {
-      quoted = !quoted;
-    } else if (text[i] == ',' && !quoted) {
-      rows.back().emplace_back();
-    } else if (text[i] == '\n' && !quoted) {
-      rows.push_back({""});
-    } else {
-      field += text[i];
-    }
-  }
-  EXPECT_EQ(rows.back(), std::vector<std::string>{""});  // the text ends with a line end
-  rows.pop_back();
+// The table of these worlds as read back: rows of fields by column.
+std::vector<std::map<std::string, std::string>> TableOf(const std::vector<World>& worlds) {
+  const std::string text = LandmarksCsvText(worlds);
+  CsvColumns columns;
+  std::istringstream header(text.substr(0, text.find('\n')));
+  for (std::string name; std::getline(header, name, ',');) columns.required.push_back(name);
+  const TemporaryFolder folder;
+  WriteBytes(folder / "landmarks.csv", text);
   std::vector<std::map<std::string, std::string>> table;
-  for (size_t i = 1; i < rows.size(); ++i) {
-    EXPECT_EQ(rows[i].size(), rows[0].size());
-    auto& row = table.emplace_back();
-    for (size_t column = 0; column < rows[0].size(); ++column) {
-      row[rows[0][column]] = rows[i].at(column);
-    }
-  }
+  ForEachCsvRow(folder / "landmarks.csv", columns,
+                [&](const CsvRow& row) { table.push_back(row.fields); });
   return table;
 }
 
 TEST(LandmarksCsvTest, RowsHoldWhatTheMapKnows) {
   const World world = ExportedWorld();
-  const auto table = ParseCsv(LandmarksCsvText({world}));
+  const auto table = TableOf({world});
   ASSERT_EQ(table.size(), 4u);
   for (size_t i = 0; i < 3; ++i) {
     const WorldObject& object = world.objects[i];
@@ -73,7 +58,7 @@ TEST(LandmarksCsvTest, VerdictsOfAnEvaluationAreLast) {
   World world = ExportedWorld();
   world.objects[0].verdict = LandmarkVerdict{"found", 7, 0.5};
   world.objects[1].verdict = LandmarkVerdict{"false", std::nullopt, std::nullopt, "background"};
-  const auto table = ParseCsv(LandmarksCsvText({world}));
+  const auto table = TableOf({world});
   EXPECT_EQ(table[0].at("fate"), "found");
   EXPECT_EQ(table[0].at("true_object"), "7");
   EXPECT_EQ(table[0].at("iou"), "0.5");
@@ -90,7 +75,7 @@ TEST(LandmarksCsvTest, SigmasAreOfMetresAndDegrees) {
   covariance.diagonal() << 0.0, 0.01, 0.02, 0.04, 0.09, 0.16, 0.01, 0.0225, 0.04;
   covariance(1, 2) = covariance(2, 1) = 0.005;
   world.objects[0].estimate.covariance = covariance;
-  const auto row = ParseCsv(LandmarksCsvText({world}))[0];
+  const auto row = TableOf({world})[0];
   const auto number = [&](const char* column) { return std::stod(row.at(column)); };
   EXPECT_NEAR(number("sigma_centre_x"), 0.2, 1e-12);
   EXPECT_NEAR(number("sigma_centre_z"), 0.4, 1e-12);
@@ -102,7 +87,7 @@ TEST(LandmarksCsvTest, SigmasAreOfMetresAndDegrees) {
 }
 
 TEST(LandmarksCsvTest, WhatIsNotThereIsEmpty) {
-  const auto table = ParseCsv(LandmarksCsvText({ExportedWorld()}));
+  const auto table = TableOf({ExportedWorld()});
   EXPECT_EQ(table[1].at("sigma_centre_x"), "");
   EXPECT_EQ(table[1].at("sigma_yaw_deg"), "");
   EXPECT_NE(table[0].at("sigma_yaw_deg"), "");
@@ -112,22 +97,7 @@ TEST(LandmarksCsvTest, WhatIsNotThereIsEmpty) {
 
   World world = ExportedWorld();
   world.objects[3].segment.reset();
-  EXPECT_EQ(ParseCsv(LandmarksCsvText({world}))[3].at("segment"), "");
-}
-
-TEST(LandmarksCsvTest, OnlyFieldsThatNeedItAreQuoted) {
-  World world;
-  world.objects = {ExportedWorld().objects[3]};
-  for (const auto& [label, field] :
-       std::map<std::string, std::string>{{"dining table", "dining table"},
-                                          {"a,b", "\"a,b\""},
-                                          {"12\"", "\"12\"\"\""},
-                                          {"two\nlines", "\"two\nlines\""}}) {
-    world.objects[0].label = label;
-    const std::string text = LandmarksCsvText({world});
-    EXPECT_NE(text.find("\n8," + field + ",4,"), std::string::npos) << text;
-    EXPECT_EQ(ParseCsv(text)[0].at("label"), label);
-  }
+  EXPECT_EQ(TableOf({world})[3].at("segment"), "");
 }
 
 TEST(TumTrajectoryTest, ReadsBackBitForBit) {

@@ -129,14 +129,6 @@ TEST_F(WorldTest, UpIsTheNormalThatMostShare) {
   EXPECT_EQ(UpOf(world), floor);
 }
 
-TEST_F(WorldTest, YawIsAboutTheSupportNormal) {
-  WorldObject object{0, "", {}, RandomPlane().normal, 1.0, {}};
-  object.estimate.landmark_in_world = RandomLandmark();
-  object.estimate.landmark_in_world->frame_from_object.rotation =
-      UprightRotation(object.support_normal, 0.7);
-  EXPECT_NEAR(YawOf(object), 0.7, 1e-12);
-}
-
 using nlohmann::json;
 
 json Quality(double scale, const Rigid3d& truth_from_scaled) {

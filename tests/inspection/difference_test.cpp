@@ -17,23 +17,23 @@
 namespace soslam {
 namespace {
 
+// The first artefact is a map, unless a test writes another one.
 class DifferenceTest : public testing::Test {
  protected:
+  DifferenceTest() { WriteMap(One(), map_, sequence_, {}); }
+
   std::filesystem::path One() const { return folder_ / "one"; }
   std::filesystem::path Two() const { return folder_ / "two"; }
   Differences Compare(double tolerance = 0.0) const {
     return CompareArtefacts(One(), Two(), tolerance);
   }
 
+  TemporaryFolder folder_;
   Sequence sequence_ = RandomSequence();
   MapEstimate map_ = RandomMap();
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(DifferenceTest, TheSameArtefactDiffersNowhere) {
-  WriteMap(One(), map_, sequence_, {});
   WriteMap(Two(), map_, sequence_, {});
   const Differences differences = Compare();
   EXPECT_TRUE(differences.content.empty());
@@ -65,7 +65,6 @@ TEST_F(DifferenceTest, ArraysNameTheirLargestDifference) {
 }
 
 TEST_F(DifferenceTest, MatricesAreOnePlace) {
-  WriteMap(One(), map_, sequence_, {});
   (*map_.objects[0].covariance)(3, 4) += 1.0;
   WriteMap(Two(), map_, sequence_, {});
   const Differences differences = Compare();
@@ -75,7 +74,6 @@ TEST_F(DifferenceTest, MatricesAreOnePlace) {
 }
 
 TEST_F(DifferenceTest, WhatOnlyOneHasIsListed) {
-  WriteMap(One(), map_, sequence_, {});
   map_.objects.pop_back();
   map_.objects[0].covariance.reset();
   map_.solver.converged = false;
@@ -152,7 +150,6 @@ TEST_F(DifferenceTest, InfiniteDistancesAreEqual) {
 }
 
 TEST_F(DifferenceTest, KindsHaveToBeEqual) {
-  WriteMap(One(), map_, sequence_, {});
   WriteSequence(Two(), sequence_, {});
   ExpectError<InputError>([&] { Compare(); }, {One().string(), "\"map\"", "\"sequence\""});
 }

@@ -75,10 +75,13 @@ TEST_F(TimingTableTest, MissingTimingIsNoValue) {
               ElementsAre("room InitPT wall 2.000 - -", "room InitPT CPU 2.500 - -"));
 }
 
-TEST_F(TimingTableTest, NoStagesNoTimes) {
+TEST_F(TimingTableTest, NoStagesOrNoSequenceNoTimes) {
   results_.WriteMetrics("room", "InitP", {{.id = 1}}, true);
   EXPECT_FALSE(TimeOf("InitP"));
   EXPECT_THAT(StageTimeTable(Read()).rows, IsEmpty());
+  Write("InitP", {"initialise-2"}, true);
+  std::filesystem::remove(results_.path() / "room/InitP/sequence.json");
+  EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
 }
 
 TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
@@ -107,12 +110,6 @@ TEST_F(TimingTableTest, StagesInTheOrderOfThePipelineWithTheirSum) {
                           "room InitPT CPU 1.500 7.500 2.500 5.500 - 6.500 23.500",
                           "room OursP wall 1.000 - 2.000 - 4.000 3.000 10.000",
                           "room OursP CPU 1.500 - 2.500 - 4.500 3.500 12.000"));
-}
-
-TEST_F(TimingTableTest, VariantsWithoutSequenceHaveNoTimePerLandmark) {
-  Write("InitP", {"initialise-2"}, true);
-  std::filesystem::remove(results_.path() / "room/InitP/sequence.json");
-  EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
 }
 
 TEST(CountObservations, CountsDetectionsAndTheirObjects) {

