@@ -17,32 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// One of the clocks of a timing, and the name of its rows.
-struct Clock {
-  const char* title;
-  double StageTiming::*seconds;
-};
-constexpr Clock kWallClock = {"wall", &StageTiming::wall_s};
-constexpr Clock kCpuClock = {"CPU", &StageTiming::cpu_s};
-
 constexpr std::array kLandmarkStages = {"edges", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
-
-std::optional<double> Seconds(const StageRun& run, const Clock& clock) {
-  if (!run.timing) return std::nullopt;
-  return (*run.timing).*clock.seconds;
-}
-
-// Sum over the runs; none if a run has no timing, or if there are no runs.
-std::optional<double> TotalSeconds(const std::vector<StageRun>& runs, const Clock& clock) {
-  double total = 0.0;
-  for (const StageRun& run : runs) {
-    const auto seconds = Seconds(run, clock);
-    if (!seconds) return std::nullopt;
-    total += *seconds;
-  }
-  return runs.empty() ? std::nullopt : std::optional(total);
-}
 
 // The runs that are counted in the time per landmark.
 std::vector<StageRun> LandmarkRuns(const VariantResult& variant, bool is_map) {
@@ -62,21 +38,14 @@ std::string MachineText(const StageTiming& timing) {
                      timing.threads);
 }
 
-// The runs of all variants.
-std::vector<StageRun> RunsOf(const std::vector<DatasetResult>& datasets) {
-  std::vector<StageRun> runs;
-  for (const DatasetResult& dataset : datasets) {
-    for (const VariantResult& variant : dataset.variants) {
-      runs.insert(runs.end(), variant.stages.begin(), variant.stages.end());
-    }
-  }
-  return runs;
-}
-
 std::string MachineNote(const std::vector<DatasetResult>& datasets) {
   std::set<std::string> machines;
-  for (const StageRun& run : RunsOf(datasets)) {
-    if (run.timing) machines.insert(MachineText(*run.timing));
+  for (const DatasetResult& dataset : datasets) {
+    for (const VariantResult& variant : dataset.variants) {
+      for (const StageRun& run : variant.stages) {
+        if (run.timing) machines.insert(MachineText(*run.timing));
+      }
+    }
   }
   return fmt::format("Measured on: {}.", fmt::join(machines, "; "));
 }
@@ -134,31 +103,6 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
   table->notes.push_back(fmt::format("Published: {}, on {}.", published.source, published.machine));
 }
 
-// Stages that any variant has, in the order of the pipeline.
-std::vector<std::string> StagesOf(const std::vector<DatasetResult>& datasets) {
-  const std::vector<StageRun> runs = RunsOf(datasets);
-  std::vector<std::string> stages = {"import",     "ground", "associate", "planes",  "edges",
-                                     "initialise", "refine", "optimise",  "evaluate"};
-  std::erase_if(stages, [&](const std::string& stage) {
-    return std::ranges::find(runs, stage, &StageRun::stage) == runs.end();
-  });
-  return stages;
-}
-
-std::vector<Cell> StageTimeRow(const std::string& dataset, const VariantResult& variant,
-                               const std::vector<std::string>& stages, const Clock& clock) {
-  const auto cell = [](const std::optional<double>& seconds) {
-    return Cell(seconds ? fmt::format("{:.3f}", *seconds) : kNoValue);
-  };
-  std::vector<Cell> row = {dataset, variant.name, clock.title};
-  for (const std::string& stage : stages) {
-    const auto run = std::ranges::find(variant.stages, stage, &StageRun::stage);
-    row.push_back(cell(run == variant.stages.end() ? std::nullopt : Seconds(*run, clock)));
-  }
-  row.push_back(cell(TotalSeconds(variant.stages, clock)));
-  return row;
-}
-
 }  // namespace
 
 SequenceCounts CountObservations(const std::filesystem::path& sequence_file) {
@@ -179,13 +123,16 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
   const bool is_map =
       std::ranges::find(variant.stages, kMapStage, &StageRun::stage) != variant.stages.end();
   const std::vector<StageRun> runs = LandmarkRuns(variant, is_map);
-  const auto wall_s = TotalSeconds(runs, kWallClock);
-  const auto cpu_s = TotalSeconds(runs, kCpuClock);
-  if (!wall_s || !cpu_s) return std::nullopt;
+  double wall_s = 0.0, cpu_s = 0.0;
+  for (const StageRun& run : runs) {
+    if (!run.timing) return std::nullopt;
+    wall_s += run.timing->wall_s;
+    cpu_s += run.timing->cpu_s;
+  }
   const bool is_single_frame = !variant.metrics.at("first_observation").is_null();
   const int landmarks = is_single_frame ? counts.observations : counts.objects;
-  if (landmarks == 0) return std::nullopt;
-  return LandmarkTime{1e3 * *wall_s / landmarks, 1e3 * *cpu_s / landmarks,
+  if (runs.empty() || landmarks == 0) return std::nullopt;
+  return LandmarkTime{1e3 * wall_s / landmarks, 1e3 * cpu_s / landmarks,
                       static_cast<double>(counts.observations) / landmarks};
 }
 
@@ -199,25 +146,6 @@ Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& pub
       "Edges, initialisation and refinement per landmark, of which single-frame variants "
       "have one per observation; of maps the back end alone, per object."};
   AddPublishedTimes(published.times, &table);
-  return table;
-}
-
-Table StageTimeTable(const std::vector<DatasetResult>& datasets) {
-  Table table = {
-      "table_5_time_by_stage", "Seconds by stage (Table V)", {"dataset", "variant", "clock"}, {}, 3,
-      {MachineNote(datasets)}};
-  const std::vector<std::string> stages = StagesOf(datasets);
-  table.header.insert(table.header.end(), stages.begin(), stages.end());
-  table.header.emplace_back("all");
-  for (const DatasetResult& dataset : datasets) {
-    for (const VariantResult& variant : dataset.variants) {
-      const bool is_timed = std::ranges::any_of(
-          variant.stages, [](const StageRun& run) { return run.timing.has_value(); });
-      if (!is_timed) continue;
-      table.rows.push_back(StageTimeRow(dataset.name, variant, stages, kWallClock));
-      table.rows.push_back(StageTimeRow(dataset.name, variant, stages, kCpuClock));
-    }
-  }
   return table;
 }
 

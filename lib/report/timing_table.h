@@ -36,8 +36,4 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
 // variant has a time. Throws InputError as CountObservations.
 Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published);
 
-// Wall and CPU seconds of each stage of a variant, and their sums. A run that variants share is
-// counted in each; a missing timing is "-", and so is then the sum.
-Table StageTimeTable(const std::vector<DatasetResult>& datasets);
-
 }  // namespace soslam

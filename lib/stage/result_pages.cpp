@@ -63,7 +63,6 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
                              const std::vector<Comparison>& comparisons) {
   std::vector<Table> tables = PaperTables(datasets, published);
   tables.push_back(TimeTable(datasets, published));
-  tables.push_back(StageTimeTable(datasets));
   for (const Quantity& quantity : {kIou, kRotation, kYawError}) {
     tables.push_back(DifferencesTable(datasets, comparisons, quantity));
   }

@@ -71,14 +71,11 @@ TEST_F(TimingTableTest, MissingTimingIsNoValue) {
   std::filesystem::remove(results_.path() / "room/shared/refine-5/timing.json");
   EXPECT_FALSE(TimeOf("InitPT"));
   EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
-  EXPECT_THAT(CellTexts(StageTimeTable(Read())),
-              ElementsAre("room InitPT wall 2.000 - -", "room InitPT CPU 2.500 - -"));
 }
 
 TEST_F(TimingTableTest, NoStagesOrNoSequenceNoTimes) {
   results_.WriteMetrics("room", "InitP", {{.id = 1}}, true);
   EXPECT_FALSE(TimeOf("InitP"));
-  EXPECT_THAT(StageTimeTable(Read()).rows, IsEmpty());
   Write("InitP", {"initialise-2"}, true);
   std::filesystem::remove(results_.path() / "room/InitP/sequence.json");
   EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
@@ -97,19 +94,6 @@ TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
                           "desk published observations - - 1.0 - - - - - - - - - - -"));
   EXPECT_EQ(table.notes.front(), "Measured on: A CPU, 4 cores, 2 threads.");
   EXPECT_EQ(table.notes.back(), "Published: A paper, on A laptop.");
-}
-
-TEST_F(TimingTableTest, StagesInTheOrderOfThePipelineWithTheirSum) {
-  Write("OursP", {"import-1", "initialise-2", "optimise-4", "evaluate-3"}, false);
-  Write("InitPT", {"import-1", "edges-7", "initialise-2", "refine-5", "evaluate-6"}, true);
-  const Table table = StageTimeTable(Read());
-  EXPECT_THAT(table.header, ElementsAre("dataset", "variant", "clock", "import", "edges",
-                                        "initialise", "refine", "optimise", "evaluate", "all"));
-  EXPECT_THAT(CellTexts(table),
-              ElementsAre("room InitPT wall 1.000 7.000 2.000 5.000 - 6.000 21.000",
-                          "room InitPT CPU 1.500 7.500 2.500 5.500 - 6.500 23.500",
-                          "room OursP wall 1.000 - 2.000 - 4.000 3.000 10.000",
-                          "room OursP CPU 1.500 - 2.500 - 4.500 3.500 12.000"));
 }
 
 TEST(CountObservations, CountsDetectionsAndTheirObjects) {

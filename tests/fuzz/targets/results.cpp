@@ -17,7 +17,6 @@ const FuzzTarget kResults("results", [](const HostileInput& input) {
     const std::vector<DatasetResult> datasets = ReadResults(folder);
     PaperTables(datasets, {});
     TimeTable(datasets, {});
-    StageTimeTable(datasets);
     DifferencesTable(datasets, {}, kIou);
     for (const DatasetResult& dataset : datasets) DatasetTable(dataset);
   });
