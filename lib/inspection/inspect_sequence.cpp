@@ -113,11 +113,35 @@ Inspection InspectSequence(const std::filesystem::path& file) {
   return inspection;
 }
 
+using nlohmann::json;
+
+// Chosen frames: rows are the images of the dataset.
+Inspection InspectFrames(const json& document) {
+  std::map<std::string, int> reasons;
+  for (const json& frame : document.at("left_out")) ++reasons[frame.at("reason")];
+  const json& hint = document.at("focal_hint");
+  Inspection inspection;
+  inspection.facts = {
+      {"source", document.at("name")},
+      {"images", fmt::format("{}, {} x {} px", document.at("frames").size(),
+                             document.at("width").get<int>(), document.at("height").get<int>())},
+      {"left out", CountsInWords(reasons)},
+      {"focal length",
+       hint.is_null()
+           ? "not known"
+           : FillIn("{focal_px:.0f} px, a guess from the EXIF data of {images} photos", hint)}};
+  inspection.table = TableOf({{"image"},
+                              {"source"},
+                              {"frame", "", 2, "frame_number"},
+                              {"time", "s", 3, "time_s"},
+                              {"sharpness", "", 1}},
+                             document.at("frames"));
+  return inspection;
+}
+
 // Associations: rows are the objects that were found.
 
 namespace {
-
-using nlohmann::json;
 
 // Number of rows for each value of a field.
 std::string FrequenciesInWords(const json& rows, const char* field) {
