@@ -108,15 +108,6 @@ std::string FoundInWords(const json& rows, const char* name, const char* field) 
   return fmt::format("{} of {} {}", found, rows.size(), name);
 }
 
-std::map<std::string, int> FailuresOf(const json& objects) {
-  std::map<std::string, int> failures;
-  for (const json& object : objects) {
-    const std::string failure = object.at("failure");
-    if (!failure.empty()) ++failures[failure];
-  }
-  return failures;
-}
-
 std::vector<Fact> SolverInWords(const json& solver) {
   const auto counts = [&](const char* field) {
     return CountsInWords(solver.at(field).get<std::map<std::string, int>>());
@@ -176,7 +167,7 @@ Inspection InspectMap(const json& document) {
   const json& objects = document.at("objects");
   inspection.facts = {
       {"found", FoundInWords(objects, "objects have a landmark (world frame)", "landmark")},
-      {"failures", CountsInWords(FailuresOf(objects))}};
+      {"failures", CountsInWords(CountsBy("failure", objects))}};
   const std::vector<Fact> solver = SolverInWords(document.at("solver"));
   inspection.facts.insert(inspection.facts.end(), solver.begin(), solver.end());
   inspection.facts.push_back({"trajectory", TrajectoryInWords(document.at("trajectory"))});

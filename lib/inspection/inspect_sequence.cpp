@@ -117,15 +117,13 @@ using nlohmann::json;
 
 // Chosen frames: rows are the images of the dataset.
 Inspection InspectFrames(const json& document) {
-  std::map<std::string, int> reasons;
-  for (const json& frame : document.at("left_out")) ++reasons[frame.at("reason")];
   const json& hint = document.at("focal_hint");
   Inspection inspection;
   inspection.facts = {
       {"source", document.at("name")},
       {"images", fmt::format("{}, {} x {} px", document.at("frames").size(),
                              document.at("width").get<int>(), document.at("height").get<int>())},
-      {"left out", CountsInWords(reasons)},
+      {"left out", CountsInWords(CountsBy("reason", document.at("left_out")))},
       {"focal length",
        hint.is_null()
            ? "not known"
@@ -143,13 +141,6 @@ Inspection InspectFrames(const json& document) {
 
 namespace {
 
-// Number of rows for each value of a field.
-std::string FrequenciesInWords(const json& rows, const char* field) {
-  std::map<std::string, int> counts;
-  for (const json& row : rows) ++counts[row.at(field)];
-  return fmt::format("{}: {}", rows.size(), CountsInWords(counts));
-}
-
 constexpr const char* kAgreement =
     "{objects} objects found, {given_objects} given, {matched} of them the same; precision "
     "{precision:.3f}, recall {recall:.3f}, F1 {f1:.3f}";
@@ -157,10 +148,14 @@ constexpr const char* kAgreement =
 }  // namespace
 
 Inspection InspectAssociations(const json& document) {
+  const auto counts = [&](const char* rows, const char* field) {
+    return fmt::format("{}: {}", document.at(rows).size(),
+                       CountsInWords(CountsBy(field, document.at(rows))));
+  };
   Inspection inspection;
   inspection.facts = {{"agreement", FillIn(kAgreement, document.at("agreement"))},
-                      {"detections", FrequenciesInWords(document.at("detections"), "decision")},
-                      {"tracks", FrequenciesInWords(document.at("tracks"), "fate")}};
+                      {"detections", counts("detections", "decision")},
+                      {"tracks", counts("tracks", "fate")}};
   json objects = document.at("objects");
   for (json& object : objects) {
     json& votes = object["label_votes"];
@@ -192,8 +187,6 @@ std::string ObjectsOn(const json& plane, const json& objects) {
 
 Inspection InspectPlanes(const json& document) {
   const json& objects = document.at("objects");
-  std::map<std::string, int> reasons;
-  for (const json& object : objects) ++reasons[object.at("reason")];
   Inspection inspection;
   inspection.facts = {
       {"dataset", document.at("dataset")},
@@ -201,7 +194,7 @@ Inspection InspectPlanes(const json& document) {
        fmt::format("planes: {}, objects: {}; {} after {} rounds", document.at("planes").size(),
                    objects.size(), document.at("settled").get<bool>() ? "settled" : "NOT settled",
                    document.at("rounds").get<int>())},
-      {"decided by", CountsInWords(reasons)}};
+      {"decided by", CountsInWords(CountsBy("reason", objects))}};
   if (!document.at("cost").is_null()) {
     inspection.facts.push_back({"cost", FillIn("{cost:.6g}", document)});
   }

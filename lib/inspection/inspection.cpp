@@ -226,6 +226,13 @@ std::string CountsInWords(const std::map<std::string, int>& counts) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
+std::map<std::string, int> CountsBy(const char* field, const json& rows) {
+  std::map<std::string, int> counts;
+  for (const json& row : rows) ++counts[row.at(field)];
+  counts.erase("");
+  return counts;
+}
+
 std::string FillIn(std::string_view text, const json& fields) {
   std::string filled;
   for (size_t begin = text.find('{'); begin != text.npos; begin = text.find('{')) {

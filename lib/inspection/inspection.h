@@ -38,6 +38,9 @@ std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 // "3 near_border, 2 duplicate", the most frequent first; "none" when there are none.
 std::string CountsInWords(const std::map<std::string, int>& counts);
 
+// Number of rows for each value of a field, except empty ones.
+std::map<std::string, int> CountsBy(const char* field, const nlohmann::json& rows);
+
 // The text with each "{field}" replaced by that field of a JSON object, "-" if it is null. Fields
 // of parts are "part/field"; a number may have a format, "{field:.3f}". Throws json::exception for
 // a field that is missing.

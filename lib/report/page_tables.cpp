@@ -12,6 +12,7 @@
 
 #include "base/table.h"
 #include "base/text.h"
+#include "inspection/inspection.h"
 #include "report/dataset_tables.h"
 #include "report/map_words.h"
 #include "report/page_html.h"
@@ -284,15 +285,11 @@ std::string AblationSection(const json& page) {
 }
 
 std::vector<Cell> StagesRow(const json& variant) {
-  size_t landmarks = 0;
-  std::map<std::string, size_t> failures;
-  for (const json& object : variant.at("objects")) {
-    landmarks += object.at("landmark").is_null() ? 0 : 1;
-    const auto failure = object.at("failure").get<std::string>();
-    if (!failure.empty()) ++failures[failure];
-  }
+  const json& objects = variant.at("objects");
+  const auto landmarks = std::ranges::count_if(
+      objects, [](const json& object) { return !object.at("landmark").is_null(); });
   std::vector<Cell> row = {variant.at("name").get<std::string>(), std::to_string(landmarks),
-                           ListOf(json(failures))};
+                           ListOf(json(CountsBy("failure", objects)))};
   const json& solver = variant.at("solver");
   if (solver.is_null()) {
     row.resize(7, "");
