@@ -43,11 +43,16 @@ inline std::string StageProgram(const std::string& stage) {
   return std::string(SOSLAM_BINARY_DIR) + "/soslam-" + stage;
 }
 
-// Make, without what a make that runs the tests would hand down to it.
-inline CommandResult RunMake(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {"env", "-u",        "MAKEFLAGS", "-u",  "MFLAGS",
-                                    "-u",  "MAKELEVEL", "make",      "-j2", "--output-sync"};
+// The words that call make, without what a make that runs the tests would hand down to it.
+inline std::vector<std::string> MakeCommand(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"env", "-u",        "MAKEFLAGS", "-u", "MFLAGS",
+                                    "-u",  "MAKELEVEL", "make",      "-j2"};
   words.insert(words.end(), arguments.begin(), arguments.end());
+  return words;
+}
+inline CommandResult RunMake(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = MakeCommand(arguments);
+  words.emplace_back("--output-sync");
   return RunCommand(words);
 }
 
@@ -102,23 +107,11 @@ class SmallPipeline {
 
   // The words that call a goal of the project's own Makefile for this dataset.
   std::vector<std::string> MakeWords(const std::string& goal) const {
-    return {"env",
-            "-u",
-            "MAKEFLAGS",
-            "-u",
-            "MFLAGS",
-            "-u",
-            "MAKELEVEL",
-            "make",
-            "-j2",
-            "-C",
-            SOSLAM_SOURCE_DIR,
-            goal,
-            "DATASET=small",
-            "BUILD=" + std::filesystem::path(SOSLAM_BINARY_DIR).parent_path().string(),
-            "DATA_ROOT=" + Dataset().parent_path().string(),
-            "RESULTS=" + Results().parent_path().string(),
-            "PIPELINES=" + Pipelines().string()};
+    return MakeCommand({"-C", SOSLAM_SOURCE_DIR, goal, "DATASET=small",
+                        "BUILD=" + std::filesystem::path(SOSLAM_BINARY_DIR).parent_path().string(),
+                        "DATA_ROOT=" + Dataset().parent_path().string(),
+                        "RESULTS=" + Results().parent_path().string(),
+                        "PIPELINES=" + Pipelines().string()});
   }
 
   // A folder with all programs, where that of a stage crashes.

@@ -11,7 +11,7 @@ namespace soslam {
 namespace {
 
 // Boxes on a floor in a line ahead of a camera that drives towards them.
-Scene Row() {
+Scene Row(int frames = 20) {
   Scene scene;
   scene.name = "row";
   scene.camera = {640, 480, 500.0, 500.0, 319.5, 239.5};
@@ -19,7 +19,7 @@ Scene Row() {
   scene.objects.push_back({1, "a", Shape::kBox, {0.2, 0.3, 0.25}, {3.0, -0.6}, 0.4, 0, 1});
   scene.objects.push_back({2, "b", Shape::kEllipsoid, {0.3, 0.2, 0.25}, {3.5, 0.1}, 0.0, 0, 2});
   scene.objects.push_back({3, "c", Shape::kCylinder, {0.2, 0.2, 0.3}, {4.0, 1.0}, 0.0, 0, 3});
-  scene.trajectory.frames = 20;
+  scene.trajectory.frames = frames;
   scene.trajectory.waypoints = {{{0.0, 0.0, 0.6}, {3.5, 0.1, 0.3}},
                                 {{1.0, 0.2, 0.6}, {3.5, 0.1, 0.3}}};
   scene.seed = 1;
@@ -50,8 +50,7 @@ TEST(Simulate, WithoutNoiseMeasurementsAreTheTruth) {
 }
 
 TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
-  Scene scene = Row();
-  scene.trajectory.frames = 1;
+  Scene scene = Row(1);
   const Eigen::Vector2d ahead(3.5, 0.1);  // of object b, seen from the first pose
   scene.objects.push_back({4, "wall", Shape::kBox, {0.05, 0.4, 0.4}, 0.6 * ahead, 0.0, 0, 4});
   const Simulation simulation = Simulate(scene, false);
@@ -61,8 +60,7 @@ TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
 }
 
 TEST(Simulate, ObjectBehindATableTopIsNotInSight) {
-  Scene scene = Row();
-  scene.trajectory.frames = 1;
+  Scene scene = Row(1);
   scene.planes.push_back({9, "table", Plane{Eigen::Vector3d::UnitZ(), -0.45}, TableTop{}});
   scene.planes[1].table->position_on_plane = {1.8, 0.0};
   scene.planes[1].table->half_size = {0.6, 2.0};
@@ -70,8 +68,7 @@ TEST(Simulate, ObjectBehindATableTopIsNotInSight) {
 }
 
 TEST(Simulate, TruncatedAndPassedObjectsAreNotInSight) {
-  Scene scene = Row();
-  scene.trajectory.frames = 1;
+  Scene scene = Row(1);
   scene.objects[0].position_on_plane = {1.2, -0.75};  // reaches over the image's border
   scene.objects[2].position_on_plane = {-4.0, 1.0};   // behind the camera
   const Simulation simulation = Simulate(scene, false);
@@ -80,8 +77,7 @@ TEST(Simulate, TruncatedAndPassedObjectsAreNotInSight) {
 }
 
 TEST(Simulate, BoxNoiseHasItsSigma) {
-  Scene scene = Row();
-  scene.trajectory.frames = 1000;
+  Scene scene = Row(1000);
   scene.noise.box_edge_sigma = 0.03;
   scene.noise.box_sigma_px = 1.0;
   const Simulation simulation = Simulate(scene, true);
@@ -102,8 +98,7 @@ TEST(Simulate, BoxNoiseHasItsSigma) {
 }
 
 TEST(Simulate, MissesAsOftenAsToldAndStaysInTheImage) {
-  Scene scene = Row();
-  scene.trajectory.frames = 1000;
+  Scene scene = Row(1000);
   scene.noise.miss_probability = 0.3;
   scene.noise.box_sigma_px = 200.0;
   const Simulation simulation = Simulate(scene, true);
@@ -118,8 +113,7 @@ TEST(Simulate, MissesAsOftenAsToldAndStaysInTheImage) {
 }
 
 TEST(Simulate, OdometryStartsAtTheTruthAndDriftsAsTold) {
-  Scene scene = Row();
-  scene.trajectory.frames = 50;
+  Scene scene = Row(50);
   scene.noise.odometry_translation_sigma = 0.01;
   double squares = 0.0;
   constexpr int kRuns = 400;
