@@ -126,30 +126,23 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
   const bool is_larger = std::ranges::none_of(boxes, is_left_or_above);
   const bool is_mostly_right = plausible > kMostly * all || (better == nullptr && !is_larger);
   const Eigen::Vector2d extent = Extent(boxes);
-  Finding finding{
-      "box_convention",
-      is_mostly_right ? Severity::kWarning : Severity::kError,
-      fmt::format("{} of {} boxes, read as {}, have no area or reach out of the image of "
-                  "{} x {} (up to {:.0f}, {:.0f})",
-                  bad, boxes.size(), assumed.name, camera.width, camera.height, extent.x(),
-                  extent.y()),
-      "boxes in the image",
-      "",
-      ""};
+  Advice advice = {"boxes of whole objects that the image cuts, or of another camera",
+                   "cut the boxes at the border of the image, as detectors do"};
   if (better != nullptr) {
-    finding.cause = fmt::format("boxes that are meant as {}", better->name);
-    finding.remedy = fmt::format("write {}, or name the right detections_format", assumed.name);
+    advice = {fmt::format("boxes that are meant as {}", better->name),
+              fmt::format("write {}, or name the right detections_format", assumed.name)};
   } else if (is_larger) {
-    finding.cause = "boxes of images of another size, or of another camera";
-    finding.remedy = fmt::format(
-        "give boxes in pixels of {} x {}, or the camera of the images that "
-        "the detector saw",
-        camera.width, camera.height);
-  } else {
-    finding.cause = "boxes of whole objects that the image cuts, or of another camera";
-    finding.remedy = "cut the boxes at the border of the image, as detectors do";
+    advice = {"boxes of images of another size, or of another camera",
+              fmt::format("give boxes in pixels of {} x {}, or the camera of the images that the "
+                          "detector saw",
+                          camera.width, camera.height)};
   }
-  return {finding};
+  return {{"box_convention", is_mostly_right ? Severity::kWarning : Severity::kError,
+           fmt::format("{} of {} boxes, read as {}, have no area or reach out of the image of "
+                       "{} x {} (up to {:.0f}, {:.0f})",
+                       bad, boxes.size(), assumed.name, camera.width, camera.height, extent.x(),
+                       extent.y()),
+           "boxes in the image", advice.cause, advice.remedy}};
 }
 
 // Finds boxes of downscaled images: they begin at the left border, and some end at the border of
@@ -276,8 +269,7 @@ std::vector<Finding> CheckBlankLines(const ImportView& view) {
 
 std::vector<Finding> CheckLabels(const ImportView& view) {
   std::vector<Finding> findings = CheckClassNumbers(view);
-  const std::vector<Finding> of_file = CheckBlankLines(view);
-  findings.insert(findings.end(), of_file.begin(), of_file.end());
+  std::ranges::move(CheckBlankLines(view), std::back_inserter(findings));
   return findings;
 }
 

@@ -38,27 +38,27 @@ double ScaleOfPrincipalPoint(const Camera& camera) {
   return by_x > 0.0 && IsAbout(by_y, by_x) ? by_x : 0.0;
 }
 
-void ExplainIntrinsics(const Camera& camera, Finding* finding) {
+Advice AdviceOnIntrinsics(const Camera& camera) {
   const double scale = ScaleOfPrincipalPoint(camera);
   if (camera.cx <= 2.0 && camera.cy <= 2.0) {
-    finding->cause = "intrinsics as fractions of the image";
-    finding->remedy =
-        fmt::format("multiply fx, cx by {} and fy, cy by {}", camera.width, camera.height);
-  } else if (HasSwappedSides(camera)) {
-    finding->cause = "width and height swapped, as of a camera held upright";
-    finding->remedy = fmt::format("width {}, height {}", camera.height, camera.width);
-  } else if (scale > 1.2 || (scale > 0.0 && scale < 0.8)) {
-    finding->cause = fmt::format("intrinsics of images {:.3g} times as large", scale);
-    finding->remedy = fmt::format("divide fx, fy, cx, cy by {:.4g}", scale);
-  } else if (camera.fx < 0.2 * camera.width) {
-    finding->cause = "a focal length in millimetres";
-    finding->remedy =
-        "give fx, fy in pixels: millimetres times the width of the image in pixels, "
-        "divided by that of the sensor in millimetres";
-  } else {
-    finding->cause = "intrinsics of another camera";
-    finding->remedy = "give those of the camera that took the images, in pixels";
+    return {"intrinsics as fractions of the image",
+            fmt::format("multiply fx, cx by {} and fy, cy by {}", camera.width, camera.height)};
   }
+  if (HasSwappedSides(camera)) {
+    return {"width and height swapped, as of a camera held upright",
+            fmt::format("width {}, height {}", camera.height, camera.width)};
+  }
+  if (scale > 1.2 || (scale > 0.0 && scale < 0.8)) {
+    return {fmt::format("intrinsics of images {:.3g} times as large", scale),
+            fmt::format("divide fx, fy, cx, cy by {:.4g}", scale)};
+  }
+  if (camera.fx < 0.2 * camera.width) {
+    return {"a focal length in millimetres",
+            "give fx, fy in pixels: millimetres times the width of the image in pixels, "
+            "divided by that of the sensor in millimetres"};
+  }
+  return {"intrinsics of another camera",
+          "give those of the camera that took the images, in pixels"};
 }
 
 std::vector<Finding> CheckIntrinsics(const Camera& camera) {
@@ -74,15 +74,11 @@ std::vector<Finding> CheckIntrinsics(const Camera& camera) {
       is_focal_length(camera.fx) && camera.fy >= 0.2 * camera.height && camera.fy <= 10.0 * scale;
   if (is_focal && is_inside && is_central && !HasSwappedSides(camera)) return {};
   const bool is_impossible = !is_focal || !is_inside || HasSwappedSides(camera);
-  Finding finding{
-      "camera_intrinsics",
-      is_impossible ? Severity::kError : Severity::kWarning,
-      InWords(camera),
-      "focal lengths of 0.2 to 10 times the width and a principal point near the middle",
-      "",
-      ""};
-  ExplainIntrinsics(camera, &finding);
-  return {finding};
+  const Advice advice = AdviceOnIntrinsics(camera);
+  return {{"camera_intrinsics", is_impossible ? Severity::kError : Severity::kWarning,
+           InWords(camera),
+           "focal lengths of 0.2 to 10 times the width and a principal point near the middle",
+           advice.cause, advice.remedy}};
 }
 
 }  // namespace
@@ -110,36 +106,40 @@ struct Mismatch {
   int images = 0;
 };
 
-Finding Explained(const Mismatch& mismatch, size_t all) {
-  const auto& [camera, size, is_of_stored, first_image, images] = mismatch;
-  Finding finding{
-      "camera_size",
-      Severity::kError,
-      fmt::format("{} of {} images are of {} x {} pixels (the first is {}), the camera of "
-                  "{} x {}",
-                  images, all, size.width, size.height, first_image, camera.width, camera.height),
-      "images of the camera's size",
-      "",
-      ""};
+Advice AdviceOnSize(const Mismatch& mismatch) {
+  const Camera& camera = mismatch.camera;
+  const ImageSize& size = mismatch.size;
   const double scale = static_cast<double>(size.width) / camera.width;
   const double scale_y = static_cast<double>(size.height) / camera.height;
-  if (is_of_stored) {
-    finding.cause = "a camera of the images as they are stored, which a note of EXIF turns";
-    finding.remedy =
-        "image_orientation stored where boxes and poses are of the stored images, too; otherwise "
-        "the camera of the images as they are shown";
-  } else if (size.width == camera.height && size.height == camera.width) {
-    finding.cause = "width and height swapped, or images of a camera held upright";
-    finding.remedy = "give the camera of the images as they are shown";
-  } else if (std::abs(scale - scale_y) <= 0.02 * scale) {
-    finding.cause = "a camera of images before they were made smaller or larger";
-    finding.remedy = fmt::format("width {}, height {}, and fx, fy, cx, cy times {:.4g}", size.width,
-                                 size.height, scale);
-  } else {
-    finding.cause = "another camera, or images that were cropped";
-    finding.remedy = "give the camera that these images are of";
+  if (mismatch.is_of_stored) {
+    return {"a camera of the images as they are stored, which a note of EXIF turns",
+            "image_orientation stored where boxes and poses are of the stored images, too; "
+            "otherwise the camera of the images as they are shown"};
   }
-  return finding;
+  if (size.width == camera.height && size.height == camera.width) {
+    return {"width and height swapped, or images of a camera held upright",
+            "give the camera of the images as they are shown"};
+  }
+  if (std::abs(scale - scale_y) <= 0.02 * scale) {
+    return {"a camera of images before they were made smaller or larger",
+            fmt::format("width {}, height {}, and fx, fy, cx, cy times {:.4g}", size.width,
+                        size.height, scale)};
+  }
+  return {"another camera, or images that were cropped",
+          "give the camera that these images are of"};
+}
+
+Finding FindingOn(const Mismatch& mismatch, size_t all) {
+  const Advice advice = AdviceOnSize(mismatch);
+  return {"camera_size",
+          Severity::kError,
+          fmt::format("{} of {} images are of {} x {} pixels (the first is {}), the camera of "
+                      "{} x {}",
+                      mismatch.images, all, mismatch.size.width, mismatch.size.height,
+                      mismatch.first_image, mismatch.camera.width, mismatch.camera.height),
+          "images of the camera's size",
+          advice.cause,
+          advice.remedy};
 }
 
 // Checks images with an EXIF rotation when their size does not determine whether camera and boxes
@@ -191,7 +191,7 @@ std::vector<Finding> CheckImages(const ImportView& view) {
     if (mismatch.images++ == 0) mismatch = {camera, size, is_of_stored, frame.image, 1};
   }
   std::vector<Finding> findings = CheckTurned(turned, all, view.options);
-  for (const auto& [size, mismatch] : mismatches) findings.push_back(Explained(mismatch, all));
+  for (const auto& [size, mismatch] : mismatches) findings.push_back(FindingOn(mismatch, all));
   return findings;
 }
 

@@ -18,8 +18,7 @@ namespace soslam {
 namespace {
 
 constexpr size_t kFewest = 10;  // minimum number of usable boxes
-constexpr double kCutPx =
-    2.0;  // distance from the border at which a box counts as cut by the image
+constexpr double kCutPx = 2.0;  // boxes this near to the border count as cut by the image
 
 // A box and the true landmark with its id, in the same camera's frame.
 struct BoxAndTruth {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <vector>
 
 #include "dataset/dataset_checks.h"
@@ -67,7 +66,9 @@ Things Mirrored(Things things) {
   return things;
 }
 
-std::vector<Explanation> ExplanationsByReading(const ImportView& view, const Things& things) {
+// An explanation for each reading of the poses and each order of the frames with which objects can
+// be triangulated.
+std::vector<Explanation> Explanations(const ImportView& view, const Things& things) {
   const Things mirrored = Mirrored(things);
   std::vector<Explanation> explanations;
   for (const PoseReading& reading : PoseReadings()) {
@@ -81,12 +82,7 @@ std::vector<Explanation> ExplanationsByReading(const ImportView& view, const Thi
     if (!error) continue;
     explanations.push_back({reading.name, reading.cause, reading.remedy, false, *error});
   }
-  return explanations;
-}
-
-std::vector<Explanation> ExplanationsByOrder(const ImportView& view, const Things& things) {
   const std::vector<ListedFrame>& frames = view.content.frames;
-  std::vector<Explanation> explanations;
   for (const FrameOrder& order : FrameOrders(frames.size())) {
     const auto error = MedianRayError(things, [&](size_t frame) -> std::optional<Rigid3d> {
       const size_t meant = order.frame_meant[frame];
@@ -105,11 +101,9 @@ std::optional<Explanation> BestExplanation(const ImportView& view, const Things&
   constexpr double kFitsDeg = 1.0;
   constexpr double kMuchBetter = 0.25;
   if (as_read.median_deg <= kFitsDeg) return std::nullopt;
-  std::vector<Explanation> explanations = ExplanationsByReading(view, things);
-  std::ranges::move(ExplanationsByOrder(view, things), std::back_inserter(explanations));
   std::optional<Explanation> best;
   double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
-  for (Explanation& explanation : explanations) {
+  for (Explanation& explanation : Explanations(view, things)) {
     const RayError& error = explanation.error;
     if (!IsComparable(error, as_read) || error.median_deg >= best_deg) continue;
     best_deg = error.median_deg;
@@ -254,34 +248,28 @@ std::vector<PosePair> AlignedAtFirst(std::vector<PosePair> pairs) {
   return pairs;
 }
 
-void Explain(const std::vector<PosePair>& pairs, double extent_m, Finding* finding) {
+Advice AdviceOnTrajectory(const std::vector<PosePair>& pairs, double extent_m) {
   const auto fits = [&](const std::vector<PosePair>& read) {
     return IsDrift(GapOf(read), extent_m) && HaveSameScale(read);
   };
   for (const PoseReading& reading : PoseReadings()) {
     const auto read = ReadAs(reading, pairs);
     if (!fits(read)) continue;
-    finding->cause = fmt::format("{} (the gap is {} if the poses are {})", reading.cause,
-                                 InWords(GapOf(read)), reading.name);
-    finding->remedy = reading.remedy;
-    return;
+    return {fmt::format("{} (the gap is {} if the poses are {})", reading.cause,
+                        InWords(GapOf(read)), reading.name),
+            reading.remedy};
   }
   if (fits(AlignedAtFirst(pairs))) {
-    finding->cause = "odometry in a world of its own, as of SLAM, beside a true one";
-    finding->remedy = "set align_odometry";
-    return;
+    return {"odometry in a world of its own, as of SLAM, beside a true one", "set align_odometry"};
   }
   for (const PoseReading& reading : PoseReadings()) {
     if (!fits(AlignedAtFirst(ReadAs(reading, pairs)))) continue;
-    finding->cause = fmt::format("{}, in a world of its own", reading.cause);
-    finding->remedy = fmt::format("{}; set align_odometry", reading.remedy);
-    return;
+    return {fmt::format("{}, in a world of its own", reading.cause),
+            fmt::format("{}; set align_odometry", reading.remedy)};
   }
-  finding->cause =
-      "poses of another recording, of another scale, or with a convention of their own";
-  finding->remedy =
-      "give poses world_from_camera, in metres, quaternion qx qy qz qw, and set "
-      "align_odometry where their world is their own";
+  return {"poses of another recording, of another scale, or with a convention of their own",
+          "give poses world_from_camera, in metres, quaternion qx qy qz qw, and set "
+          "align_odometry where their world is their own"};
 }
 
 }  // namespace
@@ -295,17 +283,13 @@ std::vector<Finding> CheckTruth(const ImportView& view) {
   const TrajectoryGap gap = GapOf(pairs);
   const double extent_m = ExtentOf(pairs, &PosePair::truth);
   if (AreInOneWorld(pairs)) return {};
-  Finding finding{
-      "trajectory_against_truth",
-      Severity::kWarning,
-      fmt::format("estimated and true poses are {} apart (median of {} frames; {} at the "
-                  "first one), of a camera that moves by {:.2f} m",
-                  InWords(gap), pairs.size(), InWords(GapOf({pairs.front()})), extent_m),
-      "two trajectories of one world, apart by no more than drift",
-      "",
-      ""};
-  Explain(pairs, extent_m, &finding);
-  return {finding};
+  const Advice advice = AdviceOnTrajectory(pairs, extent_m);
+  return {{"trajectory_against_truth", Severity::kWarning,
+           fmt::format("estimated and true poses are {} apart (median of {} frames; {} at the "
+                       "first one), of a camera that moves by {:.2f} m",
+                       InWords(gap), pairs.size(), InWords(GapOf({pairs.front()})), extent_m),
+           "two trajectories of one world, apart by no more than drift", advice.cause,
+           advice.remedy}};
 }
 
 }  // namespace soslam

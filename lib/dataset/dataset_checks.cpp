@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -19,8 +20,7 @@ namespace {
 using Check = std::vector<Finding> (*)(const ImportView&);
 
 void Append(const Check& check, const ImportView& view, std::vector<Finding>* findings) {
-  const std::vector<Finding> more = check(view);
-  findings->insert(findings->end(), more.begin(), more.end());
+  std::ranges::move(check(view), std::back_inserter(*findings));
 }
 
 // Findings on objects and planes when poses or frame order are wrong: they get that as their cause.
@@ -113,28 +113,24 @@ std::string DivideBy(const std::string& file, const TimeUnit& unit) {
   return fmt::format("divide the time stamps of {} by {:.0e}", file, unit.per_second);
 }
 
-// Fills in cause and remedy for time stamps that do not overlap.
-void Explain(const TimeRange& images, const TimeRange& poses, const std::string& file,
-             Finding* finding) {
-  constexpr const char* kBoth = "both files";
+// For time stamps that do not overlap.
+Advice AdviceOnTimes(const TimeRange& images, const TimeRange& poses, const std::string& file) {
   if (const TimeUnit* unit = UnitBetween(images, poses)) {
-    finding->cause = InUnit("poses", *unit);
-    finding->remedy = DivideBy(file, *unit);
-  } else if (const TimeUnit* image_unit = UnitBetween(poses, images)) {
-    finding->cause = InUnit("images", *image_unit);
-    finding->remedy = DivideBy("the list of images", *image_unit);
-  } else if (const TimeUnit* clock = UnitOfClock(images.first); clock && UnitOfClock(poses.first)) {
-    finding->cause = InUnit("images and poses", *clock);
-    finding->remedy = DivideBy(kBoth, *clock);
-  } else if (images.last < poses.first || poses.last < images.first) {
-    finding->cause = "other clocks, or another recording";
-    finding->remedy =
-        fmt::format("give {} the clock of the images (the first stamps are {:.3f} apart)", file,
-                    poses.first - images.first);
-  } else {
-    finding->cause = "poses of other images, as of keyframes only";
-    finding->remedy = "give the images' own time stamps, or set max_time_difference_s";
+    return {InUnit("poses", *unit), DivideBy(file, *unit)};
   }
+  if (const TimeUnit* unit = UnitBetween(poses, images)) {
+    return {InUnit("images", *unit), DivideBy("the list of images", *unit)};
+  }
+  if (const TimeUnit* unit = UnitOfClock(images.first); unit && UnitOfClock(poses.first)) {
+    return {InUnit("images and poses", *unit), DivideBy("both files", *unit)};
+  }
+  if (images.last < poses.first || poses.last < images.first) {
+    return {"other clocks, or another recording",
+            fmt::format("give {} the clock of the images (the first stamps are {:.3f} apart)", file,
+                        poses.first - images.first)};
+  }
+  return {"poses of other images, as of keyframes only",
+          "give the images' own time stamps, or set max_time_difference_s"};
 }
 
 std::vector<Finding> CheckEqual(const std::vector<double>& times) {
@@ -162,36 +158,25 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
   const auto [first, last] = std::ranges::minmax(times);
   const TimeRange of_images{first, last};
   const TimeRange of_poses{trajectory.front().timestamp, trajectory.back().timestamp};
-  Finding finding{
-      "timestamps",
-      matched == 0 ? Severity::kError : Severity::kWarning,
-      fmt::format(
-          "{} of {} images have a pose of {} within {:g}: images are of time {}, poses of {}",
-          matched, times.size(), trajectory_file, max_difference_s, InWords(of_images),
-          InWords(of_poses)),
-      "images and poses of one clock, in seconds",
-      "",
-      ""};
-  Explain(of_images, of_poses, trajectory_file, &finding);
+  std::string found = fmt::format(
+      "{} of {} images have a pose of {} within {:g}: images are of time {}, poses of {}", matched,
+      times.size(), trajectory_file, max_difference_s, InWords(of_images), InWords(of_poses));
   if (of_images.Span() > 0.0 && of_poses.Span() > 0.0) {
-    finding.found += fmt::format(" (spans {:.3g} and {:.3g}, ratio {:.3g})", of_images.Span(),
-                                 of_poses.Span(), of_poses.Span() / of_images.Span());
+    found += fmt::format(" (spans {:.3g} and {:.3g}, ratio {:.3g})", of_images.Span(),
+                         of_poses.Span(), of_poses.Span() / of_images.Span());
   }
-  findings.push_back(finding);
+  const Advice advice = AdviceOnTimes(of_images, of_poses, trajectory_file);
+  findings.push_back({"timestamps", matched == 0 ? Severity::kError : Severity::kWarning, found,
+                      "images and poses of one clock, in seconds", advice.cause, advice.remedy});
   return findings;
 }
 
 namespace {
 
-struct CauseAndRemedy {
-  const char* cause;
-  const char* remedy;
-};
-
 // Gates that reject detections because of the data; the others apply what a setting asks for.
-const std::map<std::string, CauseAndRemedy>& GatesOfData() {
+const std::map<std::string, Advice>& GatesOfData() {
   const auto name = [](RejectReason reason) { return std::string(RejectReasonName(reason)); };
-  static const std::map<std::string, CauseAndRemedy> gates = {
+  static const std::map<std::string, Advice> gates = {
       {name(RejectReason::kFrameWithoutPose),
        {"a trajectory of other images, or of another clock",
         "compare the time stamps of images and trajectory; max_time_difference_s"}},
@@ -216,22 +201,16 @@ const std::map<std::string, CauseAndRemedy>& GatesOfData() {
   return gates;
 }
 
-// Number of detections that reach the gates of data.
-int Asked(const Sequence& sequence, size_t used) {
-  int count = static_cast<int>(used);
-  for (const auto& [reason, number] : sequence.rejected_detections) {
-    if (GatesOfData().contains(reason)) count += number;
-  }
-  return count;
-}
-
 }  // namespace
 
 std::vector<Finding> CheckRejections(const ImportView& view) {
-  if (view.options.format == DatasetFormat::kKittiObject)
-    return {};  // each image has its own world
   constexpr int kFewest = 10;
-  const int all = Asked(view.sequence, view.sequence.detections.size());
+  // Each image has its own world.
+  if (view.options.format == DatasetFormat::kKittiObject) return {};
+  auto all = static_cast<int>(view.sequence.detections.size());  // that reach the gates of data
+  for (const auto& [reason, count] : view.sequence.rejected_detections) {
+    if (GatesOfData().contains(reason)) all += count;
+  }
   std::vector<Finding> findings;
   for (const auto& [reason, count] : view.sequence.rejected_detections) {
     const auto gate = GatesOfData().find(reason);

@@ -22,6 +22,12 @@ struct ImportView {
   const Sequence& sequence;
 };
 
+// The likely cause of a finding, and what to do.
+struct Advice {
+  std::string cause;
+  std::string remedy;
+};
+
 // Checks for common mistakes in datasets (one file each). All checks return their findings and
 // throw nothing.
 
