@@ -319,9 +319,10 @@ class CalibrationReader {
 }  // namespace
 
 Calibration ReadCalibration(const std::filesystem::path& path) {
-  const NamedFields fields =
-      path.extension() == ".xml" ? ReadXmlFields(path) : ReadYamlFields(path);
-  return CalibrationReader(fields, path.string()).Read();
+  const std::string text = ReadWholeFile(path), name = path.string();
+  return CalibrationReader(
+             path.extension() == ".xml" ? XmlFields(text, name) : YamlFields(text, name), name)
+      .Read();
 }
 
 Calibration ReadCameraFile(const std::filesystem::path& path) {

@@ -65,23 +65,17 @@ std::vector<std::string> LineNames(const std::vector<TextLine>& lines) {
   return names;
 }
 
-std::vector<std::string> NotEmpty(std::vector<std::string> names, const std::string& place) {
-  if (names.empty()) throw InputError(place + ": has no label; expected the names of the classes");
-  return names;
-}
-
 }  // namespace
 
 std::vector<std::string> ReadLabelFile(const fs::path& path) {
-  return NotEmpty(IsYaml(path) ? YamlNames(ReadYamlFields(path), path.string())
-                               : LineNames(ReadTextLines(path)),
-                  path.string());
+  return ParseLabels(ReadWholeFile(path), path.string());
 }
 
 std::vector<std::string> ParseLabels(const std::string& text, const std::string& name) {
-  return NotEmpty(
-      IsYaml(name) ? YamlNames(YamlFields(text, name), name) : LineNames(TextLines(text, name)),
-      name);
+  const auto names =
+      IsYaml(name) ? YamlNames(YamlFields(text, name), name) : LineNames(TextLines(text, name));
+  if (names.empty()) throw InputError(name + ": has no label; expected the names of the classes");
+  return names;
 }
 
 bool IsListed(const std::string& label, const std::string& list) {
@@ -115,33 +109,17 @@ constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
 }  // namespace
 
 const std::vector<std::string>& CocoLabels() {
-  static const std::vector<std::string> labels = {"person",        "bicycle",      "car",
-                                                  "motorcycle",    "airplane",     "bus",
-                                                  "train",         "truck",        "boat",
-                                                  "traffic light", "fire hydrant", "stop sign",
-                                                  "parking meter", "bench",        "bird",
-                                                  "cat",           "dog",          "horse",
-                                                  "sheep",         "cow",          "elephant",
-                                                  "bear",          "zebra",        "giraffe",
-                                                  "backpack",      "umbrella",     "handbag",
-                                                  "tie",           "suitcase",     "frisbee",
-                                                  "skis",          "snowboard",    "sports ball",
-                                                  "kite",          "baseball bat", "baseball glove",
-                                                  "skateboard",    "surfboard",    "tennis racket",
-                                                  "bottle",        "wine glass",   "cup",
-                                                  "fork",          "knife",        "spoon",
-                                                  "bowl",          "banana",       "apple",
-                                                  "sandwich",      "orange",       "broccoli",
-                                                  "carrot",        "hot dog",      "pizza",
-                                                  "donut",         "cake",         "chair",
-                                                  "couch",         "potted plant", "bed",
-                                                  "dining table",  "toilet",       "tv",
-                                                  "laptop",        "mouse",        "remote",
-                                                  "keyboard",      "cell phone",   "microwave",
-                                                  "oven",          "toaster",      "sink",
-                                                  "refrigerator",  "book",         "clock",
-                                                  "vase",          "scissors",     "teddy bear",
-                                                  "hair drier",    "toothbrush"};
+  constexpr std::string_view kLabels =
+      "person,bicycle,car,motorcycle,airplane,bus,train,truck,boat,traffic light,fire hydrant,"
+      "stop sign,parking meter,bench,bird,cat,dog,horse,sheep,cow,elephant,bear,zebra,giraffe,"
+      "backpack,umbrella,handbag,tie,suitcase,frisbee,skis,snowboard,sports ball,kite,"
+      "baseball bat,baseball glove,skateboard,surfboard,tennis racket,bottle,wine glass,cup,fork,"
+      "knife,spoon,bowl,banana,apple,sandwich,orange,broccoli,carrot,hot dog,pizza,donut,cake,"
+      "chair,couch,potted plant,bed,dining table,toilet,tv,laptop,mouse,remote,keyboard,"
+      "cell phone,microwave,oven,toaster,sink,refrigerator,book,clock,vase,scissors,teddy bear,"
+      "hair drier,toothbrush";
+  const auto names = SplitFields(kLabels);
+  static const std::vector<std::string> labels(names.begin(), names.end());
   return labels;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -182,8 +183,7 @@ ColmapImage ParseImage(const TextLine& line) {
                     "CAMERA_ID NAME, and a line of points below it",
                     line.place, words.size()));
   }
-  std::array<double, kFields.size()> v;
-  for (size_t i = 0; i < v.size(); ++i) v[i] = ParseReal(words[i + 1], line.place, kFields[i]);
+  const auto v = ParseReals(std::span(words).subspan(1), line.place, kFields);
   ColmapImage image;
   image.id = ParseInteger(words[0], line.place, "IMAGE_ID");
   ParseInteger(words[8], line.place, "CAMERA_ID");
@@ -214,7 +214,7 @@ enum class ImagePoints { kRead, kSkipped };
 std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path, ImagePoints points) {
   std::vector<ColmapImage> images;
   bool is_points = false;
-  for (const TextLine& line : ReadRawLines(path)) {
+  for (const TextLine& line : RawLines(ReadWholeFile(path), path.string())) {
     const std::string_view text = Trimmed(line.text);
     if (!is_points && (text.empty() || text.front() == '#')) continue;
     if (!is_points) {

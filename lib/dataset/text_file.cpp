@@ -30,7 +30,6 @@ bool IsUtf8(const std::string& text) {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
-constexpr const char* kTextFile = "text file";
 
 void CheckEncoding(std::string_view text, const std::string& place) {
   if (text.find('\0') != text.npos) {
@@ -108,7 +107,7 @@ std::string ReadWholeFile(const std::filesystem::path& path, const char* kind) {
 }
 
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path) {
-  return TextLines(ReadWholeFile(path, kTextFile), path.string());
+  return TextLines(ReadWholeFile(path), path.string());
 }
 
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name) {
@@ -116,11 +115,7 @@ std::vector<TextLine> TextLines(const std::string& text, const std::string& name
 }
 
 std::vector<TextLine> ReadTableLines(const std::filesystem::path& path) {
-  return LinesWithout(" \r", ReadWholeFile(path, kTextFile), path.string());
-}
-
-std::vector<TextLine> ReadRawLines(const std::filesystem::path& path) {
-  return RawLines(ReadWholeFile(path, kTextFile), path.string());
+  return LinesWithout(" \r", ReadWholeFile(path), path.string());
 }
 
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +15,7 @@ bool IsUtf8(const std::string& text);
 
 // The bytes of a file. Throws InputError, naming the `kind` of file that was expected ("text
 // file"), when it cannot be read, is not a regular file, or is larger than 1 GiB.
-std::string ReadWholeFile(const std::filesystem::path& path, const char* kind);
+std::string ReadWholeFile(const std::filesystem::path& path, const char* kind = "text file");
 
 // One line of a text file, without its line ending.
 struct TextLine {
@@ -34,7 +36,6 @@ std::vector<TextLine> ReadTableLines(const std::filesystem::path& path);
 
 // All lines unchanged, including blank ones and comments; at most 4 million. Comments need not be
 // UTF-8.
-std::vector<TextLine> ReadRawLines(const std::filesystem::path& path);
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name);
 
 // The text without blanks at both ends.
@@ -48,5 +49,15 @@ std::vector<std::string_view> SplitFields(std::string_view text);
 // field, for anything else; a real number must be finite.
 double ParseReal(std::string_view text, const std::string& place, const std::string& field);
 int ParseInteger(std::string_view text, const std::string& place, const std::string& field);
+
+// ParseReal for the first words of a line, one per field.
+template <size_t kCount>
+std::array<double, kCount> ParseReals(std::span<const std::string_view> words,
+                                      const std::string& place,
+                                      const std::array<const char*, kCount>& fields) {
+  std::array<double, kCount> numbers;
+  for (size_t i = 0; i < kCount; ++i) numbers[i] = ParseReal(words[i], place, fields[i]);
+  return numbers;
+}
 
 }  // namespace soslam

@@ -61,9 +61,8 @@ TimedPose ParseTumPose(const TextLine& line) {
     throw InputError(fmt::format("{}: has {} numbers; expected {}", line.place, words.size(),
                                  fmt::join(kFields, " ")));
   }
-  std::array<double, kFields.size()> v;
-  for (size_t i = 0; i < v.size(); ++i) v[i] = ParseReal(words[i], line.place, kFields[i]);
-  return {v[0], {UnitQuaternion({v[4], v[5], v[6], v[7]}, line.place), {v[1], v[2], v[3]}}};
+  const auto [t, x, y, z, qx, qy, qz, qw] = ParseReals(words, line.place, kFields);
+  return {t, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};
 }
 
 // True if the poses differ by no more than a camera moves within the resolution of a timestamp.
@@ -188,14 +187,12 @@ TimedPose ParseEurocPose(const TextLine& line) {
     throw InputError(fmt::format("{}: has {} fields; expected {}", line.place, fields.size(),
                                  fmt::join(kFields, ",")));
   }
-  std::array<double, kFields.size()> v;
-  for (size_t i = 0; i < v.size(); ++i) v[i] = ParseReal(fields[i], line.place, kFields[i]);
-  if (v[0] != std::floor(v[0])) {
+  const auto [t, x, y, z, qw, qx, qy, qz] = ParseReals(fields, line.place, kFields);
+  if (t != std::floor(t)) {
     throw InputError(fmt::format("{}: timestamp is {}; expected nanoseconds, an integer",
                                  line.place, fields[0]));
   }
-  return {v[0] * kSecondsPerUnit,
-          {UnitQuaternion({v[5], v[6], v[7], v[4]}, line.place), {v[1], v[2], v[3]}}};
+  return {t * kSecondsPerUnit, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};
 }
 
 }  // namespace

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
 
-#include <algorithm>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -16,206 +17,78 @@
 namespace soslam {
 namespace {
 
-// First position outside of quotes at which `found` is true; npos if there is none.
-template <typename Found>
-size_t FindUnquoted(std::string_view text, const Found& found) {
-  char quote = '\0';
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (quote == '\0' && found(i)) return i;
-    const bool may_begin = i == 0 || std::string_view(" [{,:").find(text[i - 1]) != text.npos;
-    if (quote == '\0' && may_begin && (text[i] == '"' || text[i] == '\'')) {
-      quote = text[i];
-    } else if (text[i] == quote) {
-      quote = '\0';
-    }
+// Limits beyond any calibration: nesting depth, number of values, characters of all keys around a
+// value, size.
+constexpr size_t kMaxFieldDepth = 10;
+constexpr size_t kMaxFieldValues = 100000;
+constexpr size_t kMaxFieldPath = 200;
+constexpr size_t kMaxFieldBytes = 1 << 20;
+
+std::string JoinedLines(const std::string& text, const std::string& name, char separator) {
+  if (text.size() > kMaxFieldBytes) {
+    throw InputError(
+        fmt::format("{}: has {} bytes; expected at most {}", name, text.size(), kMaxFieldBytes));
   }
-  return text.npos;
-}
-
-std::string_view WithoutComment(std::string_view line) {
-  return line.substr(0, FindUnquoted(line, [&](size_t i) {
-                       return line[i] == '#' &&
-                              (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t');
-                     }));
-}
-
-// Position of the colon after a key.
-size_t FindColon(std::string_view text) {
-  return FindUnquoted(text, [&](size_t i) {
-    return text[i] == ':' && (i + 1 == text.size() || text[i + 1] == ' ' || text[i + 1] == '\t');
-  });
-}
-
-std::string_view Unquoted(std::string_view text) {
-  const bool is_quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
-                         text.front() == text.back();
-  return is_quoted ? text.substr(1, text.size() - 2) : text;
-}
-
-// Number of open brackets at the end of a text.
-int OpenBrackets(std::string_view text) {
-  int open = 0;
-  FindUnquoted(text, [&](size_t i) {
-    if (text[i] == '[' || text[i] == '{') ++open;
-    if (text[i] == ']' || text[i] == '}') --open;
-    return false;
-  });
-  return open;
+  std::string joined;
+  for (const TextLine& line : RawLines(text, name)) joined += line.text + separator;
+  return joined;
 }
 
 class YamlReader {
  public:
-  explicit YamlReader(std::vector<TextLine> lines) : lines_(std::move(lines)) {}
+  explicit YamlReader(const std::string& name) : name_(name) {}
 
-  NamedFields Read() {
-    for (; next_ < lines_.size(); ++next_) {
-      const std::string_view line = WithoutComment(lines_[next_].text);
-      const std::string_view text = Trimmed(line);
-      if (text.starts_with("---") && !fields_.empty()) break;
-      if (text.empty() || text.front() == '%' || text.starts_with("---") || text == "...") continue;
-      const size_t indent = line.find_first_not_of(' ');
-      if (line[indent] == '\t') Refuse("is indented by a tab; expected blanks");
-      if (text == "-" || text.starts_with("- ")) {
-        ReadItem(indent, Trimmed(text.substr(1)));
-      } else {
-        ReadKey(indent, text);
-      }
+  NamedFields Read(const std::string& text) {
+    try {
+      const YAML::Node root = YAML::Load(text);
+      if (root.IsScalar() || root.IsSequence()) Refuse(root.Mark(), "is no key: value");
+      Add("", root, 0);
+    } catch (const YAML::Exception& error) {
+      Refuse(error.mark, error.msg);
     }
     return std::move(fields_);
   }
 
  private:
-  // A key whose value is the more deeply indented lines below it.
-  struct OpenKey {
-    size_t indent;
-    std::string path;
-  };
-
-  [[noreturn]] void Refuse(const std::string& what) const {
-    throw InputError(lines_[std::min(next_, lines_.size() - 1)].place + ": " + what);
+  [[noreturn]] void Refuse(const YAML::Mark& mark, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", name_, mark.line + 1, what));
   }
 
-  // Full path of a key; checks the limits.
-  std::string Join(const std::string& path, std::string_view key) {
-    if (++keys_ > kMaxFieldValues) Refuse(fmt::format("has more than {} keys", kMaxFieldValues));
-    if (path.size() + key.size() > kMaxFieldPath) {
-      Refuse(fmt::format("has a key of {} characters, with those around it; expected at most {}",
-                         path.size() + key.size(), kMaxFieldPath));
+  void Add(const std::string& path, const YAML::Node& node, size_t depth) {
+    if (depth > kMaxFieldDepth) Refuse(node.Mark(), "is nested too deep");
+    if (++nodes_ > kMaxFieldValues) {
+      Refuse(node.Mark(), fmt::format("has more than {} values", kMaxFieldValues));
     }
-    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
-  }
-
-  void ReadKey(size_t indent, std::string_view text) {
-    while (!open_.empty() && open_.back().indent >= indent) open_.pop_back();
-    const size_t colon = FindColon(text);
-    if (colon == text.npos) Refuse(fmt::format("is '{}'; expected key: value", text));
-    const std::string path =
-        Join(open_.empty() ? "" : open_.back().path, Unquoted(Trimmed(text.substr(0, colon))));
-    std::string_view value = Trimmed(text.substr(colon + 1));
-    if (value.starts_with('!'))
-      value = Trimmed(value.substr(std::min(value.find(' '), value.size())));
-    if (fields_.contains(path)) Refuse(fmt::format("has key {} twice; expected once", path));
-    if (value.empty()) {
-      open_.push_back({indent, path});
-      if (open_.size() > kMaxFieldDepth) Refuse("is nested too deep");
-    } else if (value.front() == '|' || value.front() == '>') {
-      SkipBlock(indent);
-    } else {
-      ReadFlow(path, value);
+    if (node.IsScalar()) fields_[path].push_back(node.Scalar());
+    if (node.IsSequence()) {
+      fields_[path];  // there, though it may be empty
+      for (const YAML::Node& item : node) Add(path, item, depth + 1);
     }
-  }
-
-  void ReadItem(size_t indent, std::string_view text) {
-    while (!open_.empty() && open_.back().indent > indent) open_.pop_back();
-    if (open_.empty()) Refuse("has an item of no list; expected key: value");
-    const bool is_flow = text.starts_with('[');
-    if (!is_flow && FindColon(text) != text.npos) {
-      Refuse("has a list of maps; expected lists of numbers or names");
-    }
-    ReadFlow(open_.back().path, text);
-  }
-
-  // Skips lines of text that belong to a key at this indentation.
-  void SkipBlock(size_t indent) {
-    while (next_ + 1 < lines_.size()) {
-      const std::string& line = lines_[next_ + 1].text;
-      const size_t begin = line.find_first_not_of(" \t");
-      if (begin != line.npos && begin <= indent) return;
-      ++next_;
-    }
-  }
-
-  // Reads a scalar, or a value in brackets, possibly over several lines.
-  void ReadFlow(const std::string& path, std::string_view begin) {
-    std::string text(begin);
-    if (text.starts_with('[') || text.starts_with('{')) {
-      for (int open = OpenBrackets(text); open > 0;) {
-        if (++next_ == lines_.size()) Refuse("has a bracket that is not closed");
-        const std::string_view more = Trimmed(WithoutComment(lines_[next_].text));
-        open += OpenBrackets(more);
-        text += fmt::format(" {}", more);
+    if (!node.IsMap()) return;
+    for (const auto& entry : node) {
+      const std::string key = (path.empty() ? "" : path + ".") + entry.first.Scalar();
+      if (key.size() > kMaxFieldPath) {
+        Refuse(entry.first.Mark(),
+               fmt::format("has a key of {} characters, with those around it; expected at most {}",
+                           key.size(), kMaxFieldPath));
       }
-    }
-    AddFlow(path, text, 0);
-  }
-
-  void AddFlow(const std::string& path, std::string_view text, size_t depth) {
-    if (depth > kMaxFieldDepth) Refuse("is nested too deep");
-    const bool is_list = text.starts_with('[') && text.ends_with(']');
-    const bool is_map = text.starts_with('{') && text.ends_with('}');
-    if (!is_list && !is_map) return AddValue(path, Unquoted(text));
-    std::string_view rest = Trimmed(text.substr(1, text.size() - 2));
-    if (is_list) fields_[path];
-    while (!rest.empty()) {
-      const std::string_view item = TakeItem(&rest);
-      const size_t colon = is_map ? FindColon(item) : 0;
-      if (colon == item.npos) Refuse(fmt::format("is '{}'; expected key: value", item));
-      if (is_list) AddFlow(path, item, depth + 1);
-      if (is_map) {
-        AddFlow(Join(path, Unquoted(Trimmed(item.substr(0, colon)))),
-                Trimmed(item.substr(colon + 1)), depth + 1);
+      if (!keys_.insert(key).second) {
+        Refuse(entry.first.Mark(), fmt::format("has key {} twice; expected once", key));
       }
+      Add(key, entry.second, depth + 1);
     }
   }
 
-  // Returns the text before the next comma outside of brackets; `rest` becomes the text after it.
-  static std::string_view TakeItem(std::string_view* rest) {
-    int open = 0;
-    const std::string_view text = *rest;
-    const size_t end = FindUnquoted(text, [&](size_t i) {
-      if (text[i] == '[' || text[i] == '{') ++open;
-      if (text[i] == ']' || text[i] == '}') --open;
-      return text[i] == ',' && open == 0;
-    });
-    *rest = end == text.npos ? std::string_view() : Trimmed(text.substr(end + 1));
-    return Trimmed(text.substr(0, end));
-  }
-
-  void AddValue(const std::string& path, std::string_view value) {
-    if (value.starts_with('&') || value.starts_with('*')) {
-      Refuse(fmt::format("has the anchor '{}'; expected a value", value));
-    }
-    if (++values_ > kMaxFieldValues)
-      Refuse(fmt::format("has more than {} values", kMaxFieldValues));
-    fields_[path].emplace_back(value);
-  }
-
-  std::vector<TextLine> lines_;
-  size_t next_ = 0;  // index of the current line
-  size_t values_ = 0;
-  size_t keys_ = 0;
-  std::vector<OpenKey> open_;  // outermost first
+  std::string name_;
+  size_t nodes_ = 0;
+  std::set<std::string> keys_;
   NamedFields fields_;
 };
 
 }  // namespace
 
-NamedFields ReadYamlFields(const std::filesystem::path& path) {
-  return YamlReader(ReadRawLines(path)).Read();
-}
-
 NamedFields YamlFields(const std::string& text, const std::string& name) {
-  return YamlReader(RawLines(text, name)).Read();
+  return YamlReader(name).Read(JoinedLines(text, name, '\n'));
 }
 
 namespace {
@@ -260,19 +133,17 @@ class XmlReader {
   void ReadTag(std::string_view tag) {
     const bool is_empty = tag.ends_with('/');
     const bool is_end = tag.starts_with("</");
-    const std::string name(
-        tag.substr(is_end ? 2 : 1).substr(0, tag.substr(is_end ? 2 : 1).find_first_of(" \t\r\n/")));
+    tag.remove_prefix(is_end ? 2 : 1);
+    const std::string name(tag.substr(0, tag.find_first_of(" \t\r\n/")));
     if (!is_end) {
-      if (++elements_ > kMaxFieldValues)
-        Refuse(fmt::format("has more than {} elements", kMaxFieldValues));
       open_.push_back(name);
+      if (open_.size() > kMaxFieldDepth) Refuse("is nested too deep");
       if (name.size() > kMaxFieldPath || Path().size() > kMaxFieldPath) {
         Refuse(
             fmt::format("has an element whose name, with those around it, has more than {} "
                         "characters",
                         kMaxFieldPath));
       }
-      if (open_.size() > kMaxFieldDepth) Refuse("is nested too deep");
       if (open_.size() > 1 && !fields_.try_emplace(Path()).second) {
         Refuse(fmt::format("has <{}> twice; expected once", Path()));
       }
@@ -291,8 +162,6 @@ class XmlReader {
     if (open_.size() < 2) return;
     std::vector<std::string>& values = fields_.at(Path());
     for (std::string_view word : SplitWords(text)) {
-      if (++values_ > kMaxFieldValues)
-        Refuse(fmt::format("has more than {} values", kMaxFieldValues));
       if (word.size() >= 2 && word.front() == '"' && word.back() == '"') {
         word = word.substr(1, word.size() - 2);
       }
@@ -304,17 +173,13 @@ class XmlReader {
   std::string place_;
   std::string_view rest_;
   std::vector<std::string> open_;
-  size_t values_ = 0;
-  size_t elements_ = 0;
   NamedFields fields_;
 };
 
 }  // namespace
 
-NamedFields ReadXmlFields(const std::filesystem::path& path) {
-  std::string text;
-  for (const TextLine& line : ReadRawLines(path)) text += line.text + " ";
-  return XmlReader(std::move(text), path.string()).Read();
+NamedFields XmlFields(const std::string& text, const std::string& name) {
+  return XmlReader(JoinedLines(text, name, ' '), name).Read();
 }
 
 }  // namespace soslam

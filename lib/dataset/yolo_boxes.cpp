@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -193,10 +194,11 @@ YoloRow ParseLine(const TextLine& line, const std::string& image,
                            "read, save boxes"
                          : ""));
   }
-  YoloRow row{line.place, image, ParseInteger(words[0], line.place, "class"), {}, {}};
-  for (size_t i = 0; i < names.size(); ++i) {
-    row.box[i] = ParseReal(words[i + 1], line.place, names[i]);
-  }
+  YoloRow row{line.place,
+              image,
+              ParseInteger(words[0], line.place, "class"),
+              ParseReals(std::span(words).subspan(1), line.place, names),
+              {}};
   for (size_t i = 5; i < words.size(); ++i) {
     row.extras.push_back(ParseReal(words[i], line.place, fmt::format("number {}", i + 1)));
   }

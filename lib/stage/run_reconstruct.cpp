@@ -86,7 +86,7 @@ Given ReadGiven(const fs::path& dataset, const ReconstructOptions& options) {
 // Throws SettingsError if the output would replace poses of another source.
 void CheckReplaceable(const fs::path& odometry, const ReconstructOptions& options) {
   if (options.poses == PoseChoice::kGiven || !IsFile(odometry)) return;
-  const auto lines = ReadRawLines(odometry);
+  const auto lines = RawLines(ReadWholeFile(odometry), odometry.string());
   if (lines.empty() || lines.front().text.starts_with(kOdometryMark)) return;
   throw SettingsError(fmt::format(
       "{}: has poses that are not of soslam-reconstruct, which would be replaced; expected "
@@ -239,7 +239,7 @@ void CheckPoses(const Reconstruction& reconstruction, const Given& given) {
 
 void CopyInto(const fs::path& output, const fs::path& file) {
   if (PlainPath(file.parent_path()) == PlainPath(output)) return;
-  WriteTextFile(output / file.filename(), ReadWholeFile(file, "text file"));
+  WriteTextFile(output / file.filename(), ReadWholeFile(file));
 }
 
 void WriteAll(const fs::path& dataset, const fs::path& output, const Given& given,
