@@ -15,22 +15,6 @@ std::string JoinNames(std::span<const char* const> names) {
   return fmt::format("{}", fmt::join(names, " | "));
 }
 
-class Writer : public OptionVisitor {
- public:
-  nlohmann::json values = nlohmann::json::object();
-
-  void Real(const char* name, double* value, Range, const char*) override { values[name] = *value; }
-  void Integer(const char* name, int* value, Range, const char*) override { values[name] = *value; }
-  void Flag(const char* name, bool* value, const char*) override { values[name] = *value; }
-  void Text(const char* name, std::string* value, const char*) override { values[name] = *value; }
-
- protected:
-  void ChoiceIndex(const char* name, int* index, std::span<const char* const> names,
-                   const char*) override {
-    values[name] = names[static_cast<size_t>(*index)];
-  }
-};
-
 class Reader : public OptionVisitor {
  public:
   Reader(const nlohmann::json& values, const std::string& where) : values_(values), where_(where) {
@@ -168,9 +152,9 @@ class Lister : public OptionVisitor {
 }  // namespace
 
 nlohmann::json ToJson(void* options, DescribeFunction describe) {
-  Writer writer;
-  describe(options, writer);
-  return writer.values;
+  nlohmann::json values = nlohmann::json::object();
+  for (const OptionRow& row : Rows(options, describe)) values[row.name] = row.default_value;
+  return values;
 }
 
 void FromJson(void* options, DescribeFunction describe, const nlohmann::json& values,

@@ -43,13 +43,11 @@ ProgressOnStderr::ProgressOnStderr(const std::string& program) {
 ProgressOnStderr::~ProgressOnStderr() { DisplayOfProgram().reset(); }
 
 Progress::Progress(std::string what, int count)
-    : what_(std::move(what)), count_(count), display_(DisplayOfProgram()) {
-  if (display_) start_s_ = shown_s_ = display_->seconds();
-}
+    : Progress(std::move(what), count, DisplayOfProgram()) {}
 
-Progress::Progress(std::string what, int count, ProgressDisplay display)
+Progress::Progress(std::string what, int count, std::optional<ProgressDisplay> display)
     : what_(std::move(what)), count_(count), display_(std::move(display)) {
-  start_s_ = shown_s_ = display_->seconds();
+  if (display_) start_s_ = shown_s_ = display_->seconds();
 }
 
 Progress::~Progress() {

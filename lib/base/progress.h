@@ -35,7 +35,7 @@ class Progress {
 
   // Counts `what` (a plural, "frames") up to `count` and shows it on the program's display.
   Progress(std::string what, int count);
-  Progress(std::string what, int count, ProgressDisplay display);
+  Progress(std::string what, int count, std::optional<ProgressDisplay> display);
   // Erases the progress line on a terminal.
   ~Progress();
   Progress(const Progress&) = delete;

@@ -59,27 +59,12 @@ std::string MarkdownGrid(const Lines& lines, size_t left_columns) {
 }
 
 std::string LatexCharacter(char c) {
-  switch (c) {
-    case '\\':
-      return "\\textbackslash{}";
-    case '~':
-      return "\\textasciitilde{}";
-    case '^':
-      return "\\textasciicircum{}";
-    case '<':
-    case '>':
-      return fmt::format("${}$", c);
-    case '_':
-    case '&':
-    case '%':
-    case '$':
-    case '#':
-    case '{':
-    case '}':
-      return {'\\', c};
-    default:
-      return {c};
-  }
+  if (c == '\\') return "\\textbackslash{}";
+  if (c == '~') return "\\textasciitilde{}";
+  if (c == '^') return "\\textasciicircum{}";
+  if (c == '<' || c == '>') return fmt::format("${}$", c);
+  constexpr std::string_view kSpecial = "_&%$#{}";
+  return (kSpecial.find(c) == kSpecial.npos ? "" : "\\") + std::string(1, c);
 }
 
 std::string LatexText(const std::string& text) {

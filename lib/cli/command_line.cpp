@@ -2,6 +2,7 @@
 #include "cli/command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
@@ -19,7 +20,6 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "cli/help.h"
 #include "cli/run_recorder.h"
 #include "dataset/image_path.h"
 
@@ -59,6 +59,58 @@ nlohmann::json ReadSettingsFile(const std::filesystem::path& path) {
 namespace soslam::internal {
 
 namespace {
+
+constexpr size_t kTextColumn = 34;
+constexpr size_t kWidth = 100;
+
+std::string ReplaceAll(std::string text, const std::string& from, const std::string& to) {
+  for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+// Possible values of an option; empty when all of its type.
+std::string Domain(const OptionRow& row) {
+  if (row.range) {
+    return fmt::format("{} to {}{}{}", row.range->min, row.range->max, row.unit.empty() ? "" : " ",
+                       row.unit);
+  }
+  if (row.type == "boolean") return "true | false";
+  return fmt::format("{}", fmt::join(row.choices, " | "));
+}
+
+// Layout of --help: names in one column, wrapped texts in another.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kTextColumn); }
+
+  std::string make_description(const CLI::App* app) const override {
+    return Wrapped(app->get_description(), kWidth) + "\n";
+  }
+  // Replaces CLI11's two empty lines between groups by one.
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    const std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
+    return ReplaceAll(help, "\n\n\n", "\n\n");
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return Wrapped(option->get_description(), kWidth - kTextColumn);
+  }
+};
+
+// Help text of an option: its doc, default, and range or choices, with units.
+std::string OptionHelp(const OptionRow& row) {
+  const std::string domain = Domain(row);
+  const std::string value =
+      row.choices.empty() ? row.default_value.dump() : row.default_value.get<std::string>();
+  return fmt::format("{}\n[default {}{}{}]", row.doc, value, domain.empty() ? "" : "; ", domain);
+}
+
+// A command wrapped over several lines such that a shell reads it as one.
+std::string ExampleHelp(const std::string& command) {
+  return ReplaceAll(Wrapped(command, kWidth - 8), "\n", " \\\n      ");
+}
 
 constexpr const char* kFailureRecord = "--failure_record";
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/learn_edge_bias.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,8 @@
 #include <string>
 
 #include "constraints/tangency.h"
-#include "priors/statistics.h"
+#include "evaluation/statistics.h"
+#include "priors/learn_priors.h"
 
 namespace soslam {
 namespace {
@@ -80,7 +79,7 @@ std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences
       RowOffsets& of_row = of_rows[row->second];
       ++of_row.objects_of_sequence[sequence.name];
       for (size_t side = 0; side < offsets.size(); ++side) {
-        if (is_enough(offsets[side])) of_row.medians[side].push_back(Median(offsets[side]));
+        if (is_enough(offsets[side])) of_row.medians[side].push_back(*MedianOf(offsets[side]));
       }
     }
   }

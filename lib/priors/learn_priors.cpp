@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "priors/learn_shape_exponent.h"
 #include "priors/statistics.h"
 
 namespace soslam {
@@ -267,9 +266,7 @@ SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource
   for (const auto& [label, of_label] : data) {
     learned.rows.push_back(learner.New(label, shape_exponent, of_label));
   }
-  std::sort(
-      learned.rows.begin(), learned.rows.end(),
-      [](const SemanticRow& one, const SemanticRow& other) { return one.label < other.label; });
+  std::ranges::sort(learned.rows, {}, &SemanticRow::label);
   LookUpTable(learned);  // throws if names are not unique
   return learned;
 }

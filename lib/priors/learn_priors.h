@@ -91,4 +91,21 @@ struct PriorError {
 // Errors for the objects with ground truth and a row (or default) in the table.
 std::vector<PriorError> PriorErrors(const Sequence& sequence, const SemanticTable& table);
 
+// The exponent in [1, 2] for which the true pose and size of an object fit its boxes best: least
+// Huber loss of the tangency residuals, at true camera poses if they are known. `detections` are of
+// one object, or of several of the same shape, with ground truth.
+double BestShapeExponent(const Sequence& sequence, const std::vector<int>& detections);
+
+// That exponent for each object with ground truth and at least `min_views` such boxes, by object
+// index.
+std::map<int, double> LearnShapeExponents(const Sequence& sequence, int min_views);
+
+// Learns the bias of a detector's box edges for each row of a table that has objects with ground
+// truth in the sequences. Edges that are no bounds are compared with the outline of the object at
+// its true pose and size, with the row's shape. The errors of an object's boxes are alike: it
+// counts once, by their median. `no_bias_weight` objects without bias are added to those of each
+// row. Method: docs/priors.md.
+void LearnEdgeBias(const std::vector<Sequence>& sequences, double no_bias_weight,
+                   SemanticRows* rows);
+
 }  // namespace soslam

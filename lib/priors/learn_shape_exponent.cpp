@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/learn_shape_exponent.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,6 +6,7 @@
 
 #include "constraints/loss.h"
 #include "constraints/tangency.h"
+#include "priors/learn_priors.h"
 
 namespace soslam {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "evaluation/statistics.h"
@@ -17,7 +16,7 @@ constexpr double kSigmaByMad = 1.4826;
 constexpr double kFarthest = 2.5;
 
 std::vector<double> Standardised(const std::vector<double>& values, double sigma) {
-  const double median = Median(values);
+  const double median = *MedianOf(values);
   std::vector<double> standardised;
   for (const double value : values) {
     standardised.push_back(std::clamp((value - median) / sigma, -kFarthest, kFarthest));
@@ -27,23 +26,18 @@ std::vector<double> Standardised(const std::vector<double>& values, double sigma
 
 }  // namespace
 
-double Median(std::vector<double> values) {
-  if (values.empty()) throw std::logic_error("median of no values");
-  return *MedianOf(std::move(values));
-}
-
 double RobustSigma(const std::vector<double>& values) {
-  const double median = Median(values);
+  const double median = *MedianOf(values);
   std::vector<double> deviations;
   for (const double value : values) deviations.push_back(std::abs(value - median));
-  return kSigmaByMad * Median(deviations);
+  return kSigmaByMad * *MedianOf(deviations);
 }
 
 NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values,
                     double min_sigma) {
   if (values.empty()) return prior;
   const auto n = static_cast<double>(values.size());
-  const double median = Median(values);
+  const double median = *MedianOf(values);
   const double sigma = std::max(min_sigma, RobustSigma(values));
   const double shift = median - prior.mean;
   NormalBelief belief;

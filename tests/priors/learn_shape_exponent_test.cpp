@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/learn_shape_exponent.h"
-
 #include <gtest/gtest.h>
 
+#include "priors/learn_priors.h"
 #include "support/drawn_cuboids.h"
 #include "support/upright_bodies.h"
 

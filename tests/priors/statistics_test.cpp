@@ -10,12 +10,6 @@ namespace {
 
 using Pairs = std::vector<std::pair<double, double>>;
 
-TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
-  EXPECT_EQ(Median({7.0}), 7.0);
-  EXPECT_EQ(Median({3.0, 1.0, 2.0}), 2.0);
-  EXPECT_EQ(Median({10.0, 1.0, 3.0, 2.0}), 2.5);
-}
-
 TEST(RobustSigma, IgnoresAnOutlier) {
   EXPECT_DOUBLE_EQ(RobustSigma({1.0, 2.0, 3.0, 4.0, 100.0}), 1.4826);  // deviations 2 1 0 1 97
   EXPECT_EQ(RobustSigma({5.0}), 0.0);
