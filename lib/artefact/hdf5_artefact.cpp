@@ -64,21 +64,14 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
 void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
                  Hdf5File* file) {
   cv::Mat matrix(static_cast<int>(pixels.size()), 2, CV_32FC1);
-  for (int i = 0; i < matrix.rows; ++i) {
-    const Eigen::Vector2f& pixel = pixels[static_cast<size_t>(i)];
-    matrix.at<float>(i, 0) = pixel.x();
-    matrix.at<float>(i, 1) = pixel.y();
-  }
+  std::ranges::copy(pixels, matrix.ptr<Eigen::Vector2f>());
   file->WriteMatrix(name, matrix);
 }
 
 std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name, int count) {
   const cv::Mat matrix = file.ReadMatrix(name, CV_32FC1, count, 2);
-  std::vector<Eigen::Vector2f> pixels;
-  for (int i = 0; i < matrix.rows; ++i) {
-    pixels.emplace_back(matrix.at<float>(i, 0), matrix.at<float>(i, 1));
-  }
-  return pixels;
+  const auto* pixels = matrix.ptr<Eigen::Vector2f>();
+  return {pixels, pixels + matrix.rows};
 }
 
 namespace {

@@ -328,10 +328,13 @@ std::vector<std::string> Hdf5File::Attributes(const std::string& owner) const {
   return names;
 }
 
+Hdf5Handle Hdf5File::OpenAttribute(const std::string& owner, const std::string& name) const {
+  return {H5Aopen_by_name(file_.id(), owner.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          &H5Aclose};
+}
+
 bool Hdf5File::IsText(const std::string& owner, const std::string& attribute) const {
-  const Hdf5Handle opened{
-      H5Aopen_by_name(file_.id(), owner.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-      &H5Aclose};
+  const Hdf5Handle opened = OpenAttribute(owner, attribute);
   const Hdf5Handle type{H5Aget_type(opened.id()), &H5Tclose};
   return H5Tget_class(type.id()) == H5T_STRING;
 }
@@ -339,9 +342,7 @@ bool Hdf5File::IsText(const std::string& owner, const std::string& attribute) co
 std::string Hdf5File::ReadText(const std::string& owner, const std::string& name) const {
   const std::string where = owner + " attribute " + name;
   if (!HasAttribute(owner, name)) FailReading(where, "missing; expected a text");
-  const Hdf5Handle attribute{
-      H5Aopen_by_name(file_.id(), owner.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-      &H5Aclose};
+  const Hdf5Handle attribute = OpenAttribute(owner, name);
   const Hdf5Handle type{H5Aget_type(attribute.id()), &H5Tclose};
   const Hdf5Handle space{H5Aget_space(attribute.id()), &H5Sclose};
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0 ||
@@ -358,9 +359,7 @@ std::string Hdf5File::ReadText(const std::string& owner, const std::string& name
 double Hdf5File::ReadNumber(const std::string& owner, const std::string& name) const {
   const std::string where = owner + " attribute " + name;
   if (!HasAttribute(owner, name)) FailReading(where, "missing; expected a number");
-  const Hdf5Handle attribute{
-      H5Aopen_by_name(file_.id(), owner.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-      &H5Aclose};
+  const Hdf5Handle attribute = OpenAttribute(owner, name);
   const Hdf5Handle type{H5Aget_type(attribute.id()), &H5Tclose};
   const Hdf5Handle space{H5Aget_space(attribute.id()), &H5Sclose};
   if (H5Tequal(type.id(), H5T_IEEE_F64LE) <= 0 || H5Sget_simple_extent_npoints(space.id()) != 1) {

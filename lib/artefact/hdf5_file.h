@@ -109,6 +109,7 @@ class Hdf5File {
 
   void WriteAttribute(const std::string& owner, const std::string& name, std::int64_t file_type,
                       std::int64_t memory_type, const void* value);
+  Hdf5Handle OpenAttribute(const std::string& owner, const std::string& name) const;
   std::uint64_t Size() const;  // size of the file, bytes
   // Shape of a data set. Throws if it has too many values, or more than the file can hold.
   ArrayShape ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;

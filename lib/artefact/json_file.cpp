@@ -20,17 +20,6 @@
 #include "base/run_log.h"
 #include "base/text.h"
 
-// Silences GCC 12, which falsely reports an overflow in a std::string::replace inlined into
-// valijson.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wstringop-overflow"
-#pragma GCC diagnostic ignored "-Wrestrict"
-#endif
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
-
 namespace soslam {
 namespace {
 

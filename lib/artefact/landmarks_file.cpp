@@ -30,14 +30,13 @@ FrameAndObjectId Ids(const Detection& detection, const Sequence& sequence) {
 json ObservationToJson(const ObservationEstimate& estimate, const Sequence& sequence) {
   const auto [frame_id, object_id] =
       Ids(sequence.detections.at(static_cast<size_t>(estimate.detection_index)), sequence);
-  json hypotheses = json::array();
-  for (const Hypothesis& hypothesis : estimate.hypotheses) {
-    hypotheses.push_back({{"landmark", LandmarkToJson(hypothesis.landmark_in_camera, "camera")},
-                          {"cost", hypothesis.cost}});
-  }
+  const auto hypothesis_to_json = [](const Hypothesis& hypothesis) -> json {
+    return {{"landmark", LandmarkToJson(hypothesis.landmark_in_camera, "camera")},
+            {"cost", hypothesis.cost}};
+  };
   return {{"frame", frame_id},
           {"object", object_id},
-          {"hypotheses", hypotheses},
+          {"hypotheses", ListToJson(estimate.hypotheses, hypothesis_to_json)},
           {"failure", estimate.failure}};
 }
 
@@ -56,12 +55,11 @@ std::vector<ObservationEstimate> ObservationsFromJson(const json& json, const Se
                       "in frame {}",
                       estimates.size(), ids.second, ids.first));
     }
-    ObservationEstimate estimate{found->second, {}, row.at("failure").get<std::string>()};
-    for (const auto& hypothesis : row.at("hypotheses")) {
-      estimate.hypotheses.push_back({LandmarkFromJson(hypothesis.at("landmark"), "camera"),
-                                     hypothesis.at("cost").get<double>()});
-    }
-    estimates.push_back(std::move(estimate));
+    const auto hypotheses = ListFromJson(row, "hypotheses", [](const auto& hypothesis) {
+      return Hypothesis{LandmarkFromJson(hypothesis.at("landmark"), "camera"),
+                        hypothesis.at("cost")};
+    });
+    estimates.push_back({found->second, hypotheses, row.at("failure")});
   }
   return estimates;
 }
@@ -77,12 +75,11 @@ LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequenc
 
 void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,
                     const Sequence& sequence, const ArtefactInfo& info) {
-  json observations = json::array();
-  for (const ObservationEstimate& estimate : estimates.observations) {
-    observations.push_back(ObservationToJson(estimate, sequence));
-  }
+  const auto to_json = [&](const ObservationEstimate& estimate) {
+    return ObservationToJson(estimate, sequence);
+  };
   WriteArtefact(path, "landmarks", info,
-                {{"observations", observations},
+                {{"observations", ListToJson(estimates.observations, to_json)},
                  {"objects", ObjectEstimatesToJson(estimates.objects, sequence)},
                  {"failures", CountFailures(estimates)}});
 }

@@ -103,21 +103,21 @@ json CountsToJson(const std::map<MapReason, int>& counts) {
 
 // The field "map_quality" of metrics.json.
 json MapQualityToJson(const MapQuality& quality, const Sequence& sequence) {
+  const auto object_to_json = [&](const TrueObjectRow& row) {
+    return ObjectToJson(row, quality, sequence);
+  };
+  const auto landmark_to_json = [&](const LandmarkRow& row) {
+    return LandmarkRowToJson(row, sequence);
+  };
   json fields = {{"alignments", json::array()},
                  {"scores", quality.scores},
                  {"in_frames", quality.in_frames},
-                 {"objects", json::array()},
-                 {"landmarks", json::array()},
+                 {"objects", ListToJson(quality.objects, object_to_json)},
+                 {"landmarks", ListToJson(quality.landmarks, landmark_to_json)},
                  {"misses", CountsToJson(quality.misses)},
                  {"false_landmarks", CountsToJson(quality.false_landmarks)}};
   for (const auto& [segment, alignment] : quality.alignments.of_segment) {
     fields["alignments"].push_back(AlignmentToJson(segment, alignment));
-  }
-  for (const TrueObjectRow& row : quality.objects) {
-    fields["objects"].push_back(ObjectToJson(row, quality, sequence));
-  }
-  for (const LandmarkRow& row : quality.landmarks) {
-    fields["landmarks"].push_back(LandmarkRowToJson(row, sequence));
   }
   return fields;
 }
@@ -135,40 +135,34 @@ json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
 }
 
 json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
-  json fields = {{"frames", metrics.frames},
-                 {"min_iou", kMinHeldOutIou},
-                 {"detections", metrics.detections},
-                 {"detections_matched", metrics.detections_matched},
-                 {"in_sight", metrics.in_sight},
-                 {"in_sight_matched", metrics.in_sight_matched},
-                 {"iou_mean", metrics.iou_mean},
-                 {"iou_median", metrics.iou_median},
-                 {"iou_mean_of_detections", metrics.iou_mean_of_detections},
-                 {"objects", json::array()}};
-  for (const HeldOutObject& one : metrics.objects) {
+  const auto object_to_json = [&](const HeldOutObject& one) -> json {
     const Object& object = sequence.objects[static_cast<size_t>(one.object_index)];
-    fields["objects"].push_back({{"object", object.id},
-                                 {"label", object.label},
-                                 {"in_sight", one.in_sight},
-                                 {"in_sight_matched", one.in_sight_matched},
-                                 {"matched", one.matched},
-                                 {"iou_mean", one.iou_mean}});
-  }
-  return fields;
+    return {{"object", object.id},      {"label", object.label},
+            {"in_sight", one.in_sight}, {"in_sight_matched", one.in_sight_matched},
+            {"matched", one.matched},   {"iou_mean", one.iou_mean}};
+  };
+  return {{"frames", metrics.frames},
+          {"min_iou", kMinHeldOutIou},
+          {"detections", metrics.detections},
+          {"detections_matched", metrics.detections_matched},
+          {"in_sight", metrics.in_sight},
+          {"in_sight_matched", metrics.in_sight_matched},
+          {"iou_mean", metrics.iou_mean},
+          {"iou_median", metrics.iou_median},
+          {"iou_mean_of_detections", metrics.iou_mean_of_detections},
+          {"objects", ListToJson(metrics.objects, object_to_json)}};
 }
 
 }  // namespace
 
 void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
                   const Sequence& sequence, const ArtefactInfo& info) {
+  const auto to_json = [&](const ObjectMetrics& object) { return ToJson(object, sequence); };
   json body = {{"dataset", sequence.name},
                {"summary", metrics.summary},
                {"first_observation", metrics.first_observation},
-               {"objects", json::array()},
+               {"objects", ListToJson(metrics.objects, to_json)},
                {"trajectory", metrics.trajectory}};
-  for (const ObjectMetrics& object : metrics.objects) {
-    body["objects"].push_back(ToJson(object, sequence));
-  }
   if (metrics.held_out) body["held_out"] = ToJson(*metrics.held_out, sequence);
   if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
   ArtefactInfo with_findings = info;

@@ -14,28 +14,23 @@ namespace soslam {
 using nlohmann::json;
 
 json FindingsToJson(const std::vector<Finding>& findings) {
-  json list = json::array();
-  for (const Finding& finding : findings) {
-    list.push_back({{"check", finding.check},
-                    {"severity", kSeverityNames[static_cast<size_t>(finding.severity)]},
-                    {"found", finding.found},
-                    {"expected", finding.expected},
-                    {"cause", finding.cause},
-                    {"remedy", finding.remedy}});
-  }
-  return list;
+  return ListToJson(findings, [](const Finding& finding) -> json {
+    return {{"check", finding.check},
+            {"severity", kSeverityNames[static_cast<size_t>(finding.severity)]},
+            {"found", finding.found},
+            {"expected", finding.expected},
+            {"cause", finding.cause},
+            {"remedy", finding.remedy}};
+  });
 }
 
 std::vector<Finding> FindingsFromJson(const json& artefact) {
-  std::vector<Finding> findings;
-  for (const json& entry : artefact.value("findings", json::array())) {  // since version 1.6
+  return ListFromJson(artefact, "findings", [](const json& entry) {  // since version 1.6
     const bool is_error = entry.at("severity") == kSeverityNames[1];
-    findings.push_back(
-        {entry.at("check").get<std::string>(), is_error ? Severity::kError : Severity::kWarning,
-         entry.at("found").get<std::string>(), entry.at("expected").get<std::string>(),
-         entry.at("cause").get<std::string>(), entry.at("remedy").get<std::string>()});
-  }
-  return findings;
+    return Finding{entry.at("check"), is_error ? Severity::kError : Severity::kWarning,
+                   entry.at("found"), entry.at("expected"),
+                   entry.at("cause"), entry.at("remedy")};
+  });
 }
 
 Eigen::Vector3d VectorFromJson(const json& json) {
@@ -159,19 +154,15 @@ json CovarianceToJson(const Covariance9& covariance) {
 }
 
 json LabelsToJson(const std::vector<LabelProbability>& labels) {
-  json rows = json::array();
-  for (const auto& [label, probability] : labels) {
-    rows.push_back({{"label", label}, {"probability", probability}});
-  }
-  return rows;
+  return ListToJson(labels, [](const LabelProbability& label) -> json {
+    return {{"label", label.label}, {"probability", label.probability}};
+  });
 }
 
 json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
-  json rows = json::array();
-  for (const ObjectEstimate& estimate : estimates) {
-    rows.push_back(EstimateToJson(estimate, sequence));
-  }
-  return rows;
+  return ListToJson(estimates, [&](const ObjectEstimate& estimate) {
+    return EstimateToJson(estimate, sequence);
+  });
 }
 
 ObjectEstimate ObjectEstimateFromJson(const json& row) {

@@ -52,6 +52,31 @@ class IdTable {
   std::vector<int> ids_;
 };
 
+// The list of what `to_json` returns for each item.
+template <typename Items, typename ToJson>
+nlohmann::json ListToJson(const Items& items, const ToJson& to_json) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& item : items) list.push_back(to_json(item));
+  return list;
+}
+
+// What `from_json` returns for each item of the list of this name, which is empty where it is
+// absent.
+template <typename FromJson>
+auto ListFromJson(const nlohmann::json& object, const char* name, const FromJson& from_json) {
+  std::vector<decltype(from_json(object))> items;
+  const auto list = object.find(name);
+  if (list == object.end()) return items;
+  for (const nlohmann::json& item : *list) items.push_back(from_json(item));
+  return items;
+}
+
+// The value of an enumeration whose values 0..n-1 have these names; the schema allows no others.
+template <typename Enum, typename Names>
+Enum EnumFromName(const Names& names, const std::string& name) {
+  return static_cast<Enum>(std::ranges::find(names, name) - std::begin(names));
+}
+
 // The list "findings" of JSON artefacts, which is absent when empty.
 nlohmann::json FindingsToJson(const std::vector<Finding>& findings);
 

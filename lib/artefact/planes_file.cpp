@@ -19,18 +19,17 @@ json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) 
 }
 
 json HoldingToJson(const PlanesEstimate& estimate) {
-  json tried = json::array();
-  for (const TriedHolding& one : estimate.holdings) {
-    tried.push_back({{"held", NameOf(one.holding)},
-                     {"verticals", one.verticals},
-                     {"cost", one.cost},
-                     {"probability", one.probability},
-                     {"planes", one.planes}});
-  }
+  const auto to_json = [](const TriedHolding& one) -> json {
+    return {{"held", NameOf(one.holding)},
+            {"verticals", one.verticals},
+            {"cost", one.cost},
+            {"probability", one.probability},
+            {"planes", one.planes}};
+  };
   return {{"held", NameOf(estimate.holding)},
           {"verticals", estimate.verticals},
           {"is_clear", estimate.holding_tilt_variance == 0.0},
-          {"tried", tried}};
+          {"tried", ListToJson(estimate.holdings, to_json)}};
 }
 
 }  // namespace

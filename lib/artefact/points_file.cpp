@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
+#include <opencv2/core.hpp>
 #include <string>
 
 #include "artefact/atomic_file.h"
@@ -29,13 +29,10 @@ constexpr const char* kPixel = "/observation_pixel";
 
 // Throws InputError unless all values are finite.
 void CheckFinite(const Hdf5File& file, const char* name, const cv::Mat& matrix) {
-  for (int row = 0; row < matrix.rows; ++row) {
-    for (int column = 0; column < matrix.cols; ++column) {
-      const double value = matrix.at<double>(row, column);
-      if (std::isfinite(value)) continue;
-      Refuse(file, name, static_cast<size_t>(row), fmt::format("{}", value), "a finite number");
-    }
-  }
+  cv::Point place;
+  if (cv::checkRange(matrix, /*quiet=*/true, &place)) return;
+  Refuse(file, name, static_cast<size_t>(place.y), fmt::format("{}", matrix.at<double>(place)),
+         "a finite number");
 }
 
 // Throws InputError unless the indices ascend from 0 to the number of observations.

@@ -15,6 +15,7 @@
 
 #include "artefact/atomic_file.h"
 #include "artefact/json_file.h"
+#include "artefact/model_json.h"
 #include "base/error.h"
 
 namespace soslam {
@@ -70,14 +71,12 @@ using nlohmann::json;
 constexpr const char* kRunKind = "run";
 
 json FilesToJson(const std::vector<RunFile>& files) {
-  json list = json::array();
-  for (const RunFile& file : files) {
-    list.push_back({{"argument", file.argument.empty() ? json() : json(file.argument)},
-                    {"relative_to", file.relative_to},
-                    {"path", file.path.string()},
-                    {"sha256", file.sha256}});
-  }
-  return list;
+  return ListToJson(files, [](const RunFile& file) -> json {
+    return {{"argument", file.argument.empty() ? json() : json(file.argument)},
+            {"relative_to", file.relative_to},
+            {"path", file.path.string()},
+            {"sha256", file.sha256}};
+  });
 }
 
 json SettingsToJson(const std::map<std::string, RunSetting>& settings) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "artefact/json_file.h"
+#include "artefact/model_json.h"
 
 namespace soslam {
 namespace {
@@ -17,11 +18,6 @@ constexpr const char* kSemanticTableKind = "semantic_table";
 constexpr double kDefaultLogSigma = 0.3;
 constexpr double kDefaultShapeExponent = 1.1;
 
-// The mount with this name; the schema allows no others.
-Mount MountOf(const std::string& name) {
-  return static_cast<Mount>(std::ranges::find(kMountNames, name) - kMountNames.begin());
-}
-
 ShapePrior Prior(const json& entry) {
   ShapePrior prior = {{entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()},
                       {entry.value("a_by_c_log_sigma", kDefaultLogSigma),
@@ -29,7 +25,7 @@ ShapePrior Prior(const json& entry) {
                       entry.value("shape_exponent", kDefaultShapeExponent),
                       entry.value("log_correlation", 0.0),
                       {},
-                      MountOf(entry.value("mount", std::string(kMountNames.front())))};
+                      EnumFromName<Mount>(kMountNames, entry.value("mount", kMountNames.front()))};
   if (entry.contains("height_m")) {
     prior.height_m = {entry.at("height_m").get<double>(),
                       entry.value("height_log_sigma", kDefaultLogSigma)};

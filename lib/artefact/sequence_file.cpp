@@ -25,8 +25,7 @@ Frame FrameFromJson(const json& json) {
   json.at("timestamp").get_to(frame.timestamp);
   if (!json.at("image").is_null()) json["image"].get_to(frame.image);
   json.at("world_from_camera").get_to(frame.world_from_camera);
-  const auto& truth = json.at("true_world_from_camera");
-  if (!truth.is_null()) frame.true_world_from_camera = truth.get<Rigid3d>();
+  json.at("true_world_from_camera").get_to(frame.true_world_from_camera);
   // Before version 1.2 all frames were of one segment and one camera.
   if (json.contains("segment")) json["segment"].get_to(frame.segment);
   if (json.contains("camera")) frame.camera = json["camera"].get<Camera>();
@@ -112,10 +111,9 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
   if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
-  for (const auto& row : json.value("labels", nlohmann::json::array())) {      // since version 1.7
-    object.labels.push_back(
-        {row.at("label").get<std::string>(), row.at("probability").get<double>()});
-  }
+  object.labels = ListFromJson(json, "labels", [](const auto& row) {           // since version 1.7
+    return LabelProbability{row.at("label"), row.at("probability")};
+  });
   return object;
 }
 
@@ -161,12 +159,9 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
 }
 
 HeldOutFrame HeldOutFromJson(const json& json) {
-  HeldOutFrame held_out{FrameFromJson(json.at("frame")), {}};
-  for (const auto& box : json.at("boxes")) {
-    held_out.boxes.push_back({box.at("label").get<std::string>(), box.at("score").get<double>(),
-                              box.at("box").get<Box>()});
-  }
-  return held_out;
+  return {FrameFromJson(json.at("frame")), ListFromJson(json, "boxes", [](const auto& box) {
+            return HeldOutFrame::LabelledBox{box.at("label"), box.at("score"), box.at("box")};
+          })};
 }
 
 // The element of `list` whose index is in a row of rejected detections.
@@ -179,11 +174,6 @@ const json& Named(const json& list, const json& row, size_t field, size_t place)
   return list[index];
 }
 
-RejectingStage StageFromJson(const json& json) {
-  const auto found = std::ranges::find(kRejectingStageNames, json.at("stage").get<std::string>());
-  return static_cast<RejectingStage>(found - std::begin(kRejectingStageNames));
-}
-
 std::vector<RejectedDetection> RejectedFromJson(const json& json, const IdTable<Frame>& frames) {
   std::vector<RejectedDetection> all;
   const auto& rows = json.at("rows");
@@ -192,7 +182,7 @@ std::vector<RejectedDetection> RejectedFromJson(const json& json, const IdTable<
     const auto& reason = Named(json.at("reasons"), row, 1, i);
     RejectedDetection rejected;
     rejected.frame_index = frames.IndexOf(row.at(0).get<int>());
-    rejected.stage = StageFromJson(reason);
+    rejected.stage = EnumFromName<RejectingStage>(kRejectingStageNames, reason.at("stage"));
     reason.at("reason").get_to(rejected.reason);
     Named(json.at("labels"), row, 2, i).get_to(rejected.label);
     if (!row.at(3).is_null()) rejected.true_object_id = row[3].get<int>();
@@ -285,18 +275,12 @@ void CheckPlanes(const json& json) {
   }
 }
 
-// Orientation of the images; before version 1.6 they were read as stored.
-ImageOrientation OrientationFromJson(const json& json) {
-  const std::string name = json.value("image_orientation", "stored");
-  const auto found = std::ranges::find(kImageOrientationNames, name);
-  return static_cast<ImageOrientation>(found - std::begin(kImageOrientationNames));
-}
-
 // Ground truth that does not depend on detections; since version 1.7.
 void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* sequence) {
-  if (!json.contains("true_objects")) AddTruthOfOldVersions(sequence);
-  for (const auto& object : json.value("true_objects", nlohmann::json::array())) {
-    sequence->true_objects.push_back(TrueObjectFromJson(object));
+  if (json.contains("true_objects")) {
+    sequence->true_objects = ListFromJson(json, "true_objects", &TrueObjectFromJson);
+  } else {
+    AddTruthOfOldVersions(sequence);
   }
   const auto& objects = sequence->true_objects;
   const auto unordered = std::ranges::adjacent_find(
@@ -305,15 +289,11 @@ void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* seq
     throw InputError(fmt::format("/true_objects/{}/object is {}; expected ascending ids",
                                  unordered - objects.begin() + 1, std::next(unordered)->id));
   }
-  for (const auto& row : json.value("truth_in_frames", nlohmann::json::array())) {
-    sequence->truth_in_frames.push_back(TruthInFrameFromJson(row, frames));
-  }
-  for (const auto& things : json.value("ignored", nlohmann::json::array())) {
-    sequence->ignored.push_back(IgnoredFromJson(things));
-  }
-  const auto world =
-      std::ranges::find(kOdometryWorldNames, json.value("odometry_world", "of_truth"));
-  sequence->odometry_world = static_cast<OdometryWorld>(world - std::begin(kOdometryWorldNames));
+  sequence->truth_in_frames = ListFromJson(
+      json, "truth_in_frames", [&](const auto& row) { return TruthInFrameFromJson(row, frames); });
+  sequence->ignored = ListFromJson(json, "ignored", &IgnoredFromJson);
+  sequence->odometry_world =
+      EnumFromName<OdometryWorld>(kOdometryWorldNames, json.value("odometry_world", "of_truth"));
 }
 
 Sequence SequenceFromJson(const json& json) {
@@ -324,22 +304,21 @@ Sequence SequenceFromJson(const json& json) {
   if (json.contains("image_distortion")) {                       // since version 1.3
     sequence.image_distortion = DistortionFromJson(json["image_distortion"]);
   }
-  sequence.image_orientation = OrientationFromJson(json);
+  // Before version 1.6 images were read as stored.
+  sequence.image_orientation = EnumFromName<ImageOrientation>(
+      kImageOrientationNames, json.value("image_orientation", "stored"));
   CheckPlanes(json);
-  for (const auto& frame : json.at("frames")) sequence.frames.push_back(FrameFromJson(frame));
+  sequence.frames = ListFromJson(json, "frames", &FrameFromJson);
   CheckSegments(sequence.frames);
-  for (const auto& plane : json.at("planes")) {
-    sequence.planes.push_back(SupportPlaneFromJson(plane));
-  }
+  sequence.planes = ListFromJson(json, "planes", &SupportPlaneFromJson);
   const IdTable<SupportPlane> planes("plane", sequence.planes);
-  for (const auto& object : json.at("objects")) {
-    sequence.objects.push_back(ObjectFromJson(object, planes));
-  }
+  sequence.objects = ListFromJson(
+      json, "objects", [&](const auto& object) { return ObjectFromJson(object, planes); });
   const IdTable<Frame> frames("frame", sequence.frames);
   const IdTable<Object> objects("object", sequence.objects);
-  for (const auto& detection : json.at("detections")) {
-    sequence.detections.push_back(DetectionFromJson(detection, frames, objects));
-  }
+  sequence.detections = ListFromJson(json, "detections", [&](const auto& detection) {
+    return DetectionFromJson(detection, frames, objects);
+  });
   CheckOrder(sequence.detections);
   CheckBoxesInView(sequence);
   // Versions 1.0 and 1.1 had no possible occluders.
@@ -349,10 +328,7 @@ Sequence SequenceFromJson(const json& json) {
     if (fields.contains("nearer_boxes") || fields.contains("nearer_in_view")) continue;
     detection.nearer_boxes = NearerBoxes(sequence, detection);
   }
-  for (const auto& held_out :
-       json.value("held_out", nlohmann::json::array())) {  // since version 1.3
-    sequence.held_out.push_back(HeldOutFromJson(held_out));
-  }
+  sequence.held_out = ListFromJson(json, "held_out", &HeldOutFromJson);  // since version 1.3
   CheckHeldOut(sequence);
   json.at("rejected_detections").get_to(sequence.rejected_detections);
   TruthFromJson(json, frames, &sequence);

@@ -47,13 +47,12 @@ json ScaleToJson(const GroundEstimate& estimate, const std::vector<Finding>& fin
           {"other_scales_probability", estimate.scale->second_mode_share}};
 }
 
-json ObjectToJson(const GroundObject& object) {
-  json centre;
-  if (object.centre_in_world) centre = VectorToJson(*object.centre_in_world);
+json GroundObjectToJson(const GroundObject& object) {
+  const auto& centre = object.centre_in_world;
   return {{"label", object.label},
           {"boxes", object.boxes},
           {"plane", object.plane == kNoPlane ? json() : json(object.plane)},
-          {"centre_in_world", centre},
+          {"centre_in_world", centre ? VectorToJson(*centre) : json()},
           {"height_m", object.height_m},
           {"log_scale", object.log_scale},
           {"log_sigma", object.log_sigma},
@@ -77,7 +76,7 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
       {"planes", json::array()},
       {"points", estimate.points},
       {"planes_of_points", estimate.planes_of_points},
-      {"objects", json::array()}};
+      {"objects", ListToJson(estimate.objects, &GroundObjectToJson)}};
   for (size_t i = 0; i < estimate.planes.size(); ++i) {
     json plane = PlaneToJson(estimate.planes[i], 0.0);
     plane["plane"] = i;
@@ -87,8 +86,6 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
     });
     body["planes"].push_back(std::move(plane));
   }
-  for (const GroundObject& object : estimate.objects)
-    body["objects"].push_back(ObjectToJson(object));
   WriteArtefact(path, "world", info, std::move(body));
 }
 

@@ -11,12 +11,11 @@ namespace {
 using nlohmann::json;
 
 json FrameToJson(const Frame& frame) {
-  const auto& truth = frame.true_world_from_camera;
   json fields = {{"frame", frame.id},
                  {"timestamp", frame.timestamp},
                  {"image", frame.image.empty() ? json() : json(frame.image)},
                  {"world_from_camera", frame.world_from_camera},
-                 {"true_world_from_camera", truth ? json(*truth) : json()},
+                 {"true_world_from_camera", frame.true_world_from_camera},
                  {"segment", frame.segment}};
   if (frame.camera) fields["camera"] = *frame.camera;
   if (!frame.boxes_in_view.empty()) fields["boxes_in_view"] = frame.boxes_in_view;
@@ -112,11 +111,11 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
 }
 
 json HeldOutToJson(const HeldOutFrame& held_out) {
-  json boxes = json::array();
-  for (const auto& [label, score, box] : held_out.boxes) {
-    boxes.push_back({{"label", label}, {"score", score}, {"box", box}});
-  }
-  return {{"frame", FrameToJson(held_out.frame)}, {"boxes", boxes}};
+  const auto box_to_json = [](const HeldOutFrame::LabelledBox& box) -> json {
+    return {{"label", box.label}, {"score", box.score}, {"box", box.box}};
+  };
+  return {{"frame", FrameToJson(held_out.frame)},
+          {"boxes", ListToJson(held_out.boxes, box_to_json)}};
 }
 
 // Rejected detections as rows of numbers, because they may be many: frame, index in `reasons`,
@@ -152,46 +151,35 @@ json RejectedToJson(const Sequence& sequence) {
 
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info) {
+  const auto object_to_json = [&](const Object& object) { return ObjectToJson(object, sequence); };
+  const auto detection_to_json = [&](const Detection& detection) {
+    return DetectionToJson(detection, sequence);
+  };
+  const auto truth_to_json = [&](const TruthInFrame& truth) {
+    return TruthInFrameToJson(truth, sequence);
+  };
   json body = {
       {"name", sequence.name},
       {"camera", sequence.camera},
       {"image_orientation",
        kImageOrientationNames[static_cast<size_t>(sequence.image_orientation)]},
-      {"frames", json::array()},
-      {"planes", json::array()},
-      {"objects", json::array()},
-      {"detections", json::array()},
+      {"frames", ListToJson(sequence.frames, &FrameToJson)},
+      {"planes", ListToJson(sequence.planes, &SupportPlaneToJson)},
+      {"objects", ListToJson(sequence.objects, object_to_json)},
+      {"detections", ListToJson(sequence.detections, detection_to_json)},
       {"rejected_detections", sequence.rejected_detections},
-      {"true_objects", json::array()},
-      {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]}};
-  if (!sequence.images_without_pose.empty()) {
-    body["images_without_pose"] = sequence.images_without_pose;
+      {"true_objects", ListToJson(sequence.true_objects, &TrueObjectToJson)},
+      {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]},
+      {"held_out", ListToJson(sequence.held_out, &HeldOutToJson)},
+      {"truth_in_frames", ListToJson(sequence.truth_in_frames, truth_to_json)},
+      {"ignored", ListToJson(sequence.ignored, &IgnoredToJson)},
+      {"images_without_pose", sequence.images_without_pose}};
+  for (const char* name : {"held_out", "truth_in_frames", "ignored", "images_without_pose"}) {
+    if (body[name].empty()) body.erase(name);
   }
   if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
   if (sequence.image_distortion)
     body["image_distortion"] = DistortionCoefficients(*sequence.image_distortion);
-  for (const Frame& frame : sequence.frames) body["frames"].push_back(FrameToJson(frame));
-  for (const SupportPlane& plane : sequence.planes) {
-    body["planes"].push_back(SupportPlaneToJson(plane));
-  }
-  for (const Object& object : sequence.objects) {
-    body["objects"].push_back(ObjectToJson(object, sequence));
-  }
-  for (const Detection& detection : sequence.detections) {
-    body["detections"].push_back(DetectionToJson(detection, sequence));
-  }
-  for (const HeldOutFrame& held_out : sequence.held_out) {
-    body["held_out"].push_back(HeldOutToJson(held_out));
-  }
-  for (const TruthInFrame& truth : sequence.truth_in_frames) {
-    body["truth_in_frames"].push_back(TruthInFrameToJson(truth, sequence));
-  }
-  for (const TrueObject& object : sequence.true_objects) {
-    body["true_objects"].push_back(TrueObjectToJson(object));
-  }
-  for (const IgnoredThings& things : sequence.ignored) {
-    body["ignored"].push_back(IgnoredToJson(things));
-  }
   if (!sequence.rejected.empty()) body["rejected"] = RejectedToJson(sequence);
   ArtefactInfo with_findings = info;
   with_findings.findings = sequence.findings;

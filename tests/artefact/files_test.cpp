@@ -51,15 +51,6 @@ TEST_F(ArtefactFilesTest, UnknownSupportsComeBackToThoseWhoNeedNone) {
   ExpectError<InputError>([&] { ReadSequence(file); }, {file.string(), "\"associate\""});
 }
 
-TEST_F(ArtefactFilesTest, LabelsOfAnObjectComeBack) {
-  sequence.objects[0].labels = {{"chair", 0.75}, {"armchair", 0.25}};
-  WriteSequence(file, sequence, {});
-  const auto labels = ReadSequence(file).objects.at(0).labels;
-  ASSERT_EQ(labels.size(), 2U);
-  EXPECT_EQ(labels[1].label, "armchair");
-  EXPECT_EQ(labels[1].probability, 0.25);
-}
-
 TEST_F(ArtefactFilesTest, MapsSayWhatAnObjectMayBe) {
   const MapEstimate map = RandomMap();
   const auto index = static_cast<size_t>(map.objects.front().object_index);
@@ -80,41 +71,14 @@ TEST_F(ArtefactFilesTest, PlanesAreKnownForAllOrNone) {
                           {"/detections/1/plane_in_camera is null", "expected a plane"});
 }
 
-TEST_F(ArtefactFilesTest, DistortionOfImagesComesBack) {
-  sequence.image_distortion = Distortion{0.1, -0.2, 0.003, -0.004, 0.5};
-  WriteSequence(file, sequence, {});
-  EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
-  sequence.image_distortion->k6 = 0.25;
-  WriteSequence(file, sequence, {});
-  EXPECT_EQ(ReadSequence(file).image_distortion, sequence.image_distortion);
-}
-
-TEST_F(ArtefactFilesTest, OrientationOfImagesComesBack) {
-  for (const auto orientation : {ImageOrientation::kUpright, ImageOrientation::kStored}) {
-    sequence.image_orientation = orientation;
-    WriteSequence(file, sequence, {});
-    EXPECT_EQ(ReadSequence(file).image_orientation, orientation);
-  }
-}
-
-TEST_F(ArtefactFilesTest, HeldOutFramesComeBack) {
+TEST_F(ArtefactFilesTest, WhatASequenceMayHaveComesBack) {
+  const GroundTruth truth{RandomLandmarkInCamera(), false, true, true};
   HeldOutFrame held_out{sequence.frames.back(), {{"cup", 0.7, {10.5, 20.0, 30.0, 40.25}}}};
   held_out.frame.id = sequence.frames.back().id + 1;
   sequence.held_out = {held_out};
-  WriteSequence(file, sequence, {});
-  const Sequence read = ReadSequence(file);
-  ASSERT_EQ(read.held_out.size(), 1u);
-  EXPECT_EQ(read.held_out[0].frame.id, held_out.frame.id);
-  EXPECT_EQ(read.held_out[0].frame.world_from_camera.translation,
-            held_out.frame.world_from_camera.translation);
-  ASSERT_EQ(read.held_out[0].boxes.size(), 1u);
-  EXPECT_EQ(read.held_out[0].boxes[0].label, "cup");
-  EXPECT_EQ(read.held_out[0].boxes[0].score, 0.7);
-  EXPECT_EQ(read.held_out[0].boxes[0].box, held_out.boxes[0].box);
-}
-
-TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
-  GroundTruth truth{RandomLandmarkInCamera(), false, true, true};
+  sequence.objects[0].labels = {{"chair", 0.75}, {"armchair", 0.25}};
+  sequence.image_distortion = Distortion{0.1, -0.2, 0.003, -0.004, 0.5, 0.25};
+  sequence.image_orientation = ImageOrientation::kStored;
   sequence.true_objects = {{-3, "cup", truth, 0, true, true}, {7, "car", truth, 2, false, false}};
   sequence.ignored = {{"mouse", std::nullopt}, {std::nullopt, RandomLandmarkInCamera()}};
   sequence.odometry_world = OdometryWorld::kOwnWithScale;
@@ -124,14 +88,24 @@ TEST_F(ArtefactFilesTest, TruthAndRejectedDetectionsComeBack) {
       {1, "cup", 0.25, {1, 2, 3, 4.5}, -3, RejectingStage::kImport, "near_border"},
       {0, "bed", 0.5, {1, 2, 3, 4}, std::nullopt, RejectingStage::kAssociate, "near_border"},
       {0, "cup", 0.5, {9, 2, 10, 4}, std::nullopt, RejectingStage::kPlanes, "no_support"}};
+  sequence.findings = {{"a", Severity::kWarning, "found \u00fc", "expected", "cause", "remedy"},
+                       {"b", Severity::kError, "2 of 3", "all", "", "none"}};
   WriteSequence(file, sequence, {});
   const Sequence read = ReadSequence(file);
   WriteSequence(again, read, {});
   EXPECT_EQ(FileBytes(file), FileBytes(again));
+  ASSERT_EQ(read.held_out.size(), 1u);
+  EXPECT_EQ(read.held_out[0].frame.id, held_out.frame.id);
+  EXPECT_EQ(read.held_out[0].boxes.at(0).label, "cup");
+  EXPECT_EQ(read.held_out[0].boxes[0].box, held_out.boxes[0].box);
+  EXPECT_EQ(read.objects.at(0).labels.at(1).probability, 0.25);
+  EXPECT_EQ(read.image_distortion, sequence.image_distortion);
+  EXPECT_EQ(read.image_orientation, ImageOrientation::kStored);
   EXPECT_TRUE(read.true_objects.at(0).is_ignored);
   EXPECT_EQ(read.truth_in_frames.at(0).frame_index, 1);
   EXPECT_EQ(read.rejected.at(2).stage, RejectingStage::kPlanes);
   EXPECT_EQ(read.rejected[2].box, sequence.rejected[2].box);
+  EXPECT_EQ(read.findings, sequence.findings);
 }
 
 TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {

@@ -36,32 +36,12 @@ class SemanticTableFileTest : public testing::Test {
   std::filesystem::path file_ = folder_ / "table.json";
 };
 
-TEST_F(SemanticTableFileTest, ReadsRatioSpreadAndShape) {
-  json entry = kRatioOnly;
-  entry["a_by_c_log_sigma"] = 0.1;
-  entry["b_by_c_log_sigma"] = 0.4;
-  entry["shape_exponent"] = 2;
-  const SemanticTable table = Read({{"labels", {{"cup", entry}}}});
-  const ShapePrior cup = table.Find("cup").value();
-  EXPECT_EQ(cup.ratio, Eigen::Vector2d(2.0, 0.5));
-  EXPECT_EQ(cup.log_sigma, Eigen::Vector2d(0.1, 0.4));
-  EXPECT_EQ(cup.shape_exponent, 2.0);
-  EXPECT_FALSE(table.Find("bowl"));
-}
-
 TEST_F(SemanticTableFileTest, EntriesOfARatioOnlyAreNearlyBoxesWithATypicalSpread) {
   const SemanticTable table = Read({{"default", kRatioOnly}, {"labels", json::object()}});
   const ShapePrior any = table.Find("anything").value();
   EXPECT_EQ(any.ratio, Eigen::Vector2d(2.0, 0.5));
   EXPECT_EQ(any.log_sigma, Eigen::Vector2d(0.3, 0.3));
   EXPECT_EQ(any.shape_exponent, 1.1);
-}
-
-TEST_F(SemanticTableFileTest, WhatIsNoSpreadOrShapeIsRefused) {
-  ExpectRefused("a_by_c_log_sigma", -0.1);
-  ExpectRefused("b_by_c_log_sigma", 0);
-  ExpectRefused("shape_exponent", 3);
-  ExpectRefused("shape_exponent", 0.9);
 }
 
 TEST_F(SemanticTableFileTest, ReadsSizeAndCorrelation) {
@@ -103,16 +83,20 @@ TEST_F(SemanticTableFileTest, TheSameNameTwiceIsRefused) {
       {"table.json", "ug'"});
 }
 
-TEST_F(SemanticTableFileTest, WhatIsNoSizeOrCorrelationIsRefused) {
-  ExpectRefused("height_m", 0);
-  ExpectRefused("height_log_sigma", 0);
-  ExpectRefused("log_correlation", 1);
-  ExpectRefused("samples", -1);
-}
-
-TEST_F(SemanticTableFileTest, WhatIsNoEdgeBiasIsRefused) {
-  ExpectRefused("edge_bias", {0.1, 0.1, 0.1});
-  ExpectRefused("edge_bias", 0.1);
+TEST_F(SemanticTableFileTest, ImpossibleNumbersAreRefused) {
+  for (const auto& [field, value] :
+       std::vector<std::pair<const char*, json>>{{"a_by_c_log_sigma", -0.1},
+                                                 {"b_by_c_log_sigma", 0},
+                                                 {"shape_exponent", 3},
+                                                 {"shape_exponent", 0.9},
+                                                 {"height_m", 0},
+                                                 {"height_log_sigma", 0},
+                                                 {"log_correlation", 1},
+                                                 {"samples", -1},
+                                                 {"edge_bias", 0.1},
+                                                 {"edge_bias", {0.1, 0.1, 0.1}}}) {
+    ExpectRefused(field, value);
+  }
   json entry = kRatioOnly;
   entry["edge_bias"] = {0.0, 0.0, 0.0, 0.5};  // two of these would leave no box
   ExpectError<InputError>(
