@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <initializer_list>
 #include <iterator>
 #include <map>
@@ -27,30 +26,23 @@
 namespace soslam {
 namespace {
 
-// A name of OpenCV's model and the possible numbers of its coefficients.
-struct LensModel {
-  const char* name;
-  std::vector<size_t> counts;
-};
-
-const std::vector<LensModel>& LensModels() {
-  static const std::vector<LensModel> models = {{"none", {0, 4, 5}},  // all of them 0
-                                                {"pinhole", {0, 4, 5, 8, 12, 14}},
-                                                {"perspective", {0, 4, 5, 8, 12, 14}},
-                                                {"simplepinhole", {0, 4, 5}},
-                                                {"opencv", {4, 5, 8, 12, 14}},
-                                                {"plumbbob", {4, 5}},
-                                                {"radtan", {4, 5}},
-                                                {"radialtangential", {4, 5}},
-                                                {"brown", {4, 5}},
-                                                {"brownconrady", {4, 5}},
-                                                {"simpleradial", {4, 5}},
-                                                {"radial", {4, 5}},
-                                                {"rationalpolynomial", {8, 12, 14}},
-                                                {"fullopencv", {8}},
-                                                {"thinprism", {12, 14}}};
-  return models;
-}
+// The names of OpenCV's model and the possible numbers of its coefficients.
+const std::map<std::string, std::vector<size_t>> kLensModels = {
+    {"none", {0, 4, 5}},  // all of them 0
+    {"pinhole", {0, 4, 5, 8, 12, 14}},
+    {"perspective", {0, 4, 5, 8, 12, 14}},
+    {"simplepinhole", {0, 4, 5}},
+    {"opencv", {4, 5, 8, 12, 14}},
+    {"plumbbob", {4, 5}},
+    {"radtan", {4, 5}},
+    {"radialtangential", {4, 5}},
+    {"brown", {4, 5}},
+    {"brownconrady", {4, 5}},
+    {"simpleradial", {4, 5}},
+    {"radial", {4, 5}},
+    {"rationalpolynomial", {8, 12, 14}},
+    {"fullopencv", {8}},
+    {"thinprism", {12, 14}}};
 
 // Normalised model name: lower case, without word separators.
 std::string PlainName(const std::string& model) {
@@ -88,18 +80,18 @@ bool IsWideAngle(const std::string& plain_name) {
 std::optional<Distortion> ParseLens(const std::string& model, std::span<const double> coefficients,
                                     const std::string& place) {
   const std::string name = PlainName(model);
-  const auto found = std::ranges::find(LensModels(), name,
-                                       [](const LensModel& m) -> std::string { return m.name; });
-  if (found == LensModels().end()) RefuseModel(model, place);
+  const auto found = kLensModels.find(name);
+  if (found == kLensModels.end()) RefuseModel(model, place);
+  const std::vector<size_t>& counts = found->second;
   const bool are_zero = std::ranges::all_of(coefficients, [](double k) { return k == 0.0; });
-  if (std::ranges::find(found->counts, coefficients.size()) == found->counts.end() ||
+  if (std::ranges::find(counts, coefficients.size()) == counts.end() ||
       (name == "none" && !are_zero)) {
     const size_t shown = std::min<size_t>(coefficients.size(), 14);
     throw InputError(fmt::format(
         "{}: distortion has {} numbers ({}) for lens model '{}'; expected {}, in OpenCV's order: "
         "k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4 [tau_x tau_y]]]]",
         place, coefficients.size(), fmt::join(coefficients.first(shown), " "), model,
-        name == "none" ? "none but 0" : fmt::format("{}", fmt::join(found->counts, ", "))));
+        name == "none" ? "none but 0" : fmt::format("{}", fmt::join(counts, ", "))));
   }
   if (coefficients.empty()) return std::nullopt;
   return DistortionOfCoefficients(coefficients);
@@ -135,9 +127,8 @@ bool IsOfDistortion(const std::string& plain_key) {
 }
 
 bool IsNumber(const std::string& text) {
-  char* end = nullptr;
-  std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0';
+  const auto numbers = ParseNumbers(text);
+  return numbers && numbers->size() == 1;
 }
 
 class CalibrationReader {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <set>
 #include <string>
@@ -14,32 +14,18 @@
 namespace soslam {
 namespace {
 
-// The four numbers of a box in its file, and conversions from other conventions.
-using FourNumbers = std::array<double, 4>;
-
-Box FromCorners(const FourNumbers& v) { return {v[0], v[1], v[2], v[3]}; }
-Box FromCornerAndSize(const FourNumbers& v) { return {v[0], v[1], v[0] + v[2], v[1] + v[3]}; }
-Box FromCentreAndSize(const FourNumbers& v) {
-  return {v[0] - 0.5 * v[2], v[1] - 0.5 * v[3], v[0] + 0.5 * v[2], v[1] + 0.5 * v[3]};
-}
-
+// What the four numbers of a box in a file may mean: the corners are linear in them.
 struct BoxConvention {
   const char* name;
-  Box (*read)(const FourNumbers&);
-  FourNumbers (*write)(const Box&);
+  Eigen::Matrix4d corners_from_numbers;
 };
-constexpr std::array kConventions = {
-    BoxConvention{"two corners (x1, y1, x2, y2)", &FromCorners,
-                  [](const Box& b) {
-                    return FourNumbers{b.x_min, b.y_min, b.x_max, b.y_max};
-                  }},
-    BoxConvention{"upper left corner and size (x, y, width, height)", &FromCornerAndSize,
-                  [](const Box& b) {
-                    return FourNumbers{b.x_min, b.y_min, b.Width(), b.Height()};
-                  }},
-    BoxConvention{"centre and size (cx, cy, width, height)", &FromCentreAndSize, [](const Box& b) {
-                    return FourNumbers{b.Centre().x(), b.Centre().y(), b.Width(), b.Height()};
-                  }}};
+const std::array kConventions = {
+    BoxConvention{"two corners (x1, y1, x2, y2)", Eigen::Matrix4d::Identity()},
+    BoxConvention{"upper left corner and size (x, y, width, height)",
+                  Eigen::Matrix4d{{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 0, 1, 0}, {0, 1, 0, 1}}},
+    BoxConvention{
+        "centre and size (cx, cy, width, height)",
+        Eigen::Matrix4d{{1, 0, -0.5, 0}, {0, 1, 0, -0.5}, {1, 0, 0.5, 0}, {0, 1, 0, 0.5}}}};
 
 const BoxConvention& ConventionOf(const ImportOptions& options) {
   switch (options.folder.detections_format) {
@@ -65,10 +51,14 @@ bool IsPlausible(const Box& box, const Camera& camera) {
          box.y_max <= camera.height + margin_y;
 }
 
+// Number of plausible boxes after a linear change of their corners.
 int CountPlausible(const std::vector<Box>& boxes, const Camera& camera,
-                   const std::function<Box(const Box&)>& reading) {
-  return static_cast<int>(std::ranges::count_if(
-      boxes, [&](const Box& box) { return IsPlausible(reading(box), camera); }));
+                   const Eigen::Matrix4d& change) {
+  return static_cast<int>(std::ranges::count_if(boxes, [&](const Box& box) {
+    const Eigen::Vector4d corners =
+        change * Eigen::Vector4d(box.x_min, box.y_min, box.x_max, box.y_max);
+    return IsPlausible({corners[0], corners[1], corners[2], corners[3]}, camera);
+  }));
 }
 
 // The convention under which nearly all boxes lie in the image; null when there is none.
@@ -80,7 +70,7 @@ const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camer
   for (const BoxConvention& other : kConventions) {
     if (&other == &assumed) continue;
     const int plausible = CountPlausible(
-        boxes, camera, [&](const Box& box) { return other.read(assumed.write(box)); });
+        boxes, camera, other.corners_from_numbers * assumed.corners_from_numbers.inverse());
     if (plausible <= most) continue;
     best = &other;
     most = plausible;
@@ -114,7 +104,7 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
   constexpr double kTolerated = 0.03;
   constexpr double kMostly = 0.75;
   const auto all = static_cast<double>(boxes.size());
-  const int plausible = CountPlausible(boxes, camera, [](const Box& box) { return box; });
+  const int plausible = CountPlausible(boxes, camera, Eigen::Matrix4d::Identity());
   const int bad = static_cast<int>(boxes.size()) - plausible;
   if (bad < kFewest || bad <= kTolerated * all) return {};
   const BoxConvention& assumed = ConventionOf(options);

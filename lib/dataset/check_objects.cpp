@@ -157,24 +157,18 @@ namespace {
 // Detections on the plane with most objects (then most detections); empty where no plane is known.
 // Other planes may be above cameras, as shelves are, or upright, as walls are.
 std::vector<const Detection*> DetectionsOnMainPlane(const Sequence& sequence) {
-  std::map<int, std::set<int>> objects;
-  std::map<int, std::vector<const Detection*>> detections;
+  std::map<int, std::vector<const Detection*>> on_plane;
   for (const Detection& detection : sequence.detections) {
     const int plane = sequence.ObjectOf(detection).plane_index;
-    if (plane == kNoPlane) continue;
-    objects[plane].insert(detection.object_index);
-    detections[plane].push_back(&detection);
+    if (plane != kNoPlane) on_plane[plane].push_back(&detection);
   }
-  std::vector<const Detection*> most;
-  size_t most_objects = 0;
-  for (const auto& [plane, on_it] : objects) {
-    const auto& of_plane = detections[plane];
-    if (on_it.size() < most_objects) continue;
-    if (on_it.size() == most_objects && of_plane.size() <= most.size()) continue;
-    most_objects = on_it.size();
-    most = of_plane;
-  }
-  return most;
+  if (on_plane.empty()) return {};
+  const auto objects_and_detections = [](const auto& entry) {
+    std::set<int> objects;
+    for (const Detection* detection : entry.second) objects.insert(detection->object_index);
+    return std::pair(objects.size(), entry.second.size());
+  };
+  return std::ranges::max_element(on_plane, {}, objects_and_detections)->second;
 }
 
 std::string PlaneInWords(const SupportPlane& plane) {

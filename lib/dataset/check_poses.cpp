@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "dataset/dataset_checks.h"
@@ -66,6 +67,20 @@ Things Mirrored(Things things) {
   return things;
 }
 
+// Order of the frame numbers as strings: 0, 1, 10, 11, 2, ...
+std::vector<size_t> OrderOfStrings(size_t frames) {
+  std::vector<size_t> order(frames);
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::sort(order, {}, [](size_t frame) { return std::to_string(frame); });
+  return order;
+}
+
+std::vector<size_t> Inverse(const std::vector<size_t>& order) {
+  std::vector<size_t> inverse(order.size());
+  for (size_t i = 0; i < order.size(); ++i) inverse[order[i]] = i;
+  return inverse;
+}
+
 // An explanation for each reading of the poses and each order of the frames with which objects can
 // be triangulated.
 std::vector<Explanation> Explanations(const ImportView& view, const Things& things) {
@@ -83,14 +98,27 @@ std::vector<Explanation> Explanations(const ImportView& view, const Things& thin
     explanations.push_back({reading.name, reading.cause, reading.remedy, false, *error});
   }
   const std::vector<ListedFrame>& frames = view.content.frames;
-  for (const FrameOrder& order : FrameOrders(frames.size())) {
+  // `frame_meant`: for each frame, that whose pose belongs to its boxes.
+  const auto add_order = [&](const char* name, const char* cause, const char* remedy,
+                             const std::vector<size_t>& frame_meant) {
     const auto error = MedianRayError(things, [&](size_t frame) -> std::optional<Rigid3d> {
-      const size_t meant = order.frame_meant[frame];
+      const size_t meant = frame_meant[frame];
       if (frames[meant].frame.segment != frames[frame].frame.segment) return std::nullopt;
       return PoseAt(view, meant);
     });
-    if (error) explanations.push_back({order.name, order.cause, order.remedy, true, *error});
-  }
+    if (error) explanations.push_back({name, cause, remedy, true, *error});
+  };
+  std::vector<size_t> reversed(frames.size());
+  std::iota(reversed.rbegin(), reversed.rend(), size_t{0});
+  const std::vector<size_t> of_strings = OrderOfStrings(frames.size());
+  constexpr const char* kAsStrings = "numbers that were sorted as strings, 10 before 2";
+  add_order("the poses are in reversed order", "poses or boxes from the last image to the first",
+            "reverse the poses or the frames of the detections", reversed);
+  add_order("boxes are in the order of strings", kAsStrings,
+            "sort the images or boxes by number, or write numbers with leading zeros", of_strings);
+  add_order("the poses are in the order of strings", kAsStrings,
+            "sort the images or poses by number, or write numbers with leading zeros",
+            Inverse(of_strings));
   return explanations;
 }
 

@@ -13,20 +13,17 @@
 namespace soslam {
 namespace {
 
-const std::vector<ColmapCameraModel>& Models() {
-  static const std::vector<ColmapCameraModel> models = {
-      {0, "SIMPLE_PINHOLE", {"f", "cx", "cy"}},
-      {1, "PINHOLE", {"fx", "fy", "cx", "cy"}},
-      {2, "SIMPLE_RADIAL", {"f", "cx", "cy", "k1"}},
-      {3, "RADIAL", {"f", "cx", "cy", "k1", "k2"}},
-      {4, "OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}},
-      {6, "FULL_OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
-  return models;
-}
+const std::vector<ColmapCameraModel> kModels = {
+    {0, "SIMPLE_PINHOLE", {"f", "cx", "cy"}},
+    {1, "PINHOLE", {"fx", "fy", "cx", "cy"}},
+    {2, "SIMPLE_RADIAL", {"f", "cx", "cy", "k1"}},
+    {3, "RADIAL", {"f", "cx", "cy", "k1", "k2"}},
+    {4, "OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}},
+    {6, "FULL_OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
 
 [[noreturn]] void RefuseColmapModel(const std::string& model, const std::string& place) {
   std::vector<std::string> names;
-  for (const ColmapCameraModel& known : Models()) names.emplace_back(known.name);
+  for (const ColmapCameraModel& known : kModels) names.emplace_back(known.name);
   throw InputError(fmt::format(
       "{}: camera model {} is not supported; expected one of {}; undistort the images first: "
       "colmap image_undistorter writes them with a model of PINHOLE cameras",
@@ -44,14 +41,14 @@ double ValueOf(const char* name, const ColmapCameraModel& model, std::span<const
 }  // namespace
 
 const ColmapCameraModel& FindColmapCameraModel(std::string_view name, const std::string& place) {
-  const auto found = std::ranges::find(Models(), name, &ColmapCameraModel::name);
-  if (found == Models().end()) RefuseColmapModel(fmt::format("'{}'", name), place);
+  const auto found = std::ranges::find(kModels, name, &ColmapCameraModel::name);
+  if (found == kModels.end()) RefuseColmapModel(fmt::format("'{}'", name), place);
   return *found;
 }
 
 const ColmapCameraModel& FindColmapCameraModel(int id, const std::string& place) {
-  const auto found = std::ranges::find(Models(), id, &ColmapCameraModel::id);
-  if (found != Models().end()) return *found;
+  const auto found = std::ranges::find(kModels, id, &ColmapCameraModel::id);
+  if (found != kModels.end()) return *found;
   const std::vector<std::pair<int, const char*>> others = {
       {5, "OPENCV_FISHEYE"},        {7, "FOV"},
       {8, "SIMPLE_RADIAL_FISHEYE"}, {9, "RADIAL_FISHEYE"},

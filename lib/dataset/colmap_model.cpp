@@ -209,30 +209,29 @@ std::vector<Eigen::Vector2d> ParsePixels(const TextLine& line) {
   return pixels;
 }
 
-enum class ImagePoints { kRead, kSkipped };
-
-std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path, ImagePoints points) {
+std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path) {
   std::vector<ColmapImage> images;
   bool is_points = false;
   for (const TextLine& line : RawLines(ReadWholeFile(path), path.string())) {
     const std::string_view text = Trimmed(line.text);
     if (!is_points && (text.empty() || text.front() == '#')) continue;
-    if (!is_points) {
-      images.push_back(ParseImage({line.place, std::string(text)}));
-    } else if (points == ImagePoints::kRead) {
+    if (is_points) {
       images.back().pixels = ParsePixels(line);
+    } else {
+      images.push_back(ParseImage({line.place, std::string(text)}));
     }
     is_points = !is_points;
   }
   return images;
 }
 
-std::vector<ColmapImage> ReadImages(const std::filesystem::path& path, ImagePoints points) {
+std::vector<ColmapImage> ReadImages(const std::filesystem::path& path) {
   constexpr size_t kLeastBytes = 73;
-  auto images = IsBinary(path) ? ReadBinary(path, "image", kLeastBytes, &TakeImage)
-                               : ReadImagesText(path, points);
-  if (images.empty())
+  auto images =
+      IsBinary(path) ? ReadBinary(path, "image", kLeastBytes, &TakeImage) : ReadImagesText(path);
+  if (images.empty()) {
     throw InputError(path.string() + ": has no pose; expected COLMAP's images.txt or images.bin");
+  }
   return images;
 }
 
@@ -323,9 +322,7 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path) {
 
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
   std::vector<NamedPose> poses;
-  for (ColmapImage& image : ReadImages(path, ImagePoints::kSkipped)) {
-    poses.push_back(std::move(image.pose));
-  }
+  for (ColmapImage& image : ReadImages(path)) poses.push_back(std::move(image.pose));
   return poses;
 }
 
@@ -348,7 +345,7 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
     model.files.push_back(folder / (name + extension));
   }
   model.camera = ReadColmapCamera(model.files[0]);
-  model.images = ReadImages(model.files[1], ImagePoints::kRead);
+  model.images = ReadImages(model.files[1]);
   model.points = ReadColmapPoints(model.files[2]);
   std::ranges::sort(model.points, {}, &ColmapPoint::id);
   CheckTracks(model);

@@ -174,32 +174,28 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
 namespace {
 
 // Gates that reject detections because of the data; the others apply what a setting asks for.
-const std::map<std::string, Advice>& GatesOfData() {
-  const auto name = [](RejectReason reason) { return std::string(RejectReasonName(reason)); };
-  static const std::map<std::string, Advice> gates = {
-      {name(RejectReason::kFrameWithoutPose),
-       {"a trajectory of other images, or of another clock",
-        "compare the time stamps of images and trajectory; max_time_difference_s"}},
-      {name(RejectReason::kBeyondLensModel),
-       {"distortion of another camera, or with coefficients in another order",
-        "give k1, k2, p1, p2, k3 as OpenCV has them"}},
-      {name(RejectReason::kEmptyBox),
-       {"boxes of another convention, as x, y, width, height", "give corners x1, y1, x2, y2"}},
-      {name(RejectReason::kOutsideImage),
-       {"boxes of images of another size", "give boxes in pixels of the camera's image"}},
-      {name(RejectReason::kNearBorder),
-       {"objects that the image cuts, which the paper's protocol drops",
-        "a smaller border_px keeps them, with the cut edges as bounds"}},
-      {name(RejectReason::kDuplicate),
-       {"several boxes of one object in one image, or one id for several objects",
-        "an id for each object, or no ids and estimated association"}},
-      {name(RejectReason::kTooFewObservations),
-       {"ids that change from image to image",
-        "ids that stay, or no ids and estimated association; min_observations"}},
-      {name(RejectReason::kWithoutObjectId),
-       {"a tracker that finds few tracks", "no object_id and estimated association"}}};
-  return gates;
-}
+const std::map<std::string, Advice> kGatesOfData = {
+    {RejectReasonName(RejectReason::kFrameWithoutPose),
+     {"a trajectory of other images, or of another clock",
+      "compare the time stamps of images and trajectory; max_time_difference_s"}},
+    {RejectReasonName(RejectReason::kBeyondLensModel),
+     {"distortion of another camera, or with coefficients in another order",
+      "give k1, k2, p1, p2, k3 as OpenCV has them"}},
+    {RejectReasonName(RejectReason::kEmptyBox),
+     {"boxes of another convention, as x, y, width, height", "give corners x1, y1, x2, y2"}},
+    {RejectReasonName(RejectReason::kOutsideImage),
+     {"boxes of images of another size", "give boxes in pixels of the camera's image"}},
+    {RejectReasonName(RejectReason::kNearBorder),
+     {"objects that the image cuts, which the paper's protocol drops",
+      "a smaller border_px keeps them, with the cut edges as bounds"}},
+    {RejectReasonName(RejectReason::kDuplicate),
+     {"several boxes of one object in one image, or one id for several objects",
+      "an id for each object, or no ids and estimated association"}},
+    {RejectReasonName(RejectReason::kTooFewObservations),
+     {"ids that change from image to image",
+      "ids that stay, or no ids and estimated association; min_observations"}},
+    {RejectReasonName(RejectReason::kWithoutObjectId),
+     {"a tracker that finds few tracks", "no object_id and estimated association"}}};
 
 }  // namespace
 
@@ -209,12 +205,12 @@ std::vector<Finding> CheckRejections(const ImportView& view) {
   if (view.options.format == DatasetFormat::kKittiObject) return {};
   auto all = static_cast<int>(view.sequence.detections.size());  // that reach the gates of data
   for (const auto& [reason, count] : view.sequence.rejected_detections) {
-    if (GatesOfData().contains(reason)) all += count;
+    if (kGatesOfData.contains(reason)) all += count;
   }
   std::vector<Finding> findings;
   for (const auto& [reason, count] : view.sequence.rejected_detections) {
-    const auto gate = GatesOfData().find(reason);
-    if (gate == GatesOfData().end() || all < kFewest || 3 * count <= all) continue;
+    const auto gate = kGatesOfData.find(reason);
+    if (gate == kGatesOfData.end() || all < kFewest || 3 * count <= all) continue;
     findings.push_back({"rejected_" + reason, Severity::kWarning,
                         fmt::format("{} of {} detections are dropped as {}", count, all, reason),
                         "at most a third dropped for one reason", gate->second.cause,

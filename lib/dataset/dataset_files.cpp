@@ -19,42 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Finds the files of a folder and records the missing ones.
-class Finder {
- public:
-  explicit Finder(const fs::path& folder) : folder_(folder) {}
-
-  std::optional<fs::path> IfPresent(const std::string& name) const {
-    if (name.empty() || !Exists(folder_ / name)) return std::nullopt;
-    return folder_ / name;
-  }
-  fs::path Required(const std::string& name) {
-    if (!Exists(folder_ / name)) missing_.push_back(name);
-    return folder_ / name;
-  }
-  // The required file; none when the name is empty.
-  std::optional<fs::path> RequiredIfNamed(const std::string& name) {
-    return name.empty() ? std::nullopt : std::optional(Required(name));
-  }
-  // A trajectory file, which may be absent under its usual name.
-  std::optional<fs::path> Trajectory(const std::string& name, const std::string& usual_name) {
-    return name == usual_name ? IfPresent(name) : RequiredIfNamed(name);
-  }
-  void Miss(const std::string& name) { missing_.push_back(name); }
-
-  void RefuseIfAnyIsMissing(const ImportOptions& options) const {
-    if (missing_.empty()) return;
-    throw InputError(fmt::format("{}: {} {} missing; expected a dataset folder of format {}",
-                                 folder_.string(), fmt::join(missing_, ", "),
-                                 missing_.size() == 1 ? "is" : "are",
-                                 kDatasetFormatNames[static_cast<size_t>(options.format)]));
-  }
-
- private:
-  fs::path folder_;
-  std::vector<std::string> missing_;
-};
-
 std::vector<fs::path> FilesIn(const fs::path& path) {
   if (!IsFolder(path)) return {path};
   std::vector<fs::path> files;
@@ -81,26 +45,44 @@ std::vector<fs::path> DatasetFiles::All() const {
 DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& options) {
   const FolderOptions usual;
   const FolderOptions& names = options.folder;
-  Finder find(folder);
+  std::vector<std::string> missing;
+  const auto if_present = [&](const std::string& name) {
+    const bool is_present = !name.empty() && Exists(folder / name);
+    return is_present ? std::optional(folder / name) : std::nullopt;
+  };
+  const auto required = [&](const std::string& name) {
+    if (!Exists(folder / name)) missing.push_back(name);
+    return folder / name;
+  };
+  const auto required_if_named = [&](const std::string& name) {
+    return name.empty() ? std::nullopt : std::optional(required(name));
+  };
+  const auto trajectory = [&](const std::string& name, const std::string& usual_name) {
+    return name == usual_name ? if_present(name) : required_if_named(name);
+  };
   DatasetFiles files;
-  files.images = find.RequiredIfNamed(names.images);
+  files.images = required_if_named(names.images);
   if (names.camera.empty()) {
-    files.camera = find.Required(names.camera_file.empty() ? "camera.json" : names.camera_file);
+    files.camera = required(names.camera_file.empty() ? "camera.json" : names.camera_file);
   }
-  files.planes = find.IfPresent("planes.json");
-  files.detections =
-      find.Required(options.detections.empty() ? "detections.csv" : options.detections);
-  files.class_names = find.RequiredIfNamed(names.class_names);
-  files.objects = find.IfPresent("objects.json");
-  const auto odometry = find.Trajectory(names.odometry, usual.odometry);
-  files.groundtruth = find.Trajectory(names.groundtruth, usual.groundtruth);
+  files.planes = if_present("planes.json");
+  files.detections = required(options.detections.empty() ? "detections.csv" : options.detections);
+  files.class_names = required_if_named(names.class_names);
+  files.objects = if_present("objects.json");
+  const auto odometry = trajectory(names.odometry, usual.odometry);
+  files.groundtruth = trajectory(names.groundtruth, usual.groundtruth);
   const bool wants_odometry = options.trajectory == TrajectorySource::kOdometry;
   const auto& wanted = wants_odometry ? odometry : files.groundtruth;
   const auto& other = wants_odometry ? files.groundtruth : odometry;
   if (!wanted && !other) {
-    find.Miss(fmt::format("a trajectory ({} or {})", usual.odometry, usual.groundtruth));
+    missing.push_back(fmt::format("a trajectory ({} or {})", usual.odometry, usual.groundtruth));
   }
-  find.RefuseIfAnyIsMissing(options);
+  if (!missing.empty()) {
+    throw InputError(fmt::format("{}: {} {} missing; expected a dataset folder of format {}",
+                                 folder.string(), fmt::join(missing, ", "),
+                                 missing.size() == 1 ? "is" : "are",
+                                 kDatasetFormatNames[static_cast<size_t>(options.format)]));
+  }
   files.trajectory = wanted ? *wanted : *other;
   files.trajectory_is_fallback = !wanted;
   return files;

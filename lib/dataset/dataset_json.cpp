@@ -17,101 +17,58 @@ namespace {
 using nlohmann::json;
 using Entry = JsonEntry;
 
-// Hints for keys of other programs.
-constexpr const char* kCoefficients =
-    "k1, k2, p1, p2, k3 are read as \"distortion\": [k1, k2, p1, p2, k3]";
-constexpr const char* kMatrix = "the intrinsics are read as \"fx\", \"fy\", \"cx\", \"cy\", pixels";
-constexpr const char* kOffset = "a plane is normal . x + d = 0, read as \"normal\" and \"d\"";
-constexpr const char* kCenter = "the middle of the object is read as \"center\"";
-constexpr const char* kHalfAxes = "the size is read as \"half_axes\", half of it along x, y, z";
-constexpr const char* kQuaternion =
-    "the orientation is read as \"quaternion_xyzw\"; that of a yaw about z is "
-    "[0, 0, sin(yaw / 2), cos(yaw / 2)]";
+// Hints for other names of position, size and label.
+const std::vector<KeyHint> kPlaceHints = {
+    {{"position", "translation", "location"}, "the middle of the object is read as \"center\""},
+    {{"size", "dimensions", "extent", "scale"},
+     "the size is read as \"half_axes\", half of it along x, y, z"},
+    {{"yaw", "rotation", "orientation", "quaternion", "quaternion_wxyz"},
+     "the orientation is read as \"quaternion_xyzw\"; that of a yaw about z is "
+     "[0, 0, sin(yaw / 2), cos(yaw / 2)]"},
+    {{"category", "class"}, "the category is read as \"label\""}};
 
-// Adds hints for other names of position, size and label.
 std::vector<KeyHint> WithPlaceHints(std::vector<KeyHint> hints) {
-  hints.insert(hints.end(), {{"position", kCenter},
-                             {"translation", kCenter},
-                             {"location", kCenter},
-                             {"size", kHalfAxes},
-                             {"dimensions", kHalfAxes},
-                             {"extent", kHalfAxes},
-                             {"scale", kHalfAxes},
-                             {"yaw", kQuaternion},
-                             {"rotation", kQuaternion},
-                             {"orientation", kQuaternion},
-                             {"quaternion", kQuaternion},
-                             {"quaternion_wxyz", kQuaternion},
-                             {"category", "the category is read as \"label\""},
-                             {"class", "the category is read as \"label\""}});
+  hints.insert(hints.end(), kPlaceHints.begin(), kPlaceHints.end());
   return hints;
 }
 
-// Keys of camera.json.
-const KnownKeys& CameraKeys() {
-  static const KnownKeys known = {
-      {"width", "height", "fx", "fy", "cx", "cy", "distortion", "model", "camera_model",
-       "distortion_model", "name", "description", "comment", "source", "fps", "depth_scale"},
-      {{"k1", kCoefficients},
-       {"k2", kCoefficients},
-       {"k3", kCoefficients},
-       {"p1", kCoefficients},
-       {"p2", kCoefficients},
-       {"distortion_coefficients", kCoefficients},
-       {"distortion_coeffs", kCoefficients},
-       {"dist_coeffs", kCoefficients},
-       {"dist", kCoefficients},
-       {"D", kCoefficients},
-       {"k", kCoefficients},
-       {"skew", "pixels are not skewed here; leave it out if it is 0"},
-       {"s", "pixels are not skewed here; leave it out if it is 0"},
-       {"f", "a focal length is read as \"fx\" and \"fy\""},
-       {"K", kMatrix},
-       {"intrinsics", kMatrix},
-       {"camera_matrix", kMatrix},
-       {"image_width", "the size is read as \"width\" and \"height\""},
-       {"image_height", "the size is read as \"width\" and \"height\""},
-       {"w", "the size is read as \"width\" and \"height\""},
-       {"h", "the size is read as \"width\" and \"height\""}}};
-  return known;
-}
+const KnownKeys kCameraKeys = {
+    {"width", "height", "fx", "fy", "cx", "cy", "distortion", "model", "camera_model",
+     "distortion_model", "name", "description", "comment", "source", "fps", "depth_scale"},
+    {{{"k1", "k2", "k3", "p1", "p2", "distortion_coefficients", "distortion_coeffs", "dist_coeffs",
+       "dist", "D", "k"},
+      "k1, k2, p1, p2, k3 are read as \"distortion\": [k1, k2, p1, p2, k3]"},
+     {{"skew", "s"}, "pixels are not skewed here; leave it out if it is 0"},
+     {{"f"}, "a focal length is read as \"fx\" and \"fy\""},
+     {{"K", "intrinsics", "camera_matrix"},
+      "the intrinsics are read as \"fx\", \"fy\", \"cx\", \"cy\", pixels"},
+     {{"image_width", "image_height", "w", "h"}, "the size is read as \"width\" and \"height\""}}};
 
 // Keys of an entry of planes.json.
-const KnownKeys& PlaneKeys() {
-  static const KnownKeys known = {
-      {"id", "normal", "d", "scene_axis", "label", "name", "description", "comment"},
-      {{"offset", kOffset}, {"distance", kOffset}, {"point", kOffset}, {"equation", kOffset}}};
-  return known;
-}
+const KnownKeys kPlaneKeys = {
+    {"id", "normal", "d", "scene_axis", "label", "name", "description", "comment"},
+    {{{"offset", "distance", "point", "equation"},
+      "a plane is normal . x + d = 0, read as \"normal\" and \"d\""}}};
 
 // Keys of an object of objects.json.
-const KnownKeys& ObjectKeys() {
-  static const KnownKeys known = {
-      {"id", "label", "support_plane", "center", "quaternion_xyzw", "half_axes", "mirror_symmetric",
-       "mirror_symmetric_yz", "rotationally_symmetric", "model", "name", "description", "comment",
-       "source"},
-      WithPlaceHints({{"plane", "the plane is read as \"support_plane\", an id of planes.json"},
-                      {"object_id", "the id is read as \"id\""},
-                      {"ignored",
-                       "what is not to be judged is listed beside the objects: "
-                       "{\"objects\": [...], \"ignored\": [...]}"}})};
-  return known;
-}
+const KnownKeys kObjectKeys = {
+    {"id", "label", "support_plane", "center", "quaternion_xyzw", "half_axes", "mirror_symmetric",
+     "mirror_symmetric_yz", "rotationally_symmetric", "model", "name", "description", "comment",
+     "source"},
+    WithPlaceHints({{{"plane"}, "the plane is read as \"support_plane\", an id of planes.json"},
+                    {{"object_id"}, "the id is read as \"id\""},
+                    {{"ignored"},
+                     "what is not to be judged is listed beside the objects: "
+                     "{\"objects\": [...], \"ignored\": [...]}"}})};
 
 // Keys of an entry of "ignored" in objects.json.
-const KnownKeys& IgnoredKeys() {
-  static const KnownKeys known = {{"label", "center", "quaternion_xyzw", "half_axes", "name",
-                                   "description", "comment", "source"},
-                                  WithPlaceHints({})};
-  return known;
-}
+const KnownKeys kIgnoredKeys = {
+    {"label", "center", "quaternion_xyzw", "half_axes", "name", "description", "comment", "source"},
+    kPlaceHints};
 
 // Keys of objects.json when it is not a list.
-const KnownKeys& ObjectsFileKeys() {
-  static const KnownKeys known = {
-      {"objects", "ignored", "name", "description", "comment", "source"}};
-  return known;
-}
+const KnownKeys kObjectsFileKeys = {
+    {"objects", "ignored", "name", "description", "comment", "source"}};
 
 // Parses each entry of a list; `name` is used in error messages.
 template <typename Item>
@@ -139,7 +96,7 @@ std::vector<Item> ParseListWithIds(const json& list, const std::string& name,
 }
 
 SupportPlane ParsePlane(const Entry& entry) {
-  entry.RefuseUnknownKeys(PlaneKeys());
+  entry.RefuseUnknownKeys(kPlaneKeys);
   constexpr double kShortest = 1e-6;
   const Eigen::Vector3d normal = entry.Vector<3>("normal");
   const double length = normal.norm();
@@ -176,7 +133,7 @@ GroundTruth ParseGroundTruth(const Entry& entry) {
 }
 
 ListedObject ParseObject(const Entry& entry) {
-  entry.RefuseUnknownKeys(ObjectKeys());
+  entry.RefuseUnknownKeys(kObjectKeys);
   ListedObject object;
   object.id = entry.Integer("id");
   object.label = entry.Text("label");
@@ -186,7 +143,7 @@ ListedObject ParseObject(const Entry& entry) {
 }
 
 IgnoredThings ParseIgnored(const Entry& entry) {
-  entry.RefuseUnknownKeys(IgnoredKeys());
+  entry.RefuseUnknownKeys(kIgnoredKeys);
   IgnoredThings things;
   if (entry.Has("label")) things.label = entry.Text("label");
   if (HasLandmark(entry)) things.volume_in_world = ParseLandmark(entry);
@@ -222,7 +179,7 @@ Camera ParseCamera(const Entry& entry) {
 LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
   const json fields = ParseJsonFile(path);
   const Entry entry(fields, path.string());
-  entry.RefuseUnknownKeys(CameraKeys());
+  entry.RefuseUnknownKeys(kCameraKeys);
   LensCamera read{ParseCamera(entry), LensOf(entry)};
   if (y_axis == CameraYAxis::kDown) {
     entry.Positive("fy");
@@ -262,7 +219,7 @@ ListedObjects ReadObjects(const std::filesystem::path& path) {
   const std::string file = path.string();
   if (!document.is_object()) return {ParseListWithIds(document, file, &ParseObject)};
   const Entry entry(document, file);
-  entry.RefuseUnknownKeys(ObjectsFileKeys());
+  entry.RefuseUnknownKeys(kObjectsFileKeys);
   ListedObjects read = {ParseListWithIds(entry.Field("objects"), file + "#/objects", &ParseObject)};
   if (entry.Has("ignored")) {
     read.ignored = ParseList(entry.Field("ignored"), file + "#/ignored", &ParseIgnored);

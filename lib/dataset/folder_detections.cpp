@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/folder_detections.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,10 +12,9 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "dataset/class_names.h"
-#include "dataset/dataset_files.h"
 #include "dataset/image_path.h"
-#include "dataset/kitti_object.h"
-#include "dataset/labelled_box.h"
+#include "dataset/kitti_label.h"
+#include "dataset/soslam_folder.h"
 #include "dataset/yolo_boxes.h"
 
 namespace soslam {
@@ -82,15 +79,15 @@ FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options
       const auto names = files->class_names ? ReadLabelFile(*files->class_names) : CocoLabels();
       return {ReadOaSlamBoxes(path, names), names};
     }
-    case DetectionsFormat::kYolo: {
-      const YoloTexts texts = ReadYoloTexts(path);
-      const auto names = YoloLabels(texts, folder, files);
-      return {ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height, corrected), names};
-    }
+    case DetectionsFormat::kYolo:
     case DetectionsFormat::kYoloPixels: {
       const YoloTexts texts = ReadYoloTexts(path);
       const auto names = YoloLabels(texts, folder, files);
-      return {ReadPixelYoloBoxes(texts, names), names};
+      const bool has_pixels = options.folder.detections_format == DetectionsFormat::kYoloPixels;
+      return {has_pixels
+                  ? ReadPixelYoloBoxes(texts, names)
+                  : ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height, corrected),
+              names};
     }
   }
   throw std::logic_error("format without a reader");

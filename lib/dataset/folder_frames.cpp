@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/folder_frames.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,8 +14,8 @@
 #include "dataset/dataset_checks.h"
 #include "dataset/image_path.h"
 #include "dataset/nerfstudio.h"
+#include "dataset/soslam_folder.h"
 #include "dataset/text_file.h"
-#include "dataset/trajectories.h"
 
 namespace soslam {
 namespace {
@@ -62,24 +60,21 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
   return listed;
 }
 
-std::vector<TimedPose> ReadCameraOfEuroc(const fs::path& path,
-                                         const std::optional<Rigid3d>& body_from_camera) {
-  std::vector<TimedPose> trajectory = ReadEurocTrajectory(path);
-  if (!body_from_camera) return trajectory;
-  for (TimedPose& pose : trajectory) {
-    pose.world_from_camera = pose.world_from_camera * *body_from_camera;
-  }
-  return trajectory;
-}
-
 std::vector<TimedPose> ReadTimedPoses(const fs::path& path, TrajectoryFormat format,
                                       const ImportOptions& options,
                                       const std::optional<Rigid3d>& body_from_camera) {
-  if (format == TrajectoryFormat::kEuroc) return ReadCameraOfEuroc(path, body_from_camera);
-  std::vector<TimedPose> trajectory = ReadTrajectory(path);
-  if (options.format != DatasetFormat::kIclNuim) return trajectory;
-  for (const TimedPose& pose : trajectory) CheckFrameNumber(pose.timestamp, path.string());
-  return FromIclNuim(trajectory);
+  const bool is_euroc = format == TrajectoryFormat::kEuroc;
+  std::vector<TimedPose> trajectory = is_euroc ? ReadEurocTrajectory(path) : ReadTrajectory(path);
+  for (TimedPose& pose : trajectory) {
+    if (is_euroc && body_from_camera) {
+      pose.world_from_camera = pose.world_from_camera * *body_from_camera;
+    }
+    if (options.format != DatasetFormat::kIclNuim) continue;
+    CheckFrameNumber(pose.timestamp, path.string());
+    pose.timestamp /= kIclNuimFramesPerSecond;
+    pose.world_from_camera = MirroredInY(pose.world_from_camera);
+  }
+  return trajectory;
 }
 
 ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size_t images) {

@@ -29,7 +29,7 @@ const char* RejectReasonName(RejectReason reason) {
 
 void Rejections::Add(const DetectionRow& row, RejectReason reason) {
   ++counts[RejectReasonName(reason)];
-  rows.push_back({row.frame_id, row.object_id, row.label, row.score, row.box, reason});
+  rows.emplace_back(row, reason);
 }
 
 std::string DescribeRejections(const RejectionCounts& rejected) {

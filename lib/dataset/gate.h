@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dataset/import_options.h"
@@ -63,16 +64,8 @@ using RejectionCounts = std::map<std::string, int>;
 
 // Rejected rows, and counts that also include rejected boxes without a row.
 struct Rejections {
-  struct RejectedRow {
-    int frame_id;
-    int object_id;
-    std::string label;
-    double score;
-    Box box;
-    RejectReason reason;
-  };
   RejectionCounts counts;
-  std::vector<RejectedRow> rows;
+  std::vector<std::pair<DetectionRow, RejectReason>> rows;
 
   void Add(const DetectionRow& row, RejectReason reason);
 };

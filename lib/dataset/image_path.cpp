@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -16,10 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool& OutsidePathsFlag() {
-  static bool are_allowed = false;
-  return are_allowed;
-}
+bool outside_paths_are_allowed = false;
 
 // Path with symbolic links resolved as far as it exists.
 fs::path Resolved(const fs::path& path) {
@@ -53,9 +50,9 @@ std::string NameInDataset(const fs::path& dataset, const std::string& image) {
   return resolved.lexically_relative(Resolved(dataset)).string();
 }
 
-void AllowOutsidePaths(bool is_allowed) { OutsidePathsFlag() = is_allowed; }
+void AllowOutsidePaths(bool is_allowed) { outside_paths_are_allowed = is_allowed; }
 
-bool OutsidePathsAreAllowed() { return OutsidePathsFlag(); }
+bool OutsidePathsAreAllowed() { return outside_paths_are_allowed; }
 
 namespace {
 
@@ -78,33 +75,14 @@ std::pair<std::string, std::string> Difference(fs::path one, fs::path other) {
 // Normalised folder name: lower case, numbers without leading zeros; image_02 and image_2 are one
 // folder.
 std::string PlainImageName(const std::string& name) {
-  std::string plain;
-  for (size_t i = 0; i < name.size(); ++i) {
-    const auto is_digit = [&](size_t at) {
-      return at < name.size() && std::isdigit(static_cast<unsigned char>(name[at])) != 0;
-    };
-    const bool begins_number = is_digit(i) && (i == 0 || !is_digit(i - 1));
-    if (begins_number) {
-      while (name[i] == '0' && is_digit(i + 1)) ++i;
-    }
-    plain += static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
-  }
-  return plain;
+  static const std::regex kLeadingZeros("(^|[^0-9])0+([0-9])");
+  return std::regex_replace(LowerCase(name), kLeadingZeros, "$1$2");
 }
 
-// Folder name in lower case, without the part that distinguishes the cameras of a rig.
-std::string RigOf(std::string folder) {
-  for (const std::string side : {"left", "right"}) {
-    const size_t found = folder.find(side);
-    if (found != folder.npos) folder.replace(found, side.size(), "0");
-  }
-  std::string rig;
-  for (const char c : folder) {
-    const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
-    if (!is_digit) rig += c;
-    if (is_digit && !rig.ends_with('0')) rig += '0';
-  }
-  return rig;
+// Folder name without the part that distinguishes the cameras of a rig.
+std::string RigOf(const std::string& plain_name) {
+  static const std::regex kCamera("(left|right|[0-9])+");
+  return std::regex_replace(plain_name, kCamera, "0");
 }
 
 bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {

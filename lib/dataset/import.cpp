@@ -17,10 +17,6 @@
 #include "dataset/dataset_checks.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
-#include "dataset/kitti_object.h"
-#include "dataset/kitti_tracking.h"
-#include "dataset/slam_synthetic.h"
-#include "dataset/soslam_folder.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -130,12 +126,12 @@ class Importer {
     for (const auto& [reason, count] : rejected.counts) {
       sequence_->rejected_detections[reason] += count;
     }
-    for (const Rejections::RejectedRow& row : rejected.rows) {
+    for (const auto& [row, reason] : rejected.rows) {
       const auto* frame_index = std::get_if<int>(&slots_.at(row.frame_id));
       if (frame_index == nullptr) continue;
       sequence_->rejected.push_back({*frame_index, row.label, row.score, row.box,
                                      TrueObjectId(row.object_id), RejectingStage::kImport,
-                                     RejectReasonName(row.reason)});
+                                     RejectReasonName(reason)});
     }
   }
 

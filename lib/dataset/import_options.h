@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "base/options.h"
@@ -32,16 +33,12 @@ enum class HeldOutFrames {
 inline constexpr const char* kHeldOutFramesNames[] = {"none", "odd"};
 
 enum class TrajectoryFormat { kTum, kKitti, kEuroc, kColmap, kNerfstudio, kSame };
-inline constexpr const char* kTrajectoryFormatNames[] = {"tum", "kitti", "euroc", "colmap",
-                                                         "nerfstudio"};
+inline constexpr const char* kTrajectoryFormatNames[] = {"tum",    "kitti",      "euroc",
+                                                         "colmap", "nerfstudio", "same"};
 
 enum class DetectionsFormat { kCsv, kYolo, kYoloPixels, kCoco, kOaSlam, kKitti };
 inline constexpr const char* kDetectionsFormatNames[] = {"csv",  "yolo",    "yolo_pixels",
                                                          "coco", "oa_slam", "kitti"};
-
-// Also "same": the format given by trajectory_format.
-inline constexpr const char* kGroundtruthFormatNames[] = {"tum",    "kitti",      "euroc",
-                                                          "colmap", "nerfstudio", "same"};
 
 // Files of a folder of images and their formats. Paths are relative to the dataset folder, or
 // absolute.
@@ -68,12 +65,13 @@ struct FolderOptions {
         "empty: the images are those that the detections name by their timestamps");
     visit.Text("odometry", &odometry, "the file with the pose estimates");
     visit.Text("groundtruth", &groundtruth, "the file with the true poses");
-    visit.Choice("trajectory_format", &trajectory_format, kTrajectoryFormatNames,
+    visit.Choice("trajectory_format", &trajectory_format,
+                 std::span(kTrajectoryFormatNames).first(5),  // not "same"
                  "format of the poses of the odometry: timestamp tx ty tz qx qy qz qw (tum, "
                  "ORB-SLAM); 12 numbers, one line for each listed image (kitti); EuRoC's CSV, "
                  "nanoseconds, qw first (euroc); by the names of the images COLMAP's images.txt "
                  "or images.bin (colmap) or nerfstudio's transforms.json (nerfstudio)");
-    visit.Choice("groundtruth_format", &groundtruth_format, kGroundtruthFormatNames,
+    visit.Choice("groundtruth_format", &groundtruth_format, kTrajectoryFormatNames,
                  "format of the poses of the ground truth; same: as trajectory_format says");
     visit.Flag("align_odometry", &align_odometry,
                "the odometry has a world of its own: it is moved as a "

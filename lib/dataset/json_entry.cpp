@@ -40,7 +40,9 @@ size_t Misspellings(std::string_view a, std::string_view b) {
 // Suggestion for an unknown key, as the end of a message; empty if there is none.
 std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
   for (const KeyHint& hint : known.hints) {
-    if (key == hint.key) return fmt::format("; {}", hint.instead);
+    if (std::ranges::find(hint.keys, key) != hint.keys.end()) {
+      return fmt::format("; {}", hint.instead);
+    }
   }
   constexpr size_t kLongestKey = 64, kMostMisspellings = 2;
   if (key.size() > kLongestKey) return "";
@@ -66,6 +68,14 @@ std::optional<Eigen::Matrix4d> Matrix4FromJson(const json& rows) {
   }
   for (size_t i = 0; i < 16; ++i) matrix.data()[i] = rows[i / 4][i % 4].get<double>();
   return matrix;
+}
+
+std::vector<JsonEntry> EntriesOf(const json& list, const std::string& place) {
+  std::vector<JsonEntry> entries;
+  for (size_t i = 0; i < list.size(); ++i) {
+    entries.emplace_back(list[i], fmt::format("{}/{}", place, i));
+  }
+  return entries;
 }
 
 JsonEntry::JsonEntry(const json& fields, std::string place)

@@ -12,9 +12,9 @@
 
 namespace soslam {
 
-// An unknown key that occurs often, and what to write instead.
+// Unknown keys that occur often, and what to write instead.
 struct KeyHint {
-  const char* key;
+  std::vector<const char*> keys;
   const char* instead;
 };
 
@@ -23,6 +23,10 @@ struct KnownKeys {
   std::vector<const char*> keys;
   std::vector<KeyHint> hints = {};
 };
+
+class JsonEntry;
+// The objects of a list, with places "<place>/<index>". They refer to the list.
+std::vector<JsonEntry> EntriesOf(const nlohmann::json& list, const std::string& place);
 
 // The matrix of 4 rows of 4 numbers; none for anything else.
 std::optional<Eigen::Matrix4d> Matrix4FromJson(const nlohmann::json& rows);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "base/error.h"
@@ -20,16 +21,11 @@
 namespace soslam {
 namespace {
 
-// Throws SettingsError for an invalid setting.
-[[noreturn]] void Refuse(const std::string& option, std::string_view found, const char* expected) {
-  throw SettingsError(fmt::format("{}: found '{}'; expected {}", option, found, expected));
-}
-
 int ParseRecording(const std::string& option, std::string_view text) {
   constexpr const char* kExpected = "the number of a recording, or two as in 0003-0005";
   const bool is_number =
       !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-  if (!is_number || text.size() > 9) Refuse(option, text, kExpected);
+  if (!is_number || text.size() > 9) RefuseSetting(option, text, kExpected);
   return ParseInteger(text, option, "recording");
 }
 
@@ -38,7 +34,7 @@ RecordingRange ParseRange(const std::string& option, std::string_view text) {
   const int first = ParseRecording(option, text.substr(0, dash));
   if (dash == std::string_view::npos) return {first, first};
   const int last = ParseRecording(option, text.substr(dash + 1));
-  if (last < first) Refuse(option, text, "the lower number first");
+  if (last < first) RefuseSetting(option, text, "the lower number first");
   return {first, last};
 }
 
@@ -61,7 +57,7 @@ RecordingValues::RecordingValues(const std::string& option, const std::string& t
     } else if (words.size() == 1) {
       entries_.push_back({{0, std::numeric_limits<int>::max()}, std::string(word)});
     } else {
-      Refuse(option, word, "a recording, a colon and its value, as in 0000-0013:1");
+      RefuseSetting(option, word, "a recording, a colon and its value, as in 0000-0013:1");
     }
   }
 }
@@ -78,14 +74,11 @@ const std::string& RecordingValues::Of(int recording) const {
 
 double RecordingValues::PositiveOf(int recording) const {
   const std::string& text = Of(recording);
-  double value = 0.0;
-  try {
-    value = ParseReal(text, option_, "value");
-  } catch (const InputError&) {
-    Refuse(option_, text, "a number above 0");
+  const auto numbers = ParseNumbers(text);
+  if (!numbers || numbers->size() != 1 || !(numbers->front() > 0.0)) {
+    RefuseSetting(option_, text, "a number above 0");
   }
-  if (!(value > 0.0)) Refuse(option_, text, "a number above 0");
-  return value;
+  return numbers->front();
 }
 
 namespace {
@@ -178,6 +171,57 @@ std::vector<KittiLabel> ReadKittiObjectLabels(const fs::path& path) {
   return labels;
 }
 
+namespace {
+
+LabelledBox ParseKittiBox(const TextLine& line, const std::string& label) {
+  constexpr std::array kNames = {"frame", "x1", "y1", "x2", "y2", "score"};
+  const auto fields = SplitFields(line.text);
+  if (fields.size() != kNames.size()) {
+    throw InputError(fmt::format("{}: has {} fields; expected {}", line.place, fields.size(),
+                                 fmt::join(kNames, ",")));
+  }
+  const auto real = [&](size_t i) { return ParseReal(fields[i], line.place, kNames[i]); };
+  const Box box{real(1), real(2), real(3), real(4)};
+  if (box.Width() < 0.0 || box.Height() < 0.0) {
+    throw InputError(fmt::format("{}: box is {} {} {} {}; expected x1 <= x2 and y1 <= y2",
+                                 line.place, box.x_min, box.y_min, box.x_max, box.y_max));
+  }
+  const int frame = ParseInteger(fields[0], line.place, kNames[0]);
+  if (frame < 0)
+    throw InputError(fmt::format("{}: frame is {}; expected 0 or more", line.place, frame));
+  return {line.place, frame, label, real(5), box};
+}
+
+}  // namespace
+
+std::vector<LabelledBox> ReadKittiBoxes(const fs::path& path) {
+  const std::string label = fs::absolute(path).parent_path().filename().string();
+  std::vector<LabelledBox> boxes;
+  for (const TextLine& line : ReadTextLines(path)) boxes.push_back(ParseKittiBox(line, label));
+  return boxes;
+}
+
+std::vector<std::optional<size_t>> MatchBoxes(const std::vector<LabelledBox>& found,
+                                              const std::vector<Box>& given, double min_overlap) {
+  std::vector<size_t> order(found.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order,
+                           [&](size_t a, size_t b) { return found[a].score > found[b].score; });
+  std::vector<std::optional<size_t>> matches(found.size());
+  std::vector<bool> taken(given.size(), false);
+  for (const size_t i : order) {
+    double best = min_overlap;
+    for (size_t k = 0; k < given.size(); ++k) {
+      const double overlap = BoxOverlap(found[i].box, given[k]);
+      if (taken[k] || overlap < best || (matches[i] && overlap == best)) continue;
+      best = overlap;
+      matches[i] = k;
+    }
+    if (matches[i]) taken[*matches[i]] = true;
+  }
+  return matches;
+}
+
 std::vector<NumberedPath> NumberedFiles(const fs::path& folder, const std::string& extension) {
   std::vector<NumberedPath> files;
   std::error_code error;
@@ -209,19 +253,14 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
     return camera;
   }
   const std::string& text = image_size.Of(recording);
-  const size_t times = text.find('x');
-  try {
-    camera.width = ParseInteger(std::string_view(text).substr(0, times), "", "width");
-    camera.height = times == std::string::npos
-                        ? 0
-                        : ParseInteger(std::string_view(text).substr(times + 1), "", "height");
-  } catch (const InputError&) {
-    camera.width = 0;
+  std::string words = text;
+  std::ranges::replace(words, 'x', ' ');
+  const auto numbers = ParseNumbers(words);
+  if (!numbers || numbers->size() != 2 || !IsWholeImageSize((*numbers)[0], (*numbers)[1])) {
+    RefuseSetting("image_size", text, "width and height, as in 1242x375");
   }
-  if (!IsImageSize(camera.width, camera.height)) {
-    throw SettingsError(
-        fmt::format("image_size: found '{}'; expected width and height, as in 1242x375", text));
-  }
+  camera.width = static_cast<int>((*numbers)[0]);
+  camera.height = static_cast<int>((*numbers)[1]);
   return camera;
 }
 

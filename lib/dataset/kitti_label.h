@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dataset/gate.h"
+#include "dataset/labelled_box.h"
 #include "geometry/camera.h"
 #include "model/image_orientation.h"
 
@@ -77,6 +78,18 @@ struct KittiLabel {
 // trackers. Unlabelled regions (DontCare) are left out. Throw InputError naming the line.
 std::vector<KittiLabel> ReadKittiTrackingLabels(const std::filesystem::path& path);
 std::vector<KittiLabel> ReadKittiObjectLabels(const std::filesystem::path& path);
+
+// Reads 2D detections of a KITTI sequence as trackers exchange them: <class>/<sequence>.txt, lines
+// "frame,x1,y1,x2,y2,score", frames counted from 0, pixels as in KITTI's labels. The label is the
+// name of the file's folder, unchanged ("Car"). In file order; a file may have no boxes. Throws
+// InputError naming the line.
+std::vector<LabelledBox> ReadKittiBoxes(const std::filesystem::path& path);
+
+// For each found box the index of its given box, if any. One to one and greedy: found boxes in
+// order of descending score take the free given box with the largest overlap of at least
+// `min_overlap`.
+std::vector<std::optional<size_t>> MatchBoxes(const std::vector<LabelledBox>& found,
+                                              const std::vector<Box>& given, double min_overlap);
 
 // A file or folder with a number as its name: "0013.txt".
 struct NumberedPath {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_tracking.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +9,10 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "base/upper_median.h"
+#include "dataset/dataset_content.h"
 #include "dataset/dataset_files.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
-#include "dataset/kitti_object.h"
 #include "dataset/trajectories.h"
 
 namespace soslam {
@@ -224,14 +222,12 @@ class Recording {
 
   void AddMatches(const std::string& label_of_type, const std::vector<LabelledBox>& found,
                   const std::vector<const KittiLabel*>& labels) {
-    std::vector<ScoredBox> boxes;
-    for (const LabelledBox& box : found) boxes.push_back({box.box, box.score});
     std::vector<Box> given;
     for (const KittiLabel* label : labels) given.push_back(label->box);
-    const auto matches = MatchBoxes(boxes, given, options_.match_min_iou);
+    const auto matches = MatchBoxes(found, given, options_.match_min_iou);
     for (size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) {
-        AddRow(*labels[*matches[i]], boxes[i].box, boxes[i].score);
+        AddRow(*labels[*matches[i]], found[i].box, found[i].score);
       } else {
         Reject(label_of_type, found[i]);
       }
@@ -263,25 +259,23 @@ class Recording {
 
 // Recordings selected by the option `sequences`.
 std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::string& sequences) {
-  std::vector<NumberedPath> all = NumberedFiles(labels, ".txt");
+  std::vector<NumberedPath> recordings = NumberedFiles(labels, ".txt");
   const auto ranges = ParseRecordings("sequences", sequences);
-  if (ranges.empty()) return all;
-  std::vector<NumberedPath> chosen;
+  if (ranges.empty()) return recordings;
+  const auto is_in = [](const RecordingRange& range, const NumberedPath& recording) {
+    return range.Contains(recording.number);
+  };
   for (const RecordingRange& range : ranges) {
-    const auto before = chosen.size();
-    std::ranges::copy_if(all, std::back_inserter(chosen),
-                         [&](const NumberedPath& file) { return range.Contains(file.number); });
-    if (chosen.size() == before) {
-      throw SettingsError(fmt::format("sequences: {:04d} to {:04d}: no such recording in {}",
-                                      range.first, range.last, labels.string()));
+    if (std::ranges::any_of(recordings, [&](const auto& file) { return is_in(range, file); })) {
+      continue;
     }
+    throw SettingsError(fmt::format("sequences: {:04d} to {:04d}: no such recording in {}",
+                                    range.first, range.last, labels.string()));
   }
-  const auto by_number = [](const auto& a, const auto& b) { return a.number < b.number; };
-  std::ranges::stable_sort(chosen, by_number);
-  chosen.erase(std::unique(chosen.begin(), chosen.end(),
-                           [](const auto& a, const auto& b) { return a.path == b.path; }),
-               chosen.end());
-  return chosen;
+  std::erase_if(recordings, [&](const NumberedPath& file) {
+    return std::ranges::none_of(ranges, [&](const auto& range) { return is_in(range, file); });
+  });
+  return recordings;
 }
 
 }  // namespace

@@ -76,10 +76,9 @@ struct CocoNames {
 
 std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list_name,
                                      const char* text_name) {
-  const json& list = document.List(list_name);
+  const std::string place = fmt::format("{}#/{}", document.place(), list_name);
   std::map<int, std::string> names;
-  for (size_t i = 0; i < list.size(); ++i) {
-    const JsonEntry entry(list[i], fmt::format("{}#/{}/{}", document.place(), list_name, i));
+  for (const JsonEntry& entry : EntriesOf(document.List(list_name), place)) {
     if (!names.emplace(entry.Integer("id"), entry.Text(text_name)).second) {
       entry.Refuse("id", "one that no other entry has");
     }
@@ -132,8 +131,7 @@ bool IsCrowd(const JsonEntry& entry) { return entry.Has("iscrowd") && entry.Fiel
 std::vector<LabelledBox> ParseBoxes(const json& list, const std::string& place,
                                     const std::optional<CocoNames>& names) {
   std::vector<LabelledBox> boxes;
-  for (size_t i = 0; i < list.size(); ++i) {
-    const JsonEntry entry(list[i], fmt::format("{}/{}", place, i));
+  for (const JsonEntry& entry : EntriesOf(list, place)) {
     if (IsCrowd(entry)) continue;
     boxes.push_back({entry.place(), ParseFrame(entry, names), ParseLabel(entry, names),
                      entry.Has("score") ? entry.Real("score") : 1.0, ParseBox(entry),
@@ -184,12 +182,10 @@ std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
   const json images = ParseJsonFile(path);
   if (!images.is_array()) throw InputError(path.string() + ": is not a list of images");
   std::vector<LabelledBox> boxes;
-  for (size_t i = 0; i < images.size(); ++i) {
-    const JsonEntry image(images[i], fmt::format("{}#/{}", path.string(), i));
+  for (const JsonEntry& image : EntriesOf(images, path.string() + "#")) {
     const std::string name = image.Text("file_name");
-    const json& detections = image.List("detections");
-    for (size_t k = 0; k < detections.size(); ++k) {
-      const JsonEntry entry(detections[k], fmt::format("{}/detections/{}", image.place(), k));
+    for (const JsonEntry& entry :
+         EntriesOf(image.List("detections"), image.place() + "/detections")) {
       boxes.push_back(ParseDetection(entry, name, labels));
     }
   }

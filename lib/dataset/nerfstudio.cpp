@@ -18,24 +18,19 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kCameraKeys = {
+constexpr std::array kNerfstudioKeys = {
     "w",  "h",  "fl_x", "fl_y", "cx", "cy", "camera_angle_x", "k1", "k2",
     "k3", "k4", "k5",   "k6",   "p1", "p2", "camera_model"};
-
-int Pixels(const JsonEntry& entry, const char* name) {
-  const double pixels = entry.Real(name);
-  if (!(pixels > 0.0) || pixels > kMaxPixels || pixels != std::floor(pixels)) {
-    entry.Refuse(name, "pixels above 0");
-  }
-  return static_cast<int>(pixels);
-}
 
 double RealOr(const JsonEntry& entry, const char* name, double value) {
   return entry.Has(name) ? entry.Real(name) : value;
 }
 
 Camera ParseNerfstudioCamera(const JsonEntry& entry) {
-  Camera camera{Pixels(entry, "w"), Pixels(entry, "h"), 0.0, 0.0, 0.0, 0.0};
+  for (const char* side : {"w", "h"}) {
+    if (!IsWholeImageSize(entry.Real(side), 1.0)) entry.Refuse(side, "pixels above 0");
+  }
+  Camera camera{static_cast<int>(entry.Real("w")), static_cast<int>(entry.Real("h"))};
   if (!IsImageSize(camera.width, camera.height)) {
     entry.Refuse("h", fmt::format("at most {} pixels in all", kMaxPixels));
   }
@@ -66,18 +61,13 @@ std::optional<Distortion> NerfstudioLens(const JsonEntry& entry) {
 }
 
 std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
-  const json& frames = all.List("frames");
-  std::vector<JsonEntry> entries;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    entries.emplace_back(frames[i], fmt::format("{}#/frames/{}", all.place(), i));
-  }
-  return entries;
+  return EntriesOf(all.List("frames"), all.place() + "#/frames");
 }
 
 // Checks that camera keys of single frames equal those of the file.
 void RefuseOtherCameras(const JsonEntry& all) {
   for (const JsonEntry& frame : FramesOf(all)) {
-    for (const char* key : kCameraKeys) {
+    for (const char* key : kNerfstudioKeys) {
       if (!frame.Has(key) || (all.Has(key) && frame.Field(key) == all.Field(key))) continue;
       frame.Refuse(key, "one camera for all frames, in the file's own " + std::string(key));
     }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/object_table.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "dataset/soslam_folder.h"
 
 namespace soslam {
 namespace {
@@ -93,15 +92,12 @@ struct Votes {
 // Votes of the rows of one object, keyed by label.
 using Ballot = std::map<std::string, Votes>;
 
+// The label with most rows, then with the largest sum of scores.
 std::string Winner(const Ballot& ballot) {
-  auto best = ballot.begin();
-  for (auto votes = ballot.begin(); votes != ballot.end(); ++votes) {
-    if (std::tuple(votes->second.rows, votes->second.score) >
-        std::tuple(best->second.rows, best->second.score)) {
-      best = votes;
-    }
-  }
-  return best->first;
+  return std::ranges::max_element(
+             ballot, {},
+             [](const auto& entry) { return std::pair(entry.second.rows, entry.second.score); })
+      ->first;
 }
 
 std::map<int, Ballot> Count(const std::vector<DetectionRow>& rows) {

@@ -97,15 +97,11 @@ FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
 }
 
 [[noreturn]] void RefuseFolder(const fs::path& folder, const FilesOfFolder& files) {
-  constexpr size_t kShown = 5;
-  const std::vector<std::string> shown(
-      files.others.begin(),
-      files.others.begin() + static_cast<std::ptrdiff_t>(std::min(kShown, files.others.size())));
   throw InputError(fmt::format(
       "{}: has {} image(s); expected at least 2 (JPEG, PNG, WebP, BMP or TIFF) of one scene, "
       "directly in this folder; a video is given itself{}{}",
-      folder.string(), files.images.size(), shown.empty() ? "" : ". It also has ",
-      fmt::join(shown, ", ")));
+      folder.string(), files.images.size(), files.others.empty() ? "" : ". It also has ",
+      NamesInWords(files.others, 5)));
 }
 
 ImageSize UprightSize(const Photo& photo) { return photo.header.Size(ImageOrientation::kUpright); }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <span>
-#include <vector>
 
 #include "geometry/rigid3.h"
 
@@ -22,17 +20,5 @@ struct PoseReading {
 
 // The wrong conventions that occur in practice.
 std::span<const PoseReading> PoseReadings();
-
-// A wrong frame order that a file may have compared with the image list.
-struct FrameOrder {
-  const char* name;  // "the poses are in reversed order"
-  const char* cause;
-  const char* remedy;
-  // For each frame, the index of the frame whose pose belongs to its boxes.
-  std::vector<size_t> frame_meant;
-};
-
-// The wrong orders that occur in practice.
-std::vector<FrameOrder> FrameOrders(size_t frames);
 
 }  // namespace soslam

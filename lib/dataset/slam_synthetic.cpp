@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/slam_synthetic.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "dataset/dataset_content.h"
 #include "dataset/dataset_files.h"
 #include "dataset/dataset_json.h"
 #include "dataset/json_entry.h"
@@ -49,9 +48,7 @@ class Problem {
 
  private:
   int Id(size_t number) const { return number_ * kIdsPerProblem + static_cast<int>(number); }
-  std::string Place(const char* list, size_t i) const {
-    return fmt::format("{}#/{}/{}", file_.string(), list, i);
-  }
+  std::string Place(const char* list) const { return fmt::format("{}#/{}", file_.string(), list); }
 
   const json& ShortList(const char* name) const {
     const json& list = entry_.List(name);
@@ -64,12 +61,14 @@ class Problem {
   std::vector<Rigid3d> Poses(const char* name) const {
     std::vector<Rigid3d> poses;
     const json& list = ShortList(name);
-    for (size_t i = 0; i < list.size(); ++i) poses.push_back(ParsePose(list[i], Place(name, i)));
+    for (size_t i = 0; i < list.size(); ++i) {
+      poses.push_back(ParsePose(list[i], fmt::format("{}/{}", Place(name), i)));
+    }
     return poses;
   }
 
   void AddFrames() {
-    const JsonEntry fields(entry_.Field("camera"), file_.string() + "#/camera");
+    const JsonEntry fields(entry_.Field("camera"), Place("camera"));
     fields.Positive("fy");
     const Camera camera = ParseCamera(fields);
     if (content_->frames.empty()) content_->camera = camera;
@@ -99,10 +98,7 @@ class Problem {
     if (!(length > 0.0)) entry_.Refuse("support_plane_world", "nx, ny, nz, d");
     const int plane_index = static_cast<int>(content_->planes.size());
     content_->planes.push_back({number_, {plane.head<3>() / length, plane[3] / length}});
-    const json& list = ShortList("objects");
-    objects_ = list.size();
-    for (size_t i = 0; i < objects_; ++i) {
-      const JsonEntry entry(list[i], Place("objects", i));
+    for (const JsonEntry& entry : EntriesOf(ShortList("objects"), Place("objects"))) {
       Landmark landmark;
       landmark.frame_from_object = {
           Eigen::Quaterniond(Eigen::AngleAxisd(entry.Real("yaw"), Eigen::Vector3d::UnitZ())),
@@ -110,7 +106,7 @@ class Problem {
       landmark.half_axes = entry.Vector<3>("half");
       if (!(landmark.half_axes.minCoeff() > 0.0)) entry.Refuse("half", "3 numbers above 0");
       Object object;
-      object.id = Id(i);
+      object.id = Id(objects_++);
       object.label = kLabel;
       object.plane_index = plane_index;
       object.ground_truth.emplace().landmark_in_world = landmark;
@@ -129,9 +125,7 @@ class Problem {
   }
 
   void AddRows() {
-    const json& list = entry_.List("boxes");
-    for (size_t i = 0; i < list.size(); ++i) {
-      const JsonEntry entry(list[i], Place("boxes", i));
+    for (const JsonEntry& entry : EntriesOf(entry_.List("boxes"), Place("boxes"))) {
       const Eigen::Vector4d box = entry.Vector<4>("box");
       content_->rows.push_back({entry.place(), Id(Index(entry, "frame", frames_)),
                                 Id(Index(entry, "object", objects_)), kLabel, 1.0,
@@ -171,8 +165,7 @@ DatasetContent ReadSlamSynthetic(const fs::path& folder, const ImportOptions& op
         files.end()) {
       continue;
     }
-    throw SettingsError(fmt::format("sequences: found '{}'; expected the name of a *.json in {}",
-                                    name, folder.string()));
+    RefuseSetting("sequences", name, fmt::format("the name of a *.json in {}", folder.string()));
   }
   DatasetContent content;
   content.has_true_poses = true;

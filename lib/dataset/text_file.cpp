@@ -173,4 +173,18 @@ int ParseInteger(std::string_view text, const std::string& place, const std::str
   return number;
 }
 
+std::optional<std::vector<double>> ParseNumbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string_view word : SplitWords(text)) {
+    double number = 0.0;
+    if (!ParseWhole(word, &number) || !std::isfinite(number)) return std::nullopt;
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+void RefuseSetting(const std::string& option, std::string_view found, const std::string& expected) {
+  throw SettingsError(fmt::format("{}: found '{}'; expected {}", option, found, expected));
+}
+
 }  // namespace soslam

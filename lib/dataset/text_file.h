@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,6 +50,12 @@ std::vector<std::string_view> SplitFields(std::string_view text);
 // field, for anything else; a real number must be finite.
 double ParseReal(std::string_view text, const std::string& place, const std::string& field);
 int ParseInteger(std::string_view text, const std::string& place, const std::string& field);
+
+// The numbers of a setting; none when one of its words is not a number.
+std::optional<std::vector<double>> ParseNumbers(std::string_view text);
+// Throws SettingsError for the text of an option.
+[[noreturn]] void RefuseSetting(const std::string& option, std::string_view found,
+                                const std::string& expected);
 
 // ParseReal for the first words of a line, one per field.
 template <size_t kCount>

@@ -26,16 +26,14 @@ double HalfDiagonalDeg(const Camera& camera, const Box& box) {
          AngleBetweenDeg(camera.Ray({box.x_min, box.y_min}), camera.Ray({box.x_max, box.y_max}));
 }
 
-// Labels that occur at most once per frame.
-std::map<std::string, bool> SingleLabels(const std::vector<DetectionRow>& rows) {
-  std::map<std::pair<std::string, int>, int> counts;
-  for (const DetectionRow& row : rows) ++counts[{row.label, row.frame_id}];
-  std::map<std::string, bool> is_single;
-  for (const auto& [key, count] : counts) {
-    const bool is_first = !is_single.contains(key.first);
-    is_single[key.first] = (is_first || is_single[key.first]) && count == 1;
+// Labels that occur more than once in a frame.
+std::set<std::string> RepeatedLabels(const std::vector<DetectionRow>& rows) {
+  std::set<std::pair<std::string, int>> seen;
+  std::set<std::string> repeated;
+  for (const DetectionRow& row : rows) {
+    if (!seen.emplace(row.label, row.frame_id).second) repeated.insert(row.label);
   }
-  return is_single;
+  return repeated;
 }
 
 }  // namespace
@@ -48,14 +46,14 @@ std::vector<TrackedObject> TrackedThings(const ImportView& view) {
   for (const Object& object : content.objects) {
     if (!object.is_static) moving.insert(object.id);
   }
-  auto is_single = SingleLabels(content.rows);
+  const std::set<std::string> repeated = RepeatedLabels(content.rows);
   std::map<std::string, TrackedObject> by_name;
   for (const DetectionRow& row : content.rows) {
     const size_t frame = frame_index.at(row.frame_id);
     const Camera camera = content.frames[frame].frame.camera.value_or(content.camera);
     if (!IsWhole(row.box_in_image_file.value_or(row.box), camera)) continue;
     if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
-    if (!content.has_object_ids && !is_single[row.label]) continue;
+    if (!content.has_object_ids && repeated.contains(row.label)) continue;
     const std::string name = content.has_object_ids ? std::to_string(row.object_id) : row.label;
     TrackedObject& thing = by_name[name];
     if (content.has_object_ids) thing.object_id = row.object_id;

@@ -103,13 +103,10 @@ std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path);
 inline constexpr double kIclNuimFramesPerSecond = 30.0;
 
 // The camera with x right, y down, z forward that gives the same images as one whose published fy
-// is negative. Throws InputError for a positive fy, with which y is already down.
-Camera WithYDown(const Camera& camera_with_y_up);
+// is negative.
+Camera WithYDown(Camera camera_with_y_up);
 
 // Converts a pose between left-handed frames to one between the mirrored, right-handed ones.
 Rigid3d MirroredInY(const Rigid3d& world_from_camera);
-
-// Converts a published trajectory: poses are mirrored and frame numbers become seconds.
-std::vector<TimedPose> FromIclNuim(const std::vector<TimedPose>& published);
 
 }  // namespace soslam

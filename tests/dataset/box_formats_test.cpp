@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "dataset/soslam_folder.h"
+#include "dataset/dataset_content.h"
 #include "support/expect_error.h"
 #include "support/folder_formats_fixture.h"
 #include "support/labelled_boxes.h"

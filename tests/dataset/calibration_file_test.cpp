@@ -78,15 +78,7 @@ constexpr const char* kRosMessage = R"(header:
 height: 480
 width: 640
 distortion_model: rational_polynomial
-d:
-- 1.0
-- 2.0
-- 3.0
-- 4.0
-- 5.0
-- 6.0
-- 7.0
-- 8.0
+d: [1, 2, 3, 4, 5, 6, 7, 8]
 k:
 - 500.0
 - 0.0

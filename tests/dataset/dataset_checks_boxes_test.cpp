@@ -10,11 +10,33 @@ using testing::IsEmpty;
 
 // Boxes.
 
-TEST_F(DatasetChecksTest, SizesWhereCornersBelong) {
-  dataset.box = [](const Box& b) {
-    return std::array<double, 4>{b.x_min, b.y_min, b.Width(), b.Height()};
-  };
-  ExpectRefusal({"meant as upper left corner and size"});
+TEST_F(DatasetChecksTest, BoxesThatCannotBe) {
+  using Numbers = std::array<double, 4>;
+  const std::vector<std::pair<Numbers (*)(const Box&), std::vector<std::string>>> cases = {
+      {[](const Box& b) {
+         return Numbers{b.x_min, b.y_min, b.Width(), b.Height()};
+       },
+       {"meant as upper left corner and size"}},
+      {[](const Box& b) {
+         return Numbers{b.x_min / 640, b.y_min / 480, b.x_max / 640, b.y_max / 480};
+       },
+       {"fractions of the image"}},
+      {[](const Box& b) {
+         return Numbers{3 * b.x_min, 3 * b.y_min, 3 * b.x_max, 3 * b.y_max};
+       },
+       {"images of another size"}},
+      {[](const Box& b) {
+         return Numbers{639 - b.x_max, b.y_min, 639 - b.x_min, b.y_max};
+       },
+       {"boxes are mirrored left to right", "as selfie cameras do"}},
+      {[](const Box& b) {
+         return Numbers{b.x_min, 479 - b.y_max, b.x_max, 479 - b.y_min};
+       },
+       {"boxes with y up"}}};
+  for (const auto& [numbers, words] : cases) {
+    dataset.box = numbers;
+    ExpectRefusal(words);
+  }
 }
 
 TEST_F(DatasetChecksTest, CornersWhereSizesBelong) {
@@ -34,20 +56,6 @@ TEST_F(DatasetChecksTest, AFewBoxesOutOfTheImage) {
     return std::array{b.x_min + shift, b.y_min, b.x_max + shift, b.y_max};
   };
   EXPECT_THAT(Warnings(), testing::Contains(HasSubstr("box_convention: 14 of 115 boxes")));
-}
-
-TEST_F(DatasetChecksTest, BoxesAsFractions) {
-  dataset.box = [](const Box& b) {
-    return std::array{b.x_min / 640, b.y_min / 480, b.x_max / 640, b.y_max / 480};
-  };
-  ExpectRefusal({"fractions of the image"});
-}
-
-TEST_F(DatasetChecksTest, BoxesOfLargerImages) {
-  dataset.box = [](const Box& b) {
-    return std::array{3 * b.x_min, 3 * b.y_min, 3 * b.x_max, 3 * b.y_max};
-  };
-  ExpectRefusal({"images of another size"});
 }
 
 // A box of the whole thing, also where the image cuts it.
@@ -166,23 +174,15 @@ TEST_F(DatasetChecksTest, IdsFromZeroInOneFile) {
   ExpectWarning({"objects_against_boxes", "subtract 1 from the object_id"});
 }
 
-TEST_F(DatasetChecksTest, FullSizesForHalfAxes) {
-  dataset.true_radius *= 2.0;
-  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
-  ExpectWarning({"object_half_axes", "full sizes"});
-}
-
-// Cameras are within such objects, which have no outline then.
-TEST_F(DatasetChecksTest, HalfAxesInCentimetres) {
-  dataset.true_radius *= 100.0;
-  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
-  ExpectWarning({"object_half_axes", "centimetres"});
-}
-
-TEST_F(DatasetChecksTest, HalfAxesInKilometres) {
-  dataset.true_radius *= 1e-3;
-  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
-  ExpectWarning({"object_half_axes", "another unit"});
+// Full sizes; centimetres, where cameras are within objects, which have no outline then;
+// kilometres.
+TEST_F(DatasetChecksTest, HalfAxesOfAnotherUnit) {
+  for (const auto& [factor, words] :
+       {std::pair(2.0, "full sizes"), {100.0, "centimetres"}, {1e-3, "another unit"}}) {
+    dataset.true_radius = factor * PlausibleDataset::kRadius;
+    dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+    ExpectWarning({"object_half_axes", words});
+  }
 }
 
 // The rotation by 40 degrees about z with qw first.

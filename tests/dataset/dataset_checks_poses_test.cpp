@@ -22,20 +22,6 @@ TEST_F(DatasetChecksTest, CamerasTurnedByHalfATurn) {
   ExpectRefusal({"by half a turn about the camera's z axis"});
 }
 
-TEST_F(DatasetChecksTest, MirroredBoxes) {
-  dataset.box = [](const Box& b) {
-    return std::array{639 - b.x_max, b.y_min, 639 - b.x_min, b.y_max};
-  };
-  ExpectRefusal({"boxes are mirrored left to right", "as selfie cameras do"});
-}
-
-TEST_F(DatasetChecksTest, BoxesWithYUp) {
-  dataset.box = [](const Box& b) {
-    return std::array{b.x_min, 479 - b.y_max, b.x_max, 479 - b.y_min};
-  };
-  ExpectRefusal({"boxes with y up"});
-}
-
 TEST_F(DatasetChecksTest, PosesInReversedOrder) {
   dataset.pose_of_frame = [](int frame) { return PlausibleDataset::kFrames - 1 - frame; };
   EXPECT_THAT(Warnings(),

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/kitti_tracking.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
+#include "dataset/dataset_content.h"
 #include "dataset/import.h"
 #include "support/expect_error.h"
 #include "support/kitti_fixture.h"

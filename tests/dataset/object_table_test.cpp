@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/object_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "dataset/soslam_folder.h"
 
 namespace soslam {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/slam_synthetic.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "dataset/dataset_content.h"
 #include "dataset/import.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"

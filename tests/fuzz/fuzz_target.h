@@ -28,8 +28,7 @@ class HostileInput {
   TemporaryFolder files_;
 };
 
-// One way of reading hostile input. Each is a global variable in a file of its own, which registers
-// it under its name.
+// One way of reading hostile input. Each is a global variable, which registers it under its name.
 class FuzzTarget {
  public:
   // Whatever `read` throws is a finding.

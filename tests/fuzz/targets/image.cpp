@@ -3,7 +3,10 @@
 
 #include "fuzz/fuzz_target.h"
 #include "image/image_format.h"
+#include "image/onnx_check.h"
+#include "image/onnx_header.h"
 #include "image/read_image.h"
+#include "image/video_file.h"
 
 namespace soslam {
 namespace {
@@ -22,6 +25,26 @@ const FuzzTarget kImage("image", [](const HostileInput& input) {
   IsAccepted(file, [&] { ReadGreyImage(file, 60, 40); });
   IsAccepted(file, [&] { ReadColourImage(file, ImageOrientation::kStored); });
   if (IsAccepted(file, [&] { ReadGreyImage(file); })) CheckHeader(file);
+});
+
+// Not OpenCV's reader, which is not for hostile input.
+const FuzzTarget kNetworks("networks", [](const HostileInput& input) {
+  const auto file = input.AsFile("network.onnx");
+  const std::string bytes = FileBytes(file);
+  IsAccepted(file, [&] {
+    CheckOnnx(bytes, file.string());
+    ReadOnnxHeader(bytes, file.string());
+  });
+});
+
+const FuzzTarget kVideos("videos", [](const HostileInput& input) {
+  constexpr int kMaxFrames = 20;
+  const auto file = input.AsFile("video.avi");
+  IsAccepted(file, [&] {
+    VideoReader video(file);
+    for (int i = 0; i < kMaxFrames && video.Next(); ++i) {
+    }
+  });
 });
 
 }  // namespace

@@ -1,14 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/run_file.h"
 #include "fuzz/fuzz_target.h"
 #include "report/dataset_tables.h"
 #include "report/paired_differences.h"
 #include "report/paper_tables.h"
 #include "report/results_tree.h"
 #include "report/timing_table.h"
+#include "workflow/pipeline_settings.h"
 #include "workflow/plan_makefile.h"
+#include "workflow/verify.h"
 
 namespace soslam {
 namespace {
+
+const FuzzTarget kPipelines("pipelines", [](const HostileInput& input) {
+  const auto folder = input.AsFolder();
+  std::vector<std::string> variants;
+  if (!IsAccepted(folder, [&] { variants = VariantNames(folder); })) return;
+  for (const std::string& variant : variants) {
+    IsAccepted(folder, [&] { ReadVariant(folder, "room", variant); });
+  }
+});
+
+const FuzzTarget kRunRecord("run_record", [](const HostileInput& input) {
+  const auto file = input.AsFile("run.json");
+  RunRecord record;
+  if (!IsAccepted(file, [&] { record = ReadRun(file); })) return;
+  WriteRun(input.Output("run.json"), record);
+  ReadRun(input.Output("run.json"));
+});
+
+// A results folder, as soslam-verify reads it.
+const FuzzTarget kProvenance("provenance", [](const HostileInput& input) {
+  const auto folder = input.AsFolder();
+  IsAccepted(folder, [&] {
+    for (const DatasetRuns& dataset : FindRuns(folder, {})) Verify(dataset);
+  });
+});
 
 // A results folder, as soslam-report reads it.
 const FuzzTarget kResults("results", [](const HostileInput& input) {

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <optional>
 
+#include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
+#include "artefact/points_file.h"
+#include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "fuzz/fuzz_target.h"
 #include "inspection/difference.h"
 #include "inspection/inspection.h"
+#include "priors/furniture_catalogue.h"
+#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {
@@ -44,6 +49,39 @@ const FuzzTarget kEstimates("estimates", [](const HostileInput& input) {
     const MapEstimate map = ReadMap(file, GoldenSequence());
     WriteMap(input.Output("map.json"), map, GoldenSequence(), {});
   });
+});
+
+const FuzzTarget kHdf5("hdf5", [](const HostileInput& input) {
+  const auto file = input.AsFile("artefact.h5");
+  IsAccepted(file, [&] { ReadArtefactHeader(file); });
+  IsAccepted(file, [&] { ReadSymmetry(file); });
+  const auto points = input.Output("points.h5");
+  if (IsAccepted(file, [&] { WritePoints(points, ReadPoints(file), {}); })) ReadPoints(points);
+  IsAccepted(file, [&] {
+    const EdgesReader reader(file);
+    for (const int frame_id : reader.FrameIds()) reader.Read(frame_id);
+  });
+  IsAccepted(file, [&] { Inspect(file, std::nullopt); });
+  IsAccepted(file, [&] { CompareArtefacts(file, file, 0.0); });
+});
+
+const FuzzTarget kSemanticTable("semantic_table", [](const HostileInput& input) {
+  const auto file = input.AsFile("semantic_table.json");
+  SemanticRows rows;
+  IsAccepted(file, [&] { ReadSemanticTable(file); });
+  if (!IsAccepted(file, [&] { rows = ReadSemanticRows(file); })) return;
+  WriteSemanticRows(input.Output("semantic_table.json"), rows, {});
+});
+
+const FuzzTarget kCatalogue("catalogue", [](const HostileInput& input) {
+  const auto file = input.AsFile("catalogue");
+  IsAccepted(file, [&] { ReadFurnitureCatalogue(file); });
+  IsAccepted(file, [&] { ReadCatalogueNames(file); });
+});
+
+const FuzzTarget kScene("scene", [](const HostileInput& input) {
+  const auto file = input.AsFile("scene.json");
+  IsAccepted(file, [&] { ReadScene(file); });
 });
 
 }  // namespace
