@@ -61,6 +61,9 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
   return header;
 }
 
+namespace {
+
+// Pixels are an n x 2 data set of float32.
 void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
                  Hdf5File* file) {
   cv::Mat matrix(static_cast<int>(pixels.size()), 2, CV_32FC1);
@@ -68,13 +71,12 @@ void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pi
   file->WriteMatrix(name, matrix);
 }
 
-std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name, int count) {
+std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name,
+                                        int count = Hdf5File::kAny) {
   const cv::Mat matrix = file.ReadMatrix(name, CV_32FC1, count, 2);
   const auto* pixels = matrix.ptr<Eigen::Vector2f>();
   return {pixels, pixels + matrix.rows};
 }
-
-namespace {
 
 constexpr const char* kEdgesKind = "edges";
 

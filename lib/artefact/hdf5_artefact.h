@@ -31,12 +31,6 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path);
 // True if a file starts with the HDF5 signature.
 bool IsHdf5(const std::filesystem::path& path);
 
-// Pixels as an n x 2 data set of float32; `count` is how many are expected.
-void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
-                 Hdf5File* file);
-std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name,
-                                        int count = Hdf5File::kAny);
-
 // Writes edges.h5 (layout: schemas/hdf5-layout.md) frame by frame; it appears with Commit(). Throws
 // SettingsError when it cannot be written.
 class EdgesWriter {

@@ -19,10 +19,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The entries that the iterator gives, sorted by name. Throws InputError when it cannot list them.
+template <typename Iterator>
+std::vector<fs::path> Sorted(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  try {
+    for (const fs::directory_entry& entry : Iterator(folder)) entries.push_back(entry.path());
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(fmt::format("{}: cannot be listed ({}); expected a folder that can be read",
+                                 folder.string(), error.code().message()));
+  }
+  std::ranges::sort(entries);
+  return entries;
+}
+
 std::vector<fs::path> FilesIn(const fs::path& path) {
   if (!IsFolder(path)) return {path};
   std::vector<fs::path> files;
-  for (const fs::path& entry : EntriesAtAnyDepth(path)) {
+  for (const fs::path& entry : Sorted<fs::recursive_directory_iterator>(path)) {
     const fs::path name = entry.filename();
     const bool is_hidden = name.string().starts_with('.');  // created by macOS
     if (IsFile(entry) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
@@ -88,29 +102,8 @@ DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& optio
   return files;
 }
 
-namespace {
-
-template <typename Iterator>
-std::vector<fs::path> Sorted(const fs::path& folder) {
-  std::vector<fs::path> entries;
-  try {
-    for (const fs::directory_entry& entry : Iterator(folder)) entries.push_back(entry.path());
-  } catch (const fs::filesystem_error& error) {
-    throw InputError(fmt::format("{}: cannot be listed ({}); expected a folder that can be read",
-                                 folder.string(), error.code().message()));
-  }
-  std::ranges::sort(entries);
-  return entries;
-}
-
-}  // namespace
-
 std::vector<fs::path> FolderEntries(const fs::path& folder) {
   return Sorted<fs::directory_iterator>(folder);
-}
-
-std::vector<fs::path> EntriesAtAnyDepth(const fs::path& folder) {
-  return Sorted<fs::recursive_directory_iterator>(folder);
 }
 
 namespace {

@@ -34,8 +34,6 @@ DatasetFiles FindDatasetFiles(const std::filesystem::path& folder, const ImportO
 
 // Entries of a folder, sorted by name. Throws InputError when it cannot be listed.
 std::vector<std::filesystem::path> FolderEntries(const std::filesystem::path& folder);
-// Entries at any depth, sorted by name.
-std::vector<std::filesystem::path> EntriesAtAnyDepth(const std::filesystem::path& folder);
 
 // A file in an archive.
 struct ArchivedText {

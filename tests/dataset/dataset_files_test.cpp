@@ -15,7 +15,7 @@ TEST(FolderEntriesTest, WhatCannotBeListedIsNamed) {
   const TemporaryFolder folder;
   WriteBytes(folder / "file", "");
   ExpectError<InputError>([&] { FolderEntries(folder / "file"); }, {"file: cannot be listed"});
-  ExpectError<InputError>([&] { EntriesAtAnyDepth(folder / "none"); }, {"none: cannot be listed"});
+  ExpectError<InputError>([&] { FolderEntries(folder / "none"); }, {"none: cannot be listed"});
 }
 
 bool IsText(const std::filesystem::path& name) { return name.extension() == ".txt"; }
