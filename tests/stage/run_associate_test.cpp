@@ -11,6 +11,7 @@
 #include "stage/structure_stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
+#include "support/printed.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 
@@ -131,9 +132,7 @@ TEST_F(RunAssociateTest, SaysWhereUpIsOpen) {
   Run();
   EXPECT_FALSE(Associations().contains("findings"));
   WriteSequence(File("sequence"), Rolled(PostsAndMats(), 1), {});
-  testing::internal::CaptureStderr();
-  Run();
-  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+  EXPECT_THAT(PrintedBy([&] { Run(); }).errors,
               testing::HasSubstr("soslam-associate: warning: cameras are taken to be held "
                                  "rolled_90; probabilities: level"));
   EXPECT_EQ(Associations()["findings"].at(0)["check"], "up_direction");
@@ -159,16 +158,6 @@ TEST_F(RunAssociateTest, NoObjectIsNothingUsable) {
                                   {"sequence.json", "no object", "too_few_detections"});
   EXPECT_FALSE(std::filesystem::exists(File("output")));
   EXPECT_FALSE(std::filesystem::exists(File("associations")));
-}
-
-TEST_F(RunAssociateTest, BadInputIsNamed) {
-  options_.interchangeable_labels = "thing,thing";
-  ExpectError<SettingsError>([&] { Run(); }, {"interchangeable_labels", "thing", "twice"});
-  options_.interchangeable_labels = "";
-  WriteBytes(File("table"), R"({"labels": 3})");
-  ExpectError<InputError>([&] { Run(); }, {"table.json", "labels"});
-  WriteBytes(File("sequence"), "{}");
-  ExpectError<InputError>([&] { Run(); }, {"sequence.json"});
 }
 
 }  // namespace

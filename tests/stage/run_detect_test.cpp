@@ -12,6 +12,7 @@
 #include "support/image_files.h"
 #include "support/labelled_boxes.h"
 #include "support/onnx_network.h"
+#include "support/printed.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -50,9 +51,7 @@ class RunDetectTest : public testing::Test {
             {"output", folder_ / output}};
   }
   void Run(const StageFiles& files, int threads = 1) {
-    testing::internal::CaptureStdout();
-    RunDetect(options_, files, threads);
-    printed_ = testing::internal::GetCapturedStdout();
+    printed_ = PrintedBy([&] { RunDetect(options_, files, threads); }).output;
   }
   // Expects that the stage refuses its input, saying these words, and writes nothing.
   void ExpectRefused(const StageFiles& files, const std::vector<std::string>& words) {

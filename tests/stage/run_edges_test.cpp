@@ -12,6 +12,7 @@
 #include "stage/image_stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
+#include "support/printed.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"
 
@@ -110,24 +111,9 @@ TEST_F(RunEdgesTest, WritesTheMapsOfEveryFrame) {
   EXPECT_FALSE(reader.Has(1));
 }
 
-TEST_F(RunEdgesTest, BadImagesAreNamedAndNothingIsWritten) {
-  const auto image = folder_ / "rgb/7.png";
-  const std::string whole = FileBytes(image);
-  std::filesystem::remove(image);
-  ExpectRefused({"rgb/7.png"});
-  WriteBytes(image, "");
-  ExpectRefused({"rgb/7.png", "is empty"});
-  WriteBytes(image, whole.substr(0, whole.size() - 20));
-  ExpectRefused({"rgb/7.png", "cut short"});
-  cv::imwrite(image.string(), cv::Mat(64, 48, CV_8UC1, cv::Scalar(3)));
-  ExpectRefused({"rgb/7.png", "48 x 64", "64 x 48"});
-}
-
 TEST_F(RunEdgesTest, FramesWithoutAnImageAreLeftOutAndCounted) {
   for (const size_t i : {0u, 4u, 5u}) sequence_.frames[i].image.clear();
-  testing::internal::CaptureStdout();
-  RunEdges({}, Files(), 2);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "8 of 11 frames have an image\n");
+  EXPECT_EQ(PrintedBy([&] { RunEdges({}, Files(), 2); }).output, "8 of 11 frames have an image\n");
   const EdgesReader reader(folder_ / "edges.h5");
   EXPECT_FALSE(reader.Has(0));
   EXPECT_TRUE(reader.Has(5));
@@ -145,17 +131,6 @@ TEST_F(RunEdgesTest, AnImageHasTheSizeOfItsFramesCamera) {
   sequence_.frames[3].camera = Camera{60, 40, 60.0, 60.0, 29.5, 19.5};
   RunEdges({}, Files(), 2);
   EXPECT_EQ(EdgesReader(folder_ / "edges.h5").Read(15).grey.cols, 60);
-}
-
-TEST_F(RunEdgesTest, ImagesOutsideTheDatasetAreRefused) {
-  const std::string outside = (folder_.path().parent_path() / "0.png").string();
-  for (const std::string& path :
-       {std::string("../0.png"), std::string("rgb/../../0.png"), outside}) {
-    sequence_.frames[3].image = path;
-    ExpectRefused({"frame 15", path});
-  }
-  sequence_.frames[3].image = "rgb/../rgb/./0.png";  // inside after all
-  EXPECT_NO_THROW(RunEdges({}, Files(), 1));
 }
 
 TEST_F(RunEdgesTest, CameraBeyondSixteenBitsIsRefused) {

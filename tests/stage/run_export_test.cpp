@@ -9,11 +9,11 @@
 #include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
-#include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
 #include "stage/map_stages.h"
 #include "support/expect_error.h"
 #include "support/gltf_document.h"
+#include "support/printed.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 
@@ -54,14 +54,7 @@ class RunExportTest : public testing::Test {
     StageFiles files = {{"sequence", File("sequence.json")}};
     for (const std::string& input : inputs) files[input] = File(input + ".json");
     for (const auto& [argument, name] : outputs) files[argument] = File(name);
-    testing::internal::CaptureStdout();
-    try {
-      RunExport(options_, files, 1);
-    } catch (...) {
-      testing::internal::GetCapturedStdout();
-      throw;
-    }
-    testing::internal::GetCapturedStdout();
+    PrintedBy([&] { RunExport(options_, files, 1); });
   }
   size_t FilesInFolder() const {
     return static_cast<size_t>(
@@ -92,41 +85,6 @@ TEST_F(RunExportTest, WritesWhatIsAskedFor) {
   EXPECT_NE(table.find("no_start"), std::string::npos);
   Run({"map"}, {{"gltf", "m.gltf"}});
   EXPECT_EQ(nlohmann::json::parse(FileBytes(File("m.gltf"))).at("nodes"), scene.json["nodes"]);
-}
-
-TEST_F(RunExportTest, OnlyTruthIsAnnotated) {
-  Run({"map"}, {{"coco_dataset", "map.json"}});
-  options_.truth = true;
-  Run({}, {{"coco_dataset", "truth.json"}});
-  EXPECT_TRUE(nlohmann::json::parse(FileBytes(File("map.json"))).at("annotations").empty());
-  EXPECT_FALSE(nlohmann::json::parse(FileBytes(File("truth.json"))).at("annotations").empty());
-}
-
-// Detections are exact boxes of the landmarks, seen from the odometry, which is exact, too.
-TEST_F(RunExportTest, CocoBoxesAreThoseOfTheDetections) {
-  for (Rigid3d& pose : map_.world_from_camera) pose.translation.x() -= 0.125;
-  Write();
-  Run({"map"}, {{"coco", "c.json"}, {"coco_dataset", "d.json"}});
-  const auto boxes = nlohmann::json::parse(FileBytes(File("c.json")));
-  const auto read = ReadCocoResults(File("c.json"), File("d.json"));
-  ASSERT_EQ(read.size(), boxes.size());
-  int found = 0;
-  for (const Detection& detection : sequence_.detections) {
-    for (size_t i = 0; i < read.size(); ++i) {
-      if (boxes[i].at("image_id") != sequence_.FrameOf(detection).id ||
-          boxes[i].at("object_id") != sequence_.ObjectOf(detection).id) {
-        continue;
-      }
-      ++found;
-      EXPECT_EQ(read[i].label, sequence_.ObjectOf(detection).label);
-      // Edges of bodies are rounded by a thousandth of their size.
-      EXPECT_GT(BoxOverlap(read[i].box, detection.box), 0.98);
-    }
-  }
-  const auto last = static_cast<int>(sequence_.objects.size()) - 1;
-  EXPECT_EQ(found, std::ranges::count_if(sequence_.detections, [&](const Detection& detection) {
-              return detection.object_index != last;
-            }));
 }
 
 TEST_F(RunExportTest, WithoutAMapThereAreThePosesOfTheSequence) {
@@ -171,9 +129,7 @@ TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
   const StageFiles evaluated = {{"sequence", File("sequence.json")},
                                 {"landmarks", File("map.json")},
                                 {"output", File("metrics.json")}};
-  testing::internal::CaptureStdout();
-  RunEvaluate({.alignment = AlignmentChoice::kRigid}, evaluated, 1);
-  testing::internal::GetCapturedStdout();
+  PrintedBy([&] { RunEvaluate({.alignment = AlignmentChoice::kRigid}, evaluated, 1); });
   Run({"map", "metrics"}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}});
   EXPECT_EQ(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation,
             map_.world_from_camera[3].translation);
@@ -216,9 +172,11 @@ TEST_F(RunExportTest, SegmentsAreFilesOfTheirOwn) {
   for (size_t i = 4; i < sequence_.frames.size(); ++i) sequence_.frames[i].segment = 12;
   Write();
   Run({"map"}, kAll);
+  Run({"map"}, {{"ply", "m.v2.ply"}, {"trajectory", "poses"}});
   EXPECT_EQ(ReadTrajectory(File("t-0.txt")).size(), 4u);
   EXPECT_EQ(ReadTrajectory(File("t-12.txt")).size(), sequence_.frames.size() - 4);
-  for (const char* name : {"m-0.ply", "m-12.ply", "m-0.glb", "m-12.glb"}) {
+  for (const char* name :
+       {"m-0.ply", "m-12.ply", "m-0.glb", "m-12.glb", "m.v2-12.ply", "poses-0"}) {
     EXPECT_TRUE(fs::exists(File(name))) << name;
   }
   EXPECT_FALSE(fs::exists(File("t.txt")));
@@ -239,11 +197,6 @@ TEST_F(RunExportTest, RefusesWhatItCannotDo) {
   Write();
   ExpectError<NothingUsableError>([&] { Run({"map"}, kAll); }, {"map.json", "no landmarks"});
   EXPECT_EQ(FilesInFolder(), 2u);
-}
-
-TEST_F(RunExportTest, SegmentPathsKeepFolderAndExtension) {
-  EXPECT_EQ(SegmentPath("a/map.v2.ply", 3), fs::path("a/map.v2-3.ply"));
-  EXPECT_EQ(SegmentPath("poses", 0), fs::path("poses-0"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "stage/data_stages.h"
 #include "support/expect_error.h"
+#include "support/printed.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -43,10 +44,7 @@ class RunLearnPriorsTest : public testing::Test {
     files_["furniture_labels"] = folder_ / "names.json";
   }
   std::string Run() const {
-    testing::internal::CaptureStdout();
-    RunLearnPriors({}, files_, 1);
-    std::fflush(stdout);
-    return testing::internal::GetCapturedStdout();
+    return PrintedBy([&] { RunLearnPriors({}, files_, 1); }).output;
   }
   ShapePrior Pot() const { return ReadSemanticTable(files_.at("output")).Find("pot").value(); }
 

@@ -19,6 +19,7 @@
 #include "stage/result_pages.h"
 #include "support/expect_error.h"
 #include "support/page_data.h"
+#include "support/printed.h"
 #include "support/results_folder.h"
 #include "support/scene.h"
 
@@ -95,24 +96,17 @@ class RunPagesTest : public testing::Test {
     return record;
   }
 
-  struct Printed {
-    std::string output, errors;
-  };
   Printed Run() const {
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const auto printed = [] {
-      std::fflush(stdout);
-      const std::string output = testing::internal::GetCapturedStdout();
-      return Printed{output, testing::internal::GetCapturedStderr()};
-    };
-    try {
-      RunPages({}, {{"results", results_.path()}}, 2);
-    } catch (...) {
-      printed();
-      throw;
-    }
-    return printed();
+    return PrintedBy([&] { RunPages({}, {{"results", results_.path()}}, 2); });
+  }
+  // Runs, and returns the part of the page that needs no scripts.
+  std::string Markup() const {
+    EXPECT_EQ(Run().errors, "");
+    return MarkupOf(Page());
+  }
+  static std::string MarkupOf(const fs::path& page) {
+    const std::string html = FileBytes(page);
+    return html.substr(0, html.find("<script"));
   }
   // Names and states of what is not complete.
   std::map<std::string, std::string> Unfinished() const {
@@ -149,12 +143,6 @@ TEST_F(RunPagesTest, VariantsShareWhatIsTheSame) {
   EXPECT_EQ(page["sequences"][0]["counts"]["objects"], 4);
 }
 
-// The part of the page that needs no scripts.
-std::string MarkupOf(const fs::path& page) {
-  const std::string html = FileBytes(page);
-  return html.substr(0, html.find("<script"));
-}
-
 size_t CountOf(const std::string& words, const std::string& text) {
   size_t count = 0;
   for (size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++count;
@@ -166,8 +154,7 @@ TEST_F(RunPagesTest, PagesBeginWithTheMapAndItsPictures) {
   sequence_.objects[0].label = label;
   WriteOurs("OursS");
   WriteOurs("OursST");
-  EXPECT_EQ(Run().errors, "");
-  const std::string html = MarkupOf(Page());
+  const std::string html = Markup();
   EXPECT_LT(html.find("<h2>Map of OursST</h2>"), html.find("<h2>Numbers</h2>"));
   EXPECT_EQ(CountOf("<h2>Map ", html), 1u);
   EXPECT_THAT(html, HasSubstr("3 objects in 6 images."));
@@ -186,8 +173,7 @@ TEST_F(RunPagesTest, ObjectsWithoutALandmarkAreSeenButNotPlaced) {
   std::vector<ObjectEstimate> initial = Estimates();
   initial.push_back({static_cast<int>(initial.size()), 5, {}, {}, "not_determined_by_its_views"});
   WriteLandmarks(Folder("OursS") / "initial.json", {{}, initial}, sequence_, {});
-  Run();
-  const std::string html = MarkupOf(Page());
+  const std::string html = Markup();
   const size_t begin = html.find("<h3>Seen but not placed</h3>");
   ASSERT_NE(begin, html.npos);
   const std::string list = html.substr(begin, html.find("</section>", begin) - begin);
@@ -203,8 +189,7 @@ TEST_F(RunPagesTest, ThingsInOneImageAreOnlyCounted) {
     return detection.object_index == last && !std::exchange(is_first, false);
   });
   WriteOurs("OursS");
-  Run();
-  const std::string html = MarkupOf(Page());
+  const std::string html = Markup();
   EXPECT_THAT(html, HasSubstr("One more thing was detected in one image only."));
   EXPECT_THAT(html, testing::Not(HasSubstr("id=\"seen-0\"")));
 }
@@ -212,8 +197,7 @@ TEST_F(RunPagesTest, ThingsInOneImageAreOnlyCounted) {
 TEST_F(RunPagesTest, TheMapIsShownWithoutImagesToo) {
   WriteOurs("OursS");
   fs::remove_all(Dataset());
-  EXPECT_EQ(Run().errors, "");
-  const std::string html = MarkupOf(Page());
+  const std::string html = Markup();
   EXPECT_EQ(CountOf("<image ", html), 0u);
   EXPECT_EQ(CountOf("<use ", html), 0u);
   EXPECT_EQ(CountOf("<polygon ", html), 2u * Estimates().size());
@@ -221,31 +205,20 @@ TEST_F(RunPagesTest, TheMapIsShownWithoutImagesToo) {
 
 TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
   WriteOurs("OursS");
-  ScalePosterior scale;
-  scale.log_sigma = 0.05;
-  scale.low = -0.1;
-  scale.high = 0.1;
-  GroundObject object;
-  object.label = "chair";
-  object.boxes = 4;
-  object.agreement = 0.9;
   GroundEstimate estimate;
   estimate.tilt_sigma = 0.4 * kRadPerDeg;
-  estimate.scale = estimate.scale_of_objects = scale;
-  estimate.objects.assign(3, object);
   const auto section = [&] {
     WriteWorld(Folder("OursS") / "world.json", estimate, sequence_,
                {OptionsToJson(GroundOptions()), {}});
-    Run();
-    const std::string html = MarkupOf(Page());
+    const std::string html = Markup();
     return html.substr(0, html.find("</section>"));
   };
-  EXPECT_THAT(section(),
-              AllOf(HasSubstr("Scale ± 11 % (95 %), from the usual heights of 3 detected things."),
-                    HasSubstr("Up ± 0.4°"), HasSubstr("cm ("), HasSubstr(" m</text>")));
-  estimate.scale.reset();
   EXPECT_THAT(section(), AllOf(HasSubstr("lengths have no unit"), HasSubstr("Up ± 0.4°"),
                                testing::Not(HasSubstr("cm ("))));
+  estimate.scale = ScalePosterior{.log_sigma = 0.05, .low = -0.1, .high = 0.1};
+  estimate.known_scales = {{0.0, 0.1, "camera_height_m"}};
+  EXPECT_THAT(section(),
+              AllOf(HasSubstr("Scale ± 11 % (95 %)"), HasSubstr("cm ("), HasSubstr(" m</text>")));
 }
 
 // Pictures of what is not placed are left out first.
@@ -257,43 +230,32 @@ TEST_F(RunPagesTest, TheMapFromAboveKeepsToItsRoom) {
   const auto section = [&](size_t max_bytes) {
     return MapSection("Map", Folder("OursS"), sequence_, images, max_bytes, 1);
   };
+  const auto expect_fewer_pictures_below = [&](const std::string& whole, size_t pictures) {
+    EXPECT_EQ(CountOf("<image ", whole), 4u);
+    EXPECT_THAT(whole, testing::Not(HasSubstr("For lack of room")));
+    const std::string smaller = section(whole.size() - 1);
+    EXPECT_EQ(CountOf("<image ", smaller), pictures);
+    EXPECT_THAT(smaller, HasSubstr("For lack of room pictures are left out."));
+  };
   const std::string whole = section(kMaxPageBytes);
-  EXPECT_EQ(CountOf("<image ", whole), 4u);
-  const std::string smaller = section(whole.size() - 1);
-  EXPECT_EQ(CountOf("<image ", smaller), 3u);
-  EXPECT_THAT(smaller, HasSubstr("For lack of room pictures are left out."));
-  for (size_t max_bytes = smaller.size(); max_bytes > 0; max_bytes /= 2) {
+  expect_fewer_pictures_below(whole, 3);
+  for (size_t max_bytes = whole.size() - 1; max_bytes > 0; max_bytes /= 2) {
     EXPECT_LE(section(max_bytes).size(), max_bytes);
   }
   EXPECT_EQ(section(100), "");
-}
-
-TEST_F(RunPagesTest, PicturesThatAreLeftOutAreMissedWhereNothingIsPlaced) {
-  WriteOurs("OursS");
+  // Where nothing is placed, all pictures are of what is not.
   MapEstimate map = ReadMap(Folder("OursS") / "map.json", sequence_);
   for (ObjectEstimate& estimate : map.objects) estimate.landmark_in_world.reset();
   WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
-  const cv::Mat grey(sequence_.camera.height, sequence_.camera.width, CV_8UC3, cv::Scalar::all(9));
-  const ImageSource images = {[](int) { return true; }, [&](int) { return grey; }};
-  const auto section = [&](size_t max_bytes) {
-    return MapSection("Map", Folder("OursS"), sequence_, images, max_bytes, 1);
-  };
-  const std::string whole = section(kMaxPageBytes);
-  EXPECT_EQ(CountOf("<image ", whole), 4u);
-  EXPECT_THAT(whole, testing::Not(HasSubstr("For lack of room")));
-  const std::string smaller = section(whole.size() - 1);
-  EXPECT_EQ(CountOf("<image ", smaller), 0u);
-  EXPECT_THAT(smaller, HasSubstr("For lack of room pictures are left out."));
+  expect_fewer_pictures_below(section(kMaxPageBytes), 0);
 }
 
 TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
   WriteOurs("OursS");
-  Run();
-  EXPECT_THAT(MarkupOf(Page()), testing::Not(HasSubstr("Photos without a pose")));
+  EXPECT_THAT(Markup(), testing::Not(HasSubstr("Photos without a pose")));
   sequence_.images_without_pose = {"rgb/a<b.jpg", "rgb/c.jpg"};
   WriteOurs("OursS");
-  Run();
-  EXPECT_THAT(MarkupOf(Page()),
+  EXPECT_THAT(Markup(),
               AllOf(HasSubstr("<h3>Photos without a pose</h3>"), HasSubstr("2 photos were taken"),
                     HasSubstr("rgb/a&lt;b.jpg, rgb/c.jpg.")));
 }
@@ -305,12 +267,10 @@ TEST_F(RunPagesTest, UncertainObjectsAreDashedAndSaidToBe) {
     map.objects[i].covariance = Covariance9(1e-4 * Covariance9::Identity());
   }
   WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
-  Run();
-  EXPECT_THAT(MarkupOf(Page()), testing::Not(HasSubstr("uncertain: ")));
+  EXPECT_THAT(Markup(), testing::Not(HasSubstr("uncertain: ")));
   map.objects[1].covariance = Covariance9(4.0 * Covariance9::Identity());
   WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
-  Run();
-  const std::string html = MarkupOf(Page());
+  const std::string html = Markup();
   EXPECT_EQ(CountOf("uncertain: it may stand beside its outline; its depth", html), 1u);
   EXPECT_EQ(CountOf("<polygon class=\"uncertain\"", html), 2u);  // on both plans
   EXPECT_EQ(CountOf("Dashed objects are uncertain", html), 1u);
@@ -323,8 +283,7 @@ TEST_F(RunPagesTest, WithoutTrueObjectsNothingIsSaidOfThem) {
   WriteOurs("OursS");
   WriteSequence(Folder("OursS") / "sequence.json", without, {});
   results_.WriteMetrics("room", "OursS", {});
-  EXPECT_EQ(Run().errors, "");
-  const std::string html = MarkupOf(Page());
+  const std::string html = Markup();
   for (const char* words :
        {"IoU", "Rot", "yaw error", "Numbers", "all that is true", "ATE", "Worst first", "ruth"}) {
     EXPECT_EQ(html.find(words, html.find("<main")), html.npos) << words;

@@ -47,14 +47,6 @@ TEST_F(RunSynthesiseTest, NoiseAndSeedAreOptions) {
   EXPECT_EQ(FileBytes(output_ / "odometry.txt"), FileBytes(output_ / "groundtruth.txt"));
 }
 
-TEST_F(RunSynthesiseTest, OptionsAreChecked) {
-  SynthesiseOptions options;
-  OptionsFromJson({{"noise", false}, {"seed", 7}}, "settings.json", &options);
-  EXPECT_FALSE(options.noise);
-  EXPECT_EQ(options.seed, 7);
-  EXPECT_THROW(OptionsFromJson({{"seed", -2}}, "settings.json", &options), SettingsError);
-}
-
 TEST_F(RunSynthesiseTest, BadSceneWritesNothing) {
   WriteBytes(scene_, "{\"name\": \"no more than a name\"}");
   EXPECT_THROW(Detections({}), InputError);

@@ -8,11 +8,10 @@
 
 #include "artefact/points_file.h"
 #include "artefact/sequence_file.h"
-#include "base/error.h"
 #include "dataset/text_file.h"
 #include "geometry/distortion.h"
 #include "support/drawn_photos.h"
-#include "support/expect_error.h"
+#include "support/printed.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -103,9 +102,7 @@ TEST_F(RunTrackTest, PointsOfASegmentAreSeenInIt) {
 // Without points, the file is empty, and the warning has the cause.
 TEST_F(RunTrackTest, WithoutPointsTheCauseIsNamed) {
   const auto expect_warning = [&](const std::vector<std::string>& words) {
-    testing::internal::CaptureStderr();
-    EXPECT_TRUE(Run().empty());
-    const std::string warning = testing::internal::GetCapturedStderr();
+    const std::string warning = PrintedBy([&] { EXPECT_TRUE(Run().empty()); }).errors;
     for (const std::string& word : words) EXPECT_NE(warning.find(word), std::string::npos) << word;
   };
   const std::vector<Frame> frames = sequence_.frames;
@@ -122,12 +119,6 @@ TEST_F(RunTrackTest, WithoutPointsTheCauseIsNamed) {
   expect_warning({"no track over 3 images"});
   sequence_.frames = {frames[0]};
   expect_warning({"1 image", "at least 3 images"});
-}
-
-TEST_F(RunTrackTest, AMissingImageIsNamed) {
-  std::filesystem::remove(folder_ / "rgb/3.png");
-  WriteSequence(folder_ / "sequence.json", sequence_, {});
-  ExpectError<InputError>([&] { RunTrack({}, Files(), 2); }, {"3.png"});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -55,24 +56,23 @@ class PlanTest : public testing::Test {
     }
     return "";
   }
+  // What a stage of a variant reads: "refine/refined.json".
+  std::string InputOf(const std::string& variant, const std::string& stage,
+                      const std::string& argument) const {
+    const Plan plan = Make({variant});
+    for (const StageInstance& instance : plan.instances) {
+      const auto input = instance.inputs.find(argument);
+      if (instance.stage != stage || input == instance.inputs.end()) continue;
+      return plan.Instance(input->second.instance).stage + "/" + input->second.file;
+    }
+    return "";
+  }
   void ExpectRefused(const std::string& variant, const std::vector<std::string>& parts) const {
     ExpectError<SettingsError>([&] { Make({variant}); }, parts);
   }
 
   TemporaryFolder folder_;
 };
-
-TEST_F(PlanTest, PointsAreThoseOfTheImportedPoses) {
-  Write("pipelines/variants/Points.json",
-        R"({"stages": ["import", "track", "initialise", "optimise", "evaluate"],
-            "planes": {"planes": "estimated"}, "optimise": {"point_evidence": true}})");
-  const Plan plan = Make({"Points"});
-  const StageInstance& track = plan.Instance(Id("Points", "track"));
-  EXPECT_EQ(track.inputs.at("sequence").instance, Id("Points", "import"));
-  const StageInstance& optimise = plan.Instance(Id("Points", "optimise"));
-  EXPECT_EQ(optimise.inputs.at("points").instance, track.Id());
-  EXPECT_EQ(optimise.inputs.at("points").file, "points.h5");
-}
 
 TEST_F(PlanTest, PointEvidenceNeedsTracks) {
   Write("pipelines/variants/Points.json",
@@ -98,59 +98,70 @@ TEST_F(PlanTest, VariantsShareWhatTheyHaveInCommon) {
   EXPECT_THAT(plan.Instance(plain[1]).variants, ElementsAre("Plain", "Mapped", "Full"));
 }
 
-TEST_F(PlanTest, StagesReadTheLatestLandmarks) {
-  const Plan plan = Make({"Plain", "Mapped", "Full"});
-  const auto input = [&](size_t variant, const std::string& stage, const std::string& argument) {
-    for (const std::string& id : plan.variants[variant].instances) {
-      const StageInstance& instance = plan.Instance(id);
-      if (instance.stage != stage) continue;
-      const auto found = instance.inputs.find(argument);
-      return found == instance.inputs.end() ? "" : found->second.file;
+TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
+  Write("pipelines/variants/Points.json",
+        R"({"stages": ["import", "track", "initialise", "optimise", "evaluate"],
+            "planes": {"planes": "estimated"}, "optimise": {"point_evidence": true}})");
+  struct Input {
+    const char* variant;
+    const char* stage;
+    const char* argument;
+    const char* expected;  // maker and file; empty: there is no such input, or no such stage
+  };
+  const auto expect_inputs = [&](const char* settings, const std::vector<Input>& inputs) {
+    Write("pipelines/datasets/room.json", settings);
+    for (const auto& [variant, stage, argument, expected] : inputs) {
+      EXPECT_EQ(InputOf(variant, stage, argument), expected) << settings << stage << argument;
     }
-    return std::string("no such stage");
   };
-  EXPECT_EQ(input(0, "evaluate", "landmarks"), "initial.json");
-  EXPECT_EQ(input(1, "optimise", "landmarks"), "initial.json");
-  EXPECT_EQ(input(1, "optimise", "edges"), "");
-  EXPECT_EQ(input(2, "refine", "initial"), "initial.json");
-  EXPECT_EQ(input(2, "refine", "edges"), "edges.h5");
-  EXPECT_EQ(input(2, "optimise", "landmarks"), "refined.json");
-  EXPECT_EQ(input(2, "optimise", "edges"), "edges.h5");
-  EXPECT_EQ(input(2, "evaluate", "landmarks"), "map.json");
+  expect_inputs("{}", {{"Plain", "evaluate", "landmarks", "initialise/initial.json"},
+                       {"Mapped", "optimise", "landmarks", "initialise/initial.json"},
+                       {"Mapped", "optimise", "edges", ""},
+                       {"Full", "associate", "sequence", ""},
+                       {"Full", "ground", "sequence", ""},
+                       {"Full", "planes", "sequence", ""},
+                       {"Full", "refine", "initial", "initialise/initial.json"},
+                       {"Full", "refine", "edges", "edges/edges.h5"},
+                       {"Full", "optimise", "landmarks", "refine/refined.json"},
+                       {"Full", "optimise", "edges", "edges/edges.h5"},
+                       {"Full", "evaluate", "landmarks", "optimise/map.json"},
+                       {"Points", "track", "sequence", "import/sequence.json"},
+                       {"Points", "optimise", "points", "track/points.h5"}});
+  // Images do not depend on what is estimated from boxes.
+  expect_inputs(R"({"associate": {"association": "estimated"}})",
+                {{"Full", "associate", "sequence", "import/sequence.json"},
+                 {"Full", "edges", "sequence", "import/sequence.json"},
+                 {"Full", "initialise", "sequence", "associate/sequence.json"},
+                 {"Full", "evaluate", "sequence", "associate/sequence.json"}});
+  expect_inputs(R"({"ground": {"ground": "estimated"}, "associate": {"association": "estimated"}})",
+                {{"Full", "ground", "sequence", "import/sequence.json"},
+                 {"Full", "associate", "sequence", "ground/sequence.json"},
+                 {"Full", "edges", "sequence", "import/sequence.json"},
+                 {"Full", "initialise", "sequence", "associate/sequence.json"}});
+  expect_inputs(R"({"planes": {"planes": "estimated"}})",
+                {{"Full", "planes", "sequence", "import/sequence.json"},
+                 {"Full", "edges", "sequence", "import/sequence.json"},
+                 {"Full", "initialise", "sequence", "planes/sequence.json"},
+                 {"Full", "refine", "sequence", "planes/sequence.json"},
+                 {"Full", "optimise", "sequence", "planes/sequence.json"},
+                 {"Full", "evaluate", "sequence", "planes/sequence.json"}});
+  expect_inputs(R"({"associate": {"association": "estimated"}, "planes": {"planes": "estimated"}})",
+                {{"Full", "planes", "sequence", "associate/sequence.json"},
+                 {"Full", "initialise", "sequence", "planes/sequence.json"}});
 }
 
-TEST_F(PlanTest, EstimatedAssociationReplacesTheObjectsOfTheImport) {
-  const std::vector<std::string> given = Make({"Full"}).variants[0].instances;
-  EXPECT_EQ(Id("Full", "associate"), "");
-  Write("pipelines/datasets/room.json", R"({"associate": {"association": "estimated"}})");
-  const Plan plan = Make({"Full"});
-  const std::vector<std::string>& estimated = plan.variants[0].instances;
-  ASSERT_EQ(estimated.size(), given.size() + 1);
-  EXPECT_EQ(estimated[0], given[0]);  // import
-  EXPECT_EQ(plan.Instance(estimated[1]).stage, "associate");
-  EXPECT_EQ(plan.Instance(estimated[1]).inputs.at("sequence").instance, given[0]);
-  EXPECT_FALSE(plan.Instance(estimated[1]).semantic_table.empty());
-  EXPECT_EQ(estimated[2], given[1]);  // edges: of the same images
-  for (size_t i = 3; i < estimated.size(); ++i) {
-    const ArtefactSource& sequence = plan.Instance(estimated[i]).inputs.at("sequence");
-    EXPECT_EQ(sequence.instance, estimated[1]);
-    EXPECT_EQ(sequence.file, "sequence.json");
-    EXPECT_NE(estimated[i], given[i - 1]);
+TEST_F(PlanTest, StagesThatASettingAsksForChangeNoKeyButOfTheirReaders) {
+  const std::string import = Id("Full", "import"), edges = Id("Full", "edges");
+  const std::string initialise = Id("Full", "initialise");
+  for (const auto& [stage, settings] :
+       {std::pair("associate", R"({"associate": {"association": "estimated"}})"),
+        {"planes", R"({"planes": {"planes": "estimated"}})"}}) {
+    Write("pipelines/datasets/room.json", settings);
+    EXPECT_FALSE(Make({"Full"}).Instance(Id("Full", stage)).semantic_table.empty());
+    EXPECT_EQ(Id("Full", "import"), import);
+    EXPECT_EQ(Id("Full", "edges"), edges);
+    EXPECT_NE(Id("Full", "initialise"), initialise);
   }
-}
-
-TEST_F(PlanTest, AWorldWithoutUpAndScaleGetsThemBeforeAssociation) {
-  EXPECT_EQ(Id("Full", "ground"), "");
-  Write("pipelines/datasets/room.json",
-        R"({"ground": {"ground": "estimated"}, "associate": {"association": "estimated"}})");
-  const Plan plan = Make({"Full"});
-  const auto inputs_of = [&](const std::string& stage) {
-    return plan.Instance(Id("Full", stage)).inputs;
-  };
-  EXPECT_EQ(inputs_of("ground").at("sequence").instance, Id("Full", "import"));
-  EXPECT_EQ(inputs_of("associate").at("sequence").instance, Id("Full", "ground"));
-  EXPECT_EQ(inputs_of("initialise").at("sequence").instance, Id("Full", "associate"));
-  EXPECT_EQ(inputs_of("edges").at("sequence").instance, Id("Full", "import"));
 }
 
 TEST_F(PlanTest, SettingsOfAnAssociationThatDoesNotRunDoNotMatter) {
@@ -159,37 +170,6 @@ TEST_F(PlanTest, SettingsOfAnAssociationThatDoesNotRunDoNotMatter) {
   EXPECT_EQ(Id("Plain", "initialise"), initialise);
   Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 0}})");
   ExpectRefused("Plain", {"room.json", "associate", "min_observations"});
-}
-
-TEST_F(PlanTest, PlanesAreAStageWhereASettingAsksForThem) {
-  EXPECT_EQ(Id("Mapped", "planes"), "");
-  const std::string import = Id("Mapped", "import");
-  const std::string edges = Id("Full", "edges");
-  Write("pipelines/datasets/room.json", R"({"planes": {"planes": "estimated"}})");
-  const std::string planes = Id("Mapped", "planes");
-  EXPECT_NE(planes, "");
-  EXPECT_EQ(Id("Mapped", "import"), import);
-  EXPECT_EQ(Id("Full", "edges"), edges);  // images do not depend on planes
-  const Plan plan = Make({"Full"});
-  const auto sequence_of = [&](const std::string& stage) {
-    return plan.Instance(Id("Full", stage)).inputs.at("sequence").instance;
-  };
-  EXPECT_EQ(sequence_of("planes"), import);
-  EXPECT_EQ(sequence_of("edges"), import);
-  for (const char* stage : {"initialise", "refine", "optimise", "evaluate"}) {
-    EXPECT_EQ(sequence_of(stage), planes) << stage;
-  }
-  EXPECT_FALSE(plan.Instance(planes).semantic_table.empty());
-}
-
-TEST_F(PlanTest, PlanesAreOfTheObjectsThatAssociationFound) {
-  Write("pipelines/datasets/room.json",
-        R"({"associate": {"association": "estimated"}, "planes": {"planes": "estimated"}})");
-  const std::string associate = Id("Full", "associate");
-  const std::string planes = Id("Full", "planes");
-  const Plan plan = Make({"Full"});
-  EXPECT_EQ(plan.Instance(planes).inputs.at("sequence").instance, associate);
-  EXPECT_EQ(plan.Instance(Id("Full", "initialise")).inputs.at("sequence").instance, planes);
 }
 
 TEST_F(PlanTest, StagesThatASettingAsksForAreNotListed) {
@@ -373,35 +353,27 @@ TEST_F(RunPlanTest, AllVariantsOfADatasetWithoutImagesAreThoseThatLookAtNone) {
   EXPECT_THAT(Read("results/room/plan.mk"), HasSubstr("/Full/"));
 }
 
+// Formats of others keep their files in folders of their own. Which images there are, an import may
+// want to know; what is in them, it does not.
 TEST_F(RunPlanTest, FingerprintsFollowTheFiles) {
+  Write("room/label_02/0001.txt", "one");
   Run("", "");
   const std::string dataset = Read("results/room/shared/dataset.txt");
   const std::string images = Read("results/room/shared/images.txt");
-  EXPECT_THAT(dataset, AllOf(HasSubstr("camera.json"), HasSubstr("rgb.txt")));
+  EXPECT_THAT(dataset, AllOf(HasSubstr("camera.json"), HasSubstr("rgb.txt"),
+                             HasSubstr("label_02/0001.txt 3"), HasSubstr("rgb/0.jpg\n")));
   EXPECT_THAT(images, HasSubstr("rgb/0.jpg"));
   Write("room/rgb/0.jpg", "another image");
   Run("", "");
   EXPECT_EQ(Read("results/room/shared/dataset.txt"), dataset);
   EXPECT_NE(Read("results/room/shared/images.txt"), images);
-  fs::remove(folder_ / "room/camera.json");
-  Run("", "");
-  EXPECT_NE(Read("results/room/shared/dataset.txt"), dataset);
-}
-
-// Formats of others keep their files in folders of their own. Which images there are, an import may
-// want to know; what is in them, it does not.
-TEST_F(RunPlanTest, FingerprintsFollowFilesInFolders) {
-  fs::create_directories(folder_ / "room/label_02");
-  Write("room/label_02/0001.txt", "one");
-  Run("", "");
-  const std::string dataset = Read("results/room/shared/dataset.txt");
-  EXPECT_THAT(dataset, AllOf(HasSubstr("label_02/0001.txt 3"), HasSubstr("rgb/0.jpg\n")));
-  Write("room/rgb/0.jpg", "another image");
-  Run("", "");
-  EXPECT_EQ(Read("results/room/shared/dataset.txt"), dataset);
-  Write("room/rgb/1.jpg", "one more image");
-  Run("", "");
-  EXPECT_NE(Read("results/room/shared/dataset.txt"), dataset);
+  for (const auto& change : {std::function([&] { fs::remove(folder_ / "room/camera.json"); }),
+                             std::function([&] { Write("room/rgb/1.jpg", "one more image"); })}) {
+    const std::string before = Read("results/room/shared/dataset.txt");
+    change();
+    Run("", "");
+    EXPECT_NE(Read("results/room/shared/dataset.txt"), before);
+  }
 }
 
 TEST_F(RunPlanTest, PlansOnlyTheVariantsAskedFor) {
@@ -414,12 +386,12 @@ TEST_F(RunPlanTest, PlansOnlyTheVariantsAskedFor) {
 }
 
 TEST_F(RunPlanTest, RefusesWhatMakeCannotHandle) {
-  EXPECT_THROW(Run("my room", ""), SettingsError);
-  EXPECT_THROW(Run("$(shell ls)", ""), SettingsError);
-  EXPECT_THROW(Run("../room", ""), SettingsError);
-  EXPECT_THROW(Run("-n", ""), SettingsError);
-  EXPECT_THROW(Run("", "-n"), SettingsError);
-  EXPECT_THROW(Run("", "../variants/Plain"), SettingsError);
+  for (const char* name : {"my room", "$(shell ls)", "../room", "-n"}) {
+    EXPECT_THROW(Run(name, ""), SettingsError) << name;
+  }
+  for (const char* variant : {"-n", "../variants/Plain"}) {
+    EXPECT_THROW(Run("", variant), SettingsError) << variant;
+  }
   EXPECT_THROW(RunIn("room", "my results", "", ""), SettingsError);
   EXPECT_THROW(RunIn("no_room", "results", "", ""), InputError);
   EXPECT_FALSE(fs::exists(folder_ / "results"));
