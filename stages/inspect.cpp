@@ -70,34 +70,26 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
 }
 
 void AddOptions(CLI::App* app, Arguments* arguments, CLI::Option* headline) {
-  app->add_option("--frame", arguments->request.frame_id, "id of the frame of the picture")
-      ->option_text("integer")
-      ->excludes(headline)
-      ->group("Options");
-  app->add_option("--object", arguments->request.object_id, "id of its object, of symmetry")
-      ->option_text("integer")
-      ->excludes(headline)
-      ->group("Options");
-  app->add_option("--layer", arguments->layer,
-                  "what of edges is in the picture\n[default all; one of all, grey, edges, "
-                  "distance, nearest]")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(soslam::kEdgeLayerNames.begin(), soslam::kEdgeLayerNames.end())))
-      ->option_text("string")
-      ->excludes(headline)
-      ->group("Options");
+  const auto add = [&](const char* name, auto* value, const char* type, const char* doc) {
+    CLI::Option* option = app->add_option(name, *value, doc);
+    option->option_text(type)->excludes(headline)->group("Options");
+    return option;
+  };
+  add("--frame", &arguments->request.frame_id, "integer", "id of the frame of the picture");
+  add("--object", &arguments->request.object_id, "integer", "id of its object, of symmetry");
+  add("--layer", &arguments->layer, "string",
+      "what of edges is in the picture\n[default all; one of all, grey, edges, distance, nearest]")
+      ->check(CLI::IsMember(std::vector<std::string>(soslam::kEdgeLayerNames.begin(),
+                                                     soslam::kEdgeLayerNames.end())));
 }
 
 CLI::App* AddDiff(CLI::App* app, Arguments* arguments) {
   CLI::App* diff = app->add_subcommand("diff", "Lists where two artefacts of one kind differ.");
-  diff->add_option("ONE", arguments->one, "an artefact")
-      ->option_text("PATH (required)")
-      ->required()
-      ->group("Files");
-  diff->add_option("TWO", arguments->two, "another one of its kind")
-      ->option_text("PATH (required)")
-      ->required()
-      ->group("Files");
+  const auto add_file = [&](const char* name, std::string* path, const char* doc) {
+    diff->add_option(name, *path, doc)->option_text("PATH (required)")->required()->group("Files");
+  };
+  add_file("ONE", &arguments->one, "an artefact");
+  add_file("TWO", &arguments->two, "another one of its kind");
   diff->add_option("--tolerance", arguments->tolerance,
                    "numbers are equal that differ by no more,\ntimes the larger of the two and 1\n"
                    "[default 1e-9; 0 or more]")

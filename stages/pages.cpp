@@ -3,7 +3,7 @@
 #include "stage/result_pages.h"
 
 int main(int argc, char** argv) {
-  return soslam::StageMain<soslam::PagesOptions>(
+  return soslam::StageMain<soslam::NoOptions>(
       argc, argv,
       {.name = "soslam-pages",
        .purpose =

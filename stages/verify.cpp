@@ -3,7 +3,7 @@
 #include "stage/run_verify.h"
 
 int main(int argc, char** argv) {
-  return soslam::StageMain<soslam::VerifyOptions>(
+  return soslam::StageMain<soslam::NoOptions>(
       argc, argv,
       {.name = "soslam-verify",
        .purpose =

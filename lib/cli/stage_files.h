@@ -6,7 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "base/options.h"
+
 namespace soslam {
+
+// The options of a stage that has none.
+struct NoOptions {
+  void Describe(OptionVisitor& /*visit*/) {}
+};
 
 // The files that a stage was called with, keyed by argument name; absent when an optional one was
 // not given. The second and later files of a repeatable argument are named by RepeatedName.

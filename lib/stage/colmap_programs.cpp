@@ -72,50 +72,6 @@ std::string StampOf(const ColmapJob& job, const std::string& version) {
   return text;
 }
 
-// Runs COLMAP's programs one after the other, with a common log.
-class Session {
- public:
-  explicit Session(const fs::path& workspace) : log_path_(workspace / kLog), log_(log_path_) {}
-
-  // Returns the exit code. `use_line` gets each line that the program prints.
-  int Call(const std::vector<std::string>& arguments,
-           const std::function<void(const std::string&)>& use_line) {
-    std::vector<std::string> words = {"colmap"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    log_ << fmt::format("$ {}\n", fmt::join(words, " ")) << std::flush;
-    return FollowProgram(words,
-                         [&](const std::string& line) {
-                           log_ << line << '\n' << std::flush;
-                           const bool is_error =
-                               Contains(line, "ERROR") || Contains(line, "Check failed");
-                           if (is_error) error_ = line;
-                           if (line.find_first_not_of(" \r") != line.npos) last_line_ = line;
-                           use_line(line);
-                         })
-        .value_or(-1);
-  }
-
-  // Throws NothingUsableError unless the exit code is 0.
-  void Require(const std::vector<std::string>& arguments,
-               const std::function<void(const std::string&)>& use_line) {
-    const int exit_code = Call(arguments, use_line);
-    if (exit_code != 0) Fail(arguments.front(), exit_code);
-  }
-
-  [[noreturn]] void Fail(const std::string& program, int exit_code) const {
-    throw NothingUsableError(fmt::format("colmap {}: failed with exit code {}: {}; see {}", program,
-                                         exit_code, error_.empty() ? last_line_ : error_,
-                                         log_path_.string()));
-  }
-
-  const fs::path& log_path() const { return log_path_; }
-
- private:
-  fs::path log_path_;
-  std::ofstream log_;
-  std::string last_line_, error_;
-};
-
 // Progress up to a count that lines state.
 class Follower {
  public:
@@ -130,34 +86,6 @@ class Follower {
   int count_;
   int done_ = 0;
 };
-
-// Throws NothingUsableError when features were counted, and no image has one.
-void Extract(const ColmapJob& job, const std::vector<std::string>& arguments, Session* session) {
-  Follower follower("images: features", static_cast<int>(job.images.size()));
-  int counted = 0, with_features = 0;
-  session->Require(arguments, [&](const std::string& line) {
-    if (Contains(line, "Processed file [")) follower.Step();
-    if (Contains(line, "already extracted")) ++with_features;
-    if (!Contains(line, "Features:")) return;
-    ++counted;
-    if (LastNumber(line) > 0) ++with_features;
-  });
-  if (counted == 0 || with_features > 0) return;
-  throw NothingUsableError(fmt::format(
-      "{}: none of {} images has features; expected corners and texture: are the images blank, "
-      "dark or blurred?",
-      job.dataset.string(), job.images.size()));
-}
-
-void Match(const ColmapJob& job, const std::vector<std::string>& arguments, Session* session) {
-  const int images = static_cast<int>(job.images.size());
-  const int blocks = (images + kBlockSize - 1) / kBlockSize;
-  Follower follower(job.exhaustive ? "blocks of images matched" : "images matched",
-                    job.exhaustive ? blocks * blocks : images);
-  session->Require(arguments, [&](const std::string& line) {
-    if (Contains(line, "block [") || Contains(line, "image [")) follower.Step();
-  });
-}
 
 // The model of the given poses, in which COLMAP triangulates points.
 void WriteGivenModel(const ColmapJob& job, const fs::path& folder) {
@@ -179,51 +107,187 @@ void WriteGivenModel(const ColmapJob& job, const fs::path& folder) {
   WriteTextFile(folder / "points3D.txt", "");
 }
 
-std::vector<std::string> MapperWords(const ColmapJob& job, const fs::path& workspace,
-                                     const fs::path& output) {
-  const bool poses_are_given = !job.poses.empty();
-  std::vector<std::string> words = {poses_are_given ? "point_triangulator" : "mapper",
-                                    "--database_path",
-                                    (workspace / kDatabase).string(),
-                                    "--image_path",
-                                    job.dataset.string(),
-                                    "--output_path",
-                                    output.string(),
-                                    "--Mapper.num_threads",
-                                    std::to_string(job.threads)};
-  if (poses_are_given) {
-    WriteGivenModel(job, workspace / "given");
-    words.insert(words.end(),
-                 {"--input_path", (workspace / "given").string(), "--clear_points", "1"});
+// The installed version.
+struct Installation {
+  std::string version;
+  std::string extraction = "SiftExtraction";  // prefixes of options, which have changed in 3.13
+  std::string matching = "SiftMatching";
+};
+
+Installation FindColmap() {
+  setenv("QT_QPA_PLATFORM", "offscreen", 0);  // its programs open a display otherwise
+  Installation colmap;
+  const auto found = FollowProgram({"colmap", "-h"}, [&](const std::string& line) {
+    std::smatch match;
+    if (colmap.version.empty() && std::regex_search(line, match, std::regex(R"(COLMAP (\d\S*))"))) {
+      colmap.version = match[1];
+    }
+  });
+  if (!found) {
+    throw SettingsError(
+        "colmap: there is no such program on PATH; expected COLMAP: install the package colmap "
+        "(apt-get install colmap), or give a finished model of it (--model FOLDER)");
   }
-  if (!job.camera_is_fixed) {
-    words.insert(words.end(), {"--Mapper.filter_max_reproj_error", kMaxReprojectionErrorPx});
-    return words;
-  }
-  // Images whose camera has a larger coefficient of distortion would be left out.
-  words.insert(words.end(), {"--Mapper.max_extra_param", "1e6"});
-  for (const char* option : {"focal_length", "principal_point", "extra_params"}) {
-    words.insert(words.end(), {fmt::format("--Mapper.ba_refine_{}", option), "0"});
-  }
-  return words;
+  FollowProgram({"colmap", "feature_extractor", "-h"}, [&](const std::string& line) {
+    if (!Contains(line, "--FeatureExtraction.use_gpu")) return;
+    colmap.extraction = "FeatureExtraction";
+    colmap.matching = "FeatureMatching";
+  });
+  return colmap;
 }
 
-// Throws NothingUsableError for a crash; the mapper also fails where it finds no model.
-void Map(const ColmapJob& job, const std::vector<std::string>& words, Session* session) {
-  Follower follower("images registered", static_cast<int>(job.images.size()));
-  const int exit_code = session->Call(words, [&](const std::string& line) {
-    if (Contains(line, "Registering image #")) follower.Reach(LastNumber(line));
-    if (Contains(line, "Triangulating image #")) follower.Step();
-  });
-  if (exit_code != 0 && !job.poses.empty()) {
-    throw NothingUsableError(
-        fmt::format("{}: colmap point_triangulator failed with exit code {}, as where no point is "
-                    "triangulated; expected poses and a camera that fit the images; see {}",
-                    job.dataset.string(), exit_code, session->log_path().string()));
+// COLMAP's programs on a job, one after the other, with a common log.
+class Programs {
+ public:
+  Programs(const ColmapJob& job, const fs::path& workspace, const Installation& colmap)
+      : job_(job), workspace_(workspace), colmap_(colmap), log_(workspace / kLog) {}
+
+  void MakeModels() {
+    Extract();
+    Match();
+    const fs::path unfinished = workspace_ / "sparse.unfinished";
+    fs::remove_all(unfinished);
+    fs::create_directories(unfinished);
+    Map(unfinished);
+    if (ColmapModelsIn(unfinished).empty()) {
+      throw NumericalError(fmt::format(
+          "{}: COLMAP found no two images to begin a model with; expected images that overlap, "
+          "from places apart: where the camera only turns there is no baseline, and poses have to "
+          "be given (--poses given); see {}",
+          job_.dataset.string(), LogPath()));
+    }
+    fs::rename(unfinished, workspace_ / kModels);
   }
-  const bool may_have_found_nothing = exit_code == 1;
-  if (exit_code != 0 && !may_have_found_nothing) session->Fail(words.front(), exit_code);
-}
+
+ private:
+  using Options = std::vector<std::pair<std::string, std::string>>;  // names and values
+  using UseLine = std::function<void(const std::string&)>;
+
+  std::string LogPath() const { return (workspace_ / kLog).string(); }
+  std::string DatabasePath() const { return (workspace_ / kDatabase).string(); }
+  int CountOfImages() const { return static_cast<int>(job_.images.size()); }
+
+  // Returns the exit code. `use_line` gets each line that the program prints.
+  int Call(const std::string& program, const Options& options, const UseLine& use_line) {
+    std::vector<std::string> words = {"colmap", program};
+    for (const auto& [name, value] : options) words.insert(words.end(), {name, value});
+    log_ << fmt::format("$ {}\n", fmt::join(words, " ")) << std::flush;
+    return FollowProgram(words,
+                         [&](const std::string& line) {
+                           log_ << line << '\n' << std::flush;
+                           const bool is_error =
+                               Contains(line, "ERROR") || Contains(line, "Check failed");
+                           if (is_error) error_ = line;
+                           if (line.find_first_not_of(" \r") != line.npos) last_line_ = line;
+                           use_line(line);
+                         })
+        .value_or(-1);
+  }
+
+  // Throws NothingUsableError unless the exit code is 0 or an `allowed` one.
+  void Require(const std::string& program, int exit_code, int allowed = 0) const {
+    if (exit_code == 0 || exit_code == allowed) return;
+    throw NothingUsableError(fmt::format("colmap {}: failed with exit code {}: {}; see {}", program,
+                                         exit_code, error_.empty() ? last_line_ : error_,
+                                         LogPath()));
+  }
+
+  // Throws NothingUsableError when features were counted, and no image has one.
+  void Extract() {
+    const std::string camera_model = job_.camera ? ToColmap(*job_.camera).model : "SIMPLE_RADIAL";
+    Options options = {
+        {"--database_path", DatabasePath()},
+        {"--image_path", job_.dataset.string()},
+        {"--image_list_path", (workspace_ / kImageList).string()},
+        {"--ImageReader.single_camera", "1"},
+        {fmt::format("--{}.use_gpu", colmap_.extraction), "0"},
+        {fmt::format("--{}.num_threads", colmap_.extraction), std::to_string(job_.threads)},
+        {"--ImageReader.camera_model", camera_model}};
+    if (job_.camera) {
+      options.emplace_back("--ImageReader.camera_params", ToColmap(*job_.camera).parameters);
+    }
+    Follower follower("images: features", CountOfImages());
+    int counted = 0, with_features = 0;
+    const int exit_code = Call("feature_extractor", options, [&](const std::string& line) {
+      if (Contains(line, "Processed file [")) follower.Step();
+      if (Contains(line, "already extracted")) ++with_features;
+      if (!Contains(line, "Features:")) return;
+      ++counted;
+      if (LastNumber(line) > 0) ++with_features;
+    });
+    Require("feature_extractor", exit_code);
+    if (counted == 0 || with_features > 0) return;
+    throw NothingUsableError(fmt::format(
+        "{}: none of {} images has features; expected corners and texture: are the images blank, "
+        "dark or blurred?",
+        job_.dataset.string(), job_.images.size()));
+  }
+
+  void Match() {
+    Options options = {
+        {"--database_path", DatabasePath()},
+        {fmt::format("--{}.use_gpu", colmap_.matching), "0"},
+        {fmt::format("--{}.num_threads", colmap_.matching), std::to_string(job_.threads)}};
+    const char* program = "sequential_matcher";
+    const char* what = "images matched";
+    int count = CountOfImages();
+    if (job_.exhaustive) {
+      options.emplace_back("--ExhaustiveMatching.block_size", std::to_string(kBlockSize));
+      program = "exhaustive_matcher";
+      what = "blocks of images matched";
+      const int blocks = (count + kBlockSize - 1) / kBlockSize;
+      count = blocks * blocks;
+    }
+    Follower follower(what, count);
+    const int exit_code = Call(program, options, [&](const std::string& line) {
+      if (Contains(line, "block [") || Contains(line, "image [")) follower.Step();
+    });
+    Require(program, exit_code);
+  }
+
+  // Throws NothingUsableError for a crash; the mapper also fails where it finds no model.
+  void Map(const fs::path& output) {
+    const bool poses_are_given = !job_.poses.empty();
+    const fs::path given = workspace_ / "given";
+    Options options = {{"--database_path", DatabasePath()},
+                       {"--image_path", job_.dataset.string()},
+                       {"--output_path", output.string()},
+                       {"--Mapper.num_threads", std::to_string(job_.threads)}};
+    if (poses_are_given) {
+      WriteGivenModel(job_, given);
+      options.insert(options.end(), {{"--input_path", given.string()}, {"--clear_points", "1"}});
+    }
+    if (job_.camera_is_fixed) {
+      // Images whose camera has a larger coefficient of distortion would be left out.
+      options.emplace_back("--Mapper.max_extra_param", "1e6");
+      for (const char* part : {"focal_length", "principal_point", "extra_params"}) {
+        options.emplace_back(fmt::format("--Mapper.ba_refine_{}", part), "0");
+      }
+    } else {
+      options.emplace_back("--Mapper.filter_max_reproj_error", kMaxReprojectionErrorPx);
+    }
+    const char* program = poses_are_given ? "point_triangulator" : "mapper";
+    Follower follower("images registered", CountOfImages());
+    const int exit_code = Call(program, options, [&](const std::string& line) {
+      if (Contains(line, "Registering image #")) follower.Reach(LastNumber(line));
+      if (Contains(line, "Triangulating image #")) follower.Step();
+    });
+    if (exit_code != 0 && poses_are_given) {
+      throw NothingUsableError(fmt::format(
+          "{}: colmap point_triangulator failed with exit code {}, as where no point is "
+          "triangulated; expected poses and a camera that fit the images; see {}",
+          job_.dataset.string(), exit_code, LogPath()));
+    }
+    constexpr int kFoundNothing = 1;
+    Require(program, exit_code, kFoundNothing);
+  }
+
+  const ColmapJob& job_;
+  const fs::path& workspace_;
+  const Installation& colmap_;
+  std::ofstream log_;
+  std::string last_line_, error_;
+};
 
 }  // namespace
 
@@ -241,89 +305,12 @@ std::vector<fs::path> ColmapModelsIn(const fs::path& folder) {
   return models;
 }
 
-Colmap::Colmap() {
-  setenv("QT_QPA_PLATFORM", "offscreen", 0);  // its programs open a display otherwise
-  const auto found = FollowProgram({"colmap", "-h"}, [&](const std::string& line) {
-    std::smatch match;
-    if (version_.empty() && std::regex_search(line, match, std::regex(R"(COLMAP (\d\S*))"))) {
-      version_ = match[1];
-    }
-  });
-  if (!found) {
-    throw SettingsError(
-        "colmap: there is no such program on PATH; expected COLMAP: install the package colmap "
-        "(apt-get install colmap), or give a finished model of it (--model FOLDER)");
-  }
-  extraction_ = "SiftExtraction";
-  matching_ = "SiftMatching";
-  FollowProgram({"colmap", "feature_extractor", "-h"}, [&](const std::string& line) {
-    if (!Contains(line, "--FeatureExtraction.use_gpu")) return;
-    extraction_ = "FeatureExtraction";
-    matching_ = "FeatureMatching";
-  });
-}
-
-std::vector<std::string> Colmap::ExtractorWords(const ColmapJob& job,
-                                                const fs::path& workspace) const {
-  std::vector<std::string> words = {"feature_extractor",
-                                    "--database_path",
-                                    (workspace / kDatabase).string(),
-                                    "--image_path",
-                                    job.dataset.string(),
-                                    "--image_list_path",
-                                    (workspace / kImageList).string(),
-                                    "--ImageReader.single_camera",
-                                    "1",
-                                    fmt::format("--{}.use_gpu", extraction_),
-                                    "0",
-                                    fmt::format("--{}.num_threads", extraction_),
-                                    std::to_string(job.threads),
-                                    "--ImageReader.camera_model"};
-  if (job.camera) {
-    const ColmapCameraText camera = ToColmap(*job.camera);
-    words.insert(words.end(), {camera.model, "--ImageReader.camera_params", camera.parameters});
-  } else {
-    words.emplace_back("SIMPLE_RADIAL");
-  }
-  return words;
-}
-
-std::vector<std::string> Colmap::MatcherWords(const ColmapJob& job,
-                                              const fs::path& workspace) const {
-  std::vector<std::string> words = {job.exhaustive ? "exhaustive_matcher" : "sequential_matcher",
-                                    "--database_path",
-                                    (workspace / kDatabase).string(),
-                                    fmt::format("--{}.use_gpu", matching_),
-                                    "0",
-                                    fmt::format("--{}.num_threads", matching_),
-                                    std::to_string(job.threads)};
-  if (job.exhaustive) {
-    words.insert(words.end(), {"--ExhaustiveMatching.block_size", std::to_string(kBlockSize)});
-  }
-  return words;
-}
-
-void Colmap::MakeModels(const ColmapJob& job, const fs::path& workspace) const {
-  Session session(workspace);
-  Extract(job, ExtractorWords(job, workspace), &session);
-  Match(job, MatcherWords(job, workspace), &session);
-  const fs::path unfinished = workspace / "sparse.unfinished";
-  fs::remove_all(unfinished);
-  fs::create_directories(unfinished);
-  Map(job, MapperWords(job, workspace, unfinished), &session);
-  if (ColmapModelsIn(unfinished).empty()) {
-    throw NumericalError(fmt::format(
-        "{}: COLMAP found no two images to begin a model with; expected images that overlap, from "
-        "places apart: where the camera only turns there is no baseline, and poses have to be "
-        "given (--poses given); see {}",
-        job.dataset.string(), (workspace / kLog).string()));
-  }
-  fs::rename(unfinished, workspace / kModels);
-}
-
-std::vector<fs::path> Colmap::Run(const ColmapJob& job, const fs::path& workspace) const {
+std::vector<fs::path> RunColmap(const ColmapJob& job, const fs::path& workspace,
+                                std::string* version) {
+  const Installation colmap = FindColmap();
+  *version = colmap.version;
   const fs::path stamp = workspace / "job.txt";
-  const std::string wanted = StampOf(job, version_);
+  const std::string wanted = StampOf(job, colmap.version);
   const std::string found = FileText(stamp);
   if (found != wanted) {
     if (IsFolder(workspace) && !fs::is_empty(workspace) && !found.starts_with("COLMAP ")) {
@@ -336,7 +323,7 @@ std::vector<fs::path> Colmap::Run(const ColmapJob& job, const fs::path& workspac
     WriteTextFile(workspace / kImageList, fmt::format("{}\n", fmt::join(job.images, "\n")));
     WriteTextFile(stamp, wanted);
   }
-  if (!IsFolder(workspace / kModels)) MakeModels(job, workspace);
+  if (!IsFolder(workspace / kModels)) Programs(job, workspace, colmap).MakeModels();
   return ColmapModelsIn(workspace / kModels);
 }
 

@@ -23,32 +23,15 @@ struct ColmapJob {
   int threads = 1;
 };
 
-// COLMAP's programs (3.8 to 3.13), which run on the processor.
-class Colmap {
- public:
-  // Throws SettingsError if there is no program "colmap" on PATH.
-  Colmap();
-
-  const std::string& version() const { return version_; }
-
-  // Runs features, matches and mapper, or triangulation with given poses, in the folder
-  // `workspace`, with progress on stderr, and returns the folders of the models. A workspace of the
-  // same job is continued, or used if it is finished; another is replaced. What COLMAP prints is in
-  // log.txt there. Throws NothingUsableError when no image has features or a program fails,
-  // NumericalError when there is no model.
-  std::vector<std::filesystem::path> Run(const ColmapJob& job,
-                                         const std::filesystem::path& workspace) const;
-
- private:
-  std::vector<std::string> ExtractorWords(const ColmapJob& job,
-                                          const std::filesystem::path& workspace) const;
-  std::vector<std::string> MatcherWords(const ColmapJob& job,
-                                        const std::filesystem::path& workspace) const;
-  void MakeModels(const ColmapJob& job, const std::filesystem::path& workspace) const;
-
-  std::string version_;
-  std::string extraction_, matching_;  // prefixes of options, which have changed in 3.13
-};
+// Runs COLMAP's programs (3.8 to 3.13) on the processor: features, matches and mapper, or
+// triangulation with given poses, in the folder `workspace`, with progress on stderr. Returns the
+// folders of the models and COLMAP's version. A workspace of the same job is continued, or used if
+// it is finished; another is replaced. What COLMAP prints is in log.txt there. Throws SettingsError
+// if there is no program "colmap" on PATH, NothingUsableError when no image has features or a
+// program fails, NumericalError when there is no model.
+std::vector<std::filesystem::path> RunColmap(const ColmapJob& job,
+                                             const std::filesystem::path& workspace,
+                                             std::string* version);
 
 // The models in a folder: itself, or its subfolders, sorted by number.
 std::vector<std::filesystem::path> ColmapModelsIn(const std::filesystem::path& folder);

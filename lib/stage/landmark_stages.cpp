@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <deque>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -92,25 +91,10 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
 
 namespace {
 
-using ObservationsOfFrame = std::vector<const ObservationEstimate*>;
-
-// Observations per frame, without frames that have no image.
-std::vector<ObservationsOfFrame> GroupByFrame(const Sequence& sequence,
-                                              const LandmarkEstimates& initial) {
-  std::vector<ObservationsOfFrame> groups(sequence.frames.size());
-  for (const ObservationEstimate& observation : initial.observations) {
-    if (observation.hypotheses.empty()) continue;
-    const auto& detection = sequence.detections[static_cast<size_t>(observation.detection_index)];
-    if (sequence.FrameOf(detection).image.empty()) continue;
-    groups[static_cast<size_t>(detection.frame_index)].push_back(&observation);
-  }
-  return groups;
-}
-
 // Edge maps of a frame, loaded for its first observation and released after its last.
 class FrameInUse {
  public:
-  explicit FrameInUse(size_t observations) : to_come_(observations) {}
+  void Expect() { ++to_come_; }
   std::shared_ptr<const FrameEdges> Take(const EdgesReader& reader, int frame_id) {
     const std::lock_guard lock(mutex_);
     if (!edges_) edges_ = std::make_shared<const FrameEdges>(reader.Read(frame_id));
@@ -120,55 +104,37 @@ class FrameInUse {
  private:
   std::mutex mutex_;
   std::shared_ptr<const FrameEdges> edges_;
-  size_t to_come_;
+  size_t to_come_ = 0;
 };
 
-class Refiner {
- public:
-  Refiner(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-          const OrientationOptions& options)
-      : sequence_(sequence), priors_(priors), options_(options) {}
-
-  // Refines frame by frame, so that few edge maps are in memory at a time.
-  std::vector<RefinedObservation> Refine(const std::vector<ObservationsOfFrame>& groups,
-                                         const EdgesReader& reader, int threads) const {
-    std::deque<FrameInUse> frames;
-    std::vector<std::pair<const ObservationEstimate*, FrameInUse*>> tasks;
-    for (const ObservationsOfFrame& observations : groups) {
-      if (observations.empty()) continue;
-      FrameInUse& frame = frames.emplace_back(observations.size());
-      for (const ObservationEstimate* observation : observations) {
-        tasks.emplace_back(observation, &frame);
-      }
+// Refines frame by frame, so that few edge maps are in memory at a time.
+std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
+                                          const std::vector<ObservationEstimate*>& initial,
+                                          const std::vector<std::optional<ShapePrior>>& priors,
+                                          const OrientationOptions& options,
+                                          const EdgesReader& reader, int threads) {
+  const auto detection_of = [&](size_t i) -> const Detection& {
+    return sequence.detections[static_cast<size_t>(initial[i]->detection_index)];
+  };
+  std::map<int, FrameInUse> frames;  // keyed by index
+  for (size_t i = 0; i < initial.size(); ++i) frames[detection_of(i).frame_index].Expect();
+  std::vector<RefinedObservation> refined(initial.size());
+  ParallelFor("landmarks", static_cast<int>(initial.size()), threads, [&](int index) {
+    const auto i = static_cast<size_t>(index);
+    const Detection& detection = detection_of(i);
+    const auto edges =
+        frames.at(detection.frame_index).Take(reader, sequence.FrameOf(detection).id);
+    const auto& prior = priors[static_cast<size_t>(detection.object_index)];
+    if (options.method == RefinementMethod::kProfile) {
+      refined[i] = RefineOrientation(sequence, initial[i]->detection_index, edges, prior,
+                                     options.profile, options.turn.symmetry);
+    } else {
+      const auto ratio = prior ? std::optional(prior->ratio) : std::nullopt;
+      refined[i] = RefineObservation(sequence, *initial[i], edges->maps, ratio, options.turn);
     }
-    std::vector<RefinedObservation> refined(tasks.size());
-    ParallelFor("landmarks", static_cast<int>(tasks.size()), threads, [&](int i) {
-      const auto& [observation, frame] = tasks[static_cast<size_t>(i)];
-      const auto& detection =
-          sequence_.detections[static_cast<size_t>(observation->detection_index)];
-      const auto edges = frame->Take(reader, sequence_.FrameOf(detection).id);
-      const auto& prior = priors_[static_cast<size_t>(detection.object_index)];
-      refined[static_cast<size_t>(i)] = Refine(*observation, edges, prior);
-    });
-    return refined;
-  }
-
- private:
-  RefinedObservation Refine(const ObservationEstimate& initial,
-                            const std::shared_ptr<const FrameEdges>& edges,
-                            const std::optional<ShapePrior>& prior) const {
-    if (options_.method == RefinementMethod::kProfile) {
-      return RefineOrientation(sequence_, initial.detection_index, edges, prior, options_.profile,
-                               options_.turn.symmetry);
-    }
-    const auto ratio = prior ? std::optional(prior->ratio) : std::nullopt;
-    return RefineObservation(sequence_, initial, edges->maps, ratio, options_.turn);
-  }
-
-  const Sequence& sequence_;
-  const std::vector<std::optional<ShapePrior>>& priors_;
-  const OrientationOptions& options_;
-};
+  });
+  return refined;
+}
 
 }  // namespace
 
@@ -183,39 +149,42 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
-  const auto groups = GroupByFrame(sequence, estimates);
-  if (std::ranges::all_of(groups, &ObservationsOfFrame::empty)) {
+  const auto frame_of = [&](const ObservationEstimate* observation) -> const Frame& {
+    return sequence.FrameOf(sequence.detections[static_cast<size_t>(observation->detection_index)]);
+  };
+  std::vector<ObservationEstimate*> to_refine;
+  size_t without_image = 0, failed = 0;
+  for (ObservationEstimate& observation : estimates.observations) {
+    if (observation.hypotheses.empty()) continue;
+    if (frame_of(&observation).image.empty()) {
+      observation.failure = "frame_without_image";
+      ++without_image;
+    } else {
+      to_refine.push_back(&observation);
+    }
+  }
+  if (to_refine.empty()) {
     throw NothingUsableError(files.at("initial").string() +
                              ": no single-frame landmark to refine in a frame that has an image");
   }
+  std::ranges::stable_sort(to_refine, {},
+                           [&](const auto* observation) { return frame_of(observation).id; });
   const ArtefactInfo info = {
       OptionsToJson(options),
       {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
 
-  const EdgesReader reader(files.at("edges"));
-  const Refiner refiner(sequence, priors, options);
+  auto refined =
+      RefineAll(sequence, to_refine, priors, options, EdgesReader(files.at("edges")), threads);
   std::vector<SymmetryRecord> curves;
-  int refined_count = 0;
-  std::map<int, ObservationEstimate> refined_by_detection;
-  for (RefinedObservation& refined : refiner.Refine(groups, reader, threads)) {
-    if (refined.estimate.failure.empty()) ++refined_count;
-    curves.push_back(std::move(refined.record));
-    refined_by_detection[refined.estimate.detection_index] = std::move(refined.estimate);
-  }
-  size_t without_image = 0;
-  for (ObservationEstimate& observation : estimates.observations) {
-    const auto found = refined_by_detection.find(observation.detection_index);
-    if (found != refined_by_detection.end()) {
-      observation = found->second;
-    } else if (!observation.hypotheses.empty()) {
-      observation.failure = "frame_without_image";
-      ++without_image;
-    }
+  for (size_t i = 0; i < refined.size(); ++i) {
+    failed += refined[i].estimate.failure.empty() ? 0 : 1;
+    curves.push_back(std::move(refined[i].record));
+    *to_refine[i] = std::move(refined[i].estimate);
   }
   WriteSymmetry(files.at("curves"), curves, info);
   WriteLandmarks(files.at("output"), estimates, sequence, info);
-  fmt::print("{} landmarks refined, {} left as they were\n", refined_count,
-             curves.size() - static_cast<size_t>(refined_count) + without_image);
+  fmt::print("{} landmarks refined, {} left as they were\n", curves.size() - failed,
+             failed + without_image);
 }
 
 }  // namespace soslam

@@ -29,18 +29,23 @@
 namespace soslam {
 namespace {
 
+bool UsesEdges(const OptimiseOptions& options) {
+  return options.symmetry || options.edge_alignment;
+}
+
 void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
-  if ((options.symmetry || options.edge_alignment) && files.count("edges") == 0) {
-    throw SettingsError("symmetry or edge_alignment = true needs --edges FILE; found none");
-  }
-  if (options.edge_alignment && options.detection_model != DetectionModel::kTangency) {
-    throw SettingsError("edge_alignment = true needs detection_model = tangency; found quadric");
-  }
-  if (options.point_evidence && files.count("points") == 0) {
-    throw SettingsError("point_evidence = true needs --points FILE; found none");
-  }
-  if (options.point_evidence && options.detection_model != DetectionModel::kTangency) {
-    throw SettingsError("point_evidence = true needs detection_model = tangency; found quadric");
+  const bool is_quadric = options.detection_model == DetectionModel::kQuadric;
+  const std::pair<bool, const char*> faults[] = {
+      {UsesEdges(options) && !files.contains("edges"),
+       "symmetry or edge_alignment = true needs --edges FILE; found none"},
+      {options.edge_alignment && is_quadric,
+       "edge_alignment = true needs detection_model = tangency; found quadric"},
+      {options.point_evidence && !files.contains("points"),
+       "point_evidence = true needs --points FILE; found none"},
+      {options.point_evidence && is_quadric,
+       "point_evidence = true needs detection_model = tangency; found quadric"}};
+  for (const auto& [is_fault, message] : faults) {
+    if (is_fault) throw SettingsError(message);
   }
   if (options.symmetry) CheckMirrorPlane(options.texture, options.symmetry_options.descriptor);
   if (options.symmetry && options.symmetry_options.descriptor == Descriptor::kBrief) {
@@ -48,57 +53,52 @@ void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
   }
 }
 
-// Observations of static objects, in frames with an image, that are used for texture and for edges.
-struct ImageUse {
-  std::vector<int> symmetry, edges;  // indices in Sequence::detections
-};
-ImageUse ChooseImageUse(const Sequence& sequence, const OptimiseOptions& options) {
-  ImageUse use;
-  for (std::vector<int> detections : DetectionsByObject(sequence)) {
-    std::erase_if(detections, [&](int index) {
-      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-      return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
-    });
-    if (options.symmetry) {
-      const auto views = static_cast<size_t>(options.symmetry_views);
-      std::ranges::copy(SpreadOver(detections, views), std::back_inserter(use.symmetry));
-    }
-    if (options.edge_alignment) std::ranges::copy(detections, std::back_inserter(use.edges));
-  }
-  return use;
+// Observations of an object for which images are used: none unless it is static, and in frames with
+// an image.
+std::vector<int> ObservationsInImages(const Sequence& sequence, std::vector<int> detections) {
+  std::erase_if(detections, [&](int index) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
+  });
+  return detections;
 }
 
 // Reads the edge maps for symmetry and edge alignment.
 void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
                 int threads, BackEndInput* input) {
   const Sequence& sequence = input->sequence;
-  const ImageUse use = ChooseImageUse(sequence, options);
-  const auto detection_at = [&](int index) -> const Detection& {
-    return sequence.detections[static_cast<size_t>(index)];
+  const auto frame_of = [&](int index) {
+    return static_cast<size_t>(sequence.detections[static_cast<size_t>(index)].frame_index);
   };
-  std::set<int> frame_indices;
-  for (const auto* indices : {&use.symmetry, &use.edges}) {
-    for (const int index : *indices) frame_indices.insert(detection_at(index).frame_index);
+  std::vector<int> for_symmetry, for_edges;  // indices of detections
+  for (const std::vector<int>& of_object : DetectionsByObject(sequence)) {
+    const std::vector<int> detections = ObservationsInImages(sequence, of_object);
+    if (options.symmetry) {
+      const auto views = static_cast<size_t>(options.symmetry_views);
+      std::ranges::copy(SpreadOver(detections, views), std::back_inserter(for_symmetry));
+    }
+    if (options.edge_alignment) std::ranges::copy(detections, std::back_inserter(for_edges));
+  }
+  std::set<size_t> frame_indices;
+  for (const auto* indices : {&for_symmetry, &for_edges}) {
+    for (const int index : *indices) frame_indices.insert(frame_of(index));
   }
   const EdgesReader reader(edges_file);
-  const std::vector<int> to_read(frame_indices.begin(), frame_indices.end());
+  const std::vector<size_t> to_read(frame_indices.begin(), frame_indices.end());
   std::vector<std::shared_ptr<const FrameEdges>> frames(sequence.frames.size());
   ParallelFor("edge maps", static_cast<int>(to_read.size()), threads, [&](int i) {
-    const auto frame = static_cast<size_t>(to_read[static_cast<size_t>(i)]);
+    const size_t frame = to_read[static_cast<size_t>(i)];
     frames[frame] = std::make_shared<const FrameEdges>(reader.Read(sequence.frames[frame].id));
   });
-  const auto frame_of = [&](const Detection& detection) {
-    return frames[static_cast<size_t>(detection.frame_index)];
-  };
-  for (const int index : use.symmetry) {
-    const Detection& detection = detection_at(index);
+  for (const int index : for_symmetry) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     input->symmetry_images[index] =
-        std::make_shared<const SymmetryImage>(frame_of(detection)->maps, detection.box);
+        std::make_shared<const SymmetryImage>(frames[frame_of(index)]->maps, detection.box);
   }
-  for (const int index : use.edges) {
-    const Detection& detection = detection_at(index);
+  for (const int index : for_edges) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
     input->edge_images[index] = std::make_shared<const EdgeImage>(
-        EdgeImage{frame_of(detection), detection.box, BoxesInFront(sequence, detection)});
+        EdgeImage{frames[frame_of(index)], detection.box, BoxesInFront(sequence, detection)});
   }
 }
 
@@ -135,9 +135,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.point_evidence) {
     input.points = FindObjectPoints(sequence, ReadPointsOf(sequence, files), options.points);
   }
-  if (options.symmetry || options.edge_alignment) {
-    ReadImages(options, files.at("edges"), threads, &input);
-  }
+  if (UsesEdges(options)) ReadImages(options, files.at("edges"), threads, &input);
   input.initial_landmarks = options.detection_model == DetectionModel::kTangency
                                 ? ChooseInitialUprightLandmarks(input, estimates, options, threads)
                                 : ChooseInitialLandmarks(sequence, estimates);
@@ -147,9 +145,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   }
   ArtefactInfo info = {OptionsToJson(options),
                        {files.at("sequence"), files.at("landmarks"), files.at("table")}};
-  if (options.symmetry || options.edge_alignment) {
-    info.inputs.push_back(files.at("edges"));
-  }
+  if (UsesEdges(options)) info.inputs.push_back(files.at("edges"));
   if (options.point_evidence) info.inputs.push_back(files.at("points"));
   const MapEstimate map = OptimiseMap(input, options, threads);
   const LandmarkEstimates found = {{}, map.objects};
@@ -170,9 +166,9 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
 namespace {
 
 bool IsMap(const std::filesystem::path& path) {
-  const nlohmann::json json = ParseJsonFile(path);
-  return json.is_object() && json.contains("artefact") && json["artefact"].is_object() &&
-         json["artefact"].contains("kind") && json["artefact"]["kind"] == "map";
+  const nlohmann::json::json_pointer kind("/artefact/kind");
+  const nlohmann::json document = ParseJsonFile(path);
+  return document.contains(kind) && document[kind] == "map";
 }
 
 void PrintQuality(const MapQuality& quality) {

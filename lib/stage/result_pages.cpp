@@ -140,7 +140,7 @@ nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& fol
 
 }  // namespace
 
-void RunPages(const PagesOptions& /*options*/, const StageFiles& files, int threads) {
+void RunPages(const NoOptions& /*options*/, const StageFiles& files, int threads) {
   const fs::path& results = files.at("results");
   if (!IsFolder(results)) {
     throw InputError(results.string() + ": is no folder; expected results of runs");

@@ -30,15 +30,11 @@ struct ReportOptions {
 // SettingsError for invalid comparisons.
 void RunReport(const ReportOptions& options, const StageFiles& files, int threads);
 
-struct PagesOptions {
-  void Describe(OptionVisitor&) {}
-};
-
 // soslam-pages: writes <results>/<dataset>/report.html for each dataset with results to show, and
 // <results>/report.html with all of them, each of at most kMaxPageBytes. Files: "results". Images
 // are read from the datasets if these still exist. Results that are unreadable or planned but
 // incomplete are listed on the pages and on stderr. Throws NothingUsableError when there is nothing
 // to show.
-void RunPages(const PagesOptions& options, const StageFiles& files, int threads);
+void RunPages(const NoOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

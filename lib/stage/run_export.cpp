@@ -38,22 +38,21 @@ bool OnlyTrajectory(const StageFiles& files) {
 }
 
 void CheckFiles(const ExportOptions& options, const StageFiles& files) {
-  if (std::ranges::none_of(kOutputs, [&](const char* output) { return files.count(output) > 0; })) {
+  if (std::ranges::none_of(kOutputs, [&](const char* output) { return files.contains(output); })) {
     throw SettingsError(fmt::format("nothing to write; expected at least one of --{}",
                                     fmt::join(kOutputs, ", --")));
   }
-  const bool has_map = files.count("map") > 0;
-  if (options.truth && has_map) {
-    throw SettingsError("truth is true and --map is given; expected one of them");
-  }
-  if (!options.truth && !has_map && !OnlyTrajectory(files)) {
-    throw SettingsError("there are no objects; expected --map, or truth = true");
-  }
-  if (files.count("metrics") > 0 && !has_map) {
-    throw SettingsError("--metrics is given without --map; expected the map that it evaluates");
-  }
-  if (options.aligned && files.count("metrics") == 0) {
-    throw SettingsError("aligned is true without --metrics; expected metrics.json of the map");
+  const bool has_map = files.contains("map"), has_metrics = files.contains("metrics");
+  const std::pair<bool, const char*> faults[] = {
+      {options.truth && has_map, "truth is true and --map is given; expected one of them"},
+      {!options.truth && !has_map && !OnlyTrajectory(files),
+       "there are no objects; expected --map, or truth = true"},
+      {has_metrics && !has_map,
+       "--metrics is given without --map; expected the map that it evaluates"},
+      {options.aligned && !has_metrics,
+       "aligned is true without --metrics; expected metrics.json of the map"}};
+  for (const auto& [is_fault, message] : faults) {
+    if (is_fault) throw SettingsError(message);
   }
   const auto gltf = files.find("gltf");
   if (gltf == files.end()) return;
@@ -119,6 +118,12 @@ void CheckWorlds(const std::vector<World>& worlds, const StageFiles& files) {
   }
 }
 
+// Path of a segment's file: map.ply and segment 3 give map-3.ply.
+fs::path SegmentPath(const fs::path& path, int segment) {
+  return path.parent_path() /
+         fmt::format("{}-{}{}", path.stem().string(), segment, path.extension().string());
+}
+
 // Creates all outputs before any is written, so that a failure leaves no partial result.
 std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOptions& options,
                                 const StageFiles& files) {
@@ -162,11 +167,6 @@ void RunExport(const ExportOptions& options, const StageFiles& files, int /*thre
     WriteTextFile(output.path, output.bytes);
     fmt::print("{}\n", output.path.string());
   }
-}
-
-fs::path SegmentPath(const fs::path& path, int segment) {
-  return path.parent_path() /
-         fmt::format("{}-{}{}", path.stem().string(), segment, path.extension().string());
 }
 
 }  // namespace soslam

@@ -22,13 +22,10 @@ struct ExportOptions {
 // soslam-export: writes "sequence" and, unless truth is set, "map" (with its evaluation "metrics")
 // to one or more of "trajectory", "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map,
 // only the sequence's own poses are exported. With several segments, each in its own world,
-// "trajectory", "ply" and "gltf" become one file per segment, see SegmentPath. Throws SettingsError
+// "trajectory", "ply" and "gltf" become one file per segment, map-3.ply. Throws SettingsError
 // without an output, for objects without a map or truth, for both, and for an extension that glTF
 // does not have; NothingUsableError when there is no pose or landmark to write. Nothing is written
 // in these cases.
 void RunExport(const ExportOptions& options, const StageFiles& files, int threads);
-
-// Path of a segment's file: map.ply and segment 3 give map-3.ply.
-std::filesystem::path SegmentPath(const std::filesystem::path& path, int segment);
 
 }  // namespace soslam

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -130,27 +130,20 @@ void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation r
   }
 }
 
-bool IsExhaustive(const ReconstructOptions& options, size_t images) {
-  if (options.matching != ImageMatching::kAuto) {
-    return options.matching == ImageMatching::kExhaustive;
-  }
-  return images <= static_cast<size_t>(options.exhaustive_max_images);
-}
-
-std::vector<fs::path> RunColmap(const ReconstructOptions& options, const Given& given,
-                                const fs::path& dataset, const fs::path& output, int threads,
-                                std::string* version) {
-  const Colmap colmap;
-  *version = colmap.version();
-  ColmapJob job{fs::absolute(dataset),
-                {},
-                given.camera,
-                given.camera_is_fixed,
-                given.poses,
-                IsExhaustive(options, given.images.size()),
-                threads};
+std::vector<fs::path> MakeModels(const ReconstructOptions& options, const Given& given,
+                                 const fs::path& dataset, const fs::path& output, int threads,
+                                 std::string* version) {
+  ColmapJob job{.dataset = fs::absolute(dataset),
+                .images = {},
+                .camera = given.camera,
+                .camera_is_fixed = given.camera_is_fixed,
+                .poses = given.poses,
+                .threads = threads};
   for (const ListedImage& image : given.images) job.images.push_back(image.image);
-  return colmap.Run(job, output / "colmap");
+  job.exhaustive = options.matching == ImageMatching::kAuto
+                       ? std::ssize(job.images) <= options.exhaustive_max_images
+                       : options.matching == ImageMatching::kExhaustive;
+  return RunColmap(job, output / "colmap", version);
 }
 
 std::vector<fs::path> GivenModels(const fs::path& folder) {
@@ -168,18 +161,17 @@ ColmapModel LargestModel(const std::vector<fs::path>& folders,
   const auto is_larger = [](const Component& a, const Component& b) {
     return std::pair(a.images, a.points) > std::pair(b.images, b.points);
   };
-  std::optional<ColmapModel> largest;
+  ColmapModel largest;
   for (const fs::path& folder : folders) {
     ColmapModel model = ReadColmapModel(folder);
     const Component component{static_cast<int>(model.images.size()),
                               static_cast<int>(model.points.size())};
-    const bool is_largest = std::ranges::all_of(
-        *components, [&](const Component& other) { return is_larger(component, other); });
+    const bool is_largest = components->empty() || is_larger(component, components->front());
+    components->insert(is_largest ? components->begin() : components->end(), component);
     if (is_largest) largest = std::move(model);
-    components->push_back(component);
   }
   std::ranges::stable_sort(*components, is_larger);
-  return std::move(*largest);
+  return largest;
 }
 
 // Largest difference of the distortion coefficients of two cameras.
@@ -190,11 +182,7 @@ double DistortionDifference(const LensCamera& one, const LensCamera& other) {
     values.resize(kMost, 0.0);
     return values;
   };
-  const std::vector<double> a = all(one);
-  const std::vector<double> b = all(other);
-  double largest = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
+  return cv::norm(all(one), all(other), cv::NORM_INF);
 }
 
 // Throws InputError unless the model has the camera that was given.
@@ -285,7 +273,7 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   const ColmapModel model =
       LargestModel(files.contains("model")
                        ? GivenModels(files.at("model"))
-                       : RunColmap(options, given, dataset, output, threads, &summary.colmap),
+                       : MakeModels(options, given, dataset, output, threads, &summary.colmap),
                    &summary.components);
   const Reconstruction reconstruction = ReconstructionOf(model, given.images);
   CheckCamera(model, given, dataset);

@@ -16,6 +16,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "cli/command_line.h"
+#include "report/results_tree.h"
 #include "stage/run_plan.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
@@ -28,12 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> PlannedDatasets(const fs::path& results) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(results, error)) {
-    if (Exists(entry.path() / "plan.mk")) names.push_back(entry.path().filename().string());
-  }
-  std::ranges::sort(names);
+  std::vector<std::string> names = SubfoldersOf(results);
+  std::erase_if(names,
+                [&](const std::string& name) { return !Exists(results / name / "plan.mk"); });
   return names;
 }
 
@@ -192,20 +190,13 @@ std::vector<Finding> FindingsInFile(const fs::path& path) {
   }
 }
 
-// Finding for a failed run; its message is complete, so cause and remedy stay empty.
-Finding FailureOf(const RunRecord& run) {
-  Finding failure;
-  failure.check = "failed";
-  failure.severity = Severity::kError;
-  failure.found = run.error;
-  return failure;
-}
-
 // Findings in the artefacts of a run, or its failure; none where it has not run.
 std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path& results) {
   const fs::path record = results / InstancePath(instance.Id(), "run.json");
   if (!Exists(record)) return {};
-  if (const RunRecord run = ReadRun(record); run.exit_code != 0) return {FailureOf(run)};
+  // The message of a failure is complete: cause and remedy stay empty.
+  const RunRecord run = ReadRun(record);
+  if (run.exit_code != 0) return {{"failed", Severity::kError, run.error, "", "", ""}};
   std::vector<Finding> findings;
   for (const StageOutput& output : OutputsOfStage(instance.stage)) {
     const fs::path artefact = results / InstancePath(instance.Id(), output.file);

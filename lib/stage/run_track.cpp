@@ -160,27 +160,28 @@ std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
   const auto is_long = [&](const FeatureTrack& track) {
     return track.places.size() >= static_cast<size_t>(options.min_views);
   };
-  Finding finding;
-  finding.check = "no_points";
-  finding.found = fmt::format("no point from {} tracks through {}", tracks.size(),
-                              Counted(images.size(), "image"));
-  finding.expected = "some";
-  if (images.size() < static_cast<size_t>(options.min_views)) {
-    finding.cause = fmt::format("a point is seen in at least {} images", options.min_views);
-    finding.remedy = "more images of the same place";
-  } else if (std::ranges::none_of(tracks, is_long)) {
-    finding.cause =
-        fmt::format("no track over {} images: they show little texture, or have little in common",
-                    options.min_views);
-    finding.remedy = "images closer together";
-  } else if (IsAtRest(images)) {
-    finding.cause = "the camera does not move: all poses have one place";
-    finding.remedy = "images from several places";
-  } else {
-    finding.cause = "the poses do not fit the images, or the camera hardly moves";
-    finding.remedy = "check that poses and images have the same order and time stamps";
-  }
-  return {finding};
+  struct Reason {
+    bool applies;
+    std::string cause;
+    const char* remedy;
+  };
+  const Reason reasons[] = {
+      {images.size() < static_cast<size_t>(options.min_views),
+       fmt::format("a point is seen in at least {} images", options.min_views),
+       "more images of the same place"},
+      {std::ranges::none_of(tracks, is_long),
+       fmt::format("no track over {} images: they show little texture, or have little in common",
+                   options.min_views),
+       "images closer together"},
+      {IsAtRest(images), "the camera does not move: all poses have one place",
+       "images from several places"},
+      {true, "the poses do not fit the images, or the camera hardly moves",
+       "check that poses and images have the same order and time stamps"}};
+  const Reason& reason = *std::ranges::find(reasons, true, &Reason::applies);
+  return {{"no_points", Severity::kWarning,
+           fmt::format("no point from {} tracks through {}", tracks.size(),
+                       Counted(images.size(), "image")),
+           "some", reason.cause, reason.remedy}};
 }
 
 void PrintTrackSummary(const Sequence& sequence, const std::vector<MapPoint>& points,

@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/table.h"
 #include "cli/command_line.h"
-#include "workflow/plan.h"
 #include "workflow/reproduce.h"
 #include "workflow/verify.h"
 
@@ -42,21 +41,22 @@ std::vector<Cell> Row(const DatasetRuns& dataset, const Verification& verificati
           fmt::format("{}", verification.discrepancies.size())};
 }
 
-}  // namespace
-
-std::vector<DatasetRuns> FindRuns(const StageFiles& files) {
+// The runs in folder "results", of datasets in folder "data_root".
+std::vector<DatasetRuns> FindRunsOf(const StageFiles& files) {
   const auto data_root = files.find("data_root");
   return FindRuns(files.at("results"),
                   data_root == files.end() ? std::filesystem::path() : data_root->second);
 }
 
-int RunVerify(const VerifyOptions& /*options*/, const StageFiles& files, int /*threads*/) {
+}  // namespace
+
+int RunVerify(const NoOptions& /*options*/, const StageFiles& files, int /*threads*/) {
   Table table;
   table.title = "Results and their records";
   table.header = {"dataset", "affected variants", "runs", "unused", "files", "findings"};
   table.left_columns = 2;
   bool has_findings = false;
-  for (const DatasetRuns& dataset : FindRuns(files)) {
+  for (const DatasetRuns& dataset : FindRunsOf(files)) {
     const Verification verification = Verify(dataset);
     Print(dataset, verification);
     table.rows.push_back(Row(dataset, verification));
@@ -101,16 +101,6 @@ void Print(const Outcome& outcome) {
   std::fflush(stdout);  // the next run takes long
 }
 
-std::set<std::string> WrittenArgumentsOf(const std::string& executable) {
-  constexpr std::string_view kPrefix = "soslam-";
-  std::set<std::string> arguments;
-  const std::string stage = executable.substr(kPrefix.size());
-  for (const StageOutput& output : OutputsOfStage(stage)) {
-    arguments.insert(output.argument);
-  }
-  return arguments;
-}
-
 using Counts = std::array<size_t, kOutcomeNames.size()>;  // indexed by kind of outcome
 
 Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
@@ -131,17 +121,17 @@ Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
 
 }  // namespace
 
-int RunReproduce(const ReproduceOptions& /*options*/, const StageFiles& files, int threads) {
+int RunReproduce(const NoOptions& /*options*/, const StageFiles& files, int threads) {
   Table table;
   table.title = "Results made again";
   table.header = {"dataset", "runs", "artefacts the same", "that differ", "runs not rerun"};
   std::set<std::string> software_changes;
   bool has_findings = false;
-  const std::vector<DatasetRuns> datasets = FindRuns(files);
+  const std::vector<DatasetRuns> datasets = FindRunsOf(files);
   const FolderBeside again(files.at("results"));
   for (const DatasetRuns& dataset : datasets) {
-    Reproduction reproduction(dataset, files.at("executables"), &WrittenArgumentsOf,
-                              again.path() / dataset.name, threads);
+    Reproduction reproduction(dataset, files.at("executables"), again.path() / dataset.name,
+                              threads);
     const Counts counts = RerunAll(dataset, &reproduction);
     const auto [same, differ, not_rerun] = counts;
     table.rows.push_back({dataset.name, std::to_string(dataset.runs.size()), std::to_string(same),

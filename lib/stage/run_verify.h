@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
-
 #include "base/options.h"
 #include "cli/stage_files.h"
-#include "workflow/verify.h"
 
 namespace soslam {
 
-struct VerifyOptions {
-  void Describe(OptionVisitor&) {}
-};
-
-// The runs in folder "results", of datasets in folder "data_root"; without it the datasets are at
-// their recorded place. Throws as FindRuns of the folders.
-std::vector<DatasetRuns> FindRuns(const StageFiles& files);
-
 // soslam-verify: prints which files of folder "results" differ from their run.json, one line each,
-// and a table of all datasets. The exit code is kFindings when there is any. Throws as FindRuns.
-int RunVerify(const VerifyOptions& options, const StageFiles& files, int threads);
-
-struct ReproduceOptions {
-  void Describe(OptionVisitor&) {}
-};
+// and a table of all datasets. Datasets are in folder "data_root"; without it at their recorded
+// place. The exit code is kFindings when there is any. Throws as FindRuns.
+int RunVerify(const NoOptions& options, const StageFiles& files, int threads);
 
 // soslam-reproduce: repeats the runs of the variants in folder "results", as recorded in their
 // run.json, with the programs in folder "executables", into a folder beside "results" that is
@@ -31,6 +17,6 @@ struct ReproduceOptions {
 // Datasets are in folder "data_root"; without it at their recorded place. The exit code is
 // kFindings when an artefact differs or could not be made again. Throws as FindRuns; SettingsError
 // when nothing can be written beside "results".
-int RunReproduce(const ReproduceOptions& options, const StageFiles& files, int threads);
+int RunReproduce(const NoOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

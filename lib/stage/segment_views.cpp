@@ -18,18 +18,6 @@ SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& re
           image.frame->world_from_camera};
 }
 
-std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
-                                          const std::vector<FrameImage>& images,
-                                          double min_length_px, int threads) {
-  const FrameImageReader reader(sequence);
-  std::vector<SegmentView> views(images.size());
-  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    views[index] = ReadSegmentView(sequence, reader, images[index], min_length_px);
-  });
-  return views;
-}
-
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs) {
@@ -43,15 +31,16 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_le
   const std::vector<FrameImage> images =
       FrameImages(sequence, files.at("dataset"), files.at("sequence"));
   for (const FrameImage& image : images) inputs->push_back(image.path);
-  const std::vector<SegmentView> of_images =
-      ReadSegmentViews(sequence, images, min_length_px, threads);
-  std::vector<SegmentView> views(sequence.frames.size());
-  for (size_t i = 0; i < views.size(); ++i) {
-    views[i] = {sequence.CameraOf(sequence.frames[i]), {}, sequence.frames[i].world_from_camera};
+  std::vector<SegmentView> views;
+  for (const Frame& frame : sequence.frames) {
+    views.push_back({sequence.CameraOf(frame), {}, frame.world_from_camera});
   }
-  for (size_t i = 0; i < images.size(); ++i) {
-    views[static_cast<size_t>(images[i].frame - sequence.frames.data())] = of_images[i];
-  }
+  const FrameImageReader reader(sequence);
+  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
+    const FrameImage& image = images[static_cast<size_t>(i)];
+    views[static_cast<size_t>(image.frame - sequence.frames.data())] =
+        ReadSegmentView(sequence, reader, image, min_length_px);
+  });
   return views;
 }
 

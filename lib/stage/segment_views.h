@@ -15,11 +15,6 @@ namespace soslam {
 SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
                             const FrameImage& image, double min_length_px);
 
-// The same for several images.
-std::vector<SegmentView> ReadSegmentViews(const Sequence& sequence,
-                                          const std::vector<FrameImage>& images,
-                                          double min_length_px, int threads);
-
 // Line segments of at least `min_length_px` in the images of folder "dataset", per frame; none if
 // no frame has an image. The images are added to `inputs`. Throws SettingsError without a folder.
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,

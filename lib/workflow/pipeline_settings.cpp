@@ -40,29 +40,16 @@ struct PipelineStage {
   const char* name;
   json (*resolve)(const json& values, const std::string& where);
   std::vector<std::string> needs;  // stages whose artefacts it reads
-  // True if its (resolved) settings ask for it; null for a stage that 'stages' lists.
-  bool (*is_asked_for)(const json& settings) = nullptr;
+  // Its setting that asks for it unless it is "given"; null for a stage that 'stages' lists.
+  const char* asked_by = nullptr;
 };
-
-bool AsksForGround(const json& settings) {
-  return settings.at("ground") != kGroundSourceNames[static_cast<size_t>(GroundSource::kGiven)];
-}
-
-bool AsksForPlanes(const json& settings) {
-  return settings.at("planes") != kPlaneSourceNames[static_cast<size_t>(PlaneSource::kGiven)];
-}
-
-bool AsksForAssociation(const json& settings) {
-  return settings.at("association") !=
-         kAssociationSourceNames[static_cast<size_t>(AssociationSource::kGiven)];
-}
 
 const std::array<PipelineStage, 10>& Stages() {
   static const std::array<PipelineStage, 10> stages = {{
       {"import", &Resolve<ImportOptions>, {}},
-      {"ground", &Resolve<GroundOptions>, {"import"}, &AsksForGround},
-      {"associate", &Resolve<AssociateOptions>, {"import"}, &AsksForAssociation},
-      {"planes", &Resolve<PlanesOptions>, {"import"}, &AsksForPlanes},
+      {"ground", &Resolve<GroundOptions>, {"import"}, "ground"},
+      {"associate", &Resolve<AssociateOptions>, {"import"}, "association"},
+      {"planes", &Resolve<PlanesOptions>, {"import"}, "planes"},
       {"edges", &Resolve<EdgesOptions>, {"import"}},
       {"track", &Resolve<TrackOptions>, {"import"}},
       {"initialise", &Resolve<InitialiseOptions>, {"import"}},
@@ -82,7 +69,7 @@ const PipelineStage* FindStage(const std::string& name) {
 std::vector<std::string> ListedStages() {
   std::vector<std::string> names;
   for (const PipelineStage& stage : Stages()) {
-    if (stage.is_asked_for == nullptr) names.emplace_back(stage.name);
+    if (stage.asked_by == nullptr) names.emplace_back(stage.name);
   }
   return names;
 }
@@ -171,14 +158,13 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
     }
   }
   const auto optimise = settings.options.find("optimise");
-  if (optimise != settings.options.end() && UsesImages(optimise->second) &&
-      settings.stages.count("edges") == 0) {
+  if (optimise == settings.options.end()) return;
+  if (UsesImages(optimise->second) && !settings.stages.contains("edges")) {
     throw SettingsError(file +
                         ": settings 'symmetry' and 'edge_alignment' of optimise need stage 'edges' "
                         "in 'stages'");
   }
-  if (optimise != settings.options.end() && UsesPoints(optimise->second) &&
-      settings.stages.count("track") == 0) {
+  if (UsesPoints(optimise->second) && !settings.stages.contains("track")) {
     throw SettingsError(file +
                         ": setting 'point_evidence' of optimise needs stage 'track' in 'stages'");
   }
@@ -232,10 +218,10 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
   for (const PipelineStage& stage : Stages()) {
     const bool is_listed = settings.stages.count(stage.name) > 0;
-    if (!is_listed && stage.is_asked_for == nullptr) continue;
+    if (!is_listed && stage.asked_by == nullptr) continue;
     const json resolved = stage.resolve(merged.value(stage.name, json::object()),
                                         fmt::format("{}: {}", file, stage.name));
-    if (!is_listed && !stage.is_asked_for(resolved)) continue;
+    if (!is_listed && resolved.at(stage.asked_by) == "given") continue;
     settings.stages.insert(stage.name);
     settings.options[stage.name] = resolved;
   }

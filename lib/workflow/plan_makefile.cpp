@@ -104,12 +104,15 @@ class Writer {
       : plan_(plan), dataset_(dataset), folders_(folders) {}
 
   std::string Write() const {
-    std::vector<std::string> names;
+    Ids names, imports;
     for (const VariantChain& variant : plan_.variants) names.push_back(variant.name);
+    for (const StageInstance& instance : plan_.instances) {
+      if (instance.stage == "import") imports.push_back(instance.Id());
+    }
     std::string text =
         fmt::format(kPreamble, fmt::arg("pipelines", folders_.pipelines.string()),
                     fmt::arg("variants", fmt::join(names, " ")), fmt::arg("dataset", dataset_),
-                    fmt::arg("imports", fmt::join(ImportStamps(), " ")),
+                    fmt::arg("imports", fmt::join(Stamps(imports), " ")),
                     fmt::arg("results", folders_.results.string()),
                     fmt::arg("dataset_folder", folders_.dataset.string()));
     for (const VariantChain& variant : plan_.variants) text += VariantRules(variant);
@@ -120,14 +123,6 @@ class Writer {
  private:
   static std::string Shared(const std::string& id, const std::string& file) {
     return "$(results)/" + InstancePath(id, file);
-  }
-
-  static std::vector<std::string> OutputPaths(const StageInstance& instance) {
-    std::vector<std::string> paths;
-    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
-      paths.push_back(Shared(instance.Id(), output.file));
-    }
-    return paths;
   }
 
   // Rules of a variant's folder, which contains links that are replaced together once its last
@@ -158,24 +153,20 @@ class Writer {
   }
 
   static std::string InstanceRules(const StageInstance& instance) {
-    const std::string outputs = fmt::format("{}", fmt::join(OutputPaths(instance), " "));
+    std::vector<std::string> outputs;
+    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+      outputs.push_back(Shared(instance.Id(), output.file));
+    }
     const std::string done = Shared(instance.Id(), "done");
     return fmt::format(
         "\n{done}: {prerequisites} $(call missing,{outputs})\n"
         "\t$(call stage,{id} ({variants}),{command})\n"
         "{outputs}: {done} ; +\n",
-        fmt::arg("done", done), fmt::arg("outputs", outputs), fmt::arg("id", instance.Id()),
+        fmt::arg("done", done), fmt::arg("outputs", fmt::join(outputs, " ")),
+        fmt::arg("id", instance.Id()),
         fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
         fmt::arg("variants", fmt::join(instance.variants, " ")),
         fmt::arg("command", Command(instance)));
-  }
-
-  std::vector<std::string> ImportStamps() const {
-    std::vector<std::string> stamps;
-    for (const StageInstance& instance : plan_.instances) {
-      if (instance.stage == "import") stamps.push_back(Shared(instance.Id(), "done"));
-    }
-    return stamps;
   }
 
   // Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their

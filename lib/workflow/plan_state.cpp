@@ -49,15 +49,11 @@ class StateFinder {
     return folders_.results / InstancePath(instance.Id(), file);
   }
   fs::path PathOf(const Prerequisite& file) const {
-    switch (file.folder) {
-      case Prerequisite::Folder::kExecutables:
-        return executables_ / file.path;
-      case Prerequisite::Folder::kPipelines:
-        return folders_.pipelines / file.path;
-      case Prerequisite::Folder::kResults:
-        break;
-    }
-    return folders_.results / file.path;
+    const std::map<Prerequisite::Folder, const fs::path*> folders = {
+        {Prerequisite::Folder::kExecutables, &executables_},
+        {Prerequisite::Folder::kPipelines, &folders_.pipelines},
+        {Prerequisite::Folder::kResults, &folders_.results}};
+    return *folders.at(file.folder) / file.path;
   }
 
   InstanceState Find(const StageInstance& instance) const {
@@ -169,24 +165,6 @@ std::vector<std::string> SettingChanges(const json& before, const json& now) {
 }
 
 }  // namespace
-
-const char* NameOf(StageState state) {
-  switch (state) {
-    case StageState::kDone:
-      return "done";
-    case StageState::kStale:
-      return "stale";
-    case StageState::kFailed:
-      return "failed";
-    case StageState::kQueued:
-      return "queued";
-    case StageState::kRunning:
-      return "running";
-    case StageState::kMissing:
-      break;
-  }
-  return "missing";
-}
 
 std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
   std::map<std::string, StagesUnderWay> under_way;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -19,7 +20,11 @@ enum class StageState {
   kQueued,   // one of the previous three, and a job for it is queued
   kRunning,  // runs now
 };
-const char* NameOf(StageState state);
+inline constexpr std::array kStageStateNames = {"done",    "stale",  "failed",
+                                                "missing", "queued", "running"};
+constexpr const char* NameOf(StageState state) {
+  return kStageStateNames.at(static_cast<size_t>(state));
+}
 
 // State of a stage instance, by the rules of the makefile.
 struct InstanceState {

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 
 #include "artefact/atomic_file.h"
@@ -15,6 +16,7 @@
 #include "dataset/image_path.h"
 #include "inspection/difference.h"
 #include "report/results_tree.h"
+#include "workflow/plan.h"
 
 namespace soslam {
 namespace {
@@ -39,16 +41,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string VersionChange(const std::string& what, const std::string& then,
-                          const std::string& now) {
-  return fmt::format("{} {} is {} now", what, then.empty() ? "(none)" : then,
-                     now.empty() ? "not used" : now);
-}
-
 std::set<std::string> ChangesOf(const Software& then, const Software& now) {
   std::set<std::string> changes;
   const auto compare = [&](const std::string& what, const std::string& a, const std::string& b) {
-    if (a != b) changes.insert(VersionChange(what, a, b));
+    if (a == b) return;
+    changes.insert(
+        fmt::format("{} {} is {} now", what, a.empty() ? "(none)" : a, b.empty() ? "not used" : b));
   };
   compare("software", then.version, now.version);
   compare("compiler", then.compiler, now.compiler);
@@ -87,11 +85,10 @@ void WriteSettings(const RunRecord& record, const fs::path& file) {
 
 }  // namespace
 
-Reproduction::Reproduction(const DatasetRuns& dataset, fs::path executables,
-                           WrittenArguments written_arguments, fs::path again, int threads)
+Reproduction::Reproduction(const DatasetRuns& dataset, fs::path executables, fs::path again,
+                           int threads)
     : dataset_(dataset),
       executables_(std::move(executables)),
-      written_arguments_(std::move(written_arguments)),
       again_(std::move(again)),
       threads_(threads) {}
 
@@ -131,7 +128,11 @@ std::optional<std::string> Reproduction::Obstacle(const RunRecord& record, const
 // to refuse it, or none.
 std::optional<std::string> Reproduction::ForeignWrite(const RunRecord& record,
                                                       const RecordedRun& run) const {
-  const std::set<std::string> written = written_arguments_(record.stage);
+  constexpr std::string_view kPrefix = "soslam-";
+  std::set<std::string> written;
+  for (const StageOutput& output : OutputsOfStage(record.stage.substr(kPrefix.size()))) {
+    written.insert(output.argument);
+  }
   if (written.empty()) return record.stage + " is no stage of the pipeline";
   for (const RunFile& input : record.inputs) {
     if (written.contains(input.argument)) return "--" + input.argument + " is among its inputs";

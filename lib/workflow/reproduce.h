@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -24,10 +23,6 @@ struct Outcome {
   std::string detail;          // where it differs, or why it was not rerun
 };
 
-// Names of the output arguments of a stage of the pipeline, such as "soslam-refine"; empty for any
-// other program.
-using WrittenArguments = std::function<std::set<std::string>(const std::string& stage)>;
-
 // Repeats a dataset's runs with their recorded settings, each on the new outputs of earlier runs,
 // and compares the artefacts byte by byte. The existing results are not changed.
 class Reproduction {
@@ -35,7 +30,7 @@ class Reproduction {
   // `executables`: the folder of the stages' programs; `again`: an empty folder for the new
   // outputs.
   Reproduction(const DatasetRuns& dataset, std::filesystem::path executables,
-               WrittenArguments written_arguments, std::filesystem::path again, int threads);
+               std::filesystem::path again, int threads);
 
   // Repeats one run; call it in the order of the dataset's runs. Returns one outcome per artefact,
   // or one with the reason why there is none: no record, a changed external input, a failure.
@@ -58,7 +53,6 @@ class Reproduction {
 
   const DatasetRuns& dataset_;
   std::filesystem::path executables_;
-  WrittenArguments written_arguments_;
   std::filesystem::path again_;
   int threads_;
   FileDigests digests_;
