@@ -14,25 +14,27 @@ LabelConfusion::LabelConfusion(const std::set<std::string>& labels, const Associ
   for (const std::string& label : labels) detected_groups_.insert(groups_.Group(label));
 }
 
-std::set<std::string> LabelConfusion::SimilarGroups(const std::string& label) const {
+std::set<std::string> LabelConfusion::SimilarTo(const std::string& label) const {
   std::set<std::string> similar;
+  if (similar_probability_ == 0.0) return similar;
   for (const auto& group : similar_) {
     if (std::ranges::find(group, label) == group.end()) continue;
-    for (const std::string& other : group) similar.insert(groups_.Group(other));
+    similar.insert(group.begin(), group.end());
   }
-  similar.erase(groups_.Group(label));
   return similar;
 }
 
 double LabelConfusion::Probability(const std::string& of_detection,
                                    const std::string& of_object) const {
-  std::set<std::string> similar;
-  if (similar_probability_ > 0.0) similar = SimilarGroups(of_object);
-  std::erase_if(similar, [&](const auto& group) { return !detected_groups_.contains(group); });
+  const std::string &detected = groups_.Group(of_detection), &own = groups_.Group(of_object);
+  std::set<std::string> similar;  // groups
+  for (const std::string& label : SimilarTo(of_object)) {
+    const std::string& group = groups_.Group(label);
+    if (group != own && detected_groups_.contains(group)) similar.insert(group);
+  }
   const double of_similar = similar.empty() ? 0.0 : similar_probability_;
-  if (groups_.Group(of_detection) == groups_.Group(of_object))
-    return 1.0 - probability_ - of_similar;
-  if (similar.contains(groups_.Group(of_detection))) {
+  if (detected == own) return 1.0 - probability_ - of_similar;
+  if (similar.contains(detected)) {
     return of_similar / static_cast<double>(similar.size());
   }
   const auto others = static_cast<double>(detected_groups_.size() - similar.size());
@@ -56,11 +58,7 @@ std::vector<std::string> LabelConfusion::Candidates(const LabelVotes& votes) con
   std::set<std::string> candidates;
   for (const auto& [label, score] : votes) {
     candidates.insert(label);
-    if (similar_probability_ == 0.0) continue;
-    for (const auto& group : similar_) {
-      if (std::ranges::find(group, label) == group.end()) continue;
-      candidates.insert(group.begin(), group.end());
-    }
+    candidates.merge(SimilarTo(label));
   }
   return {candidates.begin(), candidates.end()};
 }

@@ -39,8 +39,8 @@ class LabelConfusion {
   double CostOfVotes(const LabelVotes& votes, const std::string& of_object) const;
 
  private:
-  // The other groups of labels that are similar to a label.
-  std::set<std::string> SimilarGroups(const std::string& label) const;
+  // Labels that are similar to a label, and the label itself; none where nothing is similar to it.
+  std::set<std::string> SimilarTo(const std::string& label) const;
 
   LabelGroups groups_;
   std::vector<std::vector<std::string>> similar_;

@@ -116,9 +116,8 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
     });
     if (is_known) continue;
     attitudes.push_back(attitude);
-    HoldingEvidence one;
-    one.holding = holding;
-    one.up_in_world = attitude.up_in_world;
+    HoldingEvidence one{
+        .holding = holding, .up_in_world = attitude.up_in_world, .object_costs = {}};
     for (const auto& of_label : boxes) {
       one.object_costs.push_back(MeanCost(of_label, one.up_in_world));
     }
@@ -130,11 +129,10 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   up.holding = evidence[choice.best].holding;
   up.holding_tilt_variance = choice.tilt_variance;
   for (size_t i = 0; i < evidence.size(); ++i) {
-    TriedHolding tried;
-    tried.holding = evidence[i].holding;
-    tried.cost = choice.costs[i];
-    tried.probability = choice.probabilities[i];
-    up.holdings.push_back(tried);
+    up.holdings.push_back({.holding = evidence[i].holding,
+                           .cost = choice.costs[i],
+                           .probability = choice.probabilities[i],
+                           .planes = {}});
   }
   return up;
 }
