@@ -21,36 +21,30 @@ constexpr double kDistanceToleranceM = 0.001;
 // How much higher a final cost may be, as a share.
 constexpr double kCostTolerance = 1e-4;
 
-// Adds a cell where there is a value.
-void Put(const std::string& name, const json& value, json* cells) {
-  if (!value.is_null()) (*cells)[name] = value;
-}
+// Cells, and where metrics.json has them.
+constexpr std::pair<const char*, const char*> kCells[] = {
+    {"iou", "/summary/iou_mean"},
+    {"rot_deg", "/summary/rotation_deg_mean"},
+    {"yaw_deg", "/summary/yaw_error_deg_mean"},
+    {"iou_first", "/first_observation/iou_mean"},
+    {"rot_first_deg", "/first_observation/rotation_deg_mean"},
+    {"ate_m", "/trajectory/ate_rmse_m"},
+    {"found_at_0.25", "/map_quality/scores/0/found"},
+    {"found_at_0.5", "/map_quality/scores/1/found"},
+    {"found_iou", "/map_quality/scores/0/of_found/iou_mean"},
+    {"in_frames_iou", "/map_quality/in_frames/iou_mean"},
+    {"found_yaw_deg", "/map_quality/scores/0/of_found/yaw_error_deg_mean"}};
 
 json Cells(const std::filesystem::path& variant) {
   const json metrics = ParseJsonFile(variant / "metrics.json");
   json cells;
-  Put("iou", metrics["summary"]["iou_mean"], &cells);
-  Put("rot_deg", metrics["summary"]["rotation_deg_mean"], &cells);
-  Put("yaw_deg", metrics["summary"]["yaw_error_deg_mean"], &cells);
-  if (!metrics["first_observation"].is_null()) {
-    Put("iou_first", metrics["first_observation"]["iou_mean"], &cells);
-    Put("rot_first_deg", metrics["first_observation"]["rotation_deg_mean"], &cells);
-  }
-  if (!metrics["trajectory"].is_null()) {
-    Put("ate_m", metrics["trajectory"]["ate_rmse_m"], &cells);
-  }
-  if (metrics.contains("map_quality")) {
-    const json& quality = metrics["map_quality"];
-    const json& found = quality["scores"][0]["of_found"];
-    Put("found_at_0.25", quality["scores"][0]["found"], &cells);
-    Put("found_at_0.5", quality["scores"][1]["found"], &cells);
-    Put("found_iou", found["iou_mean"], &cells);
-    Put("in_frames_iou", quality["in_frames"]["iou_mean"], &cells);
-    Put("found_yaw_deg", found["yaw_error_deg_mean"], &cells);
+  for (const auto& [name, place] : kCells) {
+    const json cell = metrics.value(json::json_pointer(place), json());
+    if (!cell.is_null()) cells[name] = cell;
   }
   const auto map = variant / "map.json";
   if (std::filesystem::exists(map)) {
-    Put("cost", ParseJsonFile(map)["solver"]["final_cost"], &cells);
+    cells["cost"] = ParseJsonFile(map)["solver"]["final_cost"];
   }
   return cells;
 }

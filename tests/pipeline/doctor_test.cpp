@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/small_pipeline.h"
+#include "support/finished_run.h"
 
 namespace soslam {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-class DoctorTest : public testing::Test {
+class DoctorTest : public FinishedRunTest {
  protected:
   CommandResult Doctor() const {
     return RunCommand({StageProgram("doctor"), "--results",
@@ -26,16 +26,13 @@ class DoctorTest : public testing::Test {
     }
     WriteBytes(pipeline_.Dataset() / file, text);
   }
-
-  SmallPipeline pipeline_{4};
 };
 
 TEST_F(DoctorTest, FindsNothingWhereNothingIsWrong) {
-  ASSERT_EQ(pipeline_.Run("InitP").exit_code, 0);
   const CommandResult result = Doctor();
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.output,
-            "small: 0 error(s), 0 warning(s) in 3 of 3 stage runs of 1 variant(s)\n");
+            "small: 0 error(s), 0 warning(s) in 6 of 6 stage runs of 2 variant(s)\n");
 }
 
 TEST_F(DoctorTest, WarningsOfTheImportAreNoErrors) {
@@ -44,7 +41,7 @@ TEST_F(DoctorTest, WarningsOfTheImportAreNoErrors) {
   const CommandResult result = Doctor();
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.output,
-              AllOf(HasSubstr("warning: import (InitP): 12 of 12 scores"),
+              AllOf(HasSubstr("warning: import (InitP InitPT): 12 of 12 scores"),
                     HasSubstr("likely cause  per cent"), HasSubstr("0 error(s), 1 warning(s)")));
 }
 
@@ -53,11 +50,12 @@ TEST_F(DoctorTest, AStageThatFailedIsAnError) {
   EXPECT_NE(pipeline_.Run("InitP").exit_code, 0);
   const CommandResult result = Doctor();
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, AllOf(HasSubstr("error: import (InitP): "), HasSubstr("from below"),
-                                   HasSubstr("1 error(s)")));
+  EXPECT_THAT(result.output, AllOf(HasSubstr("error: import (InitP InitPT): "),
+                                   HasSubstr("from below"), HasSubstr("1 error(s)")));
 }
 
 TEST_F(DoctorTest, WithoutAPlanThereIsNothingToSay) {
+  std::filesystem::remove(pipeline_.Results() / "plan.mk");
   const CommandResult result = Doctor();
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.errors, HasSubstr("nothing was planned yet"));

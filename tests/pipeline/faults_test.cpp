@@ -37,10 +37,9 @@ class SlowFaultsTest : public testing::Test {
   }
 
   std::vector<std::string> Words() const {
-    std::vector<std::string> words = pipeline_.MakeWords("run");
-    words.push_back("VARIANT=OursST-unannotated InitS");
-    words.push_back("PIPELINES=" + (pipeline_.Pipelines() / "unannotated").string());
-    return words;
+    return pipeline_.WordsOfProject(
+        {"run", "VARIANT=OursST-unannotated InitS",
+         "PIPELINES=" + (pipeline_.Pipelines() / "unannotated").string()});
   }
   CommandResult Run() const { return RunCommand(Words()); }
 

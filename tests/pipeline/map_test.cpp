@@ -100,23 +100,10 @@ class MapTest : public testing::Test {
   }
 
   std::vector<std::string> Words(const std::vector<std::string>& settings) const {
-    std::vector<std::string> words = {
-        "env",
-        "-u",
-        "MAKEFLAGS",
-        "-u",
-        "MFLAGS",
-        "-u",
-        "MAKELEVEL",
-        "PATH=" + programs_.string() + ":" + std::getenv("PATH"),
-        "make",
-        "-C",
-        SOSLAM_SOURCE_DIR,
-        "map",
-        "--no-print-directory",
-        "THREADS=2",
-        "MAPS=" + maps_.string(),
-        "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string()};
+    std::vector<std::string> words = MakeWords(
+        {"-C", SOSLAM_SOURCE_DIR, "map", "--no-print-directory", "THREADS=2",
+         "MAPS=" + maps_.string(), "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string()});
+    words.insert(words.begin(), {"env", "PATH=" + programs_.string() + ":" + std::getenv("PATH")});
     words.insert(words.end(), settings.begin(), settings.end());
     return words;
   }
@@ -225,21 +212,18 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
     EXPECT_FALSE(fs::exists(maps_));
   };
   const std::string images = "IMAGES=" + photos_.string();
+  const std::string network = "NETWORK=" + detections_.string();
   const std::string marker = (pipeline_.Folder() / "marker").string();
   expect_refused({}, "expected IMAGES=");
   expect_refused({images}, "expected NETWORK=");
   expect_refused({images, "NETWORK=$(shell touch " + marker + ")"}, "no such file");
   expect_refused({images, "NETWORK=`touch " + marker + "`"}, "no such file");
   expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
-  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2m"},
-                 "SCALE='2m': expected a number");
-  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=-2"},
-                 "SCALE='-2': expected a number");
-  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=.5"}, "found no MODEL");
-  expect_refused({images, "NETWORK=" + detections_.string(), "SCALE=2"}, "found no MODEL");
-  expect_refused({images, "NETWORK=" + detections_.string(), "CAMERA_HEIGHT=160"},
-                 "expected metres");
-  const std::string network = "NETWORK=" + detections_.string();
+  expect_refused({images, network, "SCALE=2m"}, "SCALE='2m': expected a number");
+  expect_refused({images, network, "SCALE=-2"}, "SCALE='-2': expected a number");
+  expect_refused({images, network, "SCALE=.5"}, "found no MODEL");
+  expect_refused({images, network, "SCALE=2"}, "found no MODEL");
+  expect_refused({images, network, "CAMERA_HEIGHT=160"}, "expected metres");
   expect_refused({images, network, "VARIANT=InitS"}, "the first one makes no map");
   expect_refused({images, network, "VARIANT=OursS Best"}, "VARIANT='Best': no such variant");
   expect_refused({"IMAGE=x", network}, "IMAGE=...: no variable of this Makefile");

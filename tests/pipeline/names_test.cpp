@@ -22,10 +22,9 @@ using testing::HasSubstr;
 // A small pipeline, and the project's Makefile with what the caller sets for it.
 class NamesTest : public testing::Test {
  protected:
-  CommandResult Make(const std::string& goal, const std::vector<std::string>& settings) const {
-    std::vector<std::string> words = pipeline_.MakeWords(goal);
-    words.insert(words.end(), settings.begin(), settings.end());
-    return BackgroundCommand(words).Wait();
+  CommandResult Make(const std::string& goal, std::vector<std::string> settings) const {
+    settings.push_back(goal);
+    return BackgroundCommand(pipeline_.WordsOfProject(settings)).Wait();
   }
   void ExpectRefused(const std::string& goal, const std::string& setting,
                      const std::string& expected) const {

@@ -47,20 +47,22 @@ class PagesTest : public testing::Test {
  protected:
   static constexpr int kFrames = 6;
 
-  static void SetUpTestSuite() {
-    pipeline_ = new SmallPipeline(kFrames);
-    const CommandResult run = pipeline_->Run("InitPT OursPT SVD");
-    ASSERT_EQ(run.exit_code, 0) << run.errors;
-    const CommandResult pages =
-        RunCommand({StageProgram("pages"), "--results", Results().string()});
-    ASSERT_EQ(pages.exit_code, 0) << pages.errors;
+  static CommandResult Pages(const std::filesystem::path& results) {
+    return RunCommand({StageProgram("pages"), "--results", results.string()});
   }
-  static void TearDownTestSuite() { delete pipeline_; }
-  static std::filesystem::path Results() { return pipeline_->Folder() / "results"; }
-
-  static const SmallPipeline* pipeline_;
+  // The results with pages, which are made once for all tests.
+  static std::filesystem::path Results() {
+    static const SmallPipeline pipeline(kFrames);
+    static const std::filesystem::path results = [] {
+      const CommandResult run = pipeline.Run("InitPT OursPT SVD");
+      EXPECT_EQ(run.exit_code, 0) << run.errors;
+      const CommandResult pages = Pages(pipeline.Folder() / "results");
+      EXPECT_EQ(pages.exit_code, 0) << pages.errors;
+      return pipeline.Folder() / "results";
+    }();
+    return results;
+  }
 };
-const SmallPipeline* PagesTest::pipeline_ = nullptr;
 
 // With a browser.
 using SlowPagesTest = PagesTest;
@@ -139,8 +141,7 @@ TEST_F(PagesTest, HaveTheSameBytesAgain) {
 
 TEST_F(PagesTest, AFolderWithoutResultsIsRefused) {
   const TemporaryFolder empty;
-  const CommandResult result =
-      RunCommand({StageProgram("pages"), "--results", empty.path().string()});
+  const CommandResult result = Pages(empty.path());
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_THAT(result.errors, testing::HasSubstr("no <dataset>/<variant>/"));
 }

@@ -36,9 +36,9 @@ void Touch(const fs::path& path) {
 
 class RerunTest : public testing::Test {
  protected:
-  static const SmallPipeline& Finished() {
+  static const FinishedRun& Finished() {
     static const FinishedRun run(kRerunVariants);
-    return run.Restored();
+    return run;
   }
   std::multiset<std::string> RunStages() const {
     const CommandResult run = pipeline_.Run(kRerunVariants);
@@ -49,12 +49,11 @@ class RerunTest : public testing::Test {
     return SmallPipeline::Artefacts(pipeline_.Results());
   }
 
-  const SmallPipeline& pipeline_ = Finished();
+  const SmallPipeline& pipeline_ = Finished().Restored();
 };
 
-TEST(FirstRunTest, RunsEachStageOnce) {
-  const SmallPipeline pipeline;
-  EXPECT_THAT(StagesIn(pipeline.Run(kRerunVariants).output),
+TEST_F(RerunTest, TheFirstRunRunsEachStageOnce) {
+  EXPECT_THAT(StagesIn(Finished().Output()),
               ElementsAre("edges", "evaluate", "evaluate", "evaluate", "import", "initialise",
                           "optimise", "refine"));
 }
@@ -163,16 +162,8 @@ TEST_F(LaunchTest, StartsEveryStageAndItsFailuresAreToldFromThoseOfStages) {
 TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
   const SmallPipeline pipeline;
   const fs::path results = pipeline.Folder() / "results";
-  const std::vector<std::string> common = {
-      "-C",
-      SOSLAM_SOURCE_DIR,
-      "DATASET=small",
-      "RESULTS=" + results.string(),
-      "DATA_ROOT=" + pipeline.Dataset().parent_path().string(),
-      "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string()};
-  const auto make = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), common.begin(), common.end());
-    const CommandResult result = RunMake(arguments);
+  const auto make = [&](const std::vector<std::string>& arguments) {
+    const CommandResult result = RunCommand(pipeline.WordsOfProject(arguments));
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     return result.output;
   };

@@ -19,12 +19,15 @@ using testing::Not;
 
 class StatusTest : public FinishedRunTest {
  protected:
-  std::string Status(const std::vector<std::string>& arguments = {}) const {
+  CommandResult StatusResult(const std::vector<std::string>& arguments) const {
     std::vector<std::string> words = {StageProgram("status"), "--results",
                                       pipeline_.Results().parent_path().string(), "--executables",
                                       SOSLAM_BINARY_DIR};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    const CommandResult result = RunCommand(words);
+    return RunCommand(words);
+  }
+  std::string Status(const std::vector<std::string>& arguments = {}) const {
+    const CommandResult result = StatusResult(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     return result.output;
   }
@@ -102,22 +105,15 @@ TEST_F(StatusTest, WhatBeganRunsAsLongAsTheLockIsHeld) {
   EXPECT_EQ(under_way(), "");
 }
 
-TEST(StatusOfNothingTest, UnknownStageIsRefused) {
-  const TemporaryFolder folder;
-  const CommandResult result =
-      RunCommand({StageProgram("status"), "--results", folder.path().string(), "--executables",
-                  SOSLAM_BINARY_DIR, "--explain", "paint"});
+TEST_F(StatusTest, UnknownStageIsRefused) {
+  const CommandResult result = StatusResult({"--explain", "paint"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, AllOf(HasSubstr("'paint'"), HasSubstr("initialise")));
 }
 
-TEST(StatusOfNothingTest, NothingRanYet) {
-  const TemporaryFolder folder;
-  const CommandResult result =
-      RunCommand({StageProgram("status"), "--results", folder.path().string(), "--executables",
-                  SOSLAM_BINARY_DIR});
-  EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("nothing ran yet"));
+TEST_F(StatusTest, NothingRanYet) {
+  fs::remove_all(pipeline_.Results());
+  EXPECT_THAT(Status(), HasSubstr("nothing ran yet"));
 }
 
 }  // namespace

@@ -114,14 +114,6 @@ class SlowSlurmTest : public testing::Test {
   CommandResult Make(const std::string& goal, const std::string& results,
                      const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words = {
-        "env",
-        "-u",
-        "MAKEFLAGS",
-        "-u",
-        "MFLAGS",
-        "-u",
-        "MAKELEVEL",
-        "make",
         "-j2",
         "-C",
         SOSLAM_SOURCE_DIR,
@@ -135,7 +127,7 @@ class SlowSlurmTest : public testing::Test {
         "RESULTS=" + Results(results).string(),
     };
     words.insert(words.end(), more.begin(), more.end());
-    return cluster_.Run(words);
+    return cluster_.Run(MakeWords(words));
   }
   void Do(const std::string& goal, const std::string& results,
           const std::vector<std::string>& more = {}) const {

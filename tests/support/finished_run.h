@@ -15,11 +15,13 @@ namespace soslam {
 // it finds all files, with their times, as that run left them.
 class FinishedRun {
  public:
-  explicit FinishedRun(const std::string& variants) {
-    const CommandResult run = pipeline_.Run(variants);
-    EXPECT_EQ(run.exit_code, 0) << run.errors;
+  explicit FinishedRun(const std::string& variants) : run_(pipeline_.Run(variants)) {
+    EXPECT_EQ(run_.exit_code, 0) << run_.errors;
     saved_.emplace(pipeline_.Folder());
   }
+
+  // What the run printed.
+  const std::string& Output() const { return run_.output; }
 
   const SmallPipeline& Restored() const {
     saved_->Restore();
@@ -28,6 +30,7 @@ class FinishedRun {
 
  private:
   SmallPipeline pipeline_;
+  CommandResult run_;
   std::optional<SavedFolder> saved_;
 };
 

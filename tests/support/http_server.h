@@ -12,7 +12,6 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace soslam {
@@ -20,9 +19,7 @@ namespace soslam {
 // An HTTP server on this machine that gives files from memory, as servers do and as they fail.
 class HttpServer {
  public:
-  using Contents = std::map<std::string, std::string>;  // files by path, as /a/b
-
-  explicit HttpServer(Contents files) : files_(std::move(files)) {
+  HttpServer() {
     socket_ = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -45,6 +42,10 @@ class HttpServer {
   HttpServer& operator=(const HttpServer&) = delete;
 
   std::string Address() const { return fmt::format("http://127.0.0.1:{}", port_); }
+  // Gives a file at a path, as /a/b, from now on.
+  void Give(const std::string& path, const std::string& bytes) {
+    Locked([&] { files_[path] = bytes; });
+  }
   // The connection ends after this many bytes of a file.
   void EndAfter(size_t bytes) {
     Locked([&] { end_after_ = bytes; });
@@ -101,7 +102,7 @@ class HttpServer {
                        bytes);
   }
 
-  Contents files_;
+  std::map<std::string, std::string> files_;  // by path
   std::mutex mutex_;
   size_t end_after_ = std::string::npos;
   bool whole_only_ = false;

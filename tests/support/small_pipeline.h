@@ -44,16 +44,16 @@ inline std::string StageProgram(const std::string& stage) {
 }
 
 // The words that call make, without what a make that runs the tests would hand down to it.
-inline std::vector<std::string> MakeCommand(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {"env", "-u",        "MAKEFLAGS", "-u", "MFLAGS",
-                                    "-u",  "MAKELEVEL", "make",      "-j2"};
+inline std::vector<std::string> MakeWords(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"env",    "-u", "MAKEFLAGS", "-u",
+                                    "MFLAGS", "-u", "MAKELEVEL", "make"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }
-inline CommandResult RunMake(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = MakeCommand(arguments);
-  words.emplace_back("--output-sync");
-  return RunCommand(words);
+
+inline CommandResult RunMake(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"-j2", "--output-sync"});
+  return RunCommand(MakeWords(arguments));
 }
 
 // The small scene's dataset, a copy of the project's pipelines, and a results folder, all in a
@@ -105,13 +105,19 @@ class SmallPipeline {
     return RunMake(words);
   }
 
-  // The words that call a goal of the project's own Makefile for this dataset.
-  std::vector<std::string> MakeWords(const std::string& goal) const {
-    return MakeCommand({"-C", SOSLAM_SOURCE_DIR, goal, "DATASET=small",
-                        "BUILD=" + std::filesystem::path(SOSLAM_BINARY_DIR).parent_path().string(),
-                        "DATA_ROOT=" + Dataset().parent_path().string(),
-                        "RESULTS=" + Results().parent_path().string(),
-                        "PIPELINES=" + Pipelines().string()});
+  // The words that call the project's own Makefile for this dataset.
+  std::vector<std::string> WordsOfProject(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> words = {
+        "-j2",
+        "-C",
+        SOSLAM_SOURCE_DIR,
+        "DATASET=small",
+        "BUILD=" + std::filesystem::path(SOSLAM_BINARY_DIR).parent_path().string(),
+        "DATA_ROOT=" + Dataset().parent_path().string(),
+        "RESULTS=" + Results().parent_path().string(),
+        "PIPELINES=" + Pipelines().string()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return MakeWords(words);
   }
 
   // A folder with all programs, where that of a stage crashes.
