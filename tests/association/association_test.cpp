@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
+#include <utility>
 
 #include "support/association_scenes.h"
 
@@ -35,6 +37,21 @@ Sequence NoisySequence(int seed, const std::vector<std::string>& labels) {
   return SyntheticSequence(scene, true);
 }
 
+// Sequences with the true ids and what is seen of them: nearly all objects are found, in each of
+// the scenes at least as many as `least` says.
+void ExpectNearlyAllFound(
+    int scenes, double least,
+    const std::function<std::pair<Sequence, Sequence>(int seed)>& given_and_seen) {
+  double sum = 0.0;
+  for (int seed = 0; seed < scenes; ++seed) {
+    const auto [given, seen] = given_and_seen(seed);
+    const double f1 = F1(seen, given);
+    EXPECT_GE(f1, least) << seed;
+    sum += f1;
+  }
+  EXPECT_GE(sum / scenes, 0.95);
+}
+
 TEST(AssociateTest, ExactBoxesOfOneLabelAreTheirObjects) {
   for (int seed = 0; seed < kScenes; ++seed) {
     const Sequence sequence =
@@ -44,14 +61,10 @@ TEST(AssociateTest, ExactBoxesOfOneLabelAreTheirObjects) {
 }
 
 TEST(AssociateTest, NoisyBoxesAreNearlyAllTheirObjects) {
-  double sum = 0.0;
-  for (int seed = 0; seed < kScenes; ++seed) {
+  ExpectNearlyAllFound(kScenes, 0.8, [](int seed) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
-    const double f1 = F1(WithoutIds(sequence), sequence);
-    EXPECT_GE(f1, 0.8) << seed;
-    sum += f1;
-  }
-  EXPECT_GE(sum / kScenes, 0.95);
+    return std::pair(sequence, WithoutIds(sequence));
+  });
 }
 
 TEST(AssociateTest, FlickeringLabelsMakeNoObjects) {
@@ -79,8 +92,7 @@ TEST(AssociateTest, FlickeringLabelsMakeNoObjects) {
 }
 
 TEST(AssociateTest, FalseDetectionsAreNoObjects) {
-  double sum = 0.0;
-  for (int seed = 0; seed < kScenes; ++seed) {
+  ExpectNearlyAllFound(kScenes, 0.0, [](int seed) {
     Sequence sequence = NoisySequence(seed, {"thing", "other"});
     for (int frame = 0; frame < kFrames; ++frame) {
       if (RandomUniform(0.0, 1.0) > 0.5) continue;
@@ -88,9 +100,8 @@ TEST(AssociateTest, FalseDetectionsAreNoObjects) {
       AddFalseDetection(frame, RandomBox(sequence.camera), label, &sequence);
     }
     SortDetections(&sequence);
-    sum += F1(WithoutIds(sequence), sequence);
-  }
-  EXPECT_GE(sum / kScenes, 0.95);
+    return std::pair(sequence, WithoutIds(sequence));
+  });
 }
 
 // Two boxes of one label, one behind the other, seen in passing: their boxes cross in the image.
@@ -270,38 +281,21 @@ TEST(AssociateTest, ObjectsStayOnTheirPlane) {
 constexpr int kScenesWithoutPlanes = 2;
 
 TEST(AssociateWithoutPlanesTest, ExactBoxesAreTheirObjects) {
-  double sum = 0.0;
-  for (int seed = 0; seed < kScenesWithoutPlanes; ++seed) {
+  ExpectNearlyAllFound(kScenesWithoutPlanes, 0.0, [](int seed) {
     const Sequence sequence =
         SyntheticSequence(LabelledScene(seed, kObjects, kFrames, {"thing", "other"}), false);
-    sum += F1(WithoutPlanes(WithoutIds(sequence)), sequence);
-  }
-  EXPECT_GE(sum / kScenesWithoutPlanes, 0.95);
+    return std::pair(sequence, WithoutPlanes(WithoutIds(sequence)));
+  });
 }
 
 TEST(AssociateWithoutPlanesTest, NoisyBoxesAreNearlyAllTheirObjects) {
-  double sum = 0.0;
-  for (int seed = 0; seed < kScenesWithoutPlanes; ++seed) {
+  ExpectNearlyAllFound(kScenesWithoutPlanes, 0.8, [](int seed) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
     Sequence seen = WithoutPlanes(WithoutIds(sequence));
     const Rigid3d motion = RandomRigid();  // the axes of the world mean nothing
     for (Frame& frame : seen.frames) frame.world_from_camera = motion * frame.world_from_camera;
-    const double f1 = F1(seen, sequence);
-    EXPECT_GE(f1, 0.8) << seed;
-    sum += f1;
-  }
-  EXPECT_GE(sum / kScenesWithoutPlanes, 0.95);
-}
-
-TEST(AssociateWithoutPlanesTest, ObjectsAreOnNoPlane) {
-  const Sequence sequence =
-      WithoutPlanes(WithoutIds(SyntheticSequence(LabelledScene(1, 3, 20, {"thing"}), false)));
-  const Association association = AssociateAll(sequence);
-  const Agreement agreement = CompareWithGiven(sequence, association, 3);
-  const Sequence associated = AssociatedSequence(sequence, association, agreement);
-  EXPECT_TRUE(associated.planes.empty());
-  ASSERT_FALSE(associated.objects.empty());
-  for (const Object& object : associated.objects) EXPECT_EQ(object.plane_index, kNoPlane);
+    return std::pair(sequence, seen);
+  });
 }
 
 }  // namespace

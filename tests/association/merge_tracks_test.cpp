@@ -44,6 +44,11 @@ class TrackTest : public testing::Test {
     return chosen;
   }
   const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
+  // The fate of a track once false ones are dropped.
+  TrackFate FateOf(int track) {
+    DropFalseTracks(Model(), 1, &association_);
+    return TrackAt(track).fate;
+  }
 
   AssociateOptions options_ = EstimatedAssociation();
   SemanticTable table_ = UnknowingTable();
@@ -103,18 +108,15 @@ TEST_F(TrackTest, WhatIsDetectedTogetherIsMergedOnlyIfItIsAtOnePlace) {
 
 TEST_F(TrackTest, TracksWithFewDetectionsAreFalse) {
   const int track = AddTrack({of_objects_[0][0], of_objects_[0][1]});
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kTooFewDetections);
+  EXPECT_EQ(FateOf(track), TrackFate::kTooFewDetections);
   EXPECT_FALSE(TrackAt(track).frames_in_sight);
   options_.min_observations = 2;
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+  EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
 TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
   const int track = AddTrack(of_objects_[0]);
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+  EXPECT_EQ(FateOf(track), TrackFate::kObject);
   // It is detected in every frame that shows it whole; the estimate may reach a little farther.
   const auto detections = static_cast<int>(of_objects_[0].size());
   EXPECT_GE(TrackAt(track).frames_in_sight.value(), detections);
@@ -125,11 +127,9 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
   const Frame frame =
       sequence_.frames[static_cast<size_t>(sequence_.detections[middle].frame_index)];
   for (int i = 0; i < 10 * detections; ++i) sequence_.frames.push_back(frame);
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kRarelyDetected);
+  EXPECT_EQ(FateOf(track), TrackFate::kRarelyDetected);
   options_.min_detection_share = 0.0;
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+  EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
 TEST_F(TrackTest, WhatIsNeverSeenWholeIsNoObject) {
@@ -137,11 +137,9 @@ TEST_F(TrackTest, WhatIsNeverSeenWholeIsNoObject) {
   for (const int index : of_objects_[0]) {
     sequence_.detections[static_cast<size_t>(index)].is_bound = {true, false, false, false};
   }
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kNeverWhole);
+  EXPECT_EQ(FateOf(track), TrackFate::kNeverWhole);
   sequence_.detections[static_cast<size_t>(of_objects_[0][2])].is_bound = {};
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+  EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
 TEST_F(TrackTest, OneGoodScoreMakesAnObject) {
@@ -149,18 +147,15 @@ TEST_F(TrackTest, OneGoodScoreMakesAnObject) {
   for (const int index : of_objects_[0]) {
     sequence_.detections[static_cast<size_t>(index)].score = options_.min_best_score - 0.01;
   }
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kLowScores);
+  EXPECT_EQ(FateOf(track), TrackFate::kLowScores);
   sequence_.detections[static_cast<size_t>(of_objects_[0][1])].score = options_.min_best_score;
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kObject);
+  EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
 TEST_F(TrackTest, ATrackWithoutLandmarkIsNoObject) {
   const int track = AddTrack(of_objects_[0]);
   association_.tracks[static_cast<size_t>(track)].fit.reset();
-  DropFalseTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(track).fate, TrackFate::kNoLandmark);
+  EXPECT_EQ(FateOf(track), TrackFate::kNoLandmark);
 }
 
 }  // namespace
