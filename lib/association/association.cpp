@@ -208,8 +208,7 @@ const std::string& LabelOf(const Track& track) {
 }
 
 int AssociationModel::SegmentOf(const Track& track) const {
-  const auto first = static_cast<size_t>(track.detections.front());
-  return sequence_.FrameOf(sequence_.detections[first]).segment;
+  return sequence_.FrameOf(DetectionAt(track.detections.front())).segment;
 }
 
 std::optional<Prediction> AssociationModel::Predict(const Track& track, int frame_index) const {
@@ -217,12 +216,8 @@ std::optional<Prediction> AssociationModel::Predict(const Track& track, int fram
       SegmentOf(track) != sequence_.frames[static_cast<size_t>(frame_index)].segment) {
     return std::nullopt;
   }
-  const auto frame_of = [this](int detection) {
-    return sequence_.detections[static_cast<size_t>(detection)].frame_index;
-  };
-  const auto next =
-      std::lower_bound(track.detections.begin(), track.detections.end(), frame_index,
-                       [&](int detection, int frame) { return frame_of(detection) < frame; });
+  const auto frame_of = [this](int detection) { return DetectionAt(detection).frame_index; };
+  const auto next = std::ranges::lower_bound(track.detections, frame_index, {}, frame_of);
   int nearest =
       next == track.detections.end() ? frame_of(track.detections.back()) : frame_of(*next);
   if (next != track.detections.begin()) {

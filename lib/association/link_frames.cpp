@@ -47,9 +47,7 @@ class FrameLinker {
     size_t fitted_labels = 0;  // number of different labels
   };
 
-  const Detection& At(int detection) const {
-    return model_.sequence().detections[static_cast<size_t>(detection)];
-  }
+  const Detection& At(int detection) const { return model_.DetectionAt(detection); }
   DetectionDecision& DecisionOn(int detection) {
     return association_.detections[static_cast<size_t>(detection)];
   }

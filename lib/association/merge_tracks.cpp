@@ -33,7 +33,7 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
   double smallest_height = std::numeric_limits<double>::infinity();
   std::vector<bool> is_detected(sequence.frames.size(), false);
   for (const int index : track.detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = model.DetectionAt(index);
     smallest_height = std::min(smallest_height, detection.box.Height());
     is_detected[static_cast<size_t>(detection.frame_index)] = true;
   }
@@ -61,40 +61,33 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
   return frames;
 }
 
-// Number of detections that show at least three edges of the object.
-int NumShowingThreeEdges(const AssociationModel& model, const Track& track) {
-  return static_cast<int>(std::ranges::count_if(track.detections, [&](int index) {
-    const auto& is_bound = model.sequence().detections[static_cast<size_t>(index)].is_bound;
-    return std::ranges::count(is_bound, true) <= 1;
-  }));
-}
+// What the detections of a track show of the object.
+struct Shown {
+  int three_edges = 0;  // detections that show at least three of its edges
+  bool is_whole = false;
+  double best_score = 0.0;
+};
 
-// True if at least one detection shows all edges of the object.
-bool IsSeenWhole(const AssociationModel& model, const Track& track) {
-  return std::ranges::any_of(track.detections, [&](int index) {
-    const auto& is_bound = model.sequence().detections[static_cast<size_t>(index)].is_bound;
-    return std::ranges::find(is_bound, true) == is_bound.end();
-  });
-}
-
-double BestScore(const AssociationModel& model, const Track& track) {
-  double best = 0.0;
+Shown ShownBy(const AssociationModel& model, const Track& track) {
+  Shown shown;
   for (const int index : track.detections) {
-    best = std::max(best, model.sequence().detections[static_cast<size_t>(index)].score);
+    const Detection& detection = model.DetectionAt(index);
+    const auto hidden_edges = std::ranges::count(detection.is_bound, true);
+    if (hidden_edges <= 1) ++shown.three_edges;
+    if (hidden_edges == 0) shown.is_whole = true;
+    shown.best_score = std::max(shown.best_score, detection.score);
   }
-  return best;
+  return shown;
 }
 
-TrackFate FateOf(const AssociationModel& model, const Track& track) {
+TrackFate FateOf(const AssociationModel& model, const Track& track, const Shown& shown) {
   const auto detections = static_cast<double>(track.detections.size());
-  if (NumShowingThreeEdges(model, track) < model.options().min_observations) {
-    return TrackFate::kTooFewDetections;
-  }
-  if (!IsSeenWhole(model, track)) return TrackFate::kNeverWhole;
+  if (shown.three_edges < model.options().min_observations) return TrackFate::kTooFewDetections;
+  if (!shown.is_whole) return TrackFate::kNeverWhole;
   if (!track.fit) return TrackFate::kNoLandmark;
   if (!track.has_support) return TrackFate::kNoSupport;
   if (model.Moves(track)) return TrackFate::kMoves;
-  if (BestScore(model, track) < model.options().min_best_score) return TrackFate::kLowScores;
+  if (shown.best_score < model.options().min_best_score) return TrackFate::kLowScores;
   return detections < model.options().min_detection_share * track.frames_in_sight.value()
              ? TrackFate::kRarelyDetected
              : TrackFate::kObject;
@@ -107,10 +100,10 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
   ParallelFor("tracks", static_cast<int>(association->tracks.size()), threads, [&](int i) {
     Track& track = association->tracks[static_cast<size_t>(i)];
     if (track.fate == TrackFate::kMerged) return;
-    const bool is_candidate =
-        track.fit && NumShowingThreeEdges(model, track) >= model.options().min_observations;
+    const Shown shown = ShownBy(model, track);
+    const bool is_candidate = track.fit && shown.three_edges >= model.options().min_observations;
     if (is_candidate) track.frames_in_sight = FramesInSight(model, track, border_px);
-    track.fate = FateOf(model, track);
+    track.fate = FateOf(model, track, shown);
   });
 }
 
@@ -145,9 +138,7 @@ class TrackMerger {
   }
 
  private:
-  const Detection& At(int detection) const {
-    return model_.sequence().detections[static_cast<size_t>(detection)];
-  }
+  const Detection& At(int detection) const { return model_.DetectionAt(detection); }
   Track& TrackAt(int track) { return association_.tracks[static_cast<size_t>(track)]; }
   const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
 
