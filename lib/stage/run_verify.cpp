@@ -101,24 +101,6 @@ void Print(const Outcome& outcome) {
   std::fflush(stdout);  // the next run takes long
 }
 
-using Counts = std::array<size_t, kOutcomeNames.size()>;  // indexed by kind of outcome
-
-Counts RerunAll(const DatasetRuns& dataset, Reproduction* reproduction) {
-  Counts counts = {};
-  const auto count = [&counts](const Outcome& outcome) {
-    Print(outcome);
-    ++counts.at(static_cast<size_t>(outcome.kind));
-  };
-  for (const VariantRuns& variant : dataset.variants) {
-    if (variant.problem.empty()) continue;
-    count({Outcome::Kind::kNotRerun, dataset.results / variant.name, variant.problem});
-  }
-  for (const RecordedRun& run : dataset.runs) {
-    for (const Outcome& outcome : reproduction->Rerun(run)) count(outcome);
-  }
-  return counts;
-}
-
 }  // namespace
 
 int RunReproduce(const NoOptions& /*options*/, const StageFiles& files, int threads) {
@@ -130,14 +112,20 @@ int RunReproduce(const NoOptions& /*options*/, const StageFiles& files, int thre
   const std::vector<DatasetRuns> datasets = FindRunsOf(files);
   const FolderBeside again(files.at("results"));
   for (const DatasetRuns& dataset : datasets) {
-    Reproduction reproduction(dataset, files.at("executables"), again.path() / dataset.name,
-                              threads);
-    const Counts counts = RerunAll(dataset, &reproduction);
+    std::array<size_t, kOutcomeNames.size()> counts = {};  // indexed by kind
+    const auto count = [&counts](const Outcome& outcome) {
+      Print(outcome);
+      ++counts.at(static_cast<size_t>(outcome.kind));
+    };
+    for (const VariantRuns& variant : dataset.variants) {
+      if (variant.problem.empty()) continue;
+      count({Outcome::Kind::kNotRerun, dataset.results / variant.name, variant.problem});
+    }
+    software_changes.merge(
+        Reproduce(dataset, files.at("executables"), again.path() / dataset.name, threads, count));
     const auto [same, differ, not_rerun] = counts;
     table.rows.push_back({dataset.name, std::to_string(dataset.runs.size()), std::to_string(same),
                           std::to_string(differ), std::to_string(not_rerun)});
-    software_changes.insert(reproduction.software_changes().begin(),
-                            reproduction.software_changes().end());
     has_findings = has_findings || differ + not_rerun > 0;
   }
   for (const std::string& change : software_changes) fmt::print("recorded with {}\n", change);
