@@ -110,10 +110,7 @@ TEST_F(RunAssociateTest, DetectionsWithoutIdsGiveTheSameWithNothingToCompareWith
 }
 
 TEST_F(RunAssociateTest, WithoutPlanesItLinksAllTheSameAndLeavesThemUnknown) {
-  Sequence unknown = WithoutIds(sequence_);
-  unknown.planes.clear();
-  for (Object& object : unknown.objects) object.plane_index = kNoPlane;
-  WriteSequence(File("sequence"), unknown, {});
+  WriteSequence(File("sequence"), WithoutPlanes(WithoutIds(sequence_)), {});
   Run();
   const Sequence associated = ReadSequence(File("output"), PlaneNeed::kNotNeeded);
   EXPECT_TRUE(associated.planes.empty());

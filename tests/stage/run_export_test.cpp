@@ -8,6 +8,7 @@
 
 #include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
+#include "association/association.h"
 #include "base/error.h"
 #include "dataset/trajectories.h"
 #include "stage/map_stages.h"
@@ -99,9 +100,7 @@ TEST_F(RunExportTest, WithoutAMapThereAreThePosesOfTheSequence) {
 }
 
 TEST_F(RunExportTest, TrajectoryNeedsNoPlanes) {
-  sequence_.planes.clear();
-  for (Object& object : sequence_.objects) object.plane_index = kNoPlane;
-  WriteSequence(File("sequence.json"), sequence_, {});
+  WriteSequence(File("sequence.json"), WithoutPlanes(sequence_), {});
   Run({}, {{"trajectory", "t.txt"}});
   EXPECT_EQ(ReadTrajectory(File("t.txt")).size(), sequence_.frames.size());
 }

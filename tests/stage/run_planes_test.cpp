@@ -8,6 +8,7 @@
 
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
+#include "association/association.h"
 #include "base/error.h"
 #include "stage/structure_stages.h"
 #include "support/expect_error.h"
@@ -199,9 +200,7 @@ TEST_F(RunPlanesTest, WhereMissingKeepsThePlanesThatAreThere) {
 }
 
 TEST_F(RunPlanesTest, WhereMissingEstimatesPlanesOfASequenceWithout) {
-  sequence_.planes.clear();
-  for (Object& object : sequence_.objects) object.plane_index = kNoPlane;
-  WriteSequence(File("sequence"), sequence_, {});
+  WriteSequence(File("sequence"), WithoutPlanes(sequence_), {});
   Run();
   const json estimated = ReadArtefact(File("report"), "planes").at("planes");
   options_.planes = PlaneSource::kWhereMissing;
