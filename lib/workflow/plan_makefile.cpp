@@ -98,146 +98,131 @@ endef
 stage = $(if $(dry_run)$(filter-out %/done,$?),$(run-stage),@touch $@)
 )make";
 
-class Writer {
- public:
-  Writer(const Plan& plan, const std::string& dataset, const PlanFolders& folders)
-      : plan_(plan), dataset_(dataset), folders_(folders) {}
+std::string Shared(const std::string& id, const std::string& file) {
+  return "$(results)/" + InstancePath(id, file);
+}
 
-  std::string Write() const {
-    Ids names, imports;
-    for (const VariantChain& variant : plan_.variants) names.push_back(variant.name);
-    for (const StageInstance& instance : plan_.instances) {
-      if (instance.stage == "import") imports.push_back(instance.Id());
+std::vector<std::string> Stamps(const std::vector<std::string>& ids) {
+  std::vector<std::string> stamps;
+  for (const std::string& id : ids) stamps.push_back(Shared(id, "done"));
+  return stamps;
+}
+
+// Rules of a variant's folder, which contains links that are replaced together once its last
+// stage is done; .linked is the stages.txt that they belong to.
+std::string VariantRules(const Plan& plan, const VariantChain& variant) {
+  const std::string folder = "$(results)/" + variant.name;
+  std::vector<std::string> links, targets;
+  // Maker of the version that later stages read, keyed by file name.
+  std::map<std::string, std::string> last_maker;
+  for (const std::string& id : variant.instances) {
+    for (const StageOutput& output : OutputsOfStage(plan.Instance(id).stage)) {
+      last_maker[output.file] = id;
     }
-    std::string text =
-        fmt::format(kPreamble, fmt::arg("pipelines", folders_.pipelines.string()),
-                    fmt::arg("variants", fmt::join(names, " ")), fmt::arg("dataset", dataset_),
-                    fmt::arg("imports", fmt::join(Stamps(imports), " ")),
-                    fmt::arg("results", folders_.results.string()),
-                    fmt::arg("dataset_folder", folders_.dataset.string()));
-    for (const VariantChain& variant : plan_.variants) text += VariantRules(variant);
-    for (const StageInstance& instance : plan_.instances) text += InstanceRules(instance);
-    return text + UnitRules();
   }
-
- private:
-  static std::string Shared(const std::string& id, const std::string& file) {
-    return "$(results)/" + InstancePath(id, file);
+  for (const auto& [file, id] : last_maker) {
+    links.push_back(folder + "/" + file);
+    targets.push_back("../shared/" + id + "/" + file);
   }
+  return fmt::format(
+      "\n{variant}: {folder}/.linked\n"
+      "{folder}/.linked: {folder}/stages.txt {stamps} $(call missing,{links})\n"
+      "\t@find {folder} -maxdepth 1 -type l -delete\n"
+      "\t@ln -s {targets} {folder}/\n"
+      "\t@cp $< $@\n",
+      fmt::arg("variant", variant.name), fmt::arg("folder", folder),
+      fmt::arg("stamps", fmt::join(Stamps(variant.instances), " ")),
+      fmt::arg("links", fmt::join(links, " ")), fmt::arg("targets", fmt::join(targets, " ")));
+}
 
-  // Rules of a variant's folder, which contains links that are replaced together once its last
-  // stage is done; .linked is the stages.txt that they belong to.
-  std::string VariantRules(const VariantChain& variant) const {
-    const std::string folder = "$(results)/" + variant.name;
-    std::vector<std::string> links, targets;
-    // Maker of the version that later stages read, keyed by file name.
-    std::map<std::string, std::string> last_maker;
-    for (const std::string& id : variant.instances) {
-      for (const StageOutput& output : OutputsOfStage(plan_.Instance(id).stage)) {
-        last_maker[output.file] = id;
-      }
-    }
-    for (const auto& [file, id] : last_maker) {
-      links.push_back(folder + "/" + file);
-      targets.push_back("../shared/" + id + "/" + file);
-    }
-    return fmt::format(
-        "\n{variant}: {folder}/.linked\n"
-        "{folder}/.linked: {folder}/stages.txt {stamps} $(call missing,{links})\n"
-        "\t@find {folder} -maxdepth 1 -type l -delete\n"
-        "\t@ln -s {targets} {folder}/\n"
-        "\t@cp $< $@\n",
-        fmt::arg("variant", variant.name), fmt::arg("folder", folder),
-        fmt::arg("stamps", fmt::join(Stamps(variant.instances), " ")),
-        fmt::arg("links", fmt::join(links, " ")), fmt::arg("targets", fmt::join(targets, " ")));
+std::vector<std::string> Prerequisites(const StageInstance& instance) {
+  static const std::map<Prerequisite::Folder, std::string> kFolders = {
+      {Prerequisite::Folder::kExecutables, "$(BIN)/"},
+      {Prerequisite::Folder::kPipelines, "$(pipelines)/"},
+      {Prerequisite::Folder::kResults, "$(results)/"}};
+  std::vector<std::string> files;
+  for (const Prerequisite& file : PrerequisitesOf(instance)) {
+    files.push_back(kFolders.at(file.folder) + file.path);
   }
-
-  static std::string InstanceRules(const StageInstance& instance) {
-    std::vector<std::string> outputs;
-    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
-      outputs.push_back(Shared(instance.Id(), output.file));
-    }
-    const std::string done = Shared(instance.Id(), "done");
-    return fmt::format(
-        "\n{done}: {prerequisites} $(call missing,{outputs})\n"
-        "\t$(call stage,{id} ({variants}),{command})\n"
-        "{outputs}: {done} ; +\n",
-        fmt::arg("done", done), fmt::arg("outputs", fmt::join(outputs, " ")),
-        fmt::arg("id", instance.Id()),
-        fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
-        fmt::arg("variants", fmt::join(instance.variants, " ")),
-        fmt::arg("command", Command(instance)));
+  std::set<std::string> stamps;
+  for (const auto& [argument, source] : instance.inputs) {
+    stamps.insert(Shared(source.instance, "done"));
   }
+  files.insert(files.end(), stamps.begin(), stamps.end());
+  return files;
+}
 
-  // Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their
-  // instances.
-  std::string UnitRules() const {
-    const std::vector<WorkUnit> units = WorkUnitsOf(plan_);
-    std::vector<std::string> names;
-    for (const WorkUnit& unit : units) names.push_back(unit.name);
-    std::string text =
-        fmt::format("\nunits := {}\n.PHONY: $(units) $(units:%=before-%)\n", fmt::join(names, " "));
-    for (const WorkUnit& unit : units) {
-      text += fmt::format(
-          "\nunit-{name} := {instances}\n"
-          "{name}: {stamps} {variants}\n"
-          "before-{name}: {needs}\n",
-          fmt::arg("name", unit.name), fmt::arg("instances", fmt::join(unit.instances, " ")),
-          fmt::arg("stamps", fmt::join(Stamps(unit.instances), " ")),
-          fmt::arg("variants", fmt::join(unit.variants, " ")),
-          fmt::arg("needs", fmt::join(Stamps(unit.needs), " ")));
-    }
-    return text;
+std::string Command(const StageInstance& instance) {
+  std::string command = "soslam-" + instance.stage;
+  if (ReadsDataset(instance.stage)) command += " --dataset $(dataset)";
+  if (instance.stage == "ground") command += " --points $(dataset)/points.h5";
+  for (const auto& [argument, source] : instance.inputs) {
+    command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
   }
-
-  static std::vector<std::string> Stamps(const std::vector<std::string>& ids) {
-    std::vector<std::string> stamps;
-    for (const std::string& id : ids) stamps.push_back(Shared(id, "done"));
-    return stamps;
+  if (!instance.semantic_table.empty()) {
+    command += " --table $(pipelines)/" + instance.semantic_table;
   }
-
-  static std::vector<std::string> Prerequisites(const StageInstance& instance) {
-    static const std::map<Prerequisite::Folder, std::string> kFolders = {
-        {Prerequisite::Folder::kExecutables, "$(BIN)/"},
-        {Prerequisite::Folder::kPipelines, "$(pipelines)/"},
-        {Prerequisite::Folder::kResults, "$(results)/"}};
-    std::vector<std::string> files;
-    for (const Prerequisite& file : PrerequisitesOf(instance)) {
-      files.push_back(kFolders.at(file.folder) + file.path);
-    }
-    std::set<std::string> stamps;
-    for (const auto& [argument, source] : instance.inputs) {
-      stamps.insert(Shared(source.instance, "done"));
-    }
-    files.insert(files.end(), stamps.begin(), stamps.end());
-    return files;
+  for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+    command += fmt::format(" --{} {}", output.argument, Shared(instance.Id(), output.file));
   }
+  return command;
+}
 
-  static std::string Command(const StageInstance& instance) {
-    std::string command = "soslam-" + instance.stage;
-    if (ReadsDataset(instance.stage)) command += " --dataset $(dataset)";
-    if (instance.stage == "ground") command += " --points $(dataset)/points.h5";
-    for (const auto& [argument, source] : instance.inputs) {
-      command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
-    }
-    if (!instance.semantic_table.empty()) {
-      command += " --table $(pipelines)/" + instance.semantic_table;
-    }
-    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
-      command += fmt::format(" --{} {}", output.argument, Shared(instance.Id(), output.file));
-    }
-    return command;
+std::string InstanceRules(const StageInstance& instance) {
+  std::vector<std::string> outputs;
+  for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+    outputs.push_back(Shared(instance.Id(), output.file));
   }
+  const std::string done = Shared(instance.Id(), "done");
+  return fmt::format(
+      "\n{done}: {prerequisites} $(call missing,{outputs})\n"
+      "\t$(call stage,{id} ({variants}),{command})\n"
+      "{outputs}: {done} ; +\n",
+      fmt::arg("done", done), fmt::arg("outputs", fmt::join(outputs, " ")),
+      fmt::arg("id", instance.Id()),
+      fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
+      fmt::arg("variants", fmt::join(instance.variants, " ")),
+      fmt::arg("command", Command(instance)));
+}
 
-  const Plan& plan_;
-  const std::string& dataset_;
-  const PlanFolders& folders_;
-};
+// Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their
+// instances.
+std::string UnitRules(const Plan& plan) {
+  const std::vector<WorkUnit> units = WorkUnitsOf(plan);
+  std::vector<std::string> names;
+  for (const WorkUnit& unit : units) names.push_back(unit.name);
+  std::string text =
+      fmt::format("\nunits := {}\n.PHONY: $(units) $(units:%=before-%)\n", fmt::join(names, " "));
+  for (const WorkUnit& unit : units) {
+    text += fmt::format(
+        "\nunit-{name} := {instances}\n"
+        "{name}: {stamps} {variants}\n"
+        "before-{name}: {needs}\n",
+        fmt::arg("name", unit.name), fmt::arg("instances", fmt::join(unit.instances, " ")),
+        fmt::arg("stamps", fmt::join(Stamps(unit.instances), " ")),
+        fmt::arg("variants", fmt::join(unit.variants, " ")),
+        fmt::arg("needs", fmt::join(Stamps(unit.needs), " ")));
+  }
+  return text;
+}
 
 }  // namespace
 
 std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders) {
-  return Writer(plan, dataset, folders).Write();
+  Ids names, imports;
+  for (const VariantChain& variant : plan.variants) names.push_back(variant.name);
+  for (const StageInstance& instance : plan.instances) {
+    if (instance.stage == "import") imports.push_back(instance.Id());
+  }
+  std::string text =
+      fmt::format(kPreamble, fmt::arg("pipelines", folders.pipelines.string()),
+                  fmt::arg("variants", fmt::join(names, " ")), fmt::arg("dataset", dataset),
+                  fmt::arg("imports", fmt::join(Stamps(imports), " ")),
+                  fmt::arg("results", folders.results.string()),
+                  fmt::arg("dataset_folder", folders.dataset.string()));
+  for (const VariantChain& variant : plan.variants) text += VariantRules(plan, variant);
+  for (const StageInstance& instance : plan.instances) text += InstanceRules(instance);
+  return text + UnitRules(plan);
 }
 
 PlanFolders ReadPlanFolders(const fs::path& makefile) {
