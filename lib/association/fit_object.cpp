@@ -233,8 +233,8 @@ NormalDensity DensityOf(const Innovation& innovation, const std::vector<int>& ed
   return {cost, std::sqrt(squared_distance)};
 }
 
-// Covariance (px^2) of the four outline edges that follows from the landmark's covariance and
-// drift. The box equals the outline, so the Jacobian of BoxTerm is that of the outline's edges.
+// Covariance (px^2) of the four outline edges that follows from the landmark's. The box equals the
+// outline, so the Jacobian of BoxTerm is that of the outline's edges.
 Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& camera,
                                   const FittedObject& object) {
   const auto edges = BoxEdges(camera, prediction.outline, {}, 1.0);
@@ -246,9 +246,7 @@ Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& ca
   for (size_t i = 0; i < edges.size(); ++i) {
     d_landmark.row(static_cast<Eigen::Index>(i)) *= edges[i].sigma_px;
   }
-  Covariance9 covariance = object.covariance;
-  covariance.block<3, 3>(3, 3) += prediction.drift_covariance;
-  return d_landmark * covariance * d_landmark.transpose();
+  return d_landmark * object.covariance * d_landmark.transpose();
 }
 
 bool IsOutOfReach(const Innovation& innovation) {
@@ -274,9 +272,10 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
   const auto outline = OutlineBox(camera, prediction.landmark_in_camera);
   if (!outline) return std::nullopt;
   prediction.outline = *outline;
-  prediction.drift_covariance =
+  FittedObject drifted = object;
+  drifted.covariance.block<3, 3>(3, 3) +=
       drift_.PointCovariance(known_frame_index, frame_index, object.landmark_in_world.Centre());
-  prediction.outline_covariance = OutlineCovariance(prediction, camera, object);
+  prediction.outline_covariance = OutlineCovariance(prediction, camera, drifted);
   return prediction;
 }
 

@@ -79,7 +79,6 @@ struct Prediction {
   Rigid3d camera_from_world;
   Landmark landmark_in_camera;
   Box outline;
-  Eigen::Matrix3d drift_covariance;  // of the landmark's centre, m^2, world axes
   // Covariance of the outward offsets of the edges (left, top, right, bottom), px^2.
   Eigen::Matrix4d outline_covariance;
 };
