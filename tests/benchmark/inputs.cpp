@@ -2,18 +2,16 @@
 #include "benchmark/inputs.h"
 
 #include <cmath>
-#include <filesystem>
 #include <opencv2/imgproc.hpp>
 
-#include "artefact/semantic_table_file.h"
 #include "base/parallel.h"
 #include "base/process.h"
-#include "dataset/import.h"
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "image/read_image.h"
+#include "initialisation/initialise.h"
 #include "support/scene.h"
 #include "synthesis/render.h"
+#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {
@@ -30,9 +28,7 @@ SceneObject Ellipsoid(int id, const Eigen::Vector2d& position, double yaw_deg,
   return object;
 }
 
-}  // namespace
-
-Scene ArcScene(int frames) {
+Scene ArcScene() {
   constexpr double kRadius = 4.0;  // metres
   constexpr double kCameraHeight = 2.0;
   Scene scene;
@@ -50,21 +46,23 @@ Scene ArcScene(int frames) {
     scene.trajectory.waypoints.push_back(
         {{-kRadius * std::cos(angle), -kRadius * std::sin(angle), kCameraHeight}, {0.0, 0.0, 0.2}});
   }
-  scene.trajectory.frames = frames;
+  scene.trajectory.frames = 12;
   scene.noise.box_edge_sigma = 0.02;
   scene.noise.odometry_translation_sigma = 0.005;
   scene.noise.odometry_rotation_sigma_deg = 0.1;
   return scene;
 }
 
+}  // namespace
+
 const Sequence& TwelveViews() {
-  static const Sequence sequence = SyntheticSequence(ArcScene(12), /*noise=*/true);
+  static const Sequence sequence = SyntheticSequence(ArcScene(), /*noise=*/true);
   return sequence;
 }
 
 const std::vector<std::shared_ptr<const FrameEdges>>& EdgesOfTwelveViews() {
   static const auto edges = [] {
-    const Scene scene = ArcScene(12);
+    const Scene scene = ArcScene();
     const std::vector<Frame>& frames = TwelveViews().frames;
     std::vector<std::shared_ptr<const FrameEdges>> result(frames.size());
     ParallelFor(static_cast<int>(frames.size()), ThisMachine().cores, [&](int i) {
@@ -134,20 +132,17 @@ double MeanIou(const Sequence& sequence, const std::vector<Landmark>& landmarks_
   return sum / static_cast<double>(landmarks_in_world.size());
 }
 
-const Sequence& RoomA() {
-  static const Sequence sequence =
-      ImportDataset(std::filesystem::path(SOSLAM_SOURCE_DIR) / "data/room_a", ImportOptions());
-  return sequence;
-}
-
-const SemanticTable& TableOfPriors() {
-  static const SemanticTable table = ReadSemanticTable(std::filesystem::path(SOSLAM_SOURCE_DIR) /
-                                                       "pipelines/priors/semantic_table.json");
-  return table;
-}
-
-cv::Mat RoomAImage() {
-  return ReadGreyImage(std::filesystem::path(SOSLAM_SOURCE_DIR) / "data/room_a/rgb/000000.jpg");
+OneObject::OneObject(const Sequence& all, size_t object_index, size_t textures)
+    : sequence(OnlyObject(all, object_index)), input{sequence, {}, TruePriors(sequence), {}, {}} {
+  const Sequence first = FirstObservations(sequence);
+  const auto estimates = InitialiseUpright(first, input.priors, UprightOptions(), /*threads=*/1);
+  input.initial_landmarks = {FacingCamera(first, estimates.observations.front())};
+  for (const int index : SpreadOver(DetectionsByObject(sequence).front(), textures)) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const auto& edges = EdgesOfTwelveViews()[static_cast<size_t>(detection.frame_index)];
+    input.symmetry_images[index] =
+        std::make_shared<const SymmetryImage>(edges->maps, detection.box);
+  }
 }
 
 }  // namespace soslam

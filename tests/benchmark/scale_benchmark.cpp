@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "benchmark/back_end_input.h"
+#include "benchmark/inputs.h"
 #include "support/drive.h"
 
 namespace soslam {

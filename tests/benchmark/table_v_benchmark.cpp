@@ -8,10 +8,8 @@
 #include <memory>
 #include <numbers>
 
-#include "benchmark/back_end_input.h"
 #include "benchmark/inputs.h"
 #include "benchmark/paper_baseline.h"
-#include "benchmark/texture_settings.h"
 #include "initialisation/initialise.h"
 #include "orientation/refine_orientation.h"
 

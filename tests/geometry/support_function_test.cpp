@@ -98,19 +98,6 @@ TEST(SupportFunction, TheContactReachesAsFarAsTheExtentInAnyDirection) {
   }
 }
 
-TEST(SupportFunction, IsHomogeneousEvenAndConvex) {
-  for (size_t i = 0; i < kCases; ++i) {
-    const RandomCase random(i);
-    const auto& [p, half_axes, direction] = random;
-    const double extent = Extent(half_axes, p, direction);
-    EXPECT_NEAR(Extent(half_axes, p, 7.0 * direction), 7.0 * extent, 1e-12);
-    EXPECT_NEAR(Extent(half_axes, p, -direction), extent, 1e-12);
-    const Eigen::Vector3d other = RandomVector(-1, 1);
-    EXPECT_LE(Extent(half_axes, p, direction + other),
-              extent + Extent(half_axes, p, other) + 1e-12);
-  }
-}
-
 TEST(SupportFunction, TouchesTheCuboidAtItsCorners) {
   for (size_t i = 0; i < kCases; ++i) {
     RandomCase random(i);

@@ -45,19 +45,6 @@ TEST(EdgeMapsTest, EdgesLieOnTheOutlineOfARectangle) {
   EXPECT_LT(cv::countNonZero(maps.edges), 130);
 }
 
-TEST(EdgeMapsTest, DistanceAndNearestEdgeAgreeExactly) {
-  const EdgeMaps maps = ComputeEdgeMaps(Rectangle(), {});
-  for (int y = 0; y < 48; ++y) {
-    for (int x = 0; x < 64; ++x) {
-      const auto nearest = maps.nearest_edge.at<cv::Vec2s>(y, x);
-      ASSERT_EQ(maps.edges.at<uchar>(nearest[1], nearest[0]), 255);
-      ASSERT_EQ(maps.distance.at<float>(y, x),
-                static_cast<float>(std::hypot(nearest[0] - x, nearest[1] - y)));
-      ASSERT_EQ(maps.edges.at<uchar>(y, x) == 255, maps.distance.at<float>(y, x) == 0.0F);
-    }
-  }
-}
-
 TEST(EdgeMapsTest, CornersAreTheRectanglesCorners) {
   const EdgeMaps maps = ComputeEdgeMaps(Rectangle(), {});
   ASSERT_EQ(maps.corners.size(), 4U);
@@ -178,17 +165,6 @@ TEST(NearestEdgeTest, OfTwoEquallyNearTheLeftThenTheUpperWins) {
   cv::Mat edges = cv::Mat::zeros(3, 3, CV_8UC1);
   for (const auto& [x, y] : {std::pair(0, 0), {2, 0}, {0, 2}, {2, 2}}) edges.at<uchar>(y, x) = 255;
   EXPECT_EQ(NearestEdgeMap(edges).at<cv::Vec2s>(1, 1), cv::Vec2s(0, 0));
-}
-
-TEST(NearestEdgeTest, WithoutEdges) {
-  const cv::Mat nearest_edge = NearestEdgeMap(cv::Mat::zeros(5, 4, CV_8UC1));
-  const cv::Mat distance = DistanceMap(nearest_edge);
-  for (int y = 0; y < 5; ++y) {
-    for (int x = 0; x < 4; ++x) {
-      EXPECT_EQ(nearest_edge.at<cv::Vec2s>(y, x), cv::Vec2s(-1, -1));
-      EXPECT_EQ(distance.at<float>(y, x), std::numeric_limits<float>::infinity());
-    }
-  }
 }
 
 constexpr double kMinLength = 40.0;

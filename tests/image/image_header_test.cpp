@@ -34,19 +34,6 @@ TEST_F(ImageHeaderTest, SizesOfAllFormats) {
   ExpectHeader(EncodedImage(".webp", kImage, {cv::IMWRITE_WEBP_QUALITY, 50}), 1);  // with loss
 }
 
-TEST_F(ImageHeaderTest, OrientationInBothByteOrders) {
-  for (const ByteOrder order : {ByteOrder::kLittleEndian, ByteOrder::kBigEndian}) {
-    for (int orientation = 1; orientation <= 8; ++orientation) {
-      const std::string exif = ExifOf(orientation, order);
-      ExpectHeader(JpegWithExif(EncodedImage(".jpg", kImage), exif), orientation);
-      ExpectHeader(PngWithExif(EncodedImage(".png", kImage), exif, false), orientation);
-      ExpectHeader(PngWithExif(EncodedImage(".png", kImage), exif, true), orientation);
-      ExpectHeader(WebpWithExif(EncodedImage(".webp", kImage), kImage.size(), exif), orientation);
-      ExpectHeader(GreyTiff(kImage, orientation, order), orientation);
-    }
-  }
-}
-
 TEST_F(ImageHeaderTest, ExifMayComeAfterOtherSegments) {
   const std::string jpeg = JpegWithExif(EncodedImage(".jpg", kImage), ExifOf(6));
   const std::string xmp = JpegSegment('\xe1', std::string("http://ns.adobe.com/xap/1.0/\0", 29));

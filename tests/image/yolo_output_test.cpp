@@ -26,6 +26,12 @@ std::vector<YoloDetection> Read(const cv::Mat& output, YoloLayout layout, double
   return ReadYoloOutput(output, Format(layout), min_score, "net.onnx");
 }
 
+template <typename Error = InputError>
+void ExpectRefused(YoloLayout layout, const std::vector<int>& shape,
+                   const std::vector<float>& values, const std::vector<std::string>& words) {
+  ExpectError<Error>([&] { Read(Output(shape, values), layout); }, words);
+}
+
 void ExpectScored(const YoloDetection& box, int class_index, double score, const Box& expected) {
   EXPECT_EQ(box.class_index, class_index);
   EXPECT_NEAR(box.score, score, 1e-6);
@@ -79,12 +85,8 @@ TEST(YoloOutputTest, ColumnsAfterTheClassesAreIgnored) {
 TEST(YoloOutputTest, ImpossibleCandidatesAreRefused) {
   const auto expect_refused = [](YoloLayout layout, const std::vector<float>& row,
                                  const std::string& word) {
-    const int fields = static_cast<int>(row.size());
-    ExpectError<InputError>(
-        [&] {
-          Read(Output({1, 1, fields}, row), layout);
-        },
-        {"net.onnx", "candidate 0", word, "rgb_0_1", "64 x 32", "layout"});
+    ExpectRefused(layout, {1, 1, static_cast<int>(row.size())}, row,
+                  {"net.onnx", "candidate 0", word, "rgb_0_1", "64 x 32", "layout"});
   };
   expect_refused(YoloLayout::kV5, {30, 20, -8, 10, 1, 1, 0}, "-8 x 10 pixels");
   expect_refused(YoloLayout::kV5, {30, 20, 8, -10, 1, 1, 0}, "8 x -10 pixels");
@@ -115,22 +117,16 @@ TEST(YoloOutputTest, YoloxHasBoxesInCellsOfItsGrids) {
 TEST(YoloOutputTest, YoloxOfAnotherInputIsRefused) {
   for (const int candidates : {41, 43}) {
     const std::vector<float> zeros(static_cast<size_t>(candidates) * 7, 0.0F);
-    ExpectError<InputError>(
-        [&] {
-          Read(Output({1, candidates, 7}, zeros), YoloLayout::kYolox);
-        },
-        {"net.onnx", fmt::format("{} candidates; expected 42", candidates), "64 x 32"});
+    ExpectRefused(YoloLayout::kYolox, {1, candidates, 7}, zeros,
+                  {"net.onnx", fmt::format("{} candidates; expected 42", candidates), "64 x 32"});
   }
 }
 
 TEST(YoloOutputTest, BoxesInCellsAreNotTakenForPixels) {
   std::vector<float> values(42 * 7, 1.0F);
   values[3] = 7.5F;
-  ExpectError<InputError>(
-      [&] {
-        Read(Output({1, 42, 7}, values), YoloLayout::kV5);
-      },
-      {"net.onnx", "7.50; expected pixels", "output_layout = yolox"});
+  ExpectRefused(YoloLayout::kV5, {1, 42, 7}, values,
+                {"net.onnx", "7.50; expected pixels", "output_layout = yolox"});
   values[3] = 8.0F;
   EXPECT_EQ(Read(Output({1, 42, 7}, values), YoloLayout::kV5).size(), 42u);
 }
@@ -138,11 +134,8 @@ TEST(YoloOutputTest, BoxesInCellsAreNotTakenForPixels) {
 TEST(YoloOutputTest, BoxesInPixelsAreNotTakenForCells) {
   std::vector<float> values(42 * 7, 0.5F);
   values[2] = 30.0F;
-  ExpectError<InputError>(
-      [&] {
-        Read(Output({1, 42, 7}, values), YoloLayout::kYolox);
-      },
-      {"net.onnx", "30.00; expected logarithms", "output_layout = v5"});
+  ExpectRefused(YoloLayout::kYolox, {1, 42, 7}, values,
+                {"net.onnx", "30.00; expected logarithms", "output_layout = v5"});
 }
 
 TEST(YoloOutputTest, ScoreAtTheThresholdIsKept) {
@@ -156,29 +149,19 @@ TEST(YoloOutputTest, OtherShapesAreRefused) {
   const std::vector<std::vector<int>> wrong_for_v5 = {{1, 6, 30}, {1, 30, 6}, {1, 30, 8},
                                                       {2, 30, 7}, {30, 7},    {1, 1, 30, 7}};
   for (const auto& shape : wrong_for_v5) {
-    ExpectError<InputError>([&] { Read(Output(shape, zeros), YoloLayout::kV5); },
-                            {"net.onnx", fmt::format("[{}]", fmt::join(shape, ", ")),
-                             "[1, N, 7] of layout v5 with 2 classes"});
+    ExpectRefused(YoloLayout::kV5, shape, zeros,
+                  {"net.onnx", fmt::format("[{}]", fmt::join(shape, ", ")),
+                   "[1, N, 7] of layout v5 with 2 classes"});
   }
-  ExpectError<InputError>(
-      [&] {
-        Read(Output({1, 30, 7}, zeros), YoloLayout::kV8);
-      },
-      {"[1, 30, 7]", "[1, 6, N] of layout v8"});
+  ExpectRefused(YoloLayout::kV8, {1, 30, 7}, zeros, {"[1, 30, 7]", "[1, 6, N] of layout v8"});
 }
 
 TEST(YoloOutputTest, NumbersThatAreNotFiniteAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  ExpectError<NumericalError>(
-      [&] {
-        Read(Output({1, 1, 7}, {5, nan, 2, 2, 1, 1, 0}), YoloLayout::kV5);
-      },
-      {"net.onnx", "candidate 0"});
-  ExpectError<NumericalError>(
-      [&] {
-        Read(Output({1, 1, 7}, {5, 5, 2, 2, nan, 1, 0}), YoloLayout::kV5);
-      },
-      {"net.onnx", "candidate 0"});
+  for (const std::vector<float>& row :
+       {std::vector<float>{5, nan, 2, 2, 1, 1, 0}, std::vector<float>{5, 5, 2, 2, nan, 1, 0}}) {
+    ExpectRefused<NumericalError>(YoloLayout::kV5, {1, 1, 7}, row, {"net.onnx", "candidate 0"});
+  }
 }
 
 // Boxes of 10 x 10: shifted by 2 the IoU is 80 / 120, by 5 it is 50 / 150.

@@ -7,7 +7,6 @@
 #include <limits>
 #include <memory>
 
-#include "base/levenberg_marquardt.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/upright.h"
 #include "support/landmark_terms.h"
@@ -71,44 +70,6 @@ TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
 }
 
 // From starts as the sweep over yaw has them, one run of the solver is enough.
-// (x - 1)^2 / 2 of a landmark's first coordinate; with kinks or, as it says, without.
-class Distance final : public LandmarkCost {
- public:
-  explicit Distance(bool has_kinks) : has_kinks_(has_kinks) {}
-  double Value(const Landmark& landmark) const override {
-    return 0.5 * std::pow(landmark.Centre().x() - 1.0, 2);
-  }
-  void AddTo(const Landmark& landmark, LandmarkModel* sum) const override {
-    sum->cost += Value(landmark);
-    sum->gradient[3] += landmark.Centre().x() - 1.0;
-    sum->information(3, 3) += 1.0;
-  }
-  bool HasKinks() const override { return has_kinks_; }
-
- private:
-  bool has_kinks_;
-};
-
-TEST(FitUpright, EndsEarlierWhereACostHasKinks) {
-  LandmarkCosts costs;
-  costs.push_back(std::make_unique<Distance>(false));
-  EXPECT_EQ(NegligibleDecrease(costs), kNegligibleDecrease);
-  costs.push_back(std::make_unique<ViewCost>(std::make_unique<Distance>(true), Rigid3d(), 1.0));
-  EXPECT_EQ(NegligibleDecrease(costs), kNegligibleDecreaseAtKinks);
-
-  const Plane plane;
-  Landmark start;
-  start.half_axes = {0.2, 0.3, 0.4};
-  start.frame_from_object.translation = {1.0 + 1e-4, 0.0, 0.4};  // costs 5e-9
-  const auto fitted_x = [&](bool has_kinks) {
-    LandmarkCosts distance;
-    distance.push_back(std::make_unique<Distance>(has_kinks));
-    return FitUpright(plane, start, distance, /*yaw_is_free=*/false)->landmark.Centre().x();
-  };
-  EXPECT_NEAR(fitted_x(false), 1.0, 1e-5);
-  EXPECT_EQ(fitted_x(true), start.Centre().x());
-}
-
 TEST(FitUpright, GainsNothingWhenItIsRunAgain) {
   constexpr int kBodies = 300;
   int unfinished = 0;

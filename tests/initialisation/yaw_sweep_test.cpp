@@ -20,38 +20,33 @@
 namespace soslam {
 namespace {
 
-using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-TEST(CircularMinima, GoRoundTheEnds) {
-  EXPECT_THAT(CircularMinima({0, 1, 2, 1}), ElementsAre(0));
-  EXPECT_THAT(CircularMinima({1, 2, 1, 0}), ElementsAre(3));
-  EXPECT_THAT(CircularMinima({1, 0, 1, 2, 3, 2}), ElementsAre(1));
-  EXPECT_THAT(CircularMinima({2, 5, 1, 5}), ElementsAre(2, 0));
-}
-
-TEST(CircularMinima, OfPlateausAreTheirFirstIndices) {
-  EXPECT_THAT(CircularMinima({3, 1, 1, 1, 3, 2}), ElementsAre(1, 5));
-  EXPECT_THAT(CircularMinima({1, 1, 2, 3, 1}), ElementsAre(4));  // goes round the end
-  EXPECT_THAT(CircularMinima({1, 2, 3, 1, 1}), ElementsAre(3));
-  EXPECT_THAT(CircularMinima({1, 2, 2, 3, 2, 2}), ElementsAre(0));  // steps on the way are none
-  EXPECT_THAT(CircularMinima({1, 1, 5, 1, 5}), ElementsAre(0, 3));  // equal ones in their order
-}
-
-TEST(CircularMinima, OfAConstantIsTheFirstIndex) {
-  EXPECT_THAT(CircularMinima({4}), ElementsAre(0));
-  EXPECT_THAT(CircularMinima({4, 4, 4, 4}), ElementsAre(0));
-  EXPECT_THAT(CircularMinima({}), IsEmpty());
-}
-
-TEST(CircularMinima, CountNaNAsHigh) {
-  EXPECT_THAT(CircularMinima({kNaN, kNaN}), IsEmpty());
-  EXPECT_THAT(CircularMinima({kNaN, 2, kNaN, 1, 3}), ElementsAre(3, 1));
-  EXPECT_THAT(CircularMinima({2, 2, kNaN}), ElementsAre(0));
-  EXPECT_THAT(CircularMinima({2, kNaN, 2}), ElementsAre(2));
-  EXPECT_THAT(CircularMinima({kNaN, 3, 2, kNaN, 2, 1}), ElementsAre(5, 2));
+TEST(CircularMinima, AreSortedAndOfPlateausTheFirstIndices) {
+  const struct {
+    std::vector<double> values;
+    std::vector<size_t> minima;
+  } cases[] = {
+      {{0, 1, 2, 1}, {0}},
+      {{1, 2, 1, 0}, {3}},
+      {{1, 0, 1, 2, 3, 2}, {1}},
+      {{2, 5, 1, 5}, {2, 0}},
+      {{3, 1, 1, 1, 3, 2}, {1, 5}},
+      {{1, 1, 2, 3, 1}, {4}},  // goes round the end
+      {{1, 2, 3, 1, 1}, {3}},
+      {{1, 2, 2, 3, 2, 2}, {0}},  // steps on the way are none
+      {{1, 1, 5, 1, 5}, {0, 3}},  // equal ones in their order
+      {{4, 4, 4, 4}, {0}},        // a constant
+      {{}, {}},
+      {{kNaN, kNaN}, {}},  // counts as high
+      {{kNaN, 2, kNaN, 1, 3}, {3, 1}},
+      {{2, 2, kNaN}, {0}},
+      {{2, kNaN, 2}, {2}},
+      {{kNaN, 3, 2, kNaN, 2, 1}, {5, 2}},
+  };
+  for (const auto& one : cases) EXPECT_EQ(CircularMinima(one.values), one.minima);
 }
 
 constexpr double kStep = 3.0 * kRadPerDeg;
@@ -117,18 +112,6 @@ TEST(SweepYaw, IsEmptyWhereThePlaneIsNotInView) {
   EXPECT_THAT(LocalOptima(body.observation, {}, sweep, /*max_count=*/1000), IsEmpty());
 }
 
-TEST(SweepYaw, RepeatsItsFitsWithNoFurtherCostsAsWell) {
-  const StandingBody body(1.5);
-  const UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
-  YawObjective several;
-  several.rounds = 3;
-  YawObjective several_of_none = several;
-  several_of_none.further_costs = [](const Landmark&) { return LandmarkCosts(); };
-  const auto costs = SweepYaw(observation, several, kStep).Costs();
-  EXPECT_EQ(costs, SweepYaw(observation, several_of_none, kStep).Costs());
-  EXPECT_NE(costs, SweepYaw(observation, {}, kStep).Costs());
-}
-
 // Terms of the start, and again those of the result.
 TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
   constexpr double kFitted = 1e-6;  // fits end where a step lowers the cost by less than 1e-11
@@ -168,31 +151,6 @@ TEST(SceneAxisInCamera, IsThatOfTheObjectsPlane) {
   sequence.planes.front().scene_axis_in_world = axis;
   const Eigen::Vector3d in_camera = SceneAxisInCamera(sequence, detection).value();
   EXPECT_LT((sequence.frames.front().world_from_camera.rotation * in_camera - axis).norm(), 1e-12);
-}
-
-TEST(MakeUprightObservation, IsWhatTheSequenceAndTheOptionsSay) {
-  Sequence sequence = LevelSequence({{300, 250, 400, 300}});
-  sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
-  sequence.planes.front().scene_axis_in_world = Eigen::Vector3d::UnitY();
-  Detection& detection = sequence.detections.front();
-  detection.is_bound = {false, true, false, false};
-  UprightOptions options;
-  options.detection_sigma_fraction = 0.1;
-  options.axes_weight = 2.5;
-  const ShapePrior prior{{0.5, 0.7}, {0.1, 0.2}, 1.3};
-  const UprightObservation observation =
-      MakeUprightObservation(sequence, detection, prior, options);
-  EXPECT_EQ(observation.camera.fx, 500.0);
-  EXPECT_EQ(observation.plane_in_camera.normal, -Eigen::Vector3d::UnitY());
-  EXPECT_EQ(observation.prior.ratio, prior.ratio);
-  EXPECT_EQ(observation.prior.log_sigma, prior.log_sigma);
-  EXPECT_EQ(observation.prior.shape_exponent, 1.3);
-  EXPECT_EQ(observation.axes_weight, 2.5);
-  EXPECT_EQ(observation.scene_axis_in_camera, SceneAxisInCamera(sequence, detection));
-  for (size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(observation.edges[i].is_bound, i == 1);
-    EXPECT_DOUBLE_EQ(observation.edges[i].sigma_px, i % 2 == 0 ? 10.0 : 5.0);
-  }
 }
 
 // A sweep whose costs are a function of the yaw.

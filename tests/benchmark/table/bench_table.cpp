@@ -162,34 +162,11 @@ Table PipelineTable(const Medians& medians) {
   return table;
 }
 
-// Name of a row; its time is per frame if a benchmark runs through several frames.
-Cell PartName(const std::string& part, const nlohmann::json& median) {
-  return median.contains("seconds_per_frame") ? part + ", per frame" : part;
-}
-
-double PartSeconds(const nlohmann::json& median) {
-  return median.contains("seconds_per_frame") ? median.at("seconds_per_frame").get<double>()
-                                              : Seconds(median);
-}
-
-// All others; what is PART/ours..., beside PART/opencv.
-Table PartsTable(const Medians& medians) {
-  Table table{"parts", "Parts", {"", "time", "OpenCV", "of OpenCV's"}, {}, 1, {}};
+Table SlamTable(const Medians& medians) {
+  Table table{"slam_synthetic", "SLAM problems", {"", "time"}, {}, 1, {}};
   for (const auto& [name, median] : medians) {
-    const bool is_elsewhere = name.rfind("table_v/", 0) == 0 || name.rfind("scale/", 0) == 0 ||
-                              name.rfind("pipeline/", 0) == 0;
-    if (is_elsewhere || name.ends_with("/opencv")) continue;
-    const size_t ours = name.find("/ours");
-    const std::string part = name.substr(0, ours);
-    const double seconds = PartSeconds(median);
-    std::vector<Cell> row = {PartName(name.ends_with("/ours") ? part : name, median),
-                             Duration(seconds), kNoValue, kNoValue};
-    const auto opencv = medians.find(part + "/opencv");
-    if (ours != std::string::npos && opencv != medians.end()) {
-      row[2] = Duration(Seconds(opencv->second));
-      row[3] = fmt::format("{:.2f} x", seconds / Seconds(opencv->second));
-    }
-    table.rows.push_back(row);
+    if (!name.starts_with("slam_synthetic/")) continue;
+    table.rows.push_back({name, Duration(Seconds(median))});
   }
   return table;
 }
@@ -203,7 +180,7 @@ void Print(const std::string& path, const std::string& published_path) {
              context.value("cpu", "unknown"), context.at("num_cpus").get<int>(),
              context.at("load_avg").empty() ? 0.0 : context.at("load_avg").at(0).get<double>());
   for (const Table& table : {TableV(medians, published_times), ScaleTable(medians),
-                             PipelineTable(medians), PartsTable(medians)}) {
+                             PipelineTable(medians), SlamTable(medians)}) {
     if (!table.rows.empty()) fmt::print("{}\n", ToMarkdown(table));
   }
 }
