@@ -52,24 +52,11 @@ Similarity NormalisedFromInput(const Sequence& sequence, const std::vector<Groun
   return {scale, {inverse.rotation, scale * inverse.translation}};
 }
 
-// Rotations about the axes of UprightRotation(up, 0) move up by these columns.
-Eigen::Matrix<double, 3, 2> TurnsOf(const Eigen::Vector3d& up) {
-  const Eigen::Matrix3d level = UprightRotation(up, 0.0).toRotationMatrix();
-  Eigen::Matrix<double, 3, 2> d_turns;
-  d_turns << -level.col(1), level.col(0);
-  return d_turns;
-}
-
-Eigen::Matrix2d TiltCovariance(const UpPrior& attitude) {
-  const Eigen::Matrix<double, 3, 2> d_turns = TurnsOf(attitude.up_in_world);
-  return (d_turns.transpose() * attitude.information * d_turns).inverse();
-}
-
 // The attitude with an error that all cameras and edges share: edges that are taken for vertical
 // need not be.
 UpPrior WithCommonError(const UpPrior& attitude) {
   constexpr double kCommonError = 1.0 * kRadPerDeg;
-  const Eigen::Matrix<double, 3, 2> d_turns = TurnsOf(attitude.up_in_world);
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(attitude.up_in_world);
   Eigen::Matrix2d covariance = TiltCovariance(attitude);
   covariance.diagonal().array() += kCommonError * kCommonError;
   return {d_turns * covariance.inverse() * d_turns.transpose(), attitude.up_in_world};
@@ -125,14 +112,14 @@ class Estimation {
 
  private:
   void Run() {
-    planes = FindHorizontalPlanes(points_, attitude, 1.0);
+    planes = FindHorizontalPlanes(points_, attitude);
     CheckVerticals();
     planes_of_points = static_cast<int>(planes.planes.size());
     if (planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
     const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
     Measure(groups);
     if (DropPlanesWithoutObjects()) {
-      planes = Refined(planes, points_, attitude, 1.0);
+      planes = Refined(planes, points_, attitude);
       Measure(groups);
     }
   }
@@ -163,7 +150,7 @@ class Estimation {
     constexpr double kSameUp = 3.0 * kRadPerDeg;
     constexpr double kShare = 0.1;  // as many fewer points make a direction e times less probable
     if (!uses_verticals || std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly) return;
-    HorizontalPlanes other = FindHorizontalPlanes(points_, without_verticals, 1.0);
+    HorizontalPlanes other = FindHorizontalPlanes(points_, without_verticals);
     const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
     if (angle < kSameUp || other.planes.empty()) return;
     const double points = planes.PointCount(), other_points = other.PointCount();
@@ -402,7 +389,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
   Sequence result = Transformed(estimate.output_from_input, sequence);
   result.odometry_world = OdometryWorld::kOwnWithScale;
-  const Eigen::Matrix<double, 3, 2> d_turns = TurnsOf(Eigen::Vector3d::UnitZ());
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(Eigen::Vector3d::UnitZ());
   for (const EstimatedPlane& plane : estimate.planes) {
     const Eigen::Matrix2d information = plane.covariance->topLeftCorner<2, 2>().inverse();
     result.planes.push_back(

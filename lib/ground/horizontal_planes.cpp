@@ -16,13 +16,11 @@
 namespace soslam {
 namespace {
 
-// Lengths are fractions of the unit, the typical distance of the points.
+// Lengths have the typical distance of the points from the cameras as their unit.
 constexpr double kMaxPointSigma = 0.01;  // of points that are used
 constexpr double kRoughness = 0.0015;    // deviation of surfaces from planes
 constexpr double kBin = 0.008;           // of the search over up
 constexpr double kTiltStep = 1.0 * kRadPerDeg;
-constexpr double kMaxTilt = 45.0 * kRadPerDeg;
-constexpr double kMaxSigmas = 2.5;  // of the attitude
 constexpr double kBetweenStarts = 1.2 * kTiltStep;
 constexpr size_t kStarts = 16;  // directions that are refined
 constexpr double kBound = 3.0;  // inliers, standard deviations
@@ -35,32 +33,27 @@ constexpr double kLyingThings = 0.2 * kRadPerDeg;  // error of a tilt by flat th
 constexpr double kCommonHeight = 0.002;            // error of a height that all points share
 constexpr size_t kSectors = 8;                     // parts of the planes whose scatter is measured
 
-struct WeightedPoint {
-  Eigen::Vector3d position;
-  Eigen::Matrix3d covariance;
-};
-
 // Standard deviation of a point's height.
-double Sigma(const WeightedPoint& point, const Eigen::Vector3d& up, double unit) {
-  return std::hypot(std::sqrt(up.dot(point.covariance * up)), kRoughness * unit);
+double Sigma(const GroundPoint& point, const Eigen::Vector3d& up) {
+  return std::hypot(std::sqrt(up.dot(point.covariance * up)), kRoughness);
 }
 
-std::vector<WeightedPoint> UsablePoints(const std::vector<GroundPoint>& points,
-                                        const Eigen::Vector3d& up, double unit) {
-  std::vector<WeightedPoint> usable;
+std::vector<GroundPoint> UsablePoints(const std::vector<GroundPoint>& points,
+                                      const Eigen::Vector3d& up) {
+  std::vector<GroundPoint> usable;
   for (const GroundPoint& point : points) {
-    if (up.dot(point.covariance * up) > std::pow(kMaxPointSigma * unit, 2.0)) continue;
-    usable.push_back({point.position_in_world, point.covariance});
+    if (up.dot(point.covariance * up) > kMaxPointSigma * kMaxPointSigma) continue;
+    usable.push_back(point);
   }
   return usable;
 }
 
 // Number of pairs of points at the same height.
-double Sharpness(const std::vector<WeightedPoint>& points, const Eigen::Vector3d& up, double unit) {
+double Sharpness(const std::vector<GroundPoint>& points, const Eigen::Vector3d& up) {
   constexpr double kReach = 10.0;  // farther points are in the outermost bins
   std::vector<double> bins(static_cast<size_t>(2.0 * kReach / kBin) + 2);
-  for (const WeightedPoint& point : points) {
-    const double height = std::clamp(up.dot(point.position) / unit, -kReach, kReach);
+  for (const GroundPoint& point : points) {
+    const double height = std::clamp(up.dot(point.position_in_world), -kReach, kReach);
     const double position = (height + kReach) / kBin;
     const auto bin = static_cast<size_t>(position);
     const double share = position - std::floor(position);
@@ -73,32 +66,16 @@ double Sharpness(const std::vector<WeightedPoint>& points, const Eigen::Vector3d
 }
 
 // Directions that the attitude allows, sharpest first.
-std::vector<Eigen::Vector3d> Starts(const std::vector<WeightedPoint>& points,
-                                    const UpPrior& attitude, double unit) {
-  const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
+std::vector<Eigen::Vector3d> Starts(const std::vector<GroundPoint>& points,
+                                    const UpPrior& attitude) {
   const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
-  const int steps = static_cast<int>(kMaxTilt / kTiltStep);
-  std::vector<std::pair<double, Eigen::Vector3d>> directions;
-  for (int i = -steps; i <= steps; ++i) {
-    for (int k = -steps; k <= steps; ++k) {
-      const Eigen::Vector3d turn(i * kTiltStep, k * kTiltStep, 0.0);
-      const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
-      const double cost = up.dot(attitude.information * up) - lowest;
-      if (turn.norm() > kMaxTilt || cost > kMaxSigmas * kMaxSigmas) continue;
-      directions.emplace_back(Sharpness(points, up, unit) * std::exp(-0.25 * cost), up);
-    }
+  const std::vector<Eigen::Vector3d> directions = UpDirections(attitude, kTiltStep);
+  std::vector<double> costs;
+  for (const Eigen::Vector3d& up : directions) {
+    const double cost = up.dot(attitude.information * up) - lowest;
+    costs.push_back(-Sharpness(points, up) * std::exp(-0.25 * cost));
   }
-  std::ranges::stable_sort(
-      directions, [](const auto& one, const auto& other) { return one.first > other.first; });
-  std::vector<Eigen::Vector3d> starts;
-  for (const auto& [sharpness, up] : directions) {
-    const bool is_apart = std::ranges::all_of(starts, [&, &up = up](const Eigen::Vector3d& other) {
-      return AngleBetween(up, other) > kBetweenStarts;
-    });
-    if (is_apart) starts.push_back(up);
-    if (starts.size() == kStarts) break;
-  }
-  return starts;
+  return LowestApart(directions, costs, kBetweenStarts, kStarts);
 }
 
 struct HeightReading {
@@ -134,11 +111,10 @@ double DensestHeight(const std::vector<HeightReading>& readings) {
 }
 
 // Heights at which points lie much denser than around, most points first.
-std::vector<double> PeakHeights(const std::vector<WeightedPoint>& points, const Eigen::Vector3d& up,
-                                double unit) {
+std::vector<double> PeakHeights(const std::vector<GroundPoint>& points, const Eigen::Vector3d& up) {
   std::vector<HeightReading> all;
-  for (const WeightedPoint& point : points) {
-    all.push_back({up.dot(point.position), Sigma(point, up, unit)});
+  for (const GroundPoint& point : points) {
+    all.push_back({up.dot(point.position_in_world), Sigma(point, up)});
   }
   std::vector<HeightReading> readings = all;
   const double least = std::max(kLeastOnPlane, kLeastShare * static_cast<double>(points.size()));
@@ -166,11 +142,11 @@ struct Fit {
 };
 
 // The plane of a point, or none where it is off all of them.
-std::optional<size_t> PlaneOfPoint(const Fit& fit, const WeightedPoint& point, double sigma) {
+std::optional<size_t> PlaneOfPoint(const Fit& fit, const GroundPoint& point, double sigma) {
   std::optional<size_t> best;
   double nearest = kBound * sigma;
   for (size_t k = 0; k < fit.heights.size(); ++k) {
-    const double distance = std::abs(fit.up.dot(point.position) - fit.heights[k]);
+    const double distance = std::abs(fit.up.dot(point.position_in_world) - fit.heights[k]);
     if (distance >= nearest) continue;
     nearest = distance;
     best = k;
@@ -179,37 +155,30 @@ std::optional<size_t> PlaneOfPoint(const Fit& fit, const WeightedPoint& point, d
 }
 
 // One step of reweighted least squares.
-void Step(const std::vector<WeightedPoint>& points, const UpPrior& attitude, double unit,
-          Fit* fit) {
+void Step(const std::vector<GroundPoint>& points, const UpPrior& attitude, Fit* fit) {
   const auto count = static_cast<Eigen::Index>(2 + fit->heights.size());
-  const Eigen::Matrix3d level = UprightRotation(fit->up, 0.0).toRotationMatrix();
-  const Eigen::Vector3d x = level.col(0), y = level.col(1);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(count);
-  // Turns about x and y move up by -y and x.
-  Eigen::Matrix<double, 3, 2> d_turns;
-  d_turns << -y, x;
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(fit->up);
   information.topLeftCorner<2, 2>() = d_turns.transpose() * attitude.information * d_turns;
   gradient.head<2>() = d_turns.transpose() * attitude.information * fit->up;
   const GemanMcClureLoss loss(kBound);
   fit->gain = -0.5 * fit->up.dot(attitude.information * fit->up);
-  for (const WeightedPoint& point : points) {
-    const double sigma = Sigma(point, fit->up, unit);
+  for (const GroundPoint& point : points) {
+    const double sigma = Sigma(point, fit->up);
     const auto plane = PlaneOfPoint(*fit, point, sigma);
     if (!plane) continue;
-    const double residual = (fit->up.dot(point.position) - fit->heights[*plane]) / sigma;
+    const double residual = (fit->up.dot(point.position_in_world) - fit->heights[*plane]) / sigma;
     const double weight = EvaluateLoss(loss, residual).weight;
     // The row of the Jacobian, which is zero for the other planes.
     Eigen::Vector3d row;
-    row << d_turns.transpose() * point.position / sigma, -1.0 / sigma;
+    row << d_turns.transpose() * point.position_in_world / sigma, -1.0 / sigma;
     const std::array<Eigen::Index, 3> at = {0, 1, static_cast<Eigen::Index>(2 + *plane)};
-    for (int i = 0; i < 3; ++i) {
-      gradient(at[i]) += weight * residual * row(i);
-      for (int k = 0; k < 3; ++k) information(at[i], at[k]) += weight * row(i) * row(k);
-    }
+    gradient(at) += weight * residual * row;
+    information(at, at) += weight * row * row.transpose();
     fit->gain += 0.5 * (kBound * kBound - residual * residual);
   }
-  information.diagonal().tail(count - 2).array() += 1e-9 / (unit * unit);
+  information.diagonal().tail(count - 2).array() += 1e-9;
   const Eigen::LDLT<Eigen::MatrixXd> solver(information);
   const Eigen::VectorXd change = -solver.solve(gradient);
   fit->up = (fit->up + d_turns * change.head<2>()).normalized();
@@ -219,28 +188,28 @@ void Step(const std::vector<WeightedPoint>& points, const UpPrior& attitude, dou
   fit->covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
 }
 
-Fit FitPlanes(const std::vector<WeightedPoint>& points, const UpPrior& attitude, double unit,
-              Eigen::Vector3d up, std::vector<double> heights) {
+Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& attitude, Eigen::Vector3d up,
+              std::vector<double> heights) {
   Fit fit{std::move(up), std::move(heights), {}, 0.0};
-  for (int round = 0; round < kRounds; ++round) Step(points, attitude, unit, &fit);
+  for (int round = 0; round < kRounds; ++round) Step(points, attitude, &fit);
   return fit;
 }
 
 // The points on planes, in as many sectors around their common centre as are left out in turn.
-std::vector<std::vector<WeightedPoint>> WithoutSectors(const std::vector<WeightedPoint>& points,
-                                                       double unit, const Fit& fit) {
-  std::vector<WeightedPoint> inliers;
+std::vector<std::vector<GroundPoint>> WithoutSectors(const std::vector<GroundPoint>& points,
+                                                     const Fit& fit) {
+  std::vector<GroundPoint> inliers;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const WeightedPoint& point : points) {
-    if (!PlaneOfPoint(fit, point, Sigma(point, fit.up, unit))) continue;
+  for (const GroundPoint& point : points) {
+    if (!PlaneOfPoint(fit, point, Sigma(point, fit.up))) continue;
     inliers.push_back(point);
-    centre += point.position;
+    centre += point.position_in_world;
   }
   centre /= static_cast<double>(std::max<size_t>(1, inliers.size()));
   const Eigen::Matrix3d level = UprightRotation(fit.up, 0.0).toRotationMatrix();
-  std::vector<std::vector<WeightedPoint>> others(kSectors);
-  for (const WeightedPoint& point : inliers) {
-    const Eigen::Vector3d from_centre = level.transpose() * (point.position - centre);
+  std::vector<std::vector<GroundPoint>> others(kSectors);
+  for (const GroundPoint& point : inliers) {
+    const Eigen::Vector3d from_centre = level.transpose() * (point.position_in_world - centre);
     const double turns = std::atan2(from_centre.y(), from_centre.x()) / (2.0 * std::numbers::pi);
     const auto own = static_cast<size_t>((turns + 0.5) * static_cast<double>(kSectors)) % kSectors;
     for (size_t sector = 0; sector < kSectors; ++sector) {
@@ -269,11 +238,11 @@ Eigen::Matrix3d CovarianceOf(const Fit& fit, size_t plane, const Eigen::Vector3d
 }
 
 // Adds the scatter of fits that leave out one sector each (delete-a-block jackknife).
-void AddScatter(const std::vector<WeightedPoint>& points, const UpPrior& attitude, double unit,
-                const Fit& fit, HorizontalPlanes* result) {
+void AddScatter(const std::vector<GroundPoint>& points, const UpPrior& attitude, const Fit& fit,
+                HorizontalPlanes* result) {
   constexpr double kShare = (kSectors - 1.0) / kSectors;
-  for (const auto& others : WithoutSectors(points, unit, fit)) {
-    const Fit without = FitPlanes(others, attitude, unit, fit.up, fit.heights);
+  for (const auto& others : WithoutSectors(points, fit)) {
+    const Fit without = FitPlanes(others, attitude, fit.up, fit.heights);
     for (size_t k = 0; k < result->planes.size(); ++k) {
       PlaneOfPoints& plane = result->planes[k];
       const Eigen::Vector3d change = Change(fit, without, k, plane.centre_in_world);
@@ -282,18 +251,18 @@ void AddScatter(const std::vector<WeightedPoint>& points, const UpPrior& attitud
   }
 }
 
-HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrior& attitude,
-                          double unit, const Fit& fit, const Eigen::Matrix2d& ambiguity) {
+HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior& attitude,
+                          const Fit& fit, const Eigen::Matrix2d& ambiguity) {
   HorizontalPlanes result;
   result.ambiguity = ambiguity;
   result.up_in_world = fit.up;
   result.planes.resize(fit.heights.size());
-  for (const WeightedPoint& point : points) {
-    const auto index = PlaneOfPoint(fit, point, Sigma(point, fit.up, unit));
+  for (const GroundPoint& point : points) {
+    const auto index = PlaneOfPoint(fit, point, Sigma(point, fit.up));
     if (!index) continue;
     PlaneOfPoints& plane = result.planes[*index];
-    plane.points_in_world.push_back(point.position);
-    plane.centre_in_world += (point.position - plane.centre_in_world) /
+    plane.points_in_world.push_back(point.position_in_world);
+    plane.centre_in_world += (point.position_in_world - plane.centre_in_world) /
                              static_cast<double>(plane.points_in_world.size());
   }
   for (size_t k = 0; k < fit.heights.size(); ++k) {
@@ -301,10 +270,10 @@ HorizontalPlanes PlanesOf(const std::vector<WeightedPoint>& points, const UpPrio
     plane.height = fit.heights[k];
     plane.covariance = CovarianceOf(fit, k, plane.centre_in_world);
   }
-  AddScatter(points, attitude, unit, fit, &result);
+  AddScatter(points, attitude, fit, &result);
   for (PlaneOfPoints& plane : result.planes) {
     plane.covariance.diagonal().head<2>().array() += kLyingThings * kLyingThings;
-    plane.covariance(2, 2) += std::pow(kCommonHeight * unit, 2.0);
+    plane.covariance(2, 2) += kCommonHeight * kCommonHeight;
     plane.covariance.topLeftCorner<2, 2>() += ambiguity;
   }
   result.tilt_covariance = result.planes.front().covariance.topLeftCorner<2, 2>();
@@ -338,32 +307,29 @@ Eigen::Matrix2d AmbiguityOf(std::vector<Fit> fits, const Fit& best) {
 HorizontalPlanes WithoutPlanes(const UpPrior& attitude) {
   HorizontalPlanes result;
   result.up_in_world = attitude.up_in_world;
-  const Eigen::Matrix3d level = UprightRotation(attitude.up_in_world, 0.0).toRotationMatrix();
-  Eigen::Matrix<double, 3, 2> d_turns;
-  d_turns << -level.col(1), level.col(0);
-  result.tilt_covariance = (d_turns.transpose() * attitude.information * d_turns).inverse();
+  result.tilt_covariance = TiltCovariance(attitude);
   return result;
 }
 
 }  // namespace
 
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
-                                      const UpPrior& attitude, double unit) {
-  const std::vector<WeightedPoint> usable = UsablePoints(points, attitude.up_in_world, unit);
+                                      const UpPrior& attitude) {
+  const std::vector<GroundPoint> usable = UsablePoints(points, attitude.up_in_world);
   std::vector<Fit> fits;
-  for (const Eigen::Vector3d& start : Starts(usable, attitude, unit)) {
+  for (const Eigen::Vector3d& start : Starts(usable, attitude)) {
     Eigen::Vector3d up = start;
     for (int round = 0; round < 2; ++round) {
-      const std::vector<double> heights = PeakHeights(usable, up, unit);
+      const std::vector<double> heights = PeakHeights(usable, up);
       if (heights.empty()) break;
-      fits.push_back(FitPlanes(usable, attitude, unit, up, heights));
+      fits.push_back(FitPlanes(usable, attitude, up, heights));
       up = fits.back().up;
     }
   }
   if (fits.empty()) return WithoutPlanes(attitude);
   const Fit& best = *std::ranges::max_element(fits, {}, &Fit::gain);
   const Eigen::Matrix2d ambiguity = AmbiguityOf(fits, best);
-  return PlanesOf(usable, attitude, unit, best, ambiguity);
+  return PlanesOf(usable, attitude, best, ambiguity);
 }
 
 void AddAmbiguity(double variance, HorizontalPlanes* planes) {
@@ -376,13 +342,13 @@ void AddAmbiguity(double variance, HorizontalPlanes* planes) {
 }
 
 HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<GroundPoint>& points,
-                         const UpPrior& attitude, double unit) {
+                         const UpPrior& attitude) {
   if (planes.planes.empty()) return WithoutPlanes(attitude);
   std::vector<double> heights;
   for (const PlaneOfPoints& plane : planes.planes) heights.push_back(plane.height);
-  const std::vector<WeightedPoint> usable = UsablePoints(points, planes.up_in_world, unit);
-  return PlanesOf(usable, attitude, unit,
-                  FitPlanes(usable, attitude, unit, planes.up_in_world, heights), planes.ambiguity);
+  const std::vector<GroundPoint> usable = UsablePoints(points, planes.up_in_world);
+  return PlanesOf(usable, attitude, FitPlanes(usable, attitude, planes.up_in_world, heights),
+                  planes.ambiguity);
 }
 
 }  // namespace soslam

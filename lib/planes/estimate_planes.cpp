@@ -209,11 +209,7 @@ class Estimator {
     const RefinedPlanes& refined = options_.parallel ? refined_.front() : refined_[plane];
     const auto rise = static_cast<Eigen::Index>(options_.parallel ? 2 + plane : 2);
     const std::array<Eigen::Index, 3> at = {0, 1, rise};
-    Eigen::Matrix3d covariance;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      for (Eigen::Index k = 0; k < 3; ++k) covariance(i, k) = refined.covariance(at[i], at[k]);
-    }
-    return covariance;
+    return refined.covariance(at, at);
   }
 
   void Write(PlanesEstimate* estimate) const {

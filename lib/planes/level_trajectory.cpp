@@ -72,18 +72,25 @@ std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
 
 }  // namespace
 
-LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions& options) {
+LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
+                      const PlanesOptions& options) {
+  const double correlation = options.view_correlation_deg * kRadPerDeg;
+  const double vertical_sigma = options.vertical_sigma_deg * kRadPerDeg;
+  const double odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
+  const auto held = [&](const std::vector<Rigid3d>& poses, double correlation_rad) {
+    return UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
+                              options.camera_pitch_sigma_deg * kRadPerDeg, correlation_rad,
+                              holding);
+  };
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const UpPrior held = UpPriorFromCameras(poses, options.roll_sigma, options.pitch_sigma,
-                                          options.correlation_rad, options.holding);
   const UpPrior mean =
-      WithVerticals(held, views, options.vertical_sigma, options.correlation_rad, kMaxLevelTilt);
-  if (!(options.odometry_sigma > 0.0)) return {poses, mean};
+      WithVerticals(held(poses, correlation), views, vertical_sigma, correlation, kMaxLevelTilt);
+  if (!(odometry_sigma > 0.0)) return {poses, mean};
 
-  const std::vector<double> shares = CameraWeights(poses, options.correlation_rad);
+  const std::vector<double> shares = CameraWeights(poses, correlation);
   const Basis level = LevelAxes(mean.up_in_world);
-  const double stiffness = 1.0 / (options.odometry_sigma * options.odometry_sigma);
+  const double stiffness = 1.0 / (odometry_sigma * odometry_sigma);
   std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
   Eigen::Matrix2d information_of_first;
   for (int round = 0; round < kMaxLevelRounds; ++round) {
@@ -91,10 +98,8 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, const LevelOptions&
     std::vector<Eigen::Vector2d> right_side;
     for (size_t i = 0; i < views.size(); ++i) {
       const Eigen::Matrix3d all =
-          shares[i] * (UpPriorFromCameras({poses[i]}, options.roll_sigma, options.pitch_sigma, 0.0,
-                                          options.holding)
-                           .information +
-                       InformationOfVerticals(views[i], options.vertical_sigma, ups[i]));
+          shares[i] * (held({poses[i]}, 0.0).information +
+                       InformationOfVerticals(views[i], vertical_sigma, ups[i]));
       information.push_back(level.transpose() * all * level);
       right_side.push_back(-level.transpose() * all * mean.up_in_world);
     }

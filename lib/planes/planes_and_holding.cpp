@@ -27,18 +27,12 @@ struct Hypothesis {
 
 LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
                             const PlanesOptions& options, CameraHolding holding) {
-  LevelOptions level;
-  level.roll_sigma = options.camera_roll_sigma_deg * kRadPerDeg;
-  level.pitch_sigma = options.camera_pitch_sigma_deg * kRadPerDeg;
-  level.vertical_sigma = options.vertical_sigma_deg * kRadPerDeg;
-  level.odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
-  level.correlation_rad = options.view_correlation_deg * kRadPerDeg;
-  level.holding = holding;
-  if (!views.empty()) return Level(views, level);
+  if (!views.empty()) return Level(views, holding, options);
   std::vector<Rigid3d> poses;
   for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return {poses, UpPriorFromCameras(poses, level.roll_sigma, level.pitch_sigma,
-                                    level.correlation_rad, holding)};
+  return {poses, UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
+                                    options.camera_pitch_sigma_deg * kRadPerDeg,
+                                    options.view_correlation_deg * kRadPerDeg, holding)};
 }
 
 Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {

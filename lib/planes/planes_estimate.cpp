@@ -4,8 +4,9 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <map>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 
@@ -27,11 +28,9 @@ Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate) {
   });
   if (left_out > 0) sequence.rejected_detections[kReason] += static_cast<int>(left_out);
   for (Detection& detection : sequence.detections) {
-    const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-    detection.plane_in_camera =
-        Transform(frame.world_from_camera.Inverse(),
-                  sequence.planes[static_cast<size_t>(object.plane_index)].plane_in_world);
+    const auto plane = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
+    detection.plane_in_camera = Transform(sequence.FrameOf(detection).world_from_camera.Inverse(),
+                                          sequence.planes[plane].plane_in_world);
   }
   return sequence;
 }
@@ -45,14 +44,11 @@ std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEs
     if (support.plane_index == plane_index) ++votes[given.objects[i].plane_index];
   }
   if (votes.empty() || given.planes.empty()) return std::nullopt;
-  const auto most = std::max_element(
-      votes.begin(), votes.end(),
-      [](const auto& one, const auto& other) { return one.second < other.second; });
+  const auto most =
+      std::ranges::max_element(votes, {}, [](const auto& vote) { return vote.second; });
   const Plane& truth = given.planes[static_cast<size_t>(most->first)].plane_in_world;
   const EstimatedPlane& found = estimate.planes[static_cast<size_t>(plane_index)];
-  const Eigen::Vector3d& normal = found.plane_in_world.normal;
-  return PlaneError{most->first,
-                    std::atan2(normal.cross(truth.normal).norm(), normal.dot(truth.normal)),
+  return PlaneError{most->first, AngleBetween(found.plane_in_world.normal, truth.normal),
                     truth.SignedDistance(found.point_in_world)};
 }
 

@@ -161,10 +161,8 @@ struct Quadratic {
   void Add(const PlaneEvidence& evidence, int plane) {
     const std::array<Eigen::Index, 3> at = {0, 1, 2 + plane};
     cost += evidence.cost;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      gradient(at[i]) += evidence.gradient(i);
-      for (Eigen::Index k = 0; k < 3; ++k) information(at[i], at[k]) += evidence.information(i, k);
-    }
+    gradient(at) += evidence.gradient;
+    information(at, at) += evidence.information;
   }
 };
 
@@ -190,7 +188,7 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
   for (size_t i = 0; i < standing.planes.size(); ++i) {
     stepped.planes[i] = Moved(standing.planes[i], pivot, MotionOfPlane(step, static_cast<int>(i)));
   }
-  std::vector<char> lost(standing.bodies.size(), 0);
+  std::vector<std::optional<StandingBody>> settled(standing.bodies.size());
   ParallelFor(static_cast<int>(standing.bodies.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
     const int plane = standing.plane_of[index];
@@ -198,23 +196,19 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
     body.landmark = Moved(standing.planes[static_cast<size_t>(plane)], pivot,
                           MotionOfPlane(step, plane), body.landmark);
     body.observation.plane_in_world = stepped.planes[static_cast<size_t>(plane)];
-    const auto settled = FitOnPlane(std::move(body));
-    if (settled) {
-      stepped.bodies[index] = *settled;
-    } else {
-      lost[index] = 1;
-    }
+    settled[index] = FitOnPlane(std::move(body));
   });
-  if (std::find(lost.begin(), lost.end(), 1) != lost.end()) return std::nullopt;
+  for (size_t i = 0; i < settled.size(); ++i) {
+    if (!settled[i]) return std::nullopt;
+    stepped.bodies[i] = std::move(*settled[i]);
+  }
   return stepped;
 }
 
 }  // namespace
 
 PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane) {
-  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-  Eigen::Matrix<double, 3, 2> d_turns;  // t x n
-  d_turns << -level.col(1), level.col(0);
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(plane.normal);
   const Eigen::Vector3d d_normal = attitude.information * plane.normal;
   PlaneEvidence evidence;
   evidence.cost = 0.5 * plane.normal.dot(d_normal);

@@ -15,6 +15,18 @@
 
 namespace soslam {
 
+Eigen::Matrix<double, 3, 2> UpByTurns(const Eigen::Vector3d& up) {
+  const Eigen::Matrix3d level = UprightRotation(up, 0.0).toRotationMatrix();
+  Eigen::Matrix<double, 3, 2> d_turns;
+  d_turns << -level.col(1), level.col(0);
+  return d_turns;
+}
+
+Eigen::Matrix2d TiltCovariance(const UpPrior& prior) {
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(prior.up_in_world);
+  return (d_turns.transpose() * prior.information * d_turns).inverse();
+}
+
 Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Vector3d& above) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
   const Eigen::Vector3d up = eigen.eigenvectors().col(0);
@@ -198,32 +210,12 @@ UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& v
 
 namespace {
 
-// Search range of up before boxes are used: this many standard deviations from the cameras' up.
-constexpr double kMaxSigmas = 2.5;
-constexpr double kMaxTiltOfCameras = 45.0 * kRadPerDeg;
+// Search of up before boxes are used: steps, and initial guesses, farther apart than neighbours of
+// the grid.
 constexpr double kTiltStep = 7.5 * kRadPerDeg;
-// Initial guesses of up, farther apart than neighbours of the grid.
 constexpr size_t kStarts = 4;
 constexpr double kBetweenStarts = 1.6 * kTiltStep;
 constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
-
-// Directions around the cameras' up, which comes first.
-std::vector<Eigen::Vector3d> UpCandidates(const UpPrior& attitude) {
-  const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
-  const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
-  const int steps = static_cast<int>(kMaxTiltOfCameras / kTiltStep);
-  std::vector<Eigen::Vector3d> candidates = {attitude.up_in_world};
-  for (int i = -steps; i <= steps; ++i) {
-    for (int k = -steps; k <= steps; ++k) {
-      const Eigen::Vector3d turn(i * kTiltStep, k * kTiltStep, 0.0);
-      if ((i == 0 && k == 0) || turn.norm() > kMaxTiltOfCameras) continue;
-      const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
-      if (up.dot(attitude.information * up) - lowest > kMaxSigmas * kMaxSigmas) continue;
-      candidates.push_back(up);
-    }
-  }
-  return candidates;
-}
 
 double CostOf(const Eigen::Vector3d& up, const UpPrior& attitude,
               const std::vector<std::optional<MultiViewObservation>>& observations) {
@@ -236,6 +228,42 @@ double CostOf(const Eigen::Vector3d& up, const UpPrior& attitude,
 
 }  // namespace
 
+std::vector<Eigen::Vector3d> UpDirections(const UpPrior& prior, double step) {
+  constexpr double kMaxSigmas = 2.5;
+  constexpr double kMaxTilt = 45.0 * kRadPerDeg;
+  const Eigen::Quaterniond level = UprightRotation(prior.up_in_world, 0.0);
+  const double lowest = prior.up_in_world.dot(prior.information * prior.up_in_world);
+  const int steps = static_cast<int>(kMaxTilt / step);
+  std::vector<Eigen::Vector3d> directions = {prior.up_in_world};
+  for (int i = -steps; i <= steps; ++i) {
+    for (int k = -steps; k <= steps; ++k) {
+      const Eigen::Vector3d turn(i * step, k * step, 0.0);
+      if ((i == 0 && k == 0) || turn.norm() > kMaxTilt) continue;
+      const Eigen::Vector3d up = ExpRotation(level * turn) * prior.up_in_world;
+      if (up.dot(prior.information * up) - lowest > kMaxSigmas * kMaxSigmas) continue;
+      directions.push_back(up);
+    }
+  }
+  return directions;
+}
+
+std::vector<Eigen::Vector3d> LowestApart(const std::vector<Eigen::Vector3d>& directions,
+                                         const std::vector<double>& costs, double min_angle,
+                                         size_t count) {
+  std::vector<size_t> order(directions.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {}, [&](size_t i) { return costs[i]; });
+  std::vector<Eigen::Vector3d> lowest;
+  for (const size_t i : order) {
+    const bool is_apart = std::ranges::all_of(lowest, [&](const Eigen::Vector3d& other) {
+      return AngleBetween(other, directions[i]) > min_angle;
+    });
+    if (is_apart) lowest.push_back(directions[i]);
+    if (lowest.size() == count) break;
+  }
+  return lowest;
+}
+
 std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
                                         MultiViewObservation observation) {
   observation.plane_in_world = {up_in_world, 0.0};
@@ -246,25 +274,13 @@ std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
 std::vector<Eigen::Vector3d> SearchUp(
     const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
     int threads) {
-  const std::vector<Eigen::Vector3d> candidates = UpCandidates(attitude);
+  const std::vector<Eigen::Vector3d> candidates = UpDirections(attitude, kTiltStep);
   std::vector<double> costs(candidates.size());
   ParallelFor("directions of up", static_cast<int>(candidates.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
     costs[index] = CostOf(candidates[index], attitude, observations);
   });
-  std::vector<size_t> order(candidates.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t one, size_t other) { return costs[one] < costs[other]; });
-  std::vector<Eigen::Vector3d> starts;
-  for (const size_t i : order) {
-    const bool is_apart = std::all_of(starts.begin(), starts.end(), [&](const auto& start) {
-      return start.dot(candidates[i]) < std::cos(kBetweenStarts);
-    });
-    if (is_apart) starts.push_back(candidates[i]);
-    if (starts.size() == kStarts) break;
-  }
-  return starts;
+  return LowestApart(candidates, costs, kBetweenStarts, kStarts);
 }
 
 }  // namespace soslam

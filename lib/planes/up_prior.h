@@ -20,6 +20,12 @@ struct UpPrior {
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();  // the one of least cost
 };
 
+// Derivative of an up direction by turns (rad) about the x and y axes of UprightRotation(up, 0).
+Eigen::Matrix<double, 3, 2> UpByTurns(const Eigen::Vector3d& up);
+
+// Covariance of these two turns of a prior's up direction.
+Eigen::Matrix2d TiltCovariance(const UpPrior& prior);
+
 // Unit vector of least cost (smallest eigenvector of the information), with the sign on the side of
 // `above`.
 Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Vector3d& above);
@@ -63,6 +69,16 @@ Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
 // attitude's own.
 UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
                       double correlation_rad, double max_tilt);
+
+// Directions around the prior's own, which comes first, in steps of `step` (rad): up to 45 degrees
+// and 2.5 standard deviations away.
+std::vector<Eigen::Vector3d> UpDirections(const UpPrior& prior, double step);
+
+// The directions of lowest cost that are farther apart than `min_angle` (rad), at most `count`,
+// lowest cost first.
+std::vector<Eigen::Vector3d> LowestApart(const std::vector<Eigen::Vector3d>& directions,
+                                         const std::vector<double>& costs, double min_angle,
+                                         size_t count);
 
 // Cost of an object for an up direction in which it has no body; worse than any in which it has
 // one.

@@ -11,15 +11,17 @@
 namespace soslam {
 namespace {
 
-// A floor at height 0, a table top at 0.7 and a wall, in a world with this up direction.
+constexpr double kUnit = 3.0;  // m, the distance of the points from cameras
+
+// A floor at height 0, a table top at 0.7 m and a wall, in a world with this up direction.
 class HorizontalPlanesTest : public testing::Test {
  protected:
   void AddPoint(const Eigen::Vector3d& in_room) {
-    constexpr double kSigma = 0.003;
+    constexpr double kSigma = 0.003 / kUnit;
     std::normal_distribution<double> normal(0.0, kSigma);
     auto& random = TestRandom();
     const Eigen::Vector3d noise(normal(random), normal(random), normal(random));
-    points_.push_back({world_from_room_ * (in_room + noise),
+    points_.push_back({world_from_room_ * (in_room / kUnit + noise),
                        kSigma * kSigma * Eigen::Matrix3d::Identity(),
                        {0, 1}});
   }
@@ -49,40 +51,40 @@ class HorizontalPlanesTest : public testing::Test {
 
 TEST_F(HorizontalPlanesTest, FindsFloorAndTable) {
   AddRoom();
-  const HorizontalPlanes found = FindHorizontalPlanes(points_, Attitude(5.0), 3.0);
+  const HorizontalPlanes found = FindHorizontalPlanes(points_, Attitude(5.0));
   EXPECT_LT(AngleBetweenDeg(found.up_in_world, world_from_room_ * Eigen::Vector3d::UnitZ()), 0.1);
   ASSERT_EQ(found.planes.size(), 2u);
-  EXPECT_NEAR(found.planes[0].height, 0.0, 0.003);
-  EXPECT_NEAR(found.planes[1].height, 0.7, 0.003);
+  EXPECT_NEAR(found.planes[0].height, 0.0, 0.001);
+  EXPECT_NEAR(found.planes[1].height, 0.7 / kUnit, 0.001);
   EXPECT_GT(found.planes[0].points_in_world.size(), 270u);
   EXPECT_LT(std::sqrt(found.tilt_covariance.trace()), 0.5 * kRadPerDeg);
 }
 
 TEST_F(HorizontalPlanesTest, CovarianceGrowsWithPlanesThatAreNotParallel) {
   AddRoom();
-  const HorizontalPlanes even = FindHorizontalPlanes(points_, Attitude(5.0), 3.0);
+  const HorizontalPlanes even = FindHorizontalPlanes(points_, Attitude(5.0));
   for (int i = 0; i < 300; ++i) {  // a ramp of a degree beside the floor
     const double x = RandomUniform(-4, -2);
     AddPoint({x, RandomUniform(-2, 2), 0.0175 * (-2 - x)});
   }
-  const HorizontalPlanes uneven = Refined(even, points_, Attitude(5.0), 3.0);
+  const HorizontalPlanes uneven = Refined(even, points_, Attitude(5.0));
   EXPECT_GT(uneven.tilt_covariance.trace(), 1.05 * even.tilt_covariance.trace());
 }
 
 TEST_F(HorizontalPlanesTest, RefinedUsesOnlyTheGivenPlanes) {
   AddRoom();
-  HorizontalPlanes planes = FindHorizontalPlanes(points_, Attitude(5.0), 3.0);
+  HorizontalPlanes planes = FindHorizontalPlanes(points_, Attitude(5.0));
   ASSERT_EQ(planes.planes.size(), 2u);
   planes.planes.erase(planes.planes.begin());
-  const HorizontalPlanes refined = Refined(planes, points_, Attitude(5.0), 3.0);
+  const HorizontalPlanes refined = Refined(planes, points_, Attitude(5.0));
   ASSERT_EQ(refined.planes.size(), 1u);
-  EXPECT_NEAR(refined.planes[0].height, 0.7, 0.01);
+  EXPECT_NEAR(refined.planes[0].height, 0.7 / kUnit, 0.003);
   EXPECT_GT(refined.tilt_covariance.trace(), planes.tilt_covariance.trace());
 }
 
 TEST_F(HorizontalPlanesTest, WithoutPointsUpIsThatOfTheCameras) {
   const UpPrior attitude = Attitude(5.0);
-  const HorizontalPlanes found = FindHorizontalPlanes({}, attitude, 3.0);
+  const HorizontalPlanes found = FindHorizontalPlanes({}, attitude);
   EXPECT_TRUE(found.planes.empty());
   EXPECT_TRUE(found.up_in_world.isApprox(attitude.up_in_world));
   EXPECT_NEAR(std::sqrt(found.tilt_covariance(0, 0)), 5.0 * kRadPerDeg, 1e-6);
@@ -90,7 +92,7 @@ TEST_F(HorizontalPlanesTest, WithoutPointsUpIsThatOfTheCameras) {
 
 TEST_F(HorizontalPlanesTest, AWallAloneIsNoPlane) {
   for (int i = 0; i < 300; ++i) AddPoint({2.0, RandomUniform(-2, 2), RandomUniform(0, 2.5)});
-  EXPECT_TRUE(FindHorizontalPlanes(points_, Attitude(3.0), 3.0).planes.empty());
+  EXPECT_TRUE(FindHorizontalPlanes(points_, Attitude(3.0)).planes.empty());
 }
 
 }  // namespace

@@ -15,13 +15,11 @@ namespace {
 constexpr int kTurnFrames = 40;
 constexpr double kDrift = 0.15 * kRadPerDeg;  // between two frames, all of it to one side
 
-LevelOptions RoomOptions() {
-  LevelOptions options;
-  options.roll_sigma = 5.0 * kRadPerDeg;
-  options.pitch_sigma = 30.0 * kRadPerDeg;
-  options.vertical_sigma = 1.0 * kRadPerDeg;
-  options.odometry_sigma = 0.2 * kRadPerDeg;
-  return options;
+LevelTrajectory LevelInRoom(const std::vector<SegmentView>& views, double odometry_sigma_deg) {
+  PlanesOptions options;
+  options.view_correlation_deg = 0.0;
+  options.odometry_rotation_sigma_deg = odometry_sigma_deg;
+  return Level(views, CameraHolding::kLevel, options);
 }
 
 // A walk once around, cameras looking outwards and a little down.
@@ -94,7 +92,7 @@ double WorstPosition(const std::vector<Rigid3d>& truth, const std::vector<Rigid3
 TEST(Level, TakesDriftOutOfATrajectory) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
   const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
-  const LevelTrajectory level = Level(ViewsOf(truth, drifted), RoomOptions());
+  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.2);
   ASSERT_EQ(level.world_from_camera.size(), truth.size());
   EXPECT_GT(WorstUp(truth, drifted, Eigen::Vector3d::UnitZ()), 5.0 * kRadPerDeg);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world),
@@ -107,7 +105,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
 // Nothing is to be taken out: what verticals say is what odometry says.
 TEST(Level, LeavesATrajectoryWithoutDrift) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
-  const LevelTrajectory level = Level(ViewsOf(truth, truth), RoomOptions());
+  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, truth), 0.2);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world), 0.2 * kRadPerDeg);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.02);
 }
@@ -115,9 +113,7 @@ TEST(Level, LeavesATrajectoryWithoutDrift) {
 TEST(Level, TakesExactOdometryAsItIs) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
   const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
-  LevelOptions options = RoomOptions();
-  options.odometry_sigma = 0.0;
-  const LevelTrajectory level = Level(ViewsOf(truth, drifted), options);
+  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.0);
   for (size_t i = 0; i < drifted.size(); ++i) {
     EXPECT_EQ(level.world_from_camera[i].translation, drifted[i].translation);
     EXPECT_EQ(level.world_from_camera[i].rotation.coeffs(), drifted[i].rotation.coeffs());
