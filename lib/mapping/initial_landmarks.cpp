@@ -26,25 +26,34 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
 
 }  // namespace
 
+std::vector<std::vector<Landmark>> HypothesesByObject(const Sequence& sequence,
+                                                      const LandmarkEstimates& estimates) {
+  std::vector<std::vector<Landmark>> hypotheses(sequence.objects.size());
+  for (const ObservationEstimate& observation : estimates.observations) {
+    const Detection& detection =
+        sequence.detections[static_cast<size_t>(observation.detection_index)];
+    const Rigid3d& world_from_camera = sequence.FrameOf(detection).world_from_camera;
+    for (const Hypothesis& hypothesis : observation.hypotheses) {
+      hypotheses[static_cast<size_t>(detection.object_index)].push_back(
+          Transform(world_from_camera, hypothesis.landmark_in_camera));
+    }
+  }
+  return hypotheses;
+}
+
 std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequence,
                                                             const LandmarkEstimates& estimates) {
   const auto detections = DetectionsByObject(sequence);
+  const auto hypotheses = HypothesesByObject(sequence, estimates);
   std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
-  std::vector<double> distances(sequence.objects.size(), std::numeric_limits<double>::infinity());
-  for (const ObservationEstimate& observation : estimates.observations) {
-    if (observation.hypotheses.empty()) continue;
-    const Detection& detection =
-        sequence.detections[static_cast<size_t>(observation.detection_index)];
-    if (!sequence.ObjectOf(detection).is_static) continue;
-    const auto object_index = static_cast<size_t>(detection.object_index);
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-    for (const Hypothesis& hypothesis : observation.hypotheses) {
-      const Landmark in_world = Transform(frame.world_from_camera, hypothesis.landmark_in_camera);
-      const double distance = MedianEdgeRms(sequence, detections[object_index], in_world);
-      if (!initial_landmarks[object_index] || distance < distances[object_index]) {
-        initial_landmarks[object_index] = in_world;
-        distances[object_index] = distance;
-      }
+  for (size_t i = 0; i < hypotheses.size(); ++i) {
+    if (!sequence.objects[i].is_static) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Landmark& landmark : hypotheses[i]) {
+      const double distance = MedianEdgeRms(sequence, detections[i], landmark);
+      if (initial_landmarks[i] && !(distance < least)) continue;
+      initial_landmarks[i] = landmark;
+      least = distance;
     }
   }
   for (const ObjectEstimate& object : estimates.objects) {

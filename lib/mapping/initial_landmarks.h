@@ -11,6 +11,11 @@
 
 namespace soslam {
 
+// Landmarks of all hypotheses of the observations, in the world with the frames' estimated poses,
+// by object.
+std::vector<std::vector<Landmark>> HypothesesByObject(const Sequence& sequence,
+                                                      const LandmarkEstimates& estimates);
+
 // An initial landmark for each object: of the hypotheses of its observations, the one that fits all
 // of the object's boxes best (median over its observations of OutlineEdgeRms), with the frames'
 // estimated poses, because other views distinguish hypotheses that fit one box equally well; or the

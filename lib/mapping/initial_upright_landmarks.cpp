@@ -178,26 +178,6 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, Obj
   return candidates;
 }
 
-// In the world, by object: those of its observations, and from several views.
-std::vector<std::vector<Landmark>> HypothesesOf(const Sequence& sequence,
-                                                const LandmarkEstimates& estimates) {
-  std::vector<std::vector<Landmark>> hypotheses(sequence.objects.size());
-  for (const ObservationEstimate& observation : estimates.observations) {
-    const Detection& detection =
-        sequence.detections[static_cast<size_t>(observation.detection_index)];
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-    for (const Hypothesis& hypothesis : observation.hypotheses) {
-      hypotheses[static_cast<size_t>(detection.object_index)].push_back(
-          Transform(frame.world_from_camera, hypothesis.landmark_in_camera));
-    }
-  }
-  for (const ObjectEstimate& object : estimates.objects) {
-    if (!object.landmark_in_world) continue;
-    hypotheses[static_cast<size_t>(object.object_index)].push_back(*object.landmark_in_world);
-  }
-  return hypotheses;
-}
-
 double MedianSize(const std::vector<Landmark>& landmarks) {
   std::vector<double> sizes;
   for (const Landmark& landmark : landmarks) sizes.push_back(SizeForPoints(landmark));
@@ -228,7 +208,11 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
     const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,
     int threads) {
   const Sequence& sequence = input.sequence;
-  const std::vector<std::vector<Landmark>> hypotheses = HypothesesOf(sequence, estimates);
+  std::vector<std::vector<Landmark>> hypotheses = HypothesesByObject(sequence, estimates);
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (!object.landmark_in_world) continue;
+    hypotheses[static_cast<size_t>(object.object_index)].push_back(*object.landmark_in_world);
+  }
   const auto detections = DetectionsByObject(sequence);
   std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
   ParallelFor("objects", static_cast<int>(initial_landmarks.size()), threads, [&](int index) {

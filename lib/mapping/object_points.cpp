@@ -25,7 +25,7 @@ constexpr double kLeastPrior = 0.01;
 
 // Image point of a point that frames of the sequence see.
 struct View {
-  int frame_index;
+  size_t frame_index;
   Eigen::Vector2d pixel;  // without lens distortion
 };
 
@@ -42,9 +42,6 @@ class ObjectPointFinder {
         options_(options),
         detections_in_(sequence.frames.size()),
         found_(sequence.objects.size()) {
-    for (size_t i = 0; i < sequence.frames.size(); ++i) {
-      frame_index_of_[sequence.frames[i].id] = static_cast<int>(i);
-    }
     for (size_t i = 0; i < sequence.detections.size(); ++i) {
       const Detection& detection = sequence.detections[i];
       detections_in_[static_cast<size_t>(detection.frame_index)].push_back(static_cast<int>(i));
@@ -86,14 +83,13 @@ class ObjectPointFinder {
   std::map<int, std::vector<View>> ViewsBySegment(const MapPoint& point) const {
     std::map<int, std::vector<View>> views;
     for (const PointObservation& observation : point.observations) {
-      const auto found = frame_index_of_.find(observation.frame_id);
-      if (found == frame_index_of_.end()) continue;
+      const auto index = FrameIndexOf(sequence_, observation);
+      if (!index) continue;
       std::optional<Eigen::Vector2d> pixel = observation.pixel;
       if (sequence_.image_distortion) {
         pixel = UndistortPixels(sequence_.camera, *sequence_.image_distortion, {*pixel}).front();
       }
-      const int segment = sequence_.frames[static_cast<size_t>(found->second)].segment;
-      if (pixel) views[segment].push_back({found->second, *pixel});
+      if (pixel) views[sequence_.frames[*index].segment].push_back({*index, *pixel});
     }
     return views;
   }
@@ -102,7 +98,7 @@ class ObjectPointFinder {
   std::map<int, PlacesInBoxes> PlacesOf(const std::vector<View>& views) const {
     std::map<int, PlacesInBoxes> places;
     for (const View& view : views) {
-      for (const int index : detections_in_[static_cast<size_t>(view.frame_index)]) {
+      for (const int index : detections_in_[view.frame_index]) {
         PlacesInBoxes& of_object = places[DetectionAt(index).object_index];
         ++of_object.frames;
         const auto contains = [&](const Box& box) { return box.Contains(view.pixel); };
@@ -118,7 +114,7 @@ class ObjectPointFinder {
   std::optional<TriangulatedPoint> TriangulateViews(const std::vector<View>& views) const {
     std::vector<PointView> in_cameras;
     for (const View& view : views) {
-      const Frame& frame = sequence_.frames[static_cast<size_t>(view.frame_index)];
+      const Frame& frame = sequence_.frames[view.frame_index];
       in_cameras.push_back(
           {sequence_.CameraOf(frame), frame.world_from_camera.Inverse(), view.pixel});
     }
@@ -158,7 +154,6 @@ class ObjectPointFinder {
 
   const Sequence& sequence_;
   const PointOptions& options_;
-  std::map<int, int> frame_index_of_;  // by id
   std::vector<std::vector<int>> detections_in_;
   std::vector<std::vector<Box>> nearer_boxes_;  // by detection
   std::vector<std::map<int, std::vector<ObjectPoint>>> found_;

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <optional>
 #include <vector>
+
+#include "model/sequence.h"
 
 namespace soslam {
 
@@ -20,5 +24,15 @@ struct MapPoint {
   double reprojection_error_px = 0.0;  // mean over its observations; 0 where it is not known
   std::vector<PointObservation> observations;
 };
+
+// Index in Sequence::frames of the frame that observes a point; none where the sequence does not
+// have it.
+inline std::optional<size_t> FrameIndexOf(const Sequence& sequence,
+                                          const PointObservation& observation) {
+  const auto frame =
+      std::ranges::lower_bound(sequence.frames, observation.frame_id, {}, &Frame::id);
+  if (frame == sequence.frames.end() || frame->id != observation.frame_id) return std::nullopt;
+  return static_cast<size_t>(frame - sequence.frames.begin());
+}
 
 }  // namespace soslam
