@@ -2,46 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cmath>
 #include <optional>
 
-#include "constraints/tangency.h"
-#include "geometry/landmark.h"
 #include "initialisation/upright.h"
 #include "initialisation/upright_observation.h"
 
 namespace soslam {
-
-// The box of a detection in the ground frame of its object's support plane, where a yaw is a
-// rotation about z.
-struct BoxOnGround {
-  // `edges` and `ground` in the camera frame.
-  BoxOnGround(const std::array<BoxEdge, 4>& edges, const UprightGround& ground);
-
-  // The planes behind the edges (BoxEdge::plane) in the ground frame: normals as rows, and values
-  // at the ground's origin (px m).
-  Eigen::Matrix<double, 4, 3> normals;
-  Eigen::Array4d at_origin;
-  Eigen::Array4d sigma_px;
-  Eigen::Array4d is_bound;       // 1 or 0
-  Eigen::Vector3d optical_axis;  // of the camera, in the ground frame
-  double origin_depth;           // depth of the ground's origin, m
-};
-
-// Cosine and sine of an object's yaw.
-struct Heading {
-  explicit Heading(double yaw) : cosine(std::cos(yaw)), sine(std::sin(yaw)) {}
-
-  // Rotates a direction from the ground frame into the object frame.
-  Eigen::Vector3d ToObjectFrame(const Eigen::Vector3d& direction) const {
-    return {cosine * direction.x() + sine * direction.y(),
-            cosine * direction.y() - sine * direction.x(), direction.z()};
-  }
-
-  double cosine;
-  double sine;
-};
 
 // An upright object and the depths (m) of its tangent points at the four edges.
 struct ClosedFormSolution {
@@ -69,19 +35,26 @@ class ClosedForm {
   std::optional<ClosedFormSolution> At(double yaw) const;
 
   // True if at least three edges are measured.
-  bool HasEnoughEdges() const { return (box_.is_bound == 0.0).count() >= 3; }
+  bool HasEnoughEdges() const { return (is_bound_ == 0.0).count() >= 3; }
 
  private:
-  // Coefficients of the half height at a heading.
+  // Coefficients of the half height at a yaw.
   struct HalfHeightCoefficients {
     Eigen::Array4d residuals;       // a
     Eigen::Array4d tangent_depths;  // of the tangent points, relative to the foot
     double nearest_depth;           // of the object's nearest point, likewise
   };
-  HalfHeightCoefficients CoefficientsAt(const Heading& heading) const;
+  HalfHeightCoefficients CoefficientsAt(double yaw) const;
 
-  BoxOnGround box_;
-  Eigen::Vector3d proportions_;  // (a, b, c) / c
+  // The planes behind the box's edges (BoxEdge::plane) in the ground frame of the object's support
+  // plane, where a yaw is a rotation about z: normals as rows, and values at its origin (px m).
+  Eigen::Matrix<double, 4, 3> normals_;
+  Eigen::Array4d at_origin_;
+  Eigen::Array4d sigma_px_;
+  Eigen::Array4d is_bound_;       // 1 or 0
+  Eigen::Vector3d optical_axis_;  // of the camera, in the ground frame
+  double origin_depth_;           // depth of the ground's origin, m
+  Eigen::Vector3d proportions_;   // (a, b, c) / c
   double shape_exponent_;
   Eigen::Matrix<double, 4, 2> without_foot_;  // N, orthonormal
   Eigen::Matrix<double, 2, 4> foot_by_b_;     // pseudo-inverse of F

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "constraints/loss.h"
+#include "geometry/direction_weights.h"
 #include "initialisation/landmark_terms.h"
-#include "initialisation/view_weights.h"
 #include "initialisation/yaw_sweep.h"
 
 namespace soslam {
@@ -319,6 +319,17 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
       ViewWeights(sequence, detections, NearestToAllRays(observation), view_correlation_rad);
   for (size_t i = 0; i < weights.size(); ++i) observation.views[i].weight = weights[i];
   return observation;
+}
+
+std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>& detections,
+                                const Eigen::Vector3d& centre_in_world, double correlation_rad) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    directions.push_back(centre_in_world -
+                         sequence.FrameOf(detection).world_from_camera.translation);
+  }
+  return DirectionWeights(directions, correlation_rad);
 }
 
 LandmarkCosts ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {

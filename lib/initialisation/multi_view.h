@@ -44,6 +44,13 @@ MultiViewObservation MakeMultiViewObservation(
     double view_correlation_rad, bool height_is_free = false, bool size_is_known = false,
     const std::optional<Plane>& plane_in_world = std::nullopt);
 
+// Weights of an object's detections, which index Sequence::detections. The misfit between the
+// label's shape and a box is almost the same in the next frame: views from directions (camera
+// centre to object centre) closer than about `correlation_rad` share it, and together count as one;
+// see DirectionWeights.
+std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>& detections,
+                                const Eigen::Vector3d& centre_in_world, double correlation_rad);
+
 // Costs of a landmark in the world: its boxes and priors. The tangent points are at their depths on
 // `start`. Views are left out if `start` is not wholly in front of their camera.
 LandmarkCosts ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world);

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "geometry/angles.h"
 #include "initialisation/multi_view.h"
+#include "initialisation/options.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -63,37 +64,26 @@ YawPrior AlongDirection(const Sequence& sequence, const Detection& detection,
           sigma};
 }
 
-class MotionPriors {
- public:
-  MotionPriors(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& shapes,
-               const YawPriorOptions& options, const StandingOptions& standing)
-      : sequence_(sequence), shapes_(shapes), options_(options), standing_(standing) {}
-
-  // `around`: a detection and those of the same object in neighbouring frames.
-  std::optional<YawPrior> Find(int index, const std::vector<int>& around) const {
-    const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
-    const auto motion = Motion(sequence_, around);
-    if (motion && motion->norm() >= options_.motion_min_m) {
-      return AlongDirection(sequence_, detection, *motion,
-                            std::atan2(options_.motion_foot_sigma_m, motion->norm()));
-    }
-    if (around.size() < kMinPriorViews) return std::nullopt;
-    const MultiViewObservation views = MakeMultiViewObservation(
-        sequence_, around, shapes_[static_cast<size_t>(detection.object_index)],
-        standing_.detection_sigma_fraction, standing_.view_correlation_rad);
-    const auto optima = SweepViews(views, standing_.yaw_step_rad);
-    if (optima.empty()) return std::nullopt;
-    const Eigen::Quaterniond& rotation = optima.front().landmark.frame_from_object.rotation;
-    return AlongDirection(sequence_, detection, rotation * Eigen::Vector3d::UnitX(),
-                          options_.standing_sigma_deg * kRadPerDeg);
+// `around`: a detection and those of the same object in neighbouring frames.
+std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& detection,
+                                    const std::vector<int>& around,
+                                    const std::optional<ShapePrior>& shape,
+                                    const InitialiseOptions& options) {
+  const auto motion = Motion(sequence, around);
+  if (motion && motion->norm() >= options.yaw_prior.motion_min_m) {
+    return AlongDirection(sequence, detection, *motion,
+                          std::atan2(options.yaw_prior.motion_foot_sigma_m, motion->norm()));
   }
-
- private:
-  const Sequence& sequence_;
-  const std::vector<std::optional<ShapePrior>>& shapes_;
-  const YawPriorOptions& options_;
-  const StandingOptions& standing_;
-};
+  if (around.size() < kMinPriorViews) return std::nullopt;
+  const MultiViewObservation views =
+      MakeMultiViewObservation(sequence, around, shape, options.upright.detection_sigma_fraction,
+                               options.view_correlation_deg * kRadPerDeg);
+  const auto optima = SweepViews(views, options.upright.yaw_grid_deg * kRadPerDeg);
+  if (optima.empty()) return std::nullopt;
+  const Eigen::Quaterniond& rotation = optima.front().landmark.frame_from_object.rotation;
+  return AlongDirection(sequence, detection, rotation * Eigen::Vector3d::UnitX(),
+                        options.yaw_prior.standing_sigma_deg * kRadPerDeg);
+}
 
 std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& detection) {
   const auto truth = TrueLandmarkInCamera(sequence, detection);
@@ -126,21 +116,18 @@ std::vector<std::vector<int>> Neighbours(const Sequence& sequence, int frames) {
 
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
-                                               const YawPriorOptions& options,
-                                               const StandingOptions& standing, int threads) {
+                                               const InitialiseOptions& options, int threads) {
   std::vector<std::optional<YawPrior>> priors(sequence.detections.size());
-  if (options.source == YawPriorSource::kGroundTruth) {
-    for (size_t i = 0; i < priors.size(); ++i) {
-      priors[i] = TruePrior(sequence, sequence.detections[i]);
-    }
-  }
-  if (options.source == YawPriorSource::kMotion) {
-    const MotionPriors motion(sequence, shapes, options, standing);
-    const auto neighbours = Neighbours(sequence, options.motion_frames);
-    ParallelFor("detections", static_cast<int>(priors.size()), threads, [&](int i) {
-      priors[static_cast<size_t>(i)] = motion.Find(i, neighbours[static_cast<size_t>(i)]);
-    });
-  }
+  if (options.yaw_prior.source == YawPriorSource::kNone) return priors;
+  const auto neighbours = Neighbours(sequence, options.yaw_prior.motion_frames);
+  ParallelFor("detections", static_cast<int>(priors.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    const Detection& detection = sequence.detections[index];
+    priors[index] = options.yaw_prior.source == YawPriorSource::kGroundTruth
+                        ? TruePrior(sequence, detection)
+                        : MotionPrior(sequence, detection, neighbours[index],
+                                      shapes[static_cast<size_t>(detection.object_index)], options);
+  });
   return priors;
 }
 

@@ -44,12 +44,7 @@ struct YawPriorOptions {
   }
 };
 
-// Options of the multi-view fit of a standing object.
-struct StandingOptions {
-  double detection_sigma_fraction = 0.02;
-  double view_correlation_rad = 0.0;
-  double yaw_step_rad = 0.05;
-};
+struct InitialiseOptions;
 
 // Prior of each detection, with the frames' estimated poses; none if the source has no information.
 // kMotion: the direction of the straight line through the feet of the object, where the rays
@@ -57,7 +52,6 @@ struct StandingOptions {
 // than motion_min_m, the best yaw of SweepViews.
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
-                                               const YawPriorOptions& options,
-                                               const StandingOptions& standing, int threads);
+                                               const InitialiseOptions& options, int threads);
 
 }  // namespace soslam

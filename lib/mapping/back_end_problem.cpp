@@ -18,7 +18,7 @@
 #include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
 #include "initialisation/landmark_terms.h"
-#include "initialisation/view_weights.h"
+#include "initialisation/multi_view.h"
 
 namespace soslam {
 namespace {

@@ -27,19 +27,6 @@
 #include "orientation/texture_asymmetry.h"
 
 namespace soslam {
-namespace {
-
-std::vector<std::optional<YawPrior>> YawPriorsOf(
-    const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& shapes,
-    const InitialiseOptions& options, int threads) {
-  const StandingOptions standing = {options.upright.detection_sigma_fraction,
-                                    options.view_correlation_deg * kRadPerDeg,
-                                    options.upright.yaw_grid_deg * kRadPerDeg};
-  return YawPriors(sequence, shapes, options.yaw_prior, standing, threads);
-}
-
-}  // namespace
-
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads) {
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
@@ -60,7 +47,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
       estimates = InitialiseMultiView(sequence, priors, options, threads);
     } else if (options.method == InitialisationMethod::kYawSweep) {
       estimates = InitialiseUpright(sequence, priors, options.upright, threads,
-                                    YawPriorsOf(sequence, priors, options, threads));
+                                    YawPriors(sequence, priors, options, threads));
     } else {
       estimates = InitialiseSingleFrame(
           sequence, ObjectRatios(sequence, table, options.ratio_prior), options, threads);

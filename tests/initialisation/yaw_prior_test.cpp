@@ -61,9 +61,10 @@ double TrueYaw(const Detection& detection) {
 }
 
 std::vector<std::optional<YawPrior>> Priors(const Sequence& sequence, YawPriorSource source) {
-  YawPriorOptions options;
-  options.source = source;
-  return YawPriors(sequence, {kCar}, options, {}, 2);
+  InitialiseOptions options;
+  options.yaw_prior.source = source;
+  options.view_correlation_deg = 0.0;
+  return YawPriors(sequence, {kCar}, options, 2);
 }
 
 // Degrees, of the middle frame.
