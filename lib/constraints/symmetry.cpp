@@ -29,8 +29,10 @@ SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
 SymmetryDescriptor::SymmetryDescriptor(Descriptor descriptor, const SymmetryImage& image,
                                        const Camera& camera, const Landmark& landmark_in_camera)
     : descriptor_(descriptor), image_(image), surface_(camera, landmark_in_camera) {
-  if (descriptor == Descriptor::kNearestEdge3d) {
-    edges_on_surface_.emplace(camera, landmark_in_camera, image.edge_pixels);
+  if (descriptor != Descriptor::kNearestEdge3d) return;
+  for (const Eigen::Vector2d& pixel : image.edge_pixels) {
+    const auto point = surface_.FromPixel(pixel);
+    if (point) edges_on_surface_.push_back({pixel, point->in_object});
   }
 }
 
@@ -111,17 +113,30 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
     case Descriptor::kBrief:
       return Value();  // compares two pixels directly
     case Descriptor::kGrey:
-    case Descriptor::kDistanceTransform:
-      return LookUp(pixel, with_jacobian, pixel_jacobian);
+    case Descriptor::kDistanceTransform: {
+      const auto sample = LookUp(pixel);
+      if (!sample) return std::nullopt;
+      Value value{sample->value};
+      if (with_jacobian) value.jacobian = sample->gradient.transpose() * pixel_jacobian;
+      return value;
+    }
     default:
       return SurfaceDistance(pixel, point, with_jacobian);
   }
 }
 
+std::optional<Eigen::Vector2d> SymmetryDescriptor::EdgePixel(
+    const Eigen::Vector2d& pixel, const Eigen::Vector3d& point_in_object) const {
+  if (descriptor_ != Descriptor::kNearestEdge3d) return NearestEdge(image_.maps, pixel);
+  const auto nearest = std::ranges::min_element(
+      edges_on_surface_, {},
+      [&](const EdgeOnSurface& edge) { return (edge.in_object - point_in_object).squaredNorm(); });
+  return nearest == edges_on_surface_.end() ? std::nullopt : std::optional(nearest->pixel);
+}
+
 std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
-  const auto edge_pixel = edges_on_surface_ ? edges_on_surface_->Nearest(point.in_object)
-                                            : NearestEdge(image_.maps, pixel);
+  const auto edge_pixel = EdgePixel(pixel, point.in_object);
   if (!edge_pixel) return std::nullopt;
   const auto edge = descriptor_ == Descriptor::kLinearisedDt
                         ? surface_.FromPixelOnTangentPlane(*edge_pixel, point, with_jacobian)
@@ -137,16 +152,12 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
   return value;
 }
 
-std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::LookUp(
-    const Eigen::Vector2d& pixel, bool with_jacobian,
-    const LandmarkJacobian2& pixel_jacobian) const {
+std::optional<Sample> SymmetryDescriptor::LookUp(const Eigen::Vector2d& pixel) const {
   const bool grey = descriptor_ == Descriptor::kGrey;
   const auto sample = SampleBilinear(grey ? image_.maps.grey : image_.maps.distance, pixel);
-  if (!sample || !std::isfinite(sample->value)) return std::nullopt;
+  if (!sample) return std::nullopt;
   const double scale = grey ? 1.0 / 255.0 : 1.0;
-  Value value{scale * sample->value, LandmarkJacobian1::Zero()};
-  if (with_jacobian) value.jacobian = scale * sample->gradient.transpose() * pixel_jacobian;
-  return value;
+  return Sample{scale * sample->value, scale * sample->gradient};
 }
 
 std::optional<double> SymmetryDescriptor::BriefDistance(const Eigen::Vector2d& pixel,

@@ -10,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "constraints/edges_on_surface.h"
 #include "constraints/parameters.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
@@ -87,6 +86,11 @@ class SymmetryDescriptor {
     double value = 0.0;
     LandmarkJacobian1 jacobian = LandmarkJacobian1::Zero();
   };
+  // Intersection of an edge pixel's ray with the surface.
+  struct EdgeOnSurface {
+    Eigen::Vector2d pixel;
+    Eigen::Vector3d in_object;  // m
+  };
   // A pixel, the intersection of its ray with the surface, and its descriptor.
   struct Side {
     Eigen::Vector2d pixel;
@@ -102,15 +106,18 @@ class SymmetryDescriptor {
   std::optional<Value> SurfaceDistance(const Eigen::Vector2d& pixel,
                                        const VisibleSurface::Point& point,
                                        bool with_jacobian) const;
-  std::optional<Value> LookUp(const Eigen::Vector2d& pixel, bool with_jacobian,
-                              const LandmarkJacobian2& pixel_jacobian) const;
+  // The map's value at a pixel, for kGrey and kDistanceTransform.
+  std::optional<Sample> LookUp(const Eigen::Vector2d& pixel) const;
+  // The edge nearest to a point: on the surface (the first of several, eq. 19), or in the image.
+  std::optional<Eigen::Vector2d> EdgePixel(const Eigen::Vector2d& pixel,
+                                           const Eigen::Vector3d& point_in_object) const;
   std::optional<double> BriefDistance(const Eigen::Vector2d& pixel,
                                       const Eigen::Vector2d& mirror_pixel) const;
 
   Descriptor descriptor_;
   const SymmetryImage& image_;
   VisibleSurface surface_;
-  std::optional<EdgesOnSurface> edges_on_surface_;  // for kNearestEdge3d
+  std::vector<EdgeOnSurface> edges_on_surface_;  // for kNearestEdge3d
 };
 
 // Symmetry constraint, eq. (16): the descriptor of a pixel equals that of its mirror pixel. Divided

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/surface_distance.h"
 
+#include <ceres/sized_cost_function.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
