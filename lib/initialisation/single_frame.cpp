@@ -41,6 +41,24 @@ std::optional<Landmark> Start(const SingleFrameObservation& observation) {
   return start;
 }
 
+// Adds the constraints of eq. (12) on a landmark in the camera frame. The caller owns the blocks;
+// the camera block must be the identity, and is set constant.
+void AddSingleFrameConstraints(const SingleFrameObservation& observation,
+                               const ConstraintVariances& variances, PoseBlock* camera,
+                               LandmarkBlock* landmark, ceres::Problem* problem) {
+  problem->AddParameterBlock(landmark->data(), kLandmarkSize, NewLandmarkManifold());
+  problem->AddResidualBlock(
+      new DetectionResidual(observation.camera, observation.box, variances.DetectionM4()), nullptr,
+      camera->data(), landmark->data());
+  problem->AddResidualBlock(
+      new SupportResidual(observation.plane_in_camera, variances.SupportAngleRad2(),
+                          variances.SupportTangencyM4()),
+      nullptr, landmark->data());
+  problem->AddResidualBlock(new ScaleRatioResidual(observation.ratio, variances.ratio), nullptr,
+                            landmark->data());
+  problem->SetParameterBlockConstant(camera->data());
+}
+
 Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOptions& options,
                  const Landmark& start) {
   LandmarkBlock landmark = ToParameterBlock(start);
@@ -95,22 +113,6 @@ double Oddity(const SingleFrameObservation& observation, const Landmark& landmar
 }
 
 }  // namespace
-
-void AddSingleFrameConstraints(const SingleFrameObservation& observation,
-                               const ConstraintVariances& variances, PoseBlock* camera,
-                               LandmarkBlock* landmark, ceres::Problem* problem) {
-  problem->AddParameterBlock(landmark->data(), kLandmarkSize, NewLandmarkManifold());
-  problem->AddResidualBlock(
-      new DetectionResidual(observation.camera, observation.box, variances.DetectionM4()), nullptr,
-      camera->data(), landmark->data());
-  problem->AddResidualBlock(
-      new SupportResidual(observation.plane_in_camera, variances.SupportAngleRad2(),
-                          variances.SupportTangencyM4()),
-      nullptr, landmark->data());
-  problem->AddResidualBlock(new ScaleRatioResidual(observation.ratio, variances.ratio), nullptr,
-                            landmark->data());
-  problem->SetParameterBlockConstant(camera->data());
-}
 
 double SingleFrameCost(const SingleFrameObservation& observation,
                        const ConstraintVariances& variances, const Landmark& landmark_in_camera) {

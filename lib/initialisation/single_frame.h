@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/problem.h>
-
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "constraints/parameters.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
@@ -40,12 +37,6 @@ struct SingleFrameSolution {
 // support_plane_not_in_view, no_solution.
 SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options);
-
-// Adds the constraints of eq. (12) on a landmark in the camera frame. The caller owns the blocks;
-// the camera block must be the identity, and is set constant.
-void AddSingleFrameConstraints(const SingleFrameObservation& observation,
-                               const ConstraintVariances& variances, PoseBlock* camera,
-                               LandmarkBlock* landmark, ceres::Problem* problem);
 
 // The cost of eq. (12): half the sum of squared weighted residuals.
 double SingleFrameCost(const SingleFrameObservation& observation,

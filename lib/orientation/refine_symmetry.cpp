@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation/refine_symmetry.h"
 
-#include <ceres/ceres.h>
-
 #include <memory>
 #include <vector>
 
@@ -28,36 +26,6 @@ struct Refinement {
 
 double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
   return Yaw(refinement.detection.plane_in_camera.normal, landmark.frame_from_object.rotation);
-}
-
-// Minimises eq. (12) plus eq. (16) over all nine parameters. Pairs are chosen at the start. None
-// when the solver fails.
-std::optional<Landmark> SolveAll(const Refinement& refinement, const Landmark& start) {
-  const RefineOptions& options = refinement.options;
-  const Camera& camera = refinement.observation.camera;
-  LandmarkBlock landmark = ToParameterBlock(start);
-  PoseBlock camera_pose = ToParameterBlock(Rigid3d());
-  ceres::Problem problem;
-  AddSingleFrameConstraints(refinement.observation, options.variances, &camera_pose, &landmark,
-                            &problem);
-  const SymmetryDescriptor at_start(options.symmetry.descriptor, *refinement.image, camera, start);
-  for (const Eigen::Vector2d& pixel : refinement.samples) {
-    if (!at_start.Evaluate(pixel, options.symmetry.min_viewing_cosine, false)) continue;
-    problem.AddResidualBlock(
-        new SymmetryResidual(options.symmetry.descriptor, refinement.image, camera, pixel,
-                             start.shape_exponent, options.symmetry_sigma),
-        new ceres::HuberLoss(1.0), camera_pose.data(), landmark.data());
-  }
-
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = options.max_iterations;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  if (!summary.IsSolutionUsable()) return std::nullopt;
-  return UnpackLandmark(landmark.data());
 }
 
 void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
@@ -123,16 +91,10 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
   return *chosen;
 }
 
-// Writes the refined landmark; otherwise returns the reason of the failure.
-std::string Refine(const Refinement& refinement, Landmark* refined) {
+// Why a landmark is not refined; empty where it is.
+std::string FailureOf(const Refinement& refinement) {
   if (refinement.image->edge_pixels.empty()) return "no_edges";
-  if (!refinement.best_turn) return "too_few_visible_pairs";
-  *refined = RotatedAboutZ(refinement.start, refinement.best_turn->turn);
-  if (refinement.options.parameters == RefinementParameters::kYaw) return "";
-  const auto solved = SolveAll(refinement, *refined);
-  if (!solved) return "solver_failed";
-  *refined = *solved;
-  return "";
+  return refinement.best_turn ? "" : "too_few_visible_pairs";
 }
 
 }  // namespace
@@ -161,8 +123,9 @@ RefinedObservation RefineObservation(const Sequence& sequence, const Observation
   const Refinement refinement =
       ChooseHypothesis(sequence, detection, initial.hypotheses, maps, *ratio, options);
   Landmark refined = refinement.start;
-  result.estimate.failure = Refine(refinement, &refined);
+  result.estimate.failure = FailureOf(refinement);
   if (result.estimate.failure.empty()) {
+    refined = RotatedAboutZ(refinement.start, refinement.best_turn->turn);
     result.estimate.hypotheses = {
         {refined, SingleFrameCost(refinement.observation, options.variances, refined)}};
   }

@@ -22,11 +22,11 @@ struct RefinedObservation {
 // truth.
 std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection);
 
-// Refines the yaw (and, as a setting, all parameters) of an observation's landmark by the symmetry
-// of its texture, section V. Of the hypotheses that fit the box equally well, the one with the
-// lowest symmetry cost near its yaw is taken. If there is no such cost, the estimate stays
-// unchanged, with the reason in `failure`: no_edges, too_few_visible_pairs, no_ratio_for_label,
-// solver_failed. `ratio` is the (a / c, b / c) of eq. (11).
+// Refines the yaw of an observation's landmark by the symmetry of its texture, section V; centre
+// and half axes stay. Of the hypotheses that fit the box equally well, the one with the lowest
+// symmetry cost near its yaw is taken. If there is no such cost, the estimate stays unchanged, with
+// the reason in `failure`: no_edges, too_few_visible_pairs, no_ratio_for_label. `ratio` is the (a /
+// c, b / c) of eq. (11).
 RefinedObservation RefineObservation(const Sequence& sequence, const ObservationEstimate& initial,
                                      const EdgeMaps& maps,
                                      const std::optional<Eigen::Vector2d>& ratio,

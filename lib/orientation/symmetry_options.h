@@ -50,31 +50,20 @@ struct SymmetryOptions {
   }
 };
 
-enum class RefinementParameters {
-  kYaw,  // the landmark is rotated about its z axis, centre and half axes stay
-  kAll,  // the yaw, then all nine parameters, together with the constraints of eq. (12)
-};
-inline constexpr std::array kRefinementParametersNames = {"yaw", "all"};
-
 struct RefineOptions {
   SymmetryOptions symmetry;
-  RefinementParameters parameters = RefinementParameters::kYaw;
   double yaw_step_deg = 2.0;
   double yaw_resolution_deg = 0.1;
   double yaw_range_deg = 10.0;
   double tie_edge_px = 1.0;
-  double symmetry_sigma = 30.0;
   RatioPrior ratio_prior = RatioPrior::kTable;
   ConstraintVariances variances;
-  int max_iterations = 50;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Landmarks");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
     visit.Group("Turned landmarks (method = turn)");
-    visit.Choice("parameters", &parameters, kRefinementParametersNames,
-                 "what the refinement moves: the yaw, or then all nine parameters as well");
     visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
                "grid of the cost over yaw, over half a turn");
     visit.Real("yaw_range_deg", &yaw_range_deg, {0.0, 90.0},
@@ -85,12 +74,6 @@ struct RefineOptions {
         "distance, are tried; the texture decides");
     visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
                "grid of the search around the best yaw of the coarse grid");
-    visit.Real(
-        "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
-        "standard deviation of a pair's descriptor difference, in the descriptor's unit; for "
-        "parameters = all");
-    visit.Integer("max_iterations", &max_iterations, {1, 10000},
-                  "Levenberg-Marquardt iterations; for parameters = all");
     symmetry.Describe(visit);
     variances.Describe(visit);
   }

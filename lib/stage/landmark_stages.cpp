@@ -126,11 +126,6 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
 }  // namespace
 
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads) {
-  if (options.turn.parameters == RefinementParameters::kAll &&
-      options.turn.symmetry.descriptor == Descriptor::kBrief) {
-    throw SettingsError(
-        "parameters = all needs a descriptor with a derivative; found descriptor = brief");
-  }
   CheckMirrorPlane(options.profile.texture, options.turn.symmetry.descriptor);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),

@@ -155,21 +155,6 @@ TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurve
   EXPECT_LT(errors[errors.size() / 2], 1.0 * kRadPerDeg);
 }
 
-TEST_F(SyntheticTexture, AllParametersCanBeRefinedTogether) {
-  const Detection& detection = sequence_->detections.front();
-  const Landmark truth = TrueLandmark(detection);
-  RefineOptions options;
-  options.parameters = RefinementParameters::kAll;
-  const RefinedObservation refined = RefineObservation(
-      *sequence_, {0, {{RotatedAboutZ(truth, 4.0 * kRadPerDeg), 0.0}}, ""}, maps_->at(0),
-      Eigen::Vector2d(truth.half_axes.head<2>() / truth.half_axes.z()), options);
-  ASSERT_EQ(refined.estimate.failure, "");
-  const Landmark& landmark = refined.estimate.hypotheses.front().landmark_in_camera;
-  EXPECT_LT((landmark.Centre() - truth.Centre()).norm(), 0.02);
-  EXPECT_NEAR(YawDifferenceModuloPi(refined.record.refined_yaw, *refined.record.true_yaw), 0.0,
-              2.0 * kRadPerDeg);
-}
-
 TEST_F(SyntheticTexture, SamplesLieInTheBoxOnTheLandmark) {
   const Detection& detection = sequence_->detections.front();
   const Landmark truth = TrueLandmark(detection);
