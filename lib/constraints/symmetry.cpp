@@ -50,17 +50,29 @@ std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::EvaluateAt(
   return side ? Compare(*side, mirror_plane, with_jacobian) : std::nullopt;
 }
 
-Eigen::RowVectorXd SymmetryDescriptor::Residuals(const Eigen::Vector2d& pixel,
-                                                 double min_viewing_cosine,
-                                                 const std::vector<double>& mirror_planes) const {
+std::optional<Eigen::RowVectorXd> SymmetryDescriptor::Residuals(
+    const Eigen::Vector2d& pixel, double min_viewing_cosine,
+    const std::vector<double>& mirror_planes) const {
+  const auto point = surface_.FromPixel(pixel);
+  if (!point) return std::nullopt;
   Eigen::RowVectorXd residuals = Eigen::RowVectorXd::Constant(
       static_cast<Eigen::Index>(mirror_planes.size()), std::numeric_limits<double>::quiet_NaN());
-  const auto point = VisiblePoint(pixel, min_viewing_cosine, false);
-  const auto side = point ? FirstSide(pixel, *point, false) : std::nullopt;
+  if (!surface_.AreSeen(*point, min_viewing_cosine)) return residuals;
+  const auto side = FirstSide(pixel, *point, false);
   if (!side) return residuals;
+  const bool is_in_map =
+      descriptor_ == Descriptor::kGrey || descriptor_ == Descriptor::kDistanceTransform;
+  const VisibleSurface::MirrorLine line = surface_.MirrorImages(*point);
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-    const auto pair = Compare(*side, mirror_planes[static_cast<size_t>(i)], false);
-    if (pair) residuals[i] = pair->residual;
+    const double mirror_plane = mirror_planes[static_cast<size_t>(i)];
+    if (is_in_map) {  // a good part of the time of soslam-refine
+      const Eigen::Vector3d pixel_times_depth = line.at_zero + mirror_plane * line.by_plane;
+      if (!(pixel_times_depth.z() > 0.0)) continue;
+      const auto value = LookUp(pixel_times_depth.hnormalized());
+      if (value) residuals[i] = side->value.value - value->value;
+    } else if (const auto pair = Compare(*side, mirror_plane, false)) {
+      residuals[i] = pair->residual;
+    }
   }
   return residuals;
 }
@@ -69,10 +81,7 @@ std::optional<VisibleSurface::Point> SymmetryDescriptor::VisiblePoint(
     const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine,
     bool with_jacobian) const {
   auto point = surface_.FromPixel(pixel, with_jacobian);
-  if (!point) return std::nullopt;
-  if (min_viewing_cosine &&
-      !(surface_.ViewingCosine(*point) >= *min_viewing_cosine &&
-        surface_.ViewingCosine(surface_.MirrorImage(*point)) >= *min_viewing_cosine)) {
+  if (point && min_viewing_cosine && !surface_.AreSeen(*point, *min_viewing_cosine)) {
     return std::nullopt;
   }
   return point;

@@ -77,9 +77,11 @@ class SymmetryDescriptor {
   std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                  bool with_jacobian, double mirror_plane = 0.0) const;
 
-  // The residuals of Evaluate for several mirror planes: NaN if there is no pair.
-  Eigen::RowVectorXd Residuals(const Eigen::Vector2d& pixel, double min_viewing_cosine,
-                               const std::vector<double>& mirror_planes) const;
+  // The residuals of Evaluate for several mirror planes: NaN if there is no pair. None when the
+  // pixel's ray misses the surface.
+  std::optional<Eigen::RowVectorXd> Residuals(const Eigen::Vector2d& pixel,
+                                              double min_viewing_cosine,
+                                              const std::vector<double>& mirror_planes) const;
 
  private:
   struct Value {

@@ -79,6 +79,13 @@ VisibleSurface::Point VisibleSurface::MirrorImage(const Point& point, double mir
   return mirrored;
 }
 
+VisibleSurface::MirrorLine VisibleSurface::MirrorImages(const Point& point) const {
+  const Eigen::Matrix3d image_from_object = camera_.Intrinsics() * camera_from_object_rotation_;
+  const Eigen::Vector3d mirrored = point.in_object.cwiseProduct(Eigen::Vector3d(1, -1, 1));
+  return {image_from_object * mirrored + camera_.Intrinsics() * centre_in_camera_,
+          2.0 * size_ * image_from_object.col(1)};
+}
+
 std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
                                                              bool with_jacobian) const {
   const Eigen::Vector3d offset_in_camera = camera_from_object_rotation_ * point.in_object;
@@ -100,6 +107,16 @@ std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
 double VisibleSurface::ViewingCosine(const Point& point) const {
   const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
   return normal.dot((camera_in_object_ - point.in_object).normalized());
+}
+
+bool VisibleSurface::AreSeen(const Point& point, double min_viewing_cosine) const {
+  const Eigen::Vector3d mirror(1, -1, 1);
+  const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
+  const auto is_seen = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& normal_there) {
+    return normal_there.dot((camera_in_object_ - at).normalized()) >= min_viewing_cosine;
+  };
+  return is_seen(point.in_object, normal) &&
+         is_seen(point.in_object.cwiseProduct(mirror), normal.cwiseProduct(mirror));
 }
 
 }  // namespace soslam

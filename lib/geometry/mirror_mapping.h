@@ -49,12 +49,22 @@ class VisibleSurface {
   // image is then near the surface where that is flat, and may lie beside the body.
   Point MirrorImage(const Point& point, double mirror_plane = 0.0) const;
 
+  // The mirror image of a point in homogeneous pixels, K times its position in the camera:
+  // `at_zero` + mirror_plane * `by_plane`.
+  struct MirrorLine {
+    Eigen::Vector3d at_zero;
+    Eigen::Vector3d by_plane;
+  };
+  MirrorLine MirrorImages(const Point& point) const;
+
   // P: the projection of a point to its pixel, visible or not. None behind the camera.
   std::optional<Pixel> ToPixel(const Point& point, bool with_jacobian = false) const;
 
   // The cosine between the outward normal at a surface point and the direction to the camera; > 0
   // where the camera sees the point, 0 on the outline.
   double ViewingCosine(const Point& point) const;
+  // True if those of a surface point and of its mirror image are at least this.
+  bool AreSeen(const Point& point, double min_viewing_cosine) const;
 
  private:
   Eigen::Vector3d RayInObject(const Eigen::Vector2d& pixel) const;

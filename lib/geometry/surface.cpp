@@ -121,20 +121,6 @@ std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& orig
   return std::nullopt;  // the ray grazes the surface
 }
 
-void BodySurface::Meet(const Eigen::Vector3d& origin, RayBatch* rays) const {
-  for (int i = 0; i < kBatchSize; ++i) {
-    const Eigen::Vector3d direction(rays->direction[0][i], rays->direction[1][i],
-                                    rays->direction[2][i]);
-    rays->depth[i] = Entry(origin, direction).value_or(-1.0);
-    const Eigen::Vector3d point = origin + rays->depth[i] * direction;
-    const Eigen::Vector3d gradient = Gradient(point);
-    for (size_t k = 0; k < 3; ++k) {
-      rays->point[k][i] = point[static_cast<Eigen::Index>(k)];
-      rays->gradient[k][i] = gradient[static_cast<Eigen::Index>(k)];
-    }
-  }
-}
-
 Eigen::Vector3d BodySurface::Gradient(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d x = point.cwiseProduct(inverse_axes_);
   if (q_ == kEllipsoidExponent) return x.cwiseProduct(inverse_axes_);

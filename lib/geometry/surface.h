@@ -4,17 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "geometry/batch.h"
-
 namespace soslam {
-
-// Rays from one origin, and their first intersections with a surface.
-struct RayBatch {
-  BatchOfVectors direction;
-  Batch depth;  // point = origin + depth * direction; -1 for a ray that misses
-  BatchOfVectors point;
-  BatchOfVectors gradient;  // see BodySurface::Gradient
-};
 
 // q of 1 / p + 1 / q = 1, p the shape exponent of SupportFunction. Infinite for the cuboid, p = 1,
 // and for superquadrics whose edges are too sharp to distinguish from it.
@@ -34,9 +24,6 @@ class BodySurface {
   // the ray misses, or the surface is behind the origin or around it.
   std::optional<double> Entry(const Eigen::Vector3d& origin,
                               const Eigen::Vector3d& direction) const;
-
-  // Entry and Gradient for many rays: fills the members after the directions.
-  void Meet(const Eigen::Vector3d& origin, RayBatch* rays) const;
 
   // dF / dx at a surface point: along the outward normal, with Gradient(x) . x = 1. On an edge of
   // the cuboid, the gradient of one of its faces.

@@ -46,8 +46,7 @@ struct Candidate {
 constexpr FitCost kCostOfNone = {std::numeric_limits<size_t>::max(),
                                  std::numeric_limits<double>::infinity()};
 
-// The cost of one object's landmark in the world over views of it, with constant poses. Not
-// thread-safe.
+// The cost of one object's landmark in the world over views of it, with constant poses.
 class ObjectFit {
  public:
   // `views` index Sequence::detections.
@@ -78,14 +77,15 @@ class ObjectFit {
   // ones cannot be compared.
   void SetPointSize(double size_m) { point_size_m_ = size_m; }
 
-  std::optional<Candidate> IfCheaperThan(const FitCost& other, const Landmark& landmark_in_world) {
+  std::optional<Candidate> IfCheaperThan(const FitCost& other,
+                                         const Landmark& landmark_in_world) const {
     const auto behind =
         std::count_if(boxes_.views.begin(), boxes_.views.end(), [&](const BoxView& view) {
           return !IsInFront(Transform(view.camera_from_world, landmark_in_world));
         });
     FitCost cost{static_cast<size_t>(behind),
                  TotalCost(Terms(landmark_in_world), landmark_in_world)};
-    for (Texture& texture : textures_) {
+    for (const Texture& texture : textures_) {
       if (!(cost < other)) return std::nullopt;
       const BoxView& view = boxes_.views[texture.view];
       cost.cost += view.weight *
@@ -158,16 +158,16 @@ class ObjectFit {
 };
 
 // The cheapest of each bin of yaw, cheapest first.
-std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, ObjectFit* fit) {
+std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, const ObjectFit& fit) {
   std::map<long, Candidate> best;
-  const double first_yaw = FirstYaw(fit->boxes());
+  const double first_yaw = FirstYaw(fit.boxes());
   for (Landmark landmark : landmarks) {
-    landmark.shape_exponent = fit->boxes().ShapeExponent();  // whatever it was found with
-    const double yaw = Yaw(fit->boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
+    landmark.shape_exponent = fit.boxes().ShapeExponent();  // whatever it was found with
+    const double yaw = Yaw(fit.boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
     const long bin = std::lround(YawDifferenceModuloPi(yaw, first_yaw) / kYawBin);
     const auto known = best.find(bin);
     const auto candidate =
-        fit->IfCheaperThan(known == best.end() ? kCostOfNone : known->second.cost, landmark);
+        fit.IfCheaperThan(known == best.end() ? kCostOfNone : known->second.cost, landmark);
     if (candidate) best.insert_or_assign(bin, *candidate);
   }
   std::vector<Candidate> candidates;
@@ -193,7 +193,7 @@ std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses, ObjectF
   if (hypotheses.empty()) return std::nullopt;
   fit->SetPointSize(MedianSize(hypotheses));
   std::optional<Candidate> best;
-  for (const Candidate& start : BestOfEachYaw(hypotheses, fit)) {
+  for (const Candidate& start : BestOfEachYaw(hypotheses, *fit)) {
     const auto landmark = fit->Fit(start.landmark_in_world);
     if (!landmark) continue;
     const auto candidate = fit->IfCheaperThan(best ? best->cost : kCostOfNone, *landmark);

@@ -34,21 +34,19 @@ class OrientationProfile {
 
   const UprightObservation& observation() const { return observation_; }
 
-  YawObjective Objective() {
+  YawObjective Objective() const {
     YawObjective objective;
     if (options_.edge_alignment) {
       objective.further_costs = [this](const Landmark& start) { return EdgeCosts(start); };
       objective.rounds = kEdgeRounds;
     }
     if (options_.texture_symmetry) {
-      objective.extra_cost = [this](const Landmark& landmark) { return TextureCost(landmark); };
+      objective.extra_cost = [this](const Landmark& landmark) { return asymmetry_.Cost(landmark); };
     }
     return objective;
   }
 
-  double TextureCost(const Landmark& landmark) { return asymmetry_.Cost(landmark); }
-
-  void RecordPairs(const Landmark& landmark, SymmetryRecord* record) {
+  void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
     const auto texture = asymmetry_.Find(landmark);
     if (!texture) return;
     const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_,
@@ -121,7 +119,7 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
     result.estimate.failure = "no_ratio_for_label";
     return result;
   }
-  OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
+  const OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
   const YawObjective objective = profile.Objective();
   std::vector<double> texture_costs;
   const YawSweep sweep = SweepYaw(profile.observation(), objective,

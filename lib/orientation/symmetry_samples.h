@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "constraints/symmetry.h"
@@ -11,20 +12,13 @@
 
 namespace soslam {
 
-// The candidates of pixels to compare, provided that their rays meet a landmark, section V-D:
-// corners in the box and/or a uniform grid over it, or its edge pixels. Corners first, strongest
-// first.
-struct SampleCandidates {
-  SampleCandidates(const SymmetryImage& image, const SymmetryOptions& options);
+// Calls `add` with candidates of pixels to compare, section V-D: corners in the box and/or a
+// uniform grid over it, or its edge pixels. Corners come first, strongest first. `add` returns
+// whether the pixel's ray meets the landmark: at most options.max_corners corners do.
+void ForEachSample(const SymmetryImage& image, const SymmetryOptions& options,
+                   const std::function<bool(const Eigen::Vector2d&)>& add);
 
-  std::vector<Eigen::Vector2d> corners;
-  // Limit on the corners whose rays meet the landmark. If there are no more corners in all, every
-  // candidate whose ray meets the landmark is compared.
-  size_t max_corners;
-  std::vector<Eigen::Vector2d> others;
-};
-
-// The candidates whose rays meet the landmark.
+// The candidates whose rays meet a landmark.
 std::vector<Eigen::Vector2d> SamplePixels(const SymmetryImage& image, const Camera& camera,
                                           const Landmark& landmark_in_camera,
                                           const SymmetryOptions& options);

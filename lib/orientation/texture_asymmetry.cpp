@@ -48,24 +48,6 @@ std::vector<double> MirrorPlanePlaces(double range) {
   return places;
 }
 
-// True if a descriptor is a map's value at a pixel.
-bool IsInAMap(Descriptor descriptor) {
-  return descriptor == Descriptor::kGrey || descriptor == Descriptor::kDistanceTransform;
-}
-
-std::optional<MirrorSearch> MakeSearch(const SymmetryImage& image, const Camera& camera,
-                                       const SymmetryOptions& options) {
-  SampleCandidates candidates(image, options);
-  const bool has_map =
-      IsInAMap(options.descriptor) && image.maps.grey.cols >= 2 && image.maps.grey.rows >= 2;
-  if (!has_map || candidates.corners.size() > candidates.max_corners) {
-    return std::nullopt;
-  }
-  std::vector<Eigen::Vector2d> pixels = std::move(candidates.corners);
-  pixels.insert(pixels.end(), candidates.others.begin(), candidates.others.end());
-  return MirrorSearch(image, camera, options.descriptor, std::move(pixels));
-}
-
 }  // namespace
 
 void CheckMirrorPlane(const TextureOptions& options, Descriptor descriptor) {
@@ -85,42 +67,31 @@ TextureAsymmetry::TextureAsymmetry(const SymmetryImage& image, const Camera& cam
       camera_(camera),
       options_(options),
       symmetry_options_(symmetry_options),
-      places_(MirrorPlanePlaces(options.mirror_plane_range)),
-      search_(MakeSearch(image, camera, symmetry_options)) {}
+      places_(MirrorPlanePlaces(options.mirror_plane_range)) {}
 
-std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_in_camera) {
-  if (!search_) return FindPairByPair(landmark_in_camera);
-  auto found = FindByMap(landmark_in_camera);
-  if (found) found->pixels = search_->PixelsOfPairs(found->mirror_plane);
-  return found;
-}
-
-double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) {
-  const auto texture = search_ ? FindByMap(landmark_in_camera) : FindPairByPair(landmark_in_camera);
+double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) const {
+  const auto texture = Find(landmark_in_camera);
   return options_.asymmetry_cost * (texture ? texture->asymmetry : 1.0);
 }
 
-std::optional<MirroredTexture> TextureAsymmetry::FindByMap(const Landmark& landmark_in_camera) {
-  search_->SetLandmark(landmark_in_camera, symmetry_options_.min_viewing_cosine);
-  const auto least = search_->FindMinimum(
-      places_, Scale(landmark_in_camera, symmetry_options_.descriptor, options_),
-      MinPairs(search_->NumSamples(), symmetry_options_));
-  if (!least) return std::nullopt;
-  return MirroredTexture{least->mean, places_[least->place], {}};
-}
-
-std::optional<MirroredTexture> TextureAsymmetry::FindPairByPair(
-    const Landmark& landmark_in_camera) const {
+std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_in_camera) const {
   const SymmetryDescriptor descriptor(symmetry_options_.descriptor, image_, camera_,
                                       landmark_in_camera);
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
-  const auto samples = SamplePixels(image_, camera_, landmark_in_camera, symmetry_options_);
+  std::vector<Eigen::Vector2d> samples;
+  std::vector<Eigen::RowVectorXd> rows;
+  ForEachSample(image_, symmetry_options_, [&](const Eigen::Vector2d& pixel) {
+    auto row = descriptor.Residuals(pixel, symmetry_options_.min_viewing_cosine, places_);
+    if (!row) return false;
+    samples.push_back(pixel);
+    rows.push_back(std::move(*row));
+    return true;
+  });
   // One row per sample, one column per offset; NaN if there is no pair.
   Eigen::ArrayXXd residuals(samples.size(), places_.size());
   for (size_t i = 0; i < samples.size(); ++i) {
-    residuals.row(static_cast<Eigen::Index>(i)) =
-        descriptor.Residuals(samples[i], symmetry_options_.min_viewing_cosine, places_);
+    residuals.row(static_cast<Eigen::Index>(i)) = rows[i];
   }
   std::optional<MirroredTexture> best;
   Eigen::Index best_place = 0;

@@ -9,7 +9,6 @@
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
 #include "initialisation/landmark_cost.h"
-#include "orientation/mirror_search.h"
 #include "orientation/options.h"
 #include "orientation/symmetry_options.h"
 
@@ -32,29 +31,24 @@ struct MirroredTexture {
   std::vector<Eigen::Vector2d> pixels;  // one of each pair
 };
 
-// Finds the mirrored texture of many landmarks. None if too few pairs are visible. Not thread-safe.
+// Finds the mirrored texture of many landmarks. None if too few pairs are visible.
 class TextureAsymmetry {
  public:
   // `image` must outlive this object.
   TextureAsymmetry(const SymmetryImage& image, const Camera& camera, const TextureOptions& options,
                    const SymmetryOptions& symmetry_options);
 
-  std::optional<MirroredTexture> Find(const Landmark& landmark_in_camera);
+  std::optional<MirroredTexture> Find(const Landmark& landmark_in_camera) const;
   // Cost of a landmark as a negative log likelihood: options.asymmetry_cost times the asymmetry,
   // with an asymmetry of 1 if too few pairs are visible.
-  double Cost(const Landmark& landmark_in_camera);
+  double Cost(const Landmark& landmark_in_camera) const;
 
  private:
-  // Leaves `pixels` empty.
-  std::optional<MirroredTexture> FindByMap(const Landmark& landmark_in_camera);
-  std::optional<MirroredTexture> FindPairByPair(const Landmark& landmark_in_camera) const;
-
   const SymmetryImage& image_;
   Camera camera_;
   TextureOptions options_;
   SymmetryOptions symmetry_options_;
-  std::vector<double> places_;          // candidate offsets of the mirror plane
-  std::optional<MirrorSearch> search_;  // only if the descriptor and the samples allow it
+  std::vector<double> places_;  // candidate offsets of the mirror plane
 };
 
 // The asymmetry cost for the back end, with the pairs and the mirror plane of the initial landmark

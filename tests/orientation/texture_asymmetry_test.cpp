@@ -62,9 +62,8 @@ TEST(TextureAsymmetry, GrowsToAllOfItWithTheDifference) {
   camera.cx = 319.5;
   const Landmark landmark = FacingCube(kEllipsoidExponent);
   for (const double scale : {0.1, 1.0, 2.0, 100.0}) {
-    // In single precision.
     EXPECT_NEAR(TextureAsymmetry(image, camera, Texture(3.0, scale), options).Cost(landmark),
-                3.0 / (1.0 + scale * scale), 1e-6);
+                3.0 / (1.0 + scale * scale), 1e-9);
   }
 }
 
@@ -123,9 +122,7 @@ TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
       const double expected =
           0.25 * TextureAsymmetry(*image, TestCamera(), texture, options).Cost(start);
       EXPECT_GT(expected, 1e-3);
-      // The search looks maps up in single precision, see MirrorSearch.
-      const double tolerance = descriptor == Descriptor::kDistanceTransform ? 1e-5 : 1e-9;
-      EXPECT_NEAR(term.Value(start), expected, tolerance);
+      EXPECT_NEAR(term.Value(start), expected, 1e-9);
     }
   }
 }
