@@ -10,7 +10,9 @@
 
 #include "artefact/model_json.h"
 #include "artefact/planes_file.h"
+#include "evaluation/result_checks.h"
 #include "geometry/angles.h"
+#include "ground/ground_checks.h"
 
 namespace soslam {
 namespace {
@@ -104,10 +106,10 @@ std::optional<WorldScale> ScaleOfWorld(const json& world) {
 
 std::string DoubtOfUp(const json& world) {
   const std::map<std::string, std::string> doubts = {
-      {"camera_holding_of_planes", "objects and flat surfaces contradict each other"},
-      {"cameras_turned", "the photos are turned in many ways"},
-      {"few_objects_on_planes", "few objects stand on flat surfaces"},
-      {"up_direction", "objects look alike in other ways to hold the camera"}};
+      {kHoldingOfPlanesCheck, "objects and flat surfaces contradict each other"},
+      {kCamerasTurnedCheck, "the photos are turned in many ways"},
+      {kFewObjectsOnPlanesCheck, "few objects stand on flat surfaces"},
+      {kUpDirectionCheck, "objects look alike in other ways to hold the camera"}};
   std::vector<std::string> words;
   for (const json& finding : world.value("findings", json::array())) {
     const auto doubt = doubts.find(finding.at("check").get<std::string>());

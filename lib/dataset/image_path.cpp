@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <regex>
 #include <set>
 #include <utility>
@@ -86,7 +87,9 @@ std::string RigOf(const std::string& plain_name) {
 }
 
 bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
+  constexpr size_t kMaxName = 255;  // bytes of a file's name; regular expressions are recursive
   const auto names = Difference(folder, other);
+  if (std::max(names.first.size(), names.second.size()) > kMaxName) return false;
   const std::string name = PlainImageName(names.first), other_name = PlainImageName(names.second);
   return name != other_name && RigOf(name) == RigOf(other_name);
 }
@@ -121,7 +124,7 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   }
   const int row = rows.front();
   const fs::path folder = FolderOf(name);
-  if (AreOfTwoCameras(folder, folders_[static_cast<size_t>(row)])) return std::nullopt;
+  if (AreOfTwoCameras(folder, folders_[row])) return std::nullopt;
   const fs::path& named = named_folders_.try_emplace(row, folder).first->second;
   if (!Difference(folder, named).first.empty()) {
     throw InputError(

@@ -256,7 +256,10 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
   std::string words = text;
   std::ranges::replace(words, 'x', ' ');
   const auto numbers = ParseNumbers(words);
-  if (!numbers || numbers->size() != 2 || !IsWholeImageSize((*numbers)[0], (*numbers)[1])) {
+  const bool is_plain = text.find_first_not_of("0123456789x") == std::string::npos &&
+                        std::ranges::count(text, 'x') == 1;
+  if (!is_plain || !numbers || numbers->size() != 2 ||
+      !IsWholeImageSize((*numbers)[0], (*numbers)[1])) {
     RefuseSetting("image_size", text, "width and height, as in 1242x375");
   }
   camera.width = static_cast<int>((*numbers)[0]);

@@ -41,16 +41,19 @@ class YamlReader {
   NamedFields Read(const std::string& text) {
     try {
       const YAML::Node root = YAML::Load(text);
-      if (root.IsScalar() || root.IsSequence()) Refuse(root.Mark(), "is no key: value");
+      if (root.IsScalar() || root.IsSequence()) {
+        Refuse(root.Mark(), "is no key: value; expected lines of key: value");
+      }
       Add("", root, 0);
     } catch (const YAML::Exception& error) {
-      Refuse(error.mark, error.msg);
+      Refuse(error.mark, error.msg + "; expected YAML: lines of key: value");
     }
     return std::move(fields_);
   }
 
  private:
   [[noreturn]] void Refuse(const YAML::Mark& mark, const std::string& what) const {
+    if (mark.is_null()) throw InputError(fmt::format("{}: {}", name_, what));
     throw InputError(fmt::format("{}:{}: {}", name_, mark.line + 1, what));
   }
 
@@ -59,10 +62,16 @@ class YamlReader {
     if (++nodes_ > kMaxFieldValues) {
       Refuse(node.Mark(), fmt::format("has more than {} values", kMaxFieldValues));
     }
-    if (node.IsScalar()) fields_[path].push_back(node.Scalar());
+    if (node.IsScalar()) AddValue(path, node);
     if (node.IsSequence()) {
       fields_[path];  // there, though it may be empty
-      for (const YAML::Node& item : node) Add(path, item, depth + 1);
+      for (const YAML::Node& item : node) {
+        if (item.IsNull()) {
+          fields_[path].emplace_back();  // the items after it keep their places
+        } else {
+          Add(path, item, depth + 1);
+        }
+      }
     }
     if (!node.IsMap()) return;
     for (const auto& entry : node) {
@@ -79,8 +88,19 @@ class YamlReader {
     }
   }
 
+  // Aliases repeat values: what they come to is bounded as well.
+  void AddValue(const std::string& path, const YAML::Node& node) {
+    value_bytes_ += node.Scalar().size();
+    if (value_bytes_ > kMaxFieldBytes) {
+      Refuse(node.Mark(), fmt::format("has values of more than {} bytes, those of aliases included",
+                                      kMaxFieldBytes));
+    }
+    fields_[path].push_back(node.Scalar());
+  }
+
   std::string name_;
   size_t nodes_ = 0;
+  size_t value_bytes_ = 0;
   std::set<std::string> keys_;
   NamedFields fields_;
 };

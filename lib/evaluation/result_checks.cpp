@@ -42,7 +42,7 @@ std::vector<RelativeHeight> RelativeHeights(const LandmarkEstimates& estimates,
                                             const Sequence& sequence, const SemanticTable& table) {
   std::vector<RelativeHeight> relative;
   for (const auto& [index, heights] : HeightsByObject(estimates, sequence)) {
-    const Object& object = sequence.objects[static_cast<size_t>(index)];
+    const Object& object = sequence.objects[index];
     const auto prior = table.Find(object.label);
     if (!prior || !prior->height_m || prior->mount != Mount::kStanding) continue;
     relative.push_back({fmt::format("{} ({})", object.id, object.label),
@@ -175,8 +175,7 @@ std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates) {
       {"collapsed", Severity::kWarning, "have three half axes below 1 mm",
        "landmarks as large as things that a camera sees",
        "poses, planes or boxes that contradict each other, boxes of several things under one id, "
-       "or "
-       "a trajectory that is much smaller than in metres",
+       "or a trajectory that is much smaller than in metres",
        "look at the findings of the import and at the boxes of these objects: soslam-inspect"});
 }
 
@@ -237,7 +236,7 @@ std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHoldi
     ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.holding), tried.probability));
   }
   return {
-      {"up_direction", Severity::kWarning,
+      {kUpDirectionCheck, Severity::kWarning,
        fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
                    fmt::join(ways, ", ")),
        "one way to hold them that explains the boxes much better than others",

@@ -43,6 +43,8 @@ std::vector<Finding> CheckPoseCorrections(const Sequence& sequence,
 // Estimated planes that are nearly as many as the objects on them.
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects);
 
+inline constexpr const char* kUpDirectionCheck = "up_direction";
+
 // The way in which cameras are held, and thus the up direction, if other ways are about as probable
 // and leave up uncertain by `tilt_variance`.
 std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,

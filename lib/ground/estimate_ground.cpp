@@ -36,7 +36,7 @@ Similarity NormalisedFromInput(const Sequence& sequence, const std::vector<Groun
   std::vector<double> distances;
   for (const GroundPoint& point : points) {
     for (const int index : point.frame_indices) {
-      const Frame& frame = sequence.frames[static_cast<size_t>(index)];
+      const Frame& frame = sequence.frames[index];
       distances.push_back((frame.world_from_camera.translation - point.position_in_world).norm());
     }
   }
@@ -78,14 +78,16 @@ class Estimation {
 
   // The same for cameras that are turned in many ways. They only tell that up is within 45 degrees
   // of halfway between up in their images and away from what they look at.
-  void RunTurned(const UpEstimate& held) {
+  void RunTurned(const UpEstimate& up_of_cameras) {
     constexpr double kSigma = 30.0 * kRadPerDeg;
-    of_cameras = held;
+    constexpr double kLeast = 0.5;  // length of the mean: less is of cameras turned in all ways
+    of_cameras = up_of_cameras;
     cameras_are_turned = true;
     Eigen::Vector3d up = Eigen::Vector3d::Zero();  // halfway between level and looking down
     for (const Frame& frame : sequence_.frames) {
       up -= frame.world_from_camera.rotation * Eigen::Vector3d(0.0, 1.0, 1.0);
     }
+    if (up.norm() < kLeast * static_cast<double>(sequence_.frames.size())) return;
     up.normalize();
     attitude = {(Eigen::Matrix3d::Identity() - up * up.transpose()) / (kSigma * kSigma), up};
     without_verticals = attitude;
@@ -211,7 +213,7 @@ class Estimation {
           HypothesisProbabilities(object.evidence, at_scale ? at_scale->log_scale : 0.0);
       for (size_t i = 0; i < shares.size(); ++i) {
         if (hypotheses[i].plane == kNoPlane) continue;
-        objects_on[static_cast<size_t>(hypotheses[i].plane)] += shares[i];
+        objects_on[hypotheses[i].plane] += shares[i];
       }
     }
     return objects_on;

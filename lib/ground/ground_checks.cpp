@@ -132,7 +132,7 @@ void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings
       static_cast<double>(on_planes) >= kFew * static_cast<double>(estimate.objects.size())) {
     return;
   }
-  findings->push_back({"few_objects_on_planes", Severity::kWarning,
+  findings->push_back({kFewObjectsOnPlanesCheck, Severity::kWarning,
                        fmt::format("{} of {} objects stand on the support planes that were found",
                                    on_planes, estimate.objects.size()),
                        fmt::format("at least {:.0f} %", 100.0 * kFew),
@@ -166,7 +166,7 @@ constexpr const char* kSeeWhetherUpright =
 void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   if (estimate.cameras_are_turned) {
     findings->push_back(
-        {"cameras_turned", Severity::kWarning,
+        {kCamerasTurnedCheck, Severity::kWarning,
          "which way is up is not clear: however the camera was held, most objects stand on no flat "
          "surface; the flat surfaces with most points and objects are taken to be level. If that "
          "is wrong, the map is tilted, and heights and scale are wrong with it",
@@ -178,7 +178,7 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
   const CameraHolding holding = estimate.attitude.holding;
   if (holding == estimate.holding_of_boxes) return;
   findings->push_back(
-      {"camera_holding_of_planes", Severity::kWarning,
+      {kHoldingOfPlanesCheck, Severity::kWarning,
        fmt::format(
            "which way is up is not clear: objects look as if the camera was held {}, but "
            "more than twice as many objects stand on flat surfaces if it was held {}, "

@@ -39,10 +39,10 @@ std::vector<std::vector<DepthReading>> ReadingsByFrame(const Sequence& sequence,
   std::vector<std::vector<DepthReading>> readings(sequence.frames.size());
   for (const GroundPoint& point : points) {
     for (const int index : point.frame_indices) {
-      const Frame& frame = sequence.frames[static_cast<size_t>(index)];
+      const Frame& frame = sequence.frames[index];
       const Eigen::Vector3d in_camera = frame.world_from_camera.Inverse() * point.position_in_world;
       const auto pixel = sequence.CameraOf(frame).Project(in_camera);
-      if (pixel) readings[static_cast<size_t>(index)].push_back({*pixel, in_camera.z()});
+      if (pixel) readings[index].push_back({*pixel, in_camera.z()});
     }
   }
   return readings;
@@ -98,8 +98,8 @@ std::vector<Place> PlacesOf(const Sequence& sequence, const std::vector<GroundPo
     const Detection& detection = sequence.detections[i];
     const Camera& camera = sequence.CameraOf(detection);
     const Eigen::Vector3d ray = camera.Ray(detection.box.Centre());
-    for (const double depth : DepthsOf(
-             sequence, detection, readings[static_cast<size_t>(detection.frame_index)], planes)) {
+    for (const double depth :
+         DepthsOf(sequence, detection, readings[detection.frame_index], planes)) {
       places.push_back(
           {static_cast<int>(i), sequence.FrameOf(detection).world_from_camera * (depth * ray),
            depth * detection.box.Width() / camera.fx, depth * detection.box.Height() / camera.fy});
@@ -120,7 +120,7 @@ double Overlap(const Sequence& sequence, const Detection& detection, const Place
       0.5 * Eigen::Vector2d(camera.fx * place.width, camera.fy * place.height) / centre.z();
   const double overlap = BoxOverlap(detection.box, {pixel->x() - half.x(), pixel->y() - half.y(),
                                                     pixel->x() + half.x(), pixel->y() + half.y()});
-  const Detection& own = sequence.detections[static_cast<size_t>(place.detection)];
+  const Detection& own = sequence.detections[place.detection];
   const bool is_same_label = sequence.ObjectOf(own).label == sequence.ObjectOf(detection).label;
   return overlap < (is_same_label ? kLeastOverlap : kLeastOverlapOfLabels) ? 0.0 : overlap;
 }
@@ -175,11 +175,9 @@ class Grouping {
 
  private:
   int FrameOf(const Place& place) const {
-    return sequence_.detections[static_cast<size_t>(place.detection)].frame_index;
+    return sequence_.detections[place.detection].frame_index;
   }
-  const Box& BoxOf(const Place& place) const {
-    return sequence_.detections[static_cast<size_t>(place.detection)].box;
-  }
+  const Box& BoxOf(const Place& place) const { return sequence_.detections[place.detection].box; }
 
   // Sorted by frame, those of most overlap first.
   std::vector<Supporter> SupportersOf(const Place& place) const {
@@ -191,8 +189,7 @@ class Grouping {
       if (overlap > 0.0) supporters.push_back({static_cast<int>(i), overlap});
     }
     std::ranges::stable_sort(supporters, {}, [&](const Supporter& one) {
-      return std::pair(sequence_.detections[static_cast<size_t>(one.detection)].frame_index,
-                       -one.overlap);
+      return std::pair(sequence_.detections[one.detection].frame_index, -one.overlap);
     });
     return supporters;
   }
@@ -203,8 +200,8 @@ class Grouping {
   void VisitSupporters(size_t place, const Visit& visit) const {
     const Detection* best = nullptr;
     for (const Supporter& supporter : supporters_[place]) {
-      if (is_taken_[static_cast<size_t>(supporter.detection)]) continue;
-      const Detection& detection = sequence_.detections[static_cast<size_t>(supporter.detection)];
+      if (is_taken_[supporter.detection]) continue;
+      const Detection& detection = sequence_.detections[supporter.detection];
       const bool is_first = best == nullptr || best->frame_index != detection.frame_index;
       if (!is_first && BoxOverlap(best->box, detection.box) < kSameBox) continue;
       if (is_first) best = &detection;
@@ -213,7 +210,7 @@ class Grouping {
   }
 
   double SupportOf(size_t place) const {
-    if (is_taken_[static_cast<size_t>(places_[place].detection)]) return 0.0;
+    if (is_taken_[places_[place].detection]) return 0.0;
     double sum = 0.0;
     VisitSupporters(place, [&](const Supporter& supporter, bool is_first) {
       if (is_first) sum += supporter.overlap;
@@ -228,8 +225,8 @@ class Grouping {
                     [&](const Supporter& one, bool) { detections.push_back(one.detection); });
     groups_.emplace_back();
     for (const int index : detections) {
-      is_taken_[static_cast<size_t>(index)] = true;
-      const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
+      is_taken_[index] = true;
+      const Detection& detection = sequence_.detections[index];
       const Camera& camera = sequence_.CameraOf(detection);
       const double depth = (sequence_.FrameOf(detection).world_from_camera.Inverse() * centre).z();
       groups_.back().push_back({index, centre, depth * detection.box.Width() / camera.fx,

@@ -31,7 +31,7 @@ std::map<std::string, double> VotesOf(const Sequence& sequence,
   std::map<std::string, double> votes;
   double sum = 0.0;
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     votes[sequence.ObjectOf(detection).label] += detection.score;
     sum += detection.score;
   }
@@ -109,7 +109,7 @@ class Measurement {
     const auto fit = FitObject(sequence_, object_->detections, prior, options_, support);
     if (!fit) return;
     if (hypothesis.plane != kNoPlane &&
-        !IsOverSurface(planes_.planes[static_cast<size_t>(hypothesis.plane)], planes_.up_in_world,
+        !IsOverSurface(planes_.planes[hypothesis.plane], planes_.up_in_world,
                        fit->landmark_in_world)) {
       hypothesis.probability *= kBesidePlane;
     }
@@ -135,20 +135,20 @@ double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
   constexpr double kUsualShare = 0.2;
   const auto& hypotheses = object.evidence.hypotheses;
   const auto best = std::ranges::max_element(hypotheses, {}, &ScaleHypothesis::probability);
-  const Landmark& landmark = object.landmarks[static_cast<size_t>(best - hypotheses.begin())];
+  const Landmark& landmark = object.landmarks[best - hypotheses.begin()];
   std::set<int> frames_with_boxes;
   for (const Detection& detection : sequence.detections) {
     frames_with_boxes.insert(detection.frame_index);
   }
   const auto in_view = std::ranges::count_if(frames_with_boxes, [&](int index) {
-    const Frame& frame = sequence.frames[static_cast<size_t>(index)];
+    const Frame& frame = sequence.frames[index];
     const Camera& camera = sequence.CameraOf(frame);
     const auto pixel = camera.Project(frame.world_from_camera.Inverse() * landmark.Centre());
     return pixel && camera.IsInside(*pixel);
   });
   std::set<int> frames;
   for (const int index : object.detections) {
-    frames.insert(sequence.detections[static_cast<size_t>(index)].frame_index);
+    frames.insert(sequence.detections[index].frame_index);
   }
   const double share = static_cast<double>(frames.size()) /
                        static_cast<double>(std::max<std::ptrdiff_t>(1, in_view));
@@ -177,7 +177,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
     objects.push_back({group, VotesOf(sequence, group), {}, {}});
   }
   ParallelFor("objects", static_cast<int>(objects.size()), threads, [&](int i) {
-    MeasuredObject& object = objects[static_cast<size_t>(i)];
+    MeasuredObject& object = objects[i];
     Measurement measurement(sequence, planes, up, options, &object);
     for (const auto& [label, votes] : object.votes) {
       if (votes < kLeastVotes || moving.contains(NormalisedLabel(label))) continue;

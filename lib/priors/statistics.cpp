@@ -16,7 +16,7 @@ constexpr double kSigmaByMad = 1.4826;
 constexpr double kFarthest = 2.5;
 
 std::vector<double> Standardised(const std::vector<double>& values, double sigma) {
-  const double median = *MedianOf(values);
+  const double median = MedianOf(values).value();
   std::vector<double> standardised;
   for (const double value : values) {
     standardised.push_back(std::clamp((value - median) / sigma, -kFarthest, kFarthest));
@@ -27,17 +27,17 @@ std::vector<double> Standardised(const std::vector<double>& values, double sigma
 }  // namespace
 
 double RobustSigma(const std::vector<double>& values) {
-  const double median = *MedianOf(values);
+  const double median = MedianOf(values).value();
   std::vector<double> deviations;
   for (const double value : values) deviations.push_back(std::abs(value - median));
-  return kSigmaByMad * *MedianOf(deviations);
+  return kSigmaByMad * MedianOf(deviations).value();
 }
 
 NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values,
                     double min_sigma) {
   if (values.empty()) return prior;
   const auto n = static_cast<double>(values.size());
-  const double median = *MedianOf(values);
+  const double median = MedianOf(values).value();
   const double sigma = std::max(min_sigma, RobustSigma(values));
   const double shift = median - prior.mean;
   NormalBelief belief;

@@ -18,20 +18,21 @@ namespace soslam {
 namespace {
 
 // The likely cause and the remedy where much is left out for one reason.
-struct Advice {
+struct FrameAdvice {
   FrameRejection reason;
   const char* cause;
   const char* remedy;
 };
 constexpr std::array kAdvice = {
-    Advice{FrameRejection::kUnreadable, "files of another format, or copied incompletely",
-           "convert them to JPEG, or copy them again"},
-    Advice{FrameRejection::kOtherSize, "photos of several cameras, or upright ones among others",
-           "take all photos with one camera that is held in one way"},
-    Advice{FrameRejection::kOtherFocalLength, "a zoom, or several lenses of one telephone",
-           "take all photos with one lens, without zoom"},
-    Advice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
-           "move more slowly, with more light; or lower min_sharpness"}};
+    FrameAdvice{FrameRejection::kUnreadable, "files of another format, or copied incompletely",
+                "convert them to JPEG, or copy them again"},
+    FrameAdvice{FrameRejection::kOtherSize,
+                "photos of several cameras, or upright ones among others",
+                "take all photos with one camera that is held in one way"},
+    FrameAdvice{FrameRejection::kOtherFocalLength, "a zoom, or several lenses of one telephone",
+                "take all photos with one lens, without zoom"},
+    FrameAdvice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
+                "move more slowly, with more light; or lower min_sharpness"}};
 
 // Coordinate of a pixel after scaling; both count from the centre of the first pixel.
 double Scaled(double coordinate, double scale) { return (coordinate + 0.5) * scale - 0.5; }
@@ -66,7 +67,7 @@ std::vector<Finding> CheckFrames(const ChosenFrames& chosen) {
   std::vector<Finding> findings;
   const int all = static_cast<int>(record.frames.size());
   const auto counts = CountLeftOut(record.frames);
-  for (const Advice& advice : kAdvice) {
+  for (const FrameAdvice& advice : kAdvice) {
     const std::string name = kFrameRejectionNames[static_cast<size_t>(advice.reason)];
     const auto found = counts.find(name);
     if (found == counts.end() || all < kFewest || 3 * found->second <= all) continue;
@@ -109,7 +110,7 @@ std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames
   for (LabelledBox box : boxes) {
     const int number = std::get<int>(box.frame);
     const bool is_known = number >= 0 && number < std::ssize(rows);
-    const auto of_frame = is_known ? rows[static_cast<size_t>(number)] : std::nullopt;
+    const auto of_frame = is_known ? rows[number] : std::nullopt;
     if (!of_frame) {
       ++(is_known ? left_out : unknown);
       continue;

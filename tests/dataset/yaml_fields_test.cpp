@@ -39,18 +39,27 @@ TEST(YamlFieldsTest, FurtherDocumentsAreLeftOut) {
               ElementsAre(Pair("list", IsEmpty()), Pair("names", ElementsAre("a"))));
 }
 
+TEST(YamlFieldsTest, BlocksOfTextAndEmptyValues) {
+  EXPECT_THAT(
+      Parse("download: |\n  import os\n\n  x = [1\ntest:  # optional\nnames: [a, , c, ~]\n"),
+      ElementsAre(Pair("download", ElementsAre("import os\n\nx = [1\n")),
+                  Pair("names", ElementsAre("a", "", "c", ""))));
+}
+
 TEST(YamlFieldsTest, BadTextsAreNamed) {
-  std::string deep, many = "a: [1";
+  std::string deep, many = "a: [1", repeated = "a: &x " + std::string(1 << 18, 'y') + "\nb: [*x";
+  for (int i = 0; i < 30; ++i) repeated += ",*x";
   for (int i = 0; i < 30; ++i) deep += std::string(static_cast<size_t>(i), ' ') + "a:\n";
   for (int i = 0; i < 100000; ++i) many += ",1";
   ExpectBadTexts(
-      {{"a: 1\nwhat\nb: 2\n", {"a.yaml:3"}},
+      {{"a: 1\nwhat\nb: 2\n", {"a.yaml:3", "expected YAML: lines of key: value"}},
        {"a: 1\na: 2\n", {"a.yaml:2", "key a twice"}},
        {"a: [1, 2\nb: 3\n", {"a.yaml:"}},
        {"- 1\n", {"a.yaml:1", "no key: value"}},
        {deep, {"nested too deep"}},
        {"a: " + std::string(50, '[') + std::string(50, ']'), {"nested too deep"}},
        {many + "]", {"more than 100000 values"}},
+       {repeated + "]", {"values of more than 1048576 bytes, those of aliases included"}},
        {"a:\n  " + std::string(200, 'b') + ": 1\n", {"a.yaml:2", "202 characters", "at most 200"}},
        {std::string(1 << 21, '\n'), {"2097152 bytes"}}},
       "a.yaml", &Parse);

@@ -66,6 +66,30 @@ TEST(FindSupportPoint, MovesWithTheLandmark) {
   }
 }
 
+TEST(OutlineBox, IsTheTightBoxOfTheProjectedSurface) {
+  for (const double p : kShapeExponents) {
+    SCOPED_TRACE(p);
+    for (int i = 0; i < 5; ++i) {
+      const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
+      const auto box = OutlineBox(TestCamera(), landmark);
+      ASSERT_TRUE(box);
+      Box sampled{1e9, 1e9, -1e9, -1e9};
+      for (int k = 0; k < 40000; ++k) {
+        const auto pixel = TestCamera().Project(RandomSurfacePoint(landmark));
+        ASSERT_TRUE(pixel);
+        sampled = {std::min(sampled.x_min, pixel->x()), std::min(sampled.y_min, pixel->y()),
+                   std::max(sampled.x_max, pixel->x()), std::max(sampled.y_max, pixel->y())};
+      }
+      const Box margin{box->x_min - 1e-9, box->y_min - 1e-9, box->x_max + 1e-9, box->y_max + 1e-9};
+      EXPECT_TRUE(margin.Contains({sampled.x_min, sampled.y_min}));
+      EXPECT_TRUE(margin.Contains({sampled.x_max, sampled.y_max}));
+      // Samples come within about 1/40000 of the extent of each tangent point; rounded edges reach
+      // a thousandth of the size farther.
+      ExpectNear(sampled, *box, 0.5);
+    }
+  }
+}
+
 TEST(OutlineBox, OfTheCuboidHoldsItsCorners) {
   const Camera camera = TestCamera();
   for (int i = 0; i < 100; ++i) {

@@ -89,6 +89,7 @@ TEST(EstimateGroundTest, FindsUpScaleAndPlanesOfARoom) {
   const Outcome outcome = Compare(scene, estimate);
   EXPECT_TRUE(outcome.is_within) << outcome.log_error;
   EXPECT_LT(outcome.up_error_deg, 0.5);
+  EXPECT_FALSE(estimate.cameras_are_turned);
   EXPECT_EQ(outcome.planes, 2);
   EXPECT_EQ(outcome.missed_planes, 0);
   EXPECT_EQ(outcome.wrong_planes, 0);
@@ -316,7 +317,7 @@ TEST(GroupBoxesTest, GroupsAreOfOneObject) {
   for (const auto& group : groups) {
     std::map<int, size_t> counts;
     for (const int index : group) {
-      ++counts[*scene.sequence.detections[static_cast<size_t>(index)].true_object_id];
+      ++counts[*scene.sequence.detections[index].true_object_id];
     }
     if (counts.size() > 1) ++mixed;
     for (const auto& [id, count] : counts) largest[id] = std::max(largest[id], count);

@@ -241,6 +241,8 @@ TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
   const CommandResult run = Run(words);
   EXPECT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
+  std::erase(words, "VARIANT=OursS OursSTE");
+  EXPECT_THAT(Run(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
 }
 
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {

@@ -47,6 +47,12 @@ TEST(ScaleFromWorld, SaysWhatContradictsScaleAndUp) {
   scale = Scale({"objects"});
   scale["contradicted_by"] = {"scale_contradicted"};
   json world = World(scale);
+  world["findings"] = {{{"check", "up_direction"}}};
+  EXPECT_NE(ScaleFromWorld(world, {}).warning.find("objects look alike in other ways to hold"),
+            std::string::npos);
+  world["findings"] = {{{"check", "camera_holding_of_planes"}}};
+  EXPECT_NE(ScaleFromWorld(world, {}).warning.find("flat surfaces contradict each other"),
+            std::string::npos);
   world["findings"] = {{{"check", "cameras_turned"}}};
   EXPECT_EQ(ScaleFromWorld(world, {}).warning,
             "The scale may be wrong by more than that: the heights of objects contradict one "
@@ -133,8 +139,8 @@ class SupportInWordsTest : public testing::Test {
     sequence_.planes.push_back({8, {floor.normal.unitOrthogonal(), 3.0}});
     map_ = TrueMap(sequence_);
     for (int i = 0; i < 3; ++i) {
-      sequence_.objects[static_cast<size_t>(i)].plane_index = i;
-      map_.objects[static_cast<size_t>(i)].landmark_in_world->half_axes.z() = 0.2;
+      sequence_.objects[i].plane_index = i;
+      map_.objects[i].landmark_in_world->half_axes.z() = 0.2;
     }
   }
 
