@@ -13,9 +13,9 @@ json IdOrNull(int index, int first_id) { return index >= 0 ? json(index + first_
 // Reference to a detection of the input sequence as files have it: frame id and id of the given
 // object.
 json NameOf(const Sequence& sequence, int index) {
-  const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-  return {{"frame", sequence.frames[static_cast<size_t>(detection.frame_index)].id},
-          {"given_object", sequence.objects[static_cast<size_t>(detection.object_index)].id}};
+  const Detection& detection = sequence.detections[index];
+  return {{"frame", sequence.frames[detection.frame_index].id},
+          {"given_object", sequence.objects[detection.object_index].id}};
 }
 
 json LinkToJson(const DetectionDecision& decision) {
@@ -31,7 +31,7 @@ json LinkToJson(const DetectionDecision& decision) {
 }
 
 json DetectionToJson(const Sequence& sequence, const Association& association, int index) {
-  const DetectionDecision& decision = association.detections[static_cast<size_t>(index)];
+  const DetectionDecision& decision = association.detections[index];
   json row = NameOf(sequence, index);
   row["decision"] = kLinkDecisionNames.at(static_cast<size_t>(decision.decision));
   row["link"] = LinkToJson(decision);
@@ -62,15 +62,14 @@ json TrackToJson(const Track& track, int index) {
 json ObjectToJson(const Sequence& sequence, const Association& association,
                   const Agreement& agreement, size_t index) {
   const int track_index = association.objects[index];
-  const Track& track = association.tracks[static_cast<size_t>(track_index)];
+  const Track& track = association.tracks[track_index];
   const auto given = agreement.given_of_object[index];
-  return {
-      {"object", index + 1},
-      {"track", track_index},
-      {"label", LabelOf(track)},
-      {"label_votes", track.votes},
-      {"detections", track.detections.size()},
-      {"given_object", given ? json(sequence.objects[static_cast<size_t>(*given)].id) : json()}};
+  return {{"object", index + 1},
+          {"track", track_index},
+          {"label", LabelOf(track)},
+          {"label_votes", track.votes},
+          {"detections", track.detections.size()},
+          {"given_object", given ? json(sequence.objects[*given].id) : json()}};
 }
 
 json AgreementToJson(const Agreement& agreement) {

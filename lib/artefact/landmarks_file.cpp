@@ -23,13 +23,13 @@ using nlohmann::json;
 using FrameAndObjectId = std::pair<int, int>;
 
 FrameAndObjectId Ids(const Detection& detection, const Sequence& sequence) {
-  return {sequence.frames.at(static_cast<size_t>(detection.frame_index)).id,
-          sequence.objects.at(static_cast<size_t>(detection.object_index)).id};
+  return {sequence.frames.at(detection.frame_index).id,
+          sequence.objects.at(detection.object_index).id};
 }
 
 json ObservationToJson(const ObservationEstimate& estimate, const Sequence& sequence) {
   const auto [frame_id, object_id] =
-      Ids(sequence.detections.at(static_cast<size_t>(estimate.detection_index)), sequence);
+      Ids(sequence.detections.at(estimate.detection_index), sequence);
   const auto hypothesis_to_json = [](const Hypothesis& hypothesis) -> json {
     return {{"landmark", LandmarkToJson(hypothesis.landmark_in_camera, "camera")},
             {"cost", hypothesis.cost}};

@@ -44,10 +44,10 @@ void AddExplanation(const std::optional<Explanation>& explanation, json* row) {
 }
 
 json ObjectToJson(const TrueObjectRow& row, const MapQuality& quality, const Sequence& sequence) {
-  const TrueObject& object = sequence.true_objects[static_cast<size_t>(row.true_index)];
+  const TrueObject& object = sequence.true_objects[row.true_index];
   const auto landmark_id = [&](int landmark) {
-    const LandmarkRow& found = quality.landmarks[static_cast<size_t>(landmark)];
-    return sequence.objects[static_cast<size_t>(found.object_index)].id;
+    const LandmarkRow& found = quality.landmarks[landmark];
+    return sequence.objects[found.object_index].id;
   };
   json fields = {{"true_object", object.id},
                  {"label", object.label},
@@ -70,7 +70,7 @@ json ErrorsToJson(const BodyErrors& errors) {
 }
 
 json LandmarkRowToJson(const LandmarkRow& row, const Sequence& sequence) {
-  const Object& object = sequence.objects[static_cast<size_t>(row.object_index)];
+  const Object& object = sequence.objects[row.object_index];
   json fields = {{"object", object.id},
                  {"label", object.label},
                  {"fate", kLandmarkFateNames[static_cast<size_t>(row.fate)]},
@@ -83,7 +83,7 @@ json LandmarkRowToJson(const LandmarkRow& row, const Sequence& sequence) {
                  {"wrong_part", json()},
                  {"in_frames", row.in_frames}};
   if (row.true_index) {
-    fields["true_object"] = sequence.true_objects[static_cast<size_t>(*row.true_index)].id;
+    fields["true_object"] = sequence.true_objects[*row.true_index].id;
   }
   if (row.wrong) {
     fields["wrong_part"] = {{"part", kBodyPartNames[static_cast<size_t>(row.wrong->part)]},
@@ -123,7 +123,7 @@ json MapQualityToJson(const MapQuality& quality, const Sequence& sequence) {
 }
 
 json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
-  const Object& object = sequence.objects[static_cast<size_t>(metrics.object_index)];
+  const Object& object = sequence.objects[metrics.object_index];
   return {{"object", object.id},
           {"label", object.label},
           {"observations", metrics.observations},
@@ -136,7 +136,7 @@ json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
 
 json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
   const auto object_to_json = [&](const HeldOutObject& one) -> json {
-    const Object& object = sequence.objects[static_cast<size_t>(one.object_index)];
+    const Object& object = sequence.objects[one.object_index];
     return {{"object", object.id},      {"label", object.label},
             {"in_sight", one.in_sight}, {"in_sight_matched", one.in_sight_matched},
             {"matched", one.matched},   {"iou_mean", one.iou_mean}};

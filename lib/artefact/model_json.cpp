@@ -61,7 +61,7 @@ json MatrixToJson(const Eigen::Matrix3d& matrix) {
 
 Eigen::Matrix3d MatrixFromJson(const json& json) {
   Eigen::Matrix3d matrix;
-  for (int i = 0; i < 3; ++i) matrix.row(i) = VectorFromJson(json.at(static_cast<size_t>(i)));
+  for (int i = 0; i < 3; ++i) matrix.row(i) = VectorFromJson(json.at(i));
   return matrix;
 }
 
@@ -132,7 +132,7 @@ Covariance9 CovarianceFromJson(const json& json) {
 json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
   const auto& landmark = estimate.landmark_in_world;
   const auto& covariance = estimate.covariance;
-  const Object& object = sequence.objects.at(static_cast<size_t>(estimate.object_index));
+  const Object& object = sequence.objects.at(estimate.object_index);
   json row = {{"object", object.id},
               {"observations", estimate.observations},
               {"landmark", landmark ? LandmarkToJson(*landmark, "world") : json()},

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 json ErrorToJson(const std::optional<PlaneError>& error, const Sequence& given) {
   if (!error) return {};
-  return {{"plane", given.planes[static_cast<size_t>(error->given_plane_index)].id},
+  return {{"plane", given.planes[error->given_plane_index].id},
           {"angle_deg", kDegPerRad * error->angle},
           {"offset_m", error->offset}};
 }

@@ -67,7 +67,7 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
   std::vector<int> begins = {0}, frames;
   std::vector<double> pixels;
   for (int i = 0; i < count; ++i) {
-    const MapPoint& point = points[static_cast<size_t>(i)];
+    const MapPoint& point = points[i];
     for (int k = 0; k < 3; ++k) positions.at<double>(i, k) = point.position_in_world[k];
     errors.push_back(point.reprojection_error_px);
     for (const PointObservation& observation : point.observations) {
@@ -108,8 +108,7 @@ std::vector<MapPoint> ReadPoints(const std::filesystem::path& path) {
                                positions.at<double>(i, 2)};
     point.reprojection_error_px = errors[index];
     for (int k = begins[index]; k < begins[index + 1]; ++k) {
-      point.observations.push_back(
-          {frames[static_cast<size_t>(k)], {pixels.at<double>(k, 0), pixels.at<double>(k, 1)}});
+      point.observations.push_back({frames[k], {pixels.at<double>(k, 0), pixels.at<double>(k, 1)}});
     }
   }
   return points;

@@ -88,7 +88,7 @@ TruthInFrame TruthInFrameFromJson(const json& row, const IdTable<Frame>& frames)
   Landmark landmark;
   landmark.frame_from_object = pose.get<Rigid3d>();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    row.at(static_cast<size_t>(9 + axis)).get_to(landmark.half_axes[axis]);
+    row.at(9 + axis).get_to(landmark.half_axes[axis]);
   }
   return {frames.IndexOf(row.at(0).get<int>()), row.at(1).get<int>(), landmark};
 }

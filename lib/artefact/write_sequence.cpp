@@ -46,9 +46,8 @@ json ObjectToJson(const Object& object, const Sequence& sequence) {
   json fields = {
       {"object", object.id},
       {"label", object.label},
-      {"plane", object.plane_index == kNoPlane
-                    ? json()
-                    : json(sequence.planes.at(static_cast<size_t>(object.plane_index)).id)},
+      {"plane",
+       object.plane_index == kNoPlane ? json() : json(sequence.planes.at(object.plane_index).id)},
       {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
       {"is_static", object.is_static}};
   if (!object.labels.empty()) fields["labels"] = LabelsToJson(object.labels);
@@ -69,7 +68,7 @@ json TrueObjectToJson(const TrueObject& object) {
 json TruthInFrameToJson(const TruthInFrame& truth, const Sequence& sequence) {
   const auto& [rotation, translation] = truth.landmark_in_camera.frame_from_object;
   const Eigen::Vector3d& half_axes = truth.landmark_in_camera.half_axes;
-  json row = {sequence.frames.at(static_cast<size_t>(truth.frame_index)).id, truth.true_object_id};
+  json row = {sequence.frames.at(truth.frame_index).id, truth.true_object_id};
   for (const double number : rotation.coeffs()) row.push_back(number);
   for (const double number : translation) row.push_back(number);
   for (const double number : half_axes) row.push_back(number);
@@ -92,8 +91,8 @@ json BoundsToJson(const std::array<bool, 4>& is_bound) {
 }
 
 json DetectionToJson(const Detection& detection, const Sequence& sequence) {
-  json fields = {{"frame", sequence.frames.at(static_cast<size_t>(detection.frame_index)).id},
-                 {"object", sequence.objects.at(static_cast<size_t>(detection.object_index)).id},
+  json fields = {{"frame", sequence.frames.at(detection.frame_index).id},
+                 {"object", sequence.objects.at(detection.object_index).id},
                  {"score", detection.score},
                  {"box", detection.box},
                  {"plane_in_camera", sequence.ObjectOf(detection).plane_index == kNoPlane
@@ -139,7 +138,7 @@ json RejectedToJson(const Sequence& sequence) {
   }
   for (const RejectedDetection& rejected : sequence.rejected) {
     const Box& box = rejected.box;
-    fields["rows"].push_back({sequence.frames.at(static_cast<size_t>(rejected.frame_index)).id,
+    fields["rows"].push_back({sequence.frames.at(rejected.frame_index).id,
                               reasons.at({rejected.stage, rejected.reason}),
                               labels.at(rejected.label), rejected.true_object_id, rejected.score,
                               box.x_min, box.y_min, box.x_max, box.y_max});

@@ -21,19 +21,19 @@ constexpr double kNegligibleProbability = 0.01;
 // Fills Association::objects, ordered by the first detection in the sequence.
 void ListObjects(const Sequence& sequence, Association* association) {
   for (int i = 0; i < static_cast<int>(association->tracks.size()); ++i) {
-    if (association->tracks[static_cast<size_t>(i)].fate == TrackFate::kObject) {
+    if (association->tracks[i].fate == TrackFate::kObject) {
       association->objects.push_back(i);
     }
   }
   const auto first_frame = [&](int track) {
-    const int detection = association->tracks[static_cast<size_t>(track)].detections.front();
-    return sequence.detections[static_cast<size_t>(detection)].frame_index;
+    const int detection = association->tracks[track].detections.front();
+    return sequence.detections[detection].frame_index;
   };
   std::ranges::stable_sort(association->objects, {}, first_frame);
   for (size_t object = 0; object < association->objects.size(); ++object) {
     const auto track = static_cast<size_t>(association->objects[object]);
     for (const int detection : association->tracks[track].detections) {
-      association->detections[static_cast<size_t>(detection)].object = static_cast<int>(object);
+      association->detections[detection].object = static_cast<int>(object);
     }
   }
 }
@@ -147,7 +147,7 @@ std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
   std::vector<Support> supports;
   for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
     if (sequence_.HasSupports() && i != track.plane_index) continue;
-    supports.push_back({i, sequence_.planes[static_cast<size_t>(i)].plane_in_world});
+    supports.push_back({i, sequence_.planes[i].plane_in_world});
   }
   return supports;
 }
@@ -212,8 +212,7 @@ int AssociationModel::SegmentOf(const Track& track) const {
 }
 
 std::optional<Prediction> AssociationModel::Predict(const Track& track, int frame_index) const {
-  if (!track.fit ||
-      SegmentOf(track) != sequence_.frames[static_cast<size_t>(frame_index)].segment) {
+  if (!track.fit || SegmentOf(track) != sequence_.frames[frame_index].segment) {
     return std::nullopt;
   }
   const auto frame_of = [this](int detection) { return DetectionAt(detection).frame_index; };
@@ -283,8 +282,8 @@ const char* ReasonNotUsed(const Association& association, const DetectionDecisio
     return "duplicate_of_another_box";
   }
   int track = decision.track;
-  while (association.tracks[static_cast<size_t>(track)].fate == TrackFate::kMerged) {
-    track = association.tracks[static_cast<size_t>(track)].merged_into;
+  while (association.tracks[track].fate == TrackFate::kMerged) {
+    track = association.tracks[track].merged_into;
   }
   return kTrackFateNames[static_cast<size_t>(association.tracks[static_cast<size_t>(track)].fate)];
 }
@@ -318,12 +317,12 @@ Agreement CompareWithGiven(const Sequence& sequence, const Association& associat
   for (size_t i = 0; i < given.size(); ++i) agreement.given_objects += counts(i) ? 1 : 0;
   std::set<int> taken;
   for (const Pair& pair : PairsByShare(sequence, association)) {
-    auto& given_of_object = agreement.given_of_object[static_cast<size_t>(pair.object)];
+    auto& given_of_object = agreement.given_of_object[pair.object];
     if (given_of_object || !taken.insert(pair.given).second) continue;
     given_of_object = pair.given;
     const auto track = static_cast<size_t>(association.objects[static_cast<size_t>(pair.object)]);
     const auto estimated_size = static_cast<int>(association.tracks[track].detections.size());
-    const auto given_size = static_cast<int>(given[static_cast<size_t>(pair.given)].size());
+    const auto given_size = static_cast<int>(given[pair.given].size());
     if (counts(static_cast<size_t>(pair.given)) &&
         2 * pair.shared > estimated_size + given_size - pair.shared)
       ++agreement.matched;
@@ -337,14 +336,14 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
   associated.objects.clear();
   associated.detections.clear();
   for (size_t i = 0; i < association.objects.size(); ++i) {
-    const Track& track = association.tracks[static_cast<size_t>(association.objects[i])];
+    const Track& track = association.tracks[association.objects[i]];
     Object object{static_cast<int>(i) + 1, LabelOf(track), track.plane_index, {}};
     object.labels = track.labels;
     std::erase_if(object.labels, [](const LabelProbability& label) {
       return label.probability < kNegligibleProbability;
     });
     if (const auto given = agreement.given_of_object[i]) {
-      const Object& given_object = sequence.objects[static_cast<size_t>(*given)];
+      const Object& given_object = sequence.objects[*given];
       if (given_object.is_static) object.ground_truth = given_object.ground_truth;
     }
     associated.objects.push_back(object);
@@ -358,7 +357,7 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
       if (plane != kNoPlane && !sequence.HasSupports()) {
         detection.plane_in_camera =
             Transform(sequence.FrameOf(detection).world_from_camera.Inverse(),
-                      sequence.planes[static_cast<size_t>(plane)].plane_in_world);
+                      sequence.planes[plane].plane_in_world);
       }
       associated.detections.push_back(std::move(detection));
     } else {

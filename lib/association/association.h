@@ -110,9 +110,7 @@ class AssociationModel {
   const Sequence& sequence() const { return sequence_; }
   const AssociateOptions& options() const { return options_; }
   const std::map<int, UpEstimate>& up_of_segments() const { return up_of_segments_; }
-  const Detection& DetectionAt(int index) const {
-    return sequence_.detections[static_cast<size_t>(index)];
-  }
+  const Detection& DetectionAt(int index) const { return sequence_.detections[index]; }
   const std::string& LabelOf(const Detection& detection) const {
     return sequence_.ObjectOf(detection).label;
   }

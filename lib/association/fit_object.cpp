@@ -110,7 +110,7 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence,
     if (solution) return solution->landmark;
   }
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     const auto start = LandmarkOnPlane(sequence, detection, observation, options);
     if (!start) continue;
     const auto solution = FitUpright(observation.plane_in_world, *start,
@@ -264,7 +264,7 @@ BoxLikelihood::BoxLikelihood(const Sequence& sequence, const AssociateOptions& o
 
 std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int known_frame_index,
                                                  int frame_index) const {
-  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
+  const Frame& frame = sequence_.frames[frame_index];
   Prediction prediction;
   prediction.camera_from_world = frame.world_from_camera.Inverse();
   prediction.landmark_in_camera = Transform(prediction.camera_from_world, object.landmark_in_world);

@@ -48,9 +48,7 @@ class FrameLinker {
   };
 
   const Detection& At(int detection) const { return model_.DetectionAt(detection); }
-  DetectionDecision& DecisionOn(int detection) {
-    return association_.detections[static_cast<size_t>(detection)];
-  }
+  DetectionDecision& DecisionOn(int detection) { return association_.detections[detection]; }
 
   // Indices of the detections of a frame, best score first. Ties are ordered by box and label, so
   // that the order and ids of the input do not matter.
@@ -87,11 +85,10 @@ class FrameLinker {
   }
 
   void Predict(int frame) {
-    const Camera& camera =
-        model_.sequence().CameraOf(model_.sequence().frames[static_cast<size_t>(frame)]);
+    const Camera& camera = model_.sequence().CameraOf(model_.sequence().frames[frame]);
     ParallelFor(static_cast<int>(states_.size()), threads_, [&](int i) {
-      State& state = states_[static_cast<size_t>(i)];
-      state.prediction = model_.Predict(association_.tracks[static_cast<size_t>(i)], frame);
+      State& state = states_[i];
+      state.prediction = model_.Predict(association_.tracks[i], frame);
       const bool is_in_image =
           state.prediction &&
           DistanceToBorder(state.prediction->outline, camera.width, camera.height) >= 0.0;
@@ -110,15 +107,15 @@ class FrameLinker {
       const auto track = static_cast<size_t>(column);
       if (!states_[track].prediction) continue;
       for (Eigen::Index row = 0; row < rows; ++row) {
-        auto& match = matches[static_cast<size_t>(row)][track];
+        auto& match = matches[row][track];
         match = model_.Match(association_.tracks[track], *states_[track].prediction,
-                             At(detections[static_cast<size_t>(row)]));
+                             At(detections[row]));
         if (match) costs(row, column) = match->cost;
       }
     }
     Eigen::VectorXd costs_of_new_objects(rows);
     for (Eigen::Index row = 0; row < rows; ++row) {
-      costs_of_new_objects[row] = model_.NewObjectCost(At(detections[static_cast<size_t>(row)]));
+      costs_of_new_objects[row] = model_.NewObjectCost(At(detections[row]));
     }
     const std::vector<int> track_of_row = Assign(costs, costs_of_new_objects);
     for (size_t row = 0; row < detections.size(); ++row) {
@@ -126,7 +123,7 @@ class FrameLinker {
       if (track == kUnassigned) {
         Start(detections[row]);
       } else {
-        Extend(track, *matches[row][static_cast<size_t>(track)], detections[row]);
+        Extend(track, *matches[row][track], detections[row]);
       }
     }
   }
@@ -142,8 +139,8 @@ class FrameLinker {
   }
 
   void Extend(int track_index, const BoxMatch& match, int detection) {
-    Track& track = association_.tracks[static_cast<size_t>(track_index)];
-    State& state = states_[static_cast<size_t>(track_index)];
+    Track& track = association_.tracks[track_index];
+    State& state = states_[track_index];
     DetectionDecision& decision = DecisionOn(detection);
     decision.decision = state.was_out_of_image ? LinkDecision::kRevisited : LinkDecision::kLinked;
     decision.track = track_index;
@@ -156,8 +153,8 @@ class FrameLinker {
   }
 
   void Add(int track_index, int detection) {
-    Track& track = association_.tracks[static_cast<size_t>(track_index)];
-    State& state = states_[static_cast<size_t>(track_index)];
+    Track& track = association_.tracks[track_index];
+    State& state = states_[track_index];
     track.detections.push_back(detection);
     ++track.linked;
     track.votes[model_.LabelOf(At(detection))] += At(detection).score;
@@ -182,7 +179,7 @@ class FrameLinker {
       states_[i].has_changed = false;
     }
     ParallelFor(static_cast<int>(due.size()), threads_, [&](int i) {
-      const size_t track_index = due[static_cast<size_t>(i)];
+      const size_t track_index = due[i];
       Track& track = association_.tracks[track_index];
       model_.Fit(&track);
       states_[track_index].fitted_detections = track.detections.size();

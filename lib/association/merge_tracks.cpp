@@ -35,15 +35,15 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
   for (const int index : track.detections) {
     const Detection& detection = model.DetectionAt(index);
     smallest_height = std::min(smallest_height, detection.box.Height());
-    is_detected[static_cast<size_t>(detection.frame_index)] = true;
+    is_detected[detection.frame_index] = true;
   }
   auto frames = static_cast<int>(track.detections.size());
   for (int frame = 0; frame < static_cast<int>(sequence.frames.size()); ++frame) {
-    if (is_detected[static_cast<size_t>(frame)]) continue;
+    if (is_detected[frame]) continue;
     const auto prediction = model.Predict(track, frame);
     if (!prediction) continue;
     const Box& box = prediction->outline;
-    const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(frame)]);
+    const Camera& camera = sequence.CameraOf(sequence.frames[frame]);
     if (box.Height() < smallest_height ||
         DistanceToBorder(box, camera.width, camera.height) < border_px) {
       continue;
@@ -98,7 +98,7 @@ TrackFate FateOf(const AssociationModel& model, const Track& track, const Shown&
 void DropFalseTracks(const AssociationModel& model, int threads, Association* association) {
   const double border_px = SmallestDistanceToBorder(model.sequence());
   ParallelFor("tracks", static_cast<int>(association->tracks.size()), threads, [&](int i) {
-    Track& track = association->tracks[static_cast<size_t>(i)];
+    Track& track = association->tracks[i];
     if (track.fate == TrackFate::kMerged) return;
     const Shown shown = ShownBy(model, track);
     const bool is_candidate = track.fit && shown.three_edges >= model.options().min_observations;
@@ -139,8 +139,8 @@ class TrackMerger {
 
  private:
   const Detection& At(int detection) const { return model_.DetectionAt(detection); }
-  Track& TrackAt(int track) { return association_.tracks[static_cast<size_t>(track)]; }
-  const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
+  Track& TrackAt(int track) { return association_.tracks[track]; }
+  const Track& TrackAt(int track) const { return association_.tracks[track]; }
 
   // Tracks not yet merged, fewest detections first, the youngest first among equals.
   std::vector<int> SmallestFirst() const {
@@ -153,13 +153,13 @@ class TrackMerger {
     return order;
   }
 
-  bool HasChanged(int track) const { return has_changed_[static_cast<size_t>(track)] != 0; }
+  bool HasChanged(int track) const { return has_changed_[track] != 0; }
 
   // The best track to merge this one into, among those after it in the order. Reuses the previous
   // result for pairs of tracks that have not changed.
   std::optional<Merge> BestMerge(const std::vector<int>& order, size_t position) const {
     const int smaller = order[position];
-    std::optional<Merge> best = best_[static_cast<size_t>(smaller)];
+    std::optional<Merge> best = best_[smaller];
     const bool is_known = !HasChanged(smaller) && !(best && HasChanged(best->into));
     if (!is_known) best.reset();
     for (size_t larger = position + 1; larger < order.size(); ++larger) {
@@ -175,20 +175,19 @@ class TrackMerger {
   bool MergeOnce() {
     const std::vector<int> order = SmallestFirst();
     std::vector<std::optional<Merge>> merges(order.size());
-    ParallelFor("tracks", static_cast<int>(order.size()), threads_, [&](int i) {
-      merges[static_cast<size_t>(i)] = BestMerge(order, static_cast<size_t>(i));
-    });
+    ParallelFor("tracks", static_cast<int>(order.size()), threads_,
+                [&](int i) { merges[i] = BestMerge(order, static_cast<size_t>(i)); });
     std::ranges::fill(has_changed_, 0);
     std::vector<int> grown;
     for (size_t i = 0; i < order.size(); ++i) {
-      const auto& merge = best_[static_cast<size_t>(order[i])] = merges[i];
+      const auto& merge = best_[order[i]] = merges[i];
       if (!merge || HasChanged(order[i]) || HasChanged(merge->into)) continue;
       Apply(*merge, order[i]);
-      for (const int track : {order[i], merge->into}) has_changed_[static_cast<size_t>(track)] = 1;
+      for (const int track : {order[i], merge->into}) has_changed_[track] = 1;
       grown.push_back(merge->into);
     }
     ParallelFor(static_cast<int>(grown.size()), threads_,
-                [&](int i) { model_.Fit(&TrackAt(grown[static_cast<size_t>(i)])); });
+                [&](int i) { model_.Fit(&TrackAt(grown[i])); });
     return !grown.empty();
   }
 
@@ -210,7 +209,7 @@ class TrackMerger {
                                              model_.options().merge_share * merge.tried - 1e-9)));
     for (int i = 0; i < merge.tried; ++i) {
       if (merge.explained + merge.tried - i < needed) return std::nullopt;
-      const Detection& detection = At(boxes[static_cast<size_t>(i)]);
+      const Detection& detection = At(boxes[i]);
       const auto prediction = model_.Predict(large, detection.frame_index);
       const auto match = prediction ? model_.Match(large, *prediction, detection) : std::nullopt;
       if (!match) continue;
@@ -280,7 +279,7 @@ class TrackMerger {
       if (is_first) {
         large.detections.push_back(detection);
       } else {
-        association_.detections[static_cast<size_t>(detection)].superseded = true;
+        association_.detections[detection].superseded = true;
       }
     }
   }

@@ -20,7 +20,7 @@ class OptimalMatching {
         column_potentials_(Eigen::VectorXd::Zero(columns_)),
         row_of_column_(static_cast<size_t>(columns_), kUnassigned) {}
 
-  int RowOf(int column) const { return row_of_column_[static_cast<size_t>(column)]; }
+  int RowOf(int column) const { return row_of_column_[column]; }
 
   // Adds a row along the shortest path (by reduced costs) from it to a free column.
   void Add(int row) {
@@ -34,17 +34,17 @@ class OptimalMatching {
     for (;;) {
       int nearest = kUnassigned;
       for (int column = 0; column < columns_; ++column) {
-        if (reached[static_cast<size_t>(column)]) continue;
+        if (reached[column]) continue;
         const double distance = length + Cost(from_row, column) - row_potentials_[from_row] -
                                 column_potentials_[column];
         if (distance < distances[column]) {
           distances[column] = distance;
-          before[static_cast<size_t>(column)] = from_column;
+          before[column] = from_column;
         }
         if (nearest == kUnassigned || distances[column] < distances[nearest]) nearest = column;
       }
       length = distances[nearest];
-      reached[static_cast<size_t>(nearest)] = true;
+      reached[nearest] = true;
       from_column = nearest;
       from_row = RowOf(nearest);
       if (from_row == kUnassigned) break;
@@ -72,8 +72,8 @@ class OptimalMatching {
 
   void Augment(int row, int free_column, const std::vector<int>& before) {
     for (int column = free_column; column != kUnassigned;) {
-      const int previous = before[static_cast<size_t>(column)];
-      row_of_column_[static_cast<size_t>(column)] = previous == kUnassigned ? row : RowOf(previous);
+      const int previous = before[column];
+      row_of_column_[column] = previous == kUnassigned ? row : RowOf(previous);
       column = previous;
     }
   }
@@ -95,7 +95,7 @@ std::vector<int> Assign(const Eigen::MatrixXd& costs, const Eigen::VectorXd& una
   std::vector<int> column_of_row(static_cast<size_t>(rows), kUnassigned);
   for (int column = 0; column < costs.cols(); ++column) {
     const int row = matching.RowOf(column);
-    if (row != kUnassigned) column_of_row[static_cast<size_t>(row)] = column;
+    if (row != kUnassigned) column_of_row[row] = column;
   }
   return column_of_row;
 }

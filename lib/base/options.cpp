@@ -137,7 +137,7 @@ class Lister : public OptionVisitor {
  protected:
   void ChoiceIndex(const char* name, int* index, std::span<const char* const> names,
                    const char* doc) override {
-    OptionRow& row = Add(name, "string", names[static_cast<size_t>(*index)], doc);
+    OptionRow& row = Add(name, "string", names[*index], doc);
     row.choices.assign(names.begin(), names.end());
   }
 

@@ -21,7 +21,7 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
       try {
         work(i);
       } catch (...) {
-        errors[static_cast<size_t>(i)] = std::current_exception();
+        errors[i] = std::current_exception();
         end = i;
       }
     }

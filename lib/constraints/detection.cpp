@@ -24,7 +24,7 @@ bool DetectionResidual::Evaluate(double const* const* blocks, double* residuals,
 
   Eigen::Matrix<double, 4, kLandmarkDof> d_landmark;
   for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d& normal = normals_in_camera_[static_cast<size_t>(i)];
+    const Eigen::Vector3d& normal = normals_in_camera_[i];
     const Eigen::Vector3d normal_in_object = object_from_camera * normal;
     const Eigen::Vector3d weighted = squared_axes.cwiseProduct(normal_in_object);
     const double distance = normal.dot(landmark.Centre());

@@ -64,7 +64,7 @@ std::optional<Eigen::RowVectorXd> SymmetryDescriptor::Residuals(
       descriptor_ == Descriptor::kGrey || descriptor_ == Descriptor::kDistanceTransform;
   const VisibleSurface::MirrorLine line = surface_.MirrorImages(*point);
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-    const double mirror_plane = mirror_planes[static_cast<size_t>(i)];
+    const double mirror_plane = mirror_planes[i];
     if (is_in_map) {  // a good part of the time of soslam-refine
       const Eigen::Vector3d pixel_times_depth = line.at_zero + mirror_plane * line.by_plane;
       if (!(pixel_times_depth.z() > 0.0)) continue;

@@ -202,7 +202,7 @@ int CountKnown(const ImportView& view, const std::set<std::string>& known, int s
     const auto found = std::ranges::find(names, row.label);
     const auto index = std::distance(names.begin(), found) + shift;
     return found != names.end() && index >= 0 && index < std::ssize(names) &&
-           known.contains(names[static_cast<size_t>(index)]);
+           known.contains(names[index]);
   }));
 }
 

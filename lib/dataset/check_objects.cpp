@@ -283,7 +283,7 @@ std::vector<Finding> CheckPlanes(const ImportView& view) {
   main.detections = DetectionsOnMainPlane(view.sequence);
   if (main.detections.empty()) return {};
   const int index = view.sequence.ObjectOf(*main.detections.front()).plane_index;
-  main.plane = view.sequence.planes.at(static_cast<size_t>(index));
+  main.plane = view.sequence.planes.at(index);
   main.points_in_world = PointsOnPlane(view, index);
   std::vector<Finding> findings = CheckSide(main);
   if (findings.empty()) findings = CheckAttitude(main);

@@ -120,7 +120,7 @@ ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named
   ImagePoses poses(images.size());
   const auto rows = RowsOfPoses(named, images);
   for (size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i]) poses[static_cast<size_t>(*rows[i])] = named[i].world_from_camera;
+    if (rows[i]) poses[*rows[i]] = named[i].world_from_camera;
   }
   const auto unlisted = std::ranges::count_if(rows, [](const auto& row) { return !row; });
   fmt::print("{}: {} of {} images have a pose; {} poses are of images that are not listed\n",

@@ -177,7 +177,7 @@ std::vector<OfFrame> InKeptFrames(std::vector<OfFrame> all,
                                   const std::vector<Destination>& destinations) {
   std::vector<OfFrame> kept;
   for (OfFrame& one : all) {
-    const auto [is_held_out, index] = destinations[static_cast<size_t>(one.frame_index)];
+    const auto [is_held_out, index] = destinations[one.frame_index];
     if (is_held_out) continue;
     one.frame_index = static_cast<int>(index);
     kept.push_back(std::move(one));
@@ -204,7 +204,7 @@ Sequence HoldOutFrames(Sequence sequence, HeldOutFrames held_out) {
     }
   }
   for (Detection& detection : std::exchange(sequence.detections, {})) {
-    const auto [is_held_out, index] = destinations[static_cast<size_t>(detection.frame_index)];
+    const auto [is_held_out, index] = destinations[detection.frame_index];
     if (is_held_out) {
       const std::string& label = sequence.ObjectOf(detection).label;
       sequence.held_out[index].boxes.push_back({label, detection.score, detection.box});

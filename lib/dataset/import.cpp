@@ -115,7 +115,7 @@ class Importer {
   std::optional<RejectReason> Gate(const DetectionRow& row) const {
     const FrameSlot& slot = slots_.at(row.frame_id);
     if (const auto* reason = std::get_if<RejectReason>(&slot)) return *reason;
-    const Frame& frame = sequence_->frames[static_cast<size_t>(std::get<int>(slot))];
+    const Frame& frame = sequence_->frames[std::get<int>(slot)];
     const bool needs_plane_pose = !row.plane_in_camera && !sequence_->planes.empty();
     if (needs_plane_pose && !PlanePose(frame)) return RejectReason::kFrameWithoutPose;
     return GateRow(row, sequence_->CameraOf(frame), options_);
@@ -178,7 +178,7 @@ class Importer {
   // The plane of a detection's object in the camera frame.
   Plane WorldPlane(const Detection& detection) const {
     const Object& object = sequence_->ObjectOf(detection);
-    const SupportPlane& plane = sequence_->planes[static_cast<size_t>(object.plane_index)];
+    const SupportPlane& plane = sequence_->planes[object.plane_index];
     return Transform(PlanePose(sequence_->FrameOf(detection))->Inverse(), plane.plane_in_world);
   }
 
@@ -201,7 +201,7 @@ OdometryWorld WorldOfOdometry(const ImportOptions& options) {
 void DropUndetectedObjects(Sequence* sequence) {
   std::vector<bool> is_kept(sequence->objects.size());
   for (const Detection& detection : sequence->detections) {
-    is_kept[static_cast<size_t>(detection.object_index)] = true;
+    is_kept[detection.object_index] = true;
   }
   std::vector<int> new_index(is_kept.size());
   std::vector<Object> kept;
@@ -211,7 +211,7 @@ void DropUndetectedObjects(Sequence* sequence) {
   }
   sequence->objects = std::move(kept);
   for (Detection& detection : sequence->detections) {
-    detection.object_index = new_index[static_cast<size_t>(detection.object_index)];
+    detection.object_index = new_index[detection.object_index];
   }
 }
 

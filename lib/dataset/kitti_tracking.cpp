@@ -168,8 +168,7 @@ class Recording {
                                        label->place, track, label->type, labels.front()->type));
         }
         const Landmark landmark_in_camera = LandmarkInCamera(*label, calibration_);
-        in_world.push_back(
-            Transform(poses_[static_cast<size_t>(label->frame)], landmark_in_camera));
+        in_world.push_back(Transform(poses_[label->frame], landmark_in_camera));
         content_->labels_in_frames.push_back({Id(label->frame), Id(track), landmark_in_camera});
       }
       Object object;

@@ -108,7 +108,7 @@ std::string ParseLabel(const JsonEntry& entry, const std::optional<CocoNames>& n
   if (names) return NameOf(names->categories, entry, "category_id");
   const auto index = CocoClassIndex(entry.Integer("category_id"));
   if (!index) entry.Refuse("category_id", "a category of COCO, 1 to 90");
-  return CocoLabels()[static_cast<size_t>(*index)];
+  return CocoLabels()[*index];
 }
 
 Box ParseBox(const JsonEntry& entry) {
@@ -170,8 +170,7 @@ LabelledBox ParseDetection(const JsonEntry& entry, const std::string& image,
   if (corners[2] < corners[0] || corners[3] < corners[1]) {
     entry.Refuse("bbox", "[x1, y1, x2, y2] with x1 <= x2 and y1 <= y2");
   }
-  return {entry.place(), image, labels[static_cast<size_t>(category)],
-          entry.Real("detection_score"),
+  return {entry.place(), image, labels[category], entry.Real("detection_score"),
           FromCornerOrigin({corners[0], corners[1], corners[2], corners[3]})};
 }
 

@@ -24,8 +24,7 @@ MapPoint PointOf(const ColmapPoint& point, const ColmapModel& model,
     const auto frame = frames.find(observation.image_id);
     if (frame == frames.end()) continue;
     const auto& [image, frame_id] = frame->second;
-    read.observations.push_back(
-        {frame_id, model.images[image].pixels[static_cast<size_t>(observation.pixel_index)]});
+    read.observations.push_back({frame_id, model.images[image].pixels[observation.pixel_index]});
   }
   std::ranges::stable_sort(read.observations, {}, &PointObservation::frame_id);
   return read;
@@ -66,7 +65,7 @@ Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<List
       reconstruction.unlisted.push_back(poses[i].image);
       continue;
     }
-    reconstruction.world_from_camera[static_cast<size_t>(*rows[i])] = poses[i].world_from_camera;
+    reconstruction.world_from_camera[*rows[i]] = poses[i].world_from_camera;
     frames[model.images[i].id] = {i, *rows[i]};
   }
   for (const ColmapPoint& point : model.points) {

@@ -255,8 +255,7 @@ LabelledBox LabelledBoxOf(const YoloRow& row, const Box& box,
     throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels", row.place,
                                  row.class_index, labels.size() - 1, labels.size()));
   }
-  return {row.place, row.image, labels[static_cast<size_t>(row.class_index)],
-          row.score, box,       row.track};
+  return {row.place, row.image, labels[row.class_index], row.score, box, row.track};
 }
 
 }  // namespace

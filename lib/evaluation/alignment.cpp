@@ -226,7 +226,7 @@ AlignedMap ApplyAlignments(const Sequence& sequence, const std::vector<ObjectEst
   const auto detections = DetectionsByObject(sequence);
   std::vector<const ObjectEstimate*> by_object;
   for (const ObjectEstimate& estimate : estimates) {
-    const bool is_seen = !detections[static_cast<size_t>(estimate.object_index)].empty();
+    const bool is_seen = !detections[estimate.object_index].empty();
     if (estimate.landmark_in_world && is_seen) by_object.push_back(&estimate);
   }
   std::ranges::stable_sort(by_object, {}, &ObjectEstimate::object_index);
@@ -240,7 +240,7 @@ AlignedMap ApplyAlignments(const Sequence& sequence, const std::vector<ObjectEst
     const int plane = sequence.objects[index].plane_index;
     map.plane_of_landmark.emplace_back();
     if (plane >= 0 && static_cast<size_t>(plane) < planes_in_world.size()) {
-      map.plane_of_landmark.back() = alignment.Apply(planes_in_world[static_cast<size_t>(plane)]);
+      map.plane_of_landmark.back() = alignment.Apply(planes_in_world[plane]);
     }
   }
   for (size_t i = 0; i < sequence.frames.size(); ++i) {

@@ -26,9 +26,9 @@ std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
   const auto detections = DetectionsByObject(sequence);
   std::vector<Judged> judged;
   for (const ObjectEstimate& estimate : estimates) {
-    const std::vector<int>& own = detections[static_cast<size_t>(estimate.object_index)];
+    const std::vector<int>& own = detections[estimate.object_index];
     if (!estimate.landmark_in_world || own.empty()) continue;
-    const Detection& first = sequence.detections[static_cast<size_t>(own.front())];
+    const Detection& first = sequence.detections[own.front()];
     judged.push_back(
         {estimate.object_index, *estimate.landmark_in_world, sequence.FrameOf(first).segment});
   }
@@ -50,7 +50,7 @@ void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
         OutlineBox(camera, Transform(world_from_camera.Inverse(), one.landmark_in_world));
     if (!outline) continue;
     is_in_sight[i] = DistanceToBorder(*outline, camera.width, camera.height) >= border_px;
-    const std::string& label = sequence.objects[static_cast<size_t>(one.object_index)].label;
+    const std::string& label = sequence.objects[one.object_index].label;
     for (size_t k = 0; k < held_out.boxes.size(); ++k) {
       if (held_out.boxes[k].label != label) continue;
       overlaps(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =

@@ -30,7 +30,7 @@ NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
     for (int signs = 0; signs < 8; ++signs) {
       Eigen::Matrix3d cube = Eigen::Matrix3d::Zero();
       for (int i = 0; i < 3; ++i) {
-        cube(i, axes[static_cast<size_t>(i)]) = (signs >> i & 1) != 0 ? -1.0 : 1.0;
+        cube(i, axes[i]) = (signs >> i & 1) != 0 ? -1.0 : 1.0;
       }
       if (cube.determinant() < 0.0) continue;
       const Eigen::Quaterniond difference(Eigen::Matrix3d(truth_from_estimate * cube));

@@ -51,8 +51,8 @@ class RowMaker {
     row.object_index = map_.landmarks[landmark].object_index;
     const Explanation why = ExplainFalse(input, static_cast<int>(landmark));
     const bool is_of_wanted =
-        why.true_object && sequence_.true_objects[static_cast<size_t>(*why.true_object)].IsWanted();
-    const std::string& label = sequence_.objects[static_cast<size_t>(row.object_index)].label;
+        why.true_object && sequence_.true_objects[*why.true_object].IsWanted();
+    const std::string& label = sequence_.objects[row.object_index].label;
     if (!is_of_wanted && IsIgnored(sequence_, label, map_.landmarks[landmark])) {
       row.fate = LandmarkRow::Fate::kIgnored;
       return row;
@@ -67,11 +67,10 @@ class RowMaker {
 
   // Compares the row's landmark with its true object in the world.
   void CompareInWorld(size_t landmark, LandmarkRow* row) const {
-    const TrueObject& object = sequence_.true_objects[static_cast<size_t>(row->true_index.value())];
+    const TrueObject& object = sequence_.true_objects[row->true_index.value()];
     const Landmark& truth = object.truth.landmark_in_world;
     row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
-    row->label_agrees =
-        AreSameLabel(sequence_.objects[static_cast<size_t>(row->object_index)].label, object.label);
+    row->label_agrees = AreSameLabel(sequence_.objects[row->object_index].label, object.label);
     if (const auto& plane = map_.plane_of_landmark[landmark])
       row->plane = ComparePlane(*plane, truth);
   }
@@ -79,15 +78,14 @@ class RowMaker {
   // Compares them in the frames of its observations, if the true object's place there is known.
   void CompareInFrames(size_t landmark, LandmarkRow* row) const {
     const int true_index = row->true_index.value();
-    const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
+    const TrueObject& object = sequence_.true_objects[true_index];
     std::vector<double> ious, centres;
-    for (const int index : detections_[static_cast<size_t>(row->object_index)]) {
-      const int frame = sequence_.detections[static_cast<size_t>(index)].frame_index;
+    for (const int index : detections_[row->object_index]) {
+      const int frame = sequence_.detections[index].frame_index;
       const auto truth_in_camera = views_.KnownInCamera(frame, true_index);
       if (!truth_in_camera) continue;
-      const Landmark estimate_in_camera =
-          Transform(map_.world_from_camera[static_cast<size_t>(frame)].Inverse(),
-                    map_.landmarks[landmark].landmark_in_world);
+      const Landmark estimate_in_camera = Transform(map_.world_from_camera[frame].Inverse(),
+                                                    map_.landmarks[landmark].landmark_in_world);
       const LandmarkErrors errors =
           CompareLandmarks(estimate_in_camera, object.truth, *truth_in_camera);
       ious.push_back(errors.iou);
@@ -100,11 +98,11 @@ class RowMaker {
   // True if most of the boxes with a true object id in the dataset have that of the row's true
   // object; none if no box has an id.
   std::optional<bool> MostIdsAgree(const LandmarkRow& row) const {
-    const int true_id = sequence_.true_objects[static_cast<size_t>(row.true_index.value())].id;
+    const int true_id = sequence_.true_objects[row.true_index.value()].id;
     int known = 0;
     int agreeing = 0;
-    for (const int index : detections_[static_cast<size_t>(row.object_index)]) {
-      const auto& id = sequence_.detections[static_cast<size_t>(index)].true_object_id;
+    for (const int index : detections_[row.object_index]) {
+      const auto& id = sequence_.detections[index].true_object_id;
       known += id ? 1 : 0;
       agreeing += id == true_id ? 1 : 0;
     }

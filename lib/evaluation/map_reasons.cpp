@@ -30,9 +30,9 @@ Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map) {
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(map.landmarks.size()),
                             static_cast<Eigen::Index>(sequence.true_objects.size()));
   for (Eigen::Index row = 0; row < ious.rows(); ++row) {
-    const AlignedLandmark& landmark = map.landmarks[static_cast<size_t>(row)];
+    const AlignedLandmark& landmark = map.landmarks[row];
     for (Eigen::Index column = 0; column < ious.cols(); ++column) {
-      const TrueObject& object = sequence.true_objects[static_cast<size_t>(column)];
+      const TrueObject& object = sequence.true_objects[column];
       if (!object.IsWanted() || object.segment != landmark.segment) continue;
       const Landmark& truth = object.truth.landmark_in_world;
       const double reach = landmark.landmark_in_world.half_axes.norm() + truth.half_axes.norm();
@@ -119,7 +119,7 @@ Owners OwnersOf(const ReasonInput& input, int object_index) {
 std::string InWords(const Sequence& sequence, const Counts<int>& of_truth) {
   std::vector<std::string> words;
   for (const auto& [index, count] : of_truth) {
-    const TrueObject& object = sequence.true_objects[static_cast<size_t>(index)];
+    const TrueObject& object = sequence.true_objects[index];
     words.push_back(fmt::format("{} of {} ({})", count, object.id, object.label));
   }
   return fmt::format("{}", fmt::join(words, ", "));
@@ -151,7 +151,7 @@ MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<
 
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
   const auto wrong = DominantError(input.sequence, input.map, landmark, true_index);
-  const GroundTruth& truth = input.sequence.true_objects[static_cast<size_t>(true_index)].truth;
+  const GroundTruth& truth = input.sequence.true_objects[true_index].truth;
   const auto index = static_cast<size_t>(landmark);
   const Landmark& estimate = input.map.landmarks[index].landmark_in_world;
   const BodyErrors errors = CompareBodies(estimate, truth, truth.landmark_in_world);
@@ -180,7 +180,7 @@ struct Fates {
 
 Fates FatesOf(const ReasonInput& input, int true_index) {
   Fates fates;
-  for (const TrueView& view : input.views.of_object[static_cast<size_t>(true_index)]) {
+  for (const TrueView& view : input.views.of_object[true_index]) {
     fates.frames.insert(view.frame_index);
     if (view.detection_index) {
       const auto index = static_cast<size_t>(*view.detection_index);
@@ -188,8 +188,7 @@ Fates FatesOf(const ReasonInput& input, int true_index) {
       fates.frames_in_use.insert(view.frame_index);
       fates.frames_before_association.insert(view.frame_index);
     } else {
-      const RejectedDetection& rejected =
-          input.sequence.rejected[static_cast<size_t>(*view.rejected_index)];
+      const RejectedDetection& rejected = input.sequence.rejected[*view.rejected_index];
       ++fates.by_reason[rejected.reason];
       if (rejected.stage == RejectingStage::kAssociate) {
         fates.frames_before_association.insert(view.frame_index);
@@ -223,13 +222,13 @@ bool IsWrong(MapReason reason) {
 
 std::optional<WrongPart> DominantError(const Sequence& sequence, const AlignedMap& map,
                                        int landmark, int true_index) {
-  const AlignedLandmark& estimate = map.landmarks[static_cast<size_t>(landmark)];
-  const TrueObject& object = sequence.true_objects[static_cast<size_t>(true_index)];
+  const AlignedLandmark& estimate = map.landmarks[landmark];
+  const TrueObject& object = sequence.true_objects[true_index];
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int views = 0;
   for (const Detection& detection : sequence.detections) {
     if (detection.object_index != estimate.object_index) continue;
-    sum += map.world_from_camera[static_cast<size_t>(detection.frame_index)].translation;
+    sum += map.world_from_camera[detection.frame_index].translation;
     ++views;
   }
   return FindDominantError(estimate.landmark_in_world, object.truth, object.truth.landmark_in_world,
@@ -246,13 +245,13 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
   const bool is_own = owners.Majority() == true_index;
   const auto landmark = object ? LandmarkOfObject(input.map, *object) : std::nullopt;
   if (is_own && landmark) {
-    const int match = input.truth_of_landmark[static_cast<size_t>(*landmark)];
+    const int match = input.truth_of_landmark[*landmark];
     if (match == kUnassigned) return ExplainWrong(input, *landmark, true_index);
-    const TrueObject& other = input.sequence.true_objects[static_cast<size_t>(match)];
+    const TrueObject& other = input.sequence.true_objects[match];
     return {MapReason::kJoined,
             fmt::format("the landmark of its boxes matches {} ({})", other.id, other.label)};
   }
-  const int detected_frames = input.views.detected_frames[static_cast<size_t>(true_index)];
+  const int detected_frames = input.views.detected_frames[true_index];
   if (detected_frames < kFewestViews) {
     return {MapReason::kNotDetected, fmt::format("boxes in {} frames", detected_frames)};
   }
@@ -279,10 +278,9 @@ Explanation ExplainFalse(const ReasonInput& input, int landmark) {
   if (best_iou >= input.min_iou) {
     return {MapReason::kDuplicate, fmt::format("IoU {:.3f}", best_iou), static_cast<int>(nearest)};
   }
-  const Owners owners =
-      OwnersOf(input, input.map.landmarks[static_cast<size_t>(landmark)].object_index);
+  const Owners owners = OwnersOf(input, input.map.landmarks[landmark].object_index);
   if (const auto owner = owners.Majority()) {
-    const TrueObject& object = input.sequence.true_objects[static_cast<size_t>(*owner)];
+    const TrueObject& object = input.sequence.true_objects[*owner];
     if (!object.is_static) return {MapReason::kMoving, "", *owner};
     if (object.is_ignored) {
       return {

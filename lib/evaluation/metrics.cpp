@@ -55,11 +55,10 @@ using ErrorsByObject = std::vector<std::vector<std::optional<LandmarkErrors>>>;
 ErrorsByObject ObservationErrors(const Sequence& sequence, const LandmarkEstimates& estimates) {
   ErrorsByObject errors(sequence.objects.size());
   for (const ObservationEstimate& observation : estimates.observations) {
-    const Detection& detection =
-        sequence.detections[static_cast<size_t>(observation.detection_index)];
+    const Detection& detection = sequence.detections[observation.detection_index];
     const auto& truth = sequence.ObjectOf(detection).ground_truth;
     if (!truth) continue;
-    auto& of_object = errors[static_cast<size_t>(detection.object_index)];
+    auto& of_object = errors[detection.object_index];
     if (observation.hypotheses.empty()) {
       of_object.emplace_back();
       continue;

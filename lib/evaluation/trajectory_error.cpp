@@ -69,7 +69,7 @@ bool AreInOneWorld(const std::vector<PosePair>& pairs) {
 Eigen::Matrix3Xd CentresOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   Eigen::Matrix3Xd centres(3, pairs.size());
   for (Eigen::Index i = 0; i < centres.cols(); ++i) {
-    centres.col(i) = (pairs[static_cast<size_t>(i)].*pose).translation;
+    centres.col(i) = (pairs[i].*pose).translation;
   }
   return centres;
 }

@@ -20,7 +20,7 @@ std::vector<std::vector<RawBox>> RawBoxesByFrame(const Sequence& sequence) {
   std::vector<std::vector<RawBox>> by_frame(sequence.frames.size());
   const auto add = [&](const TrueView& view, double score, const Box& box) {
     if (score < kMinViewScore) return;
-    by_frame[static_cast<size_t>(view.frame_index)].push_back({view, box});
+    by_frame[view.frame_index].push_back({view, box});
   };
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& seen = sequence.detections[i];
@@ -44,7 +44,7 @@ std::optional<Box> CutToImage(const Box& box, const Camera& camera) {
 // The outline boxes of all true objects in a frame.
 std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueViews& views,
                                          int frame_index) {
-  const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(frame_index)]);
+  const Camera& camera = sequence.CameraOf(sequence.frames[frame_index]);
   std::vector<std::optional<Box>> outlines(sequence.true_objects.size());
   for (size_t i = 0; i < outlines.size(); ++i) {
     auto landmark = views.InCamera(frame_index, static_cast<int>(i));
@@ -66,24 +66,24 @@ TrueViews::TrueViews(const Sequence& sequence) : sequence_(sequence) {
 
 std::optional<Landmark> TrueViews::FromPose(const Rigid3d& world_from_camera, int frame_index,
                                             const TrueObject& object) const {
-  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
+  const Frame& frame = sequence_.frames[frame_index];
   if (!object.is_static || object.segment != frame.segment) return std::nullopt;
   return Transform(world_from_camera.Inverse(), object.truth.landmark_in_world);
 }
 
 std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index) const {
-  const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
+  const TrueObject& object = sequence_.true_objects[true_index];
   if (said_for_each_frame_.contains(object.id)) {
     const auto known = of_frame_.find({frame_index, object.id});
     return known == of_frame_.end() ? std::nullopt : std::optional(*known->second);
   }
-  const auto& pose = sequence_.frames[static_cast<size_t>(frame_index)].true_world_from_camera;
+  const auto& pose = sequence_.frames[frame_index].true_world_from_camera;
   return pose ? FromPose(*pose, frame_index, object) : std::nullopt;
 }
 
 std::optional<Landmark> TrueViews::InCamera(int frame_index, int true_index) const {
-  const Frame& frame = sequence_.frames[static_cast<size_t>(frame_index)];
-  const TrueObject& object = sequence_.true_objects[static_cast<size_t>(true_index)];
+  const Frame& frame = sequence_.frames[frame_index];
+  const TrueObject& object = sequence_.true_objects[true_index];
   const bool is_known =
       said_for_each_frame_.contains(object.id) || frame.true_world_from_camera.has_value();
   if (is_known) return KnownInCamera(frame_index, true_index);
@@ -114,8 +114,7 @@ ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {
       if (!object) continue;
       found.of_object[*object].push_back(raw.view);
       if (raw.view.detection_index) {
-        found.object_of_detection[static_cast<size_t>(*raw.view.detection_index)] =
-            static_cast<int>(*object);
+        found.object_of_detection[*raw.view.detection_index] = static_cast<int>(*object);
       }
     }
     for (size_t i = 0; i < outlines.size(); ++i) found.detected_frames[i] += is_detected[i] ? 1 : 0;

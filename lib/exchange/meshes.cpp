@@ -43,7 +43,7 @@ class SurfaceGrid {
   }
 
  private:
-  double Line(int i) const { return lines_[static_cast<size_t>(i)]; }
+  double Line(int i) const { return lines_[i]; }
 
   Eigen::Vector3d half_axes_;
   bool is_cuboid_;

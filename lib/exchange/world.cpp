@@ -30,7 +30,7 @@ std::vector<World> WorldsOfFrames(const Sequence& sequence,
 double MeanScore(const Sequence& sequence, const std::vector<int>& detections) {
   if (detections.empty()) return 1.0;
   double sum = 0.0;
-  for (const int i : detections) sum += sequence.detections[static_cast<size_t>(i)].score;
+  for (const int i : detections) sum += sequence.detections[i].score;
   return sum / static_cast<double>(detections.size());
 }
 
@@ -47,7 +47,7 @@ void AddObjects(const Sequence& sequence, const std::vector<ObjectEstimate>& est
     World& world =
         segment ? *std::ranges::find(*worlds, *segment, &World::segment) : worlds->front();
     world.objects.push_back({object.id, object.label, segment,
-                             planes_in_world[static_cast<size_t>(object.plane_index)].normal,
+                             planes_in_world[object.plane_index].normal,
                              MeanScore(sequence, detections), estimate});
     if (!segment && estimate.landmark_in_world) {
       world.objects.back().estimate.landmark_in_world.reset();

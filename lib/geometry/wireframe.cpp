@@ -18,7 +18,7 @@ std::array<LineSegment3, 12> UnitCuboidEdges() {
     start[along] = -1.0;
     start[(along + 1) % 3] = i & 2 ? 1.0 : -1.0;
     start[(along + 2) % 3] = i & 1 ? 1.0 : -1.0;
-    edges[static_cast<size_t>(i)] = {start, start + 2.0 * Eigen::Vector3d::Unit(along)};
+    edges[i] = {start, start + 2.0 * Eigen::Vector3d::Unit(along)};
   }
   return edges;
 }

@@ -29,7 +29,7 @@ cv::Mat NearestEdgeRowInColumn(const cv::Mat& edges) {
   std::vector<int> last(static_cast<size_t>(edges.cols), kNone);  // edge row seen last, by column
   for (int y = 0; y < edges.rows; ++y) {
     for (int x = 0; x < edges.cols; ++x) {
-      int& row = last[static_cast<size_t>(x)];
+      int& row = last[x];
       if (edges.at<std::uint8_t>(y, x) != 0) row = y;
       nearest_row.at<std::int16_t>(y, x) = static_cast<std::int16_t>(row);
     }

@@ -164,7 +164,7 @@ std::vector<YoloDetection> WithoutOverlaps(const std::vector<YoloDetection>& box
                                            const std::vector<int>& groups, double max_overlap) {
   std::map<int, std::vector<YoloDetection>> boxes_of_group;
   for (const YoloDetection& box : boxes) {
-    boxes_of_group[groups.at(static_cast<size_t>(box.class_index))].push_back(box);
+    boxes_of_group[groups.at(box.class_index)].push_back(box);
   }
   std::vector<YoloDetection> kept;
   for (const auto& [group, members] : boxes_of_group) {
@@ -176,7 +176,7 @@ std::vector<YoloDetection> WithoutOverlaps(const std::vector<YoloDetection>& box
     }
     std::vector<int> indices;
     cv::dnn::NMSBoxes(rectangles, scores, 0.0F, static_cast<float>(max_overlap), indices);
-    for (const int index : indices) kept.push_back(members[static_cast<size_t>(index)]);
+    for (const int index : indices) kept.push_back(members[index]);
   }
   std::ranges::stable_sort(kept, std::ranges::greater(), &YoloDetection::score);
   return kept;

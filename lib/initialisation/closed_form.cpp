@@ -23,7 +23,7 @@ ClosedForm::ClosedForm(const UprightObservation& observation)
   Eigen::Matrix3d camera_from_ground;
   camera_from_ground << ground.x, ground.y, ground.normal;
   for (int i = 0; i < 4; ++i) {
-    const BoxEdge& edge = observation.edges[static_cast<size_t>(i)];
+    const BoxEdge& edge = observation.edges[i];
     normals_.row(i) = edge.plane.transpose() * camera_from_ground;
     at_origin_[i] = edge.plane.dot(ground.origin);
     sigma_px_[i] = edge.sigma_px;

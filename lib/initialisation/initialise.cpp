@@ -17,8 +17,8 @@ std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
                                         const std::vector<int>& detections) {
   std::vector<Plane> planes;
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    const Detection& detection = sequence.detections[index];
+    const Frame& frame = sequence.frames[detection.frame_index];
     for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
       planes.push_back(
           Transform(frame.world_from_camera, sequence.CameraOf(frame).BackProject(line)));
@@ -35,10 +35,10 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
   LandmarkEstimates estimates;
   estimates.observations.resize(sequence.detections.size());
   ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(i)];
-    ObservationEstimate& estimate = estimates.observations[static_cast<size_t>(i)];
+    const Detection& detection = sequence.detections[i];
+    ObservationEstimate& estimate = estimates.observations[i];
     estimate.detection_index = i;
-    const auto& ratio = ratios[static_cast<size_t>(detection.object_index)];
+    const auto& ratio = ratios[detection.object_index];
     if (!ratio) {
       estimate.failure = "no_ratio_for_label";
       return;
@@ -60,16 +60,16 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
   LandmarkEstimates estimates;
   estimates.observations.resize(sequence.detections.size());
   ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(i)];
-    ObservationEstimate& estimate = estimates.observations[static_cast<size_t>(i)];
+    const Detection& detection = sequence.detections[i];
+    ObservationEstimate& estimate = estimates.observations[i];
     estimate.detection_index = i;
-    const auto& prior = priors[static_cast<size_t>(detection.object_index)];
+    const auto& prior = priors[detection.object_index];
     if (!prior) {
       estimate.failure = "no_ratio_for_label";
       return;
     }
     UprightObservation observation = MakeUprightObservation(sequence, detection, *prior, options);
-    if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[static_cast<size_t>(i)];
+    if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[i];
     const YawObjective objective;
     const YawSweep sweep = SweepYaw(observation, objective, options.yaw_grid_deg * kRadPerDeg);
     for (const UprightSolution& optimum :
@@ -94,7 +94,7 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     estimates.objects.push_back(object);
   }
   ParallelFor("objects", static_cast<int>(estimates.objects.size()), threads, [&](int i) {
-    ObjectEstimate& object = estimates.objects[static_cast<size_t>(i)];
+    ObjectEstimate& object = estimates.objects[i];
     const auto index = static_cast<size_t>(object.object_index);
     if (!sequence.objects[index].is_static) {
       object.failure = kMovingObject;

@@ -301,13 +301,13 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
   observation.size_is_known = size_is_known;
   const EdgeBias bias = prior ? prior->edge_bias : EdgeBias();
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
-    const Object& object = sequence.objects[static_cast<size_t>(detection.object_index)];
+    const Detection& detection = sequence.detections[index];
+    const Frame& frame = sequence.frames[detection.frame_index];
+    const Object& object = sequence.objects[detection.object_index];
     if (plane_in_world) {
       observation.plane_in_world = *plane_in_world;
     } else if (object.plane_index != kNoPlane) {
-      const SupportPlane& support = sequence.planes[static_cast<size_t>(object.plane_index)];
+      const SupportPlane& support = sequence.planes[object.plane_index];
       observation.plane_in_world = support.plane_in_world;
       observation.scene_axis_in_world = support.scene_axis_in_world;
     }
@@ -325,7 +325,7 @@ std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>
                                 const Eigen::Vector3d& centre_in_world, double correlation_rad) {
   std::vector<Eigen::Vector3d> directions;
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     directions.push_back(centre_in_world -
                          sequence.FrameOf(detection).world_from_camera.translation);
   }

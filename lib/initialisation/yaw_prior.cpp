@@ -36,7 +36,7 @@ std::optional<Eigen::Vector3d> Motion(const Sequence& sequence,
   std::vector<Eigen::Vector3d> feet;
   double mean_time = 0.0;
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     const auto foot = Foot(sequence, detection);
     if (!foot) continue;
     feet.push_back(*foot);
@@ -96,16 +96,14 @@ std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& det
 // after.
 std::vector<std::vector<int>> Neighbours(const Sequence& sequence, int frames) {
   std::vector<std::vector<int>> neighbours(sequence.detections.size());
-  const auto frame_of = [&](int index) {
-    return sequence.detections[static_cast<size_t>(index)].frame_index;
-  };
+  const auto frame_of = [&](int index) { return sequence.detections[index].frame_index; };
   for (const std::vector<int>& track : DetectionsByObject(sequence)) {
     size_t first = 0;
     for (const int index : track) {
       while (frame_of(track[first]) < frame_of(index) - frames) ++first;
       for (size_t i = first; i < track.size() && frame_of(track[i]) <= frame_of(index) + frames;
            ++i) {
-        neighbours[static_cast<size_t>(index)].push_back(track[i]);
+        neighbours[index].push_back(track[i]);
       }
     }
   }
@@ -126,7 +124,7 @@ std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
     priors[index] = options.yaw_prior.source == YawPriorSource::kGroundTruth
                         ? TruePrior(sequence, detection)
                         : MotionPrior(sequence, detection, neighbours[index],
-                                      shapes[static_cast<size_t>(detection.object_index)], options);
+                                      shapes[detection.object_index], options);
   });
   return priors;
 }

@@ -64,16 +64,13 @@ std::string DetectionsInWords(const Sequence& sequence) {
 std::vector<Value> ObjectRow(const Sequence& sequence, const Object& object,
                              const std::vector<int>& detections) {
   const bool has_plane = object.plane_index != kNoPlane;
-  std::vector<Value> row = {
-      object.id, LabelInWords(object),
-      has_plane ? Value(sequence.planes[static_cast<size_t>(object.plane_index)].id) : Value(),
-      detections.size()};
+  std::vector<Value> row = {object.id, LabelInWords(object),
+                            has_plane ? Value(sequence.planes[object.plane_index].id) : Value(),
+                            detections.size()};
   if (detections.empty()) {
     row.insert(row.end(), 6, Value());
   } else {
-    const auto of = [&](int i) -> const Detection& {
-      return sequence.detections[static_cast<size_t>(i)];
-    };
+    const auto of = [&](int i) -> const Detection& { return sequence.detections[i]; };
     double score = 0.0, width = 0.0, height = 0.0;
     int cut = 0;
     for (const int i : detections) {

@@ -76,9 +76,8 @@ std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_
   if (!sequence.HasSupports()) return {};
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     const int plane_index = sequence.ObjectOf(detection).plane_index;
-    const Plane& plane = planes_in_camera.empty()
-                             ? detection.plane_in_camera
-                             : planes_in_camera[static_cast<size_t>(plane_index)];
+    const Plane& plane =
+        planes_in_camera.empty() ? detection.plane_in_camera : planes_in_camera[plane_index];
     const auto foot = GroundContactInCamera(sequence.CameraOf(detection), detection.box, plane);
     if (!foot) continue;
     OverlayInput::Ground& ground = by_plane[plane_index];
@@ -95,7 +94,7 @@ std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_
 std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
                                               const std::vector<ObjectEstimate>& estimates,
                                               const Rigid3d& camera_from_world, int frame_index) {
-  const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(frame_index)]);
+  const Camera& camera = sequence.CameraOf(sequence.frames[frame_index]);
   std::set<int> detected;
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     detected.insert(detection.object_index);
@@ -107,7 +106,7 @@ std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
     const Landmark in_camera = Transform(camera_from_world, *estimate.landmark_in_world);
     const auto outline = OutlineBox(camera, in_camera);
     if (!outline || BoxOverlap(*outline, image) == 0.0) continue;
-    const Object& object = sequence.objects[static_cast<size_t>(estimate.object_index)];
+    const Object& object = sequence.objects[estimate.object_index];
     bodies.push_back(
         {in_camera, detected.contains(estimate.object_index) ? "" : CaptionOf(object)});
   }
@@ -117,7 +116,7 @@ std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
 }  // namespace
 
 OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index) {
-  const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
+  const Frame& frame = sequence.frames[frame_index];
   OverlayInput input;
   input.camera = sequence.CameraOf(frame);
   input.grounds = GroundsOf(sequence, frame_index, {});
@@ -134,12 +133,12 @@ OverlayInput OverlayOfLandmarks(const Sequence& sequence, const LandmarkEstimate
                                 int frame_index) {
   OverlayInput input = OverlayOfFrame(sequence, frame_index);
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const auto& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+    const auto& detection = sequence.detections[estimate.detection_index];
     if (detection.frame_index != frame_index || estimate.hypotheses.empty()) continue;
     input.landmarks.push_back({estimate.hypotheses.front().landmark_in_camera, ""});
   }
   if (estimates.observations.empty()) {
-    const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
+    const Frame& frame = sequence.frames[frame_index];
     input.landmarks =
         BodiesInImage(sequence, estimates.objects, frame.world_from_camera.Inverse(), frame_index);
   }
@@ -148,8 +147,7 @@ OverlayInput OverlayOfLandmarks(const Sequence& sequence, const LandmarkEstimate
 
 OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int frame_index) {
   OverlayInput input = OverlayOfFrame(sequence, frame_index);
-  const Rigid3d camera_from_world =
-      map.world_from_camera[static_cast<size_t>(frame_index)].Inverse();
+  const Rigid3d camera_from_world = map.world_from_camera[frame_index].Inverse();
   input.landmarks = BodiesInImage(sequence, map.objects, camera_from_world, frame_index);
   std::vector<Plane> planes_in_camera;
   for (const Plane& plane : map.planes_in_world) {

@@ -54,7 +54,7 @@ std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
   for (int i = 0; i < 3; ++i) {
     const auto end = camera.Project(PointAt(landmark_in_camera, Eigen::Vector3d::Unit(i)));
     if (!end) return std::nullopt;
-    axes[static_cast<size_t>(i)] = {*centre, *end};
+    axes[i] = {*centre, *end};
   }
   return axes;
 }

@@ -28,8 +28,8 @@ void BackEndProblem::RenewImageResiduals() {
   for (const char* kind : {kSymmetry, kEdges, kPoints}) summary_.residuals.erase(kind);
   for (const char* reason : {kTooFewPairs, kNoEdgeCounts, kNoPoints}) summary_.gated.erase(reason);
   const auto is_used = [&](int detection_index) {
-    const auto& detection = input_.sequence.detections[static_cast<size_t>(detection_index)];
-    return input_.initial_landmarks[static_cast<size_t>(detection.object_index)].has_value();
+    const auto& detection = input_.sequence.detections[detection_index];
+    return input_.initial_landmarks[detection.object_index].has_value();
   };
   std::vector<size_t> detections;
   std::vector<std::function<ImageBlocks()>> makers;
@@ -55,8 +55,7 @@ void BackEndProblem::RenewImageResiduals() {
     }
   }
   std::vector<ImageBlocks> made(makers.size());
-  ParallelFor(static_cast<int>(makers.size()), threads_,
-              [&](int i) { made[static_cast<size_t>(i)] = makers[static_cast<size_t>(i)](); });
+  ParallelFor(static_cast<int>(makers.size()), threads_, [&](int i) { made[i] = makers[i](); });
   for (size_t i = 0; i < made.size(); ++i) AddImageBlocks(detections[i], std::move(made[i]));
   SetManifolds();
   FixPoses();
@@ -114,8 +113,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
 
 BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
                                                         const PointsInView& view) const {
-  const Detection& detection =
-      input_.sequence.detections[static_cast<size_t>(view.detection_index)];
+  const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto points =
       std::make_unique<PointTerm>(view.points, in_camera, SizeForPoints(in_camera), options_.points,

@@ -94,7 +94,7 @@ void BackEndProblem::WeighViews() {
         ViewWeights(input_.sequence, detections, input_.initial_landmarks[i]->Centre(),
                     options_.view_correlation_deg * kRadPerDeg);
     for (size_t k = 0; k < weights.size(); ++k) {
-      view_weights_[static_cast<size_t>(detections[k])] = weights[k];
+      view_weights_[detections[k]] = weights[k];
     }
   }
 }
@@ -142,7 +142,7 @@ void BackEndProblem::AddStanding(size_t object_index) {
 
 void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
-  const SupportPlane& support = input_.sequence.planes[static_cast<size_t>(object.plane_index)];
+  const SupportPlane& support = input_.sequence.planes[object.plane_index];
   const Plane& plane = support.plane_in_world;
   double* landmark = variables_.Landmark(object_index);
   if (options_.support) {
@@ -185,7 +185,7 @@ void BackEndProblem::AddDetections() {
   int added = 0;
   for (size_t i = 0; i < input_.sequence.detections.size(); ++i) {
     const Detection& detection = input_.sequence.detections[i];
-    if (!input_.initial_landmarks[static_cast<size_t>(detection.object_index)]) {
+    if (!input_.initial_landmarks[detection.object_index]) {
       ++summary_.gated[input_.sequence.ObjectOf(detection).is_static
                            ? "detection_of_object_without_start"
                            : "detection_of_moving_object"];
@@ -213,7 +213,7 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
     return;
   }
   view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
-  const auto& prior = input_.priors[static_cast<size_t>(detection.object_index)];
+  const auto& prior = input_.priors[detection.object_index];
   const auto edges =
       BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction,
                prior ? prior->edge_bias : EdgeBias());

@@ -15,8 +15,8 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
                      const Landmark& landmark_in_world) {
   std::vector<double> distances;
   for (const int index : detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-    const Frame& frame = sequence.frames[static_cast<size_t>(detection.frame_index)];
+    const Detection& detection = sequence.detections[index];
+    const Frame& frame = sequence.frames[detection.frame_index];
     distances.push_back(OutlineEdgeRms(
         sequence.CameraOf(frame), Transform(frame.world_from_camera.Inverse(), landmark_in_world),
         detection.box));
@@ -30,11 +30,10 @@ std::vector<std::vector<Landmark>> HypothesesByObject(const Sequence& sequence,
                                                       const LandmarkEstimates& estimates) {
   std::vector<std::vector<Landmark>> hypotheses(sequence.objects.size());
   for (const ObservationEstimate& observation : estimates.observations) {
-    const Detection& detection =
-        sequence.detections[static_cast<size_t>(observation.detection_index)];
+    const Detection& detection = sequence.detections[observation.detection_index];
     const Rigid3d& world_from_camera = sequence.FrameOf(detection).world_from_camera;
     for (const Hypothesis& hypothesis : observation.hypotheses) {
-      hypotheses[static_cast<size_t>(detection.object_index)].push_back(
+      hypotheses[detection.object_index].push_back(
           Transform(world_from_camera, hypothesis.landmark_in_camera));
     }
   }
@@ -58,7 +57,7 @@ std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequ
   }
   for (const ObjectEstimate& object : estimates.objects) {
     if (object.landmark_in_world) {
-      initial_landmarks[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
+      initial_landmarks[object.object_index] = object.landmark_in_world;
     }
   }
   for (auto& landmark : initial_landmarks) {

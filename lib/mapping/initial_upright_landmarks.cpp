@@ -111,9 +111,7 @@ class ObjectFit {
     TextureAsymmetry asymmetry;
   };
 
-  const Detection& Of(size_t view) const {
-    return input_.sequence.detections[static_cast<size_t>(detections_[view])];
-  }
+  const Detection& Of(size_t view) const { return input_.sequence.detections[detections_[view]]; }
 
   LandmarkCosts Terms(const Landmark& landmark_in_world) const {
     LandmarkCosts terms = ViewTerms(boxes_, landmark_in_world);
@@ -136,8 +134,7 @@ class ObjectFit {
     const PointsOfObject& points = input_.points[object_index_];
     const double weight = PointWeight(points, options_.points);
     for (const PointsInView& view : points) {
-      const Detection& detection =
-          input_.sequence.detections[static_cast<size_t>(view.detection_index)];
+      const Detection& detection = input_.sequence.detections[view.detection_index];
       const Rigid3d camera_from_world =
           input_.sequence.FrameOf(detection).world_from_camera.Inverse();
       const Landmark in_camera = Transform(camera_from_world, landmark_in_world);
@@ -211,7 +208,7 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
   std::vector<std::vector<Landmark>> hypotheses = HypothesesByObject(sequence, estimates);
   for (const ObjectEstimate& object : estimates.objects) {
     if (!object.landmark_in_world) continue;
-    hypotheses[static_cast<size_t>(object.object_index)].push_back(*object.landmark_in_world);
+    hypotheses[object.object_index].push_back(*object.landmark_in_world);
   }
   const auto detections = DetectionsByObject(sequence);
   std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());

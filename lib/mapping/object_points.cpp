@@ -44,7 +44,7 @@ class ObjectPointFinder {
         found_(sequence.objects.size()) {
     for (size_t i = 0; i < sequence.detections.size(); ++i) {
       const Detection& detection = sequence.detections[i];
-      detections_in_[static_cast<size_t>(detection.frame_index)].push_back(static_cast<int>(i));
+      detections_in_[detection.frame_index].push_back(static_cast<int>(i));
       nearer_boxes_.push_back(BoxesInFront(sequence, detection));
     }
   }
@@ -71,13 +71,11 @@ class ObjectPointFinder {
       const int anchor = places.in_box[places.in_box.size() / 2];
       const ObjectPoint of_object = PointOf(*triangulated, views.size(), places, anchor);
       if (!(of_object.prior > kLeastPrior)) continue;
-      found_[static_cast<size_t>(object_index)][anchor].push_back(of_object);
+      found_[object_index][anchor].push_back(of_object);
     }
   }
 
-  const Detection& DetectionAt(int index) const {
-    return sequence_.detections[static_cast<size_t>(index)];
-  }
+  const Detection& DetectionAt(int index) const { return sequence_.detections[index]; }
 
   // Each segment has its own world.
   std::map<int, std::vector<View>> ViewsBySegment(const MapPoint& point) const {
@@ -103,7 +101,7 @@ class ObjectPointFinder {
         ++of_object.frames;
         const auto contains = [&](const Box& box) { return box.Contains(view.pixel); };
         if (contains(DetectionAt(index).box) &&
-            std::ranges::none_of(nearer_boxes_[static_cast<size_t>(index)], contains)) {
+            std::ranges::none_of(nearer_boxes_[index], contains)) {
           of_object.in_box.push_back(index);
         }
       }
@@ -136,7 +134,7 @@ class ObjectPointFinder {
     const Object& object = sequence_.ObjectOf(DetectionAt(anchor));
     result.prior =
         kObjectShare * static_cast<double>(places.in_box.size()) / places.frames *
-        ProbabilityAbove(sequence_.planes[static_cast<size_t>(object.plane_index)].plane_in_world,
+        ProbabilityAbove(sequence_.planes[object.plane_index].plane_in_world,
                          point.position_in_world, covariance_in_world, result.position.norm());
     return result;
   }

@@ -107,7 +107,7 @@ std::vector<Box> BoxesInFront(const Sequence& sequence, const Detection& detecti
   std::vector<Box> boxes = detection.nearer_boxes;
   boxes.reserve(boxes.size() + static_cast<size_t>(detection.nearer_in_view));
   for (int i = 0; i < detection.nearer_in_view; ++i) {
-    if (i != detection.own_in_view) boxes.push_back(in_view[static_cast<size_t>(i)]);
+    if (i != detection.own_in_view) boxes.push_back(in_view[i]);
   }
   return boxes;
 }

@@ -9,7 +9,7 @@ std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
   const int first = sequence.frames.front().segment;
   if (sequence.frames.back().segment == first) segments.assign(segments.size(), first);
   for (const Detection& detection : sequence.detections) {
-    auto& segment = segments[static_cast<size_t>(detection.object_index)];
+    auto& segment = segments[detection.object_index];
     if (!segment) segment = sequence.FrameOf(detection).segment;
   }
   return segments;
@@ -34,8 +34,7 @@ Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
     if (sequence.FrameOf(detection).segment != segment) continue;
     const int plane = sequence.ObjectOf(detection).plane_index;
     if (plane == kNoPlane) continue;
-    const Eigen::Vector3d& normal =
-        sequence.planes[static_cast<size_t>(plane)].plane_in_world.normal;
+    const Eigen::Vector3d& normal = sequence.planes[plane].plane_in_world.normal;
     if (normal.dot(upright) <= best) continue;
     best = normal.dot(upright);
     up = normal;

@@ -143,11 +143,9 @@ struct Sequence {
   // Findings on the data and on the stages so far.
   std::vector<Finding> findings = {};
 
-  const Frame& FrameOf(const Detection& detection) const {
-    return frames[static_cast<size_t>(detection.frame_index)];
-  }
+  const Frame& FrameOf(const Detection& detection) const { return frames[detection.frame_index]; }
   const Object& ObjectOf(const Detection& detection) const {
-    return objects[static_cast<size_t>(detection.object_index)];
+    return objects[detection.object_index];
   }
   // True if it is known on which plane each object stands.
   bool HasSupports() const {
@@ -199,8 +197,7 @@ inline double SmallestDistanceToBorder(const Sequence& sequence) {
 inline std::vector<std::vector<int>> DetectionsByObject(const Sequence& sequence) {
   std::vector<std::vector<int>> by_object(sequence.objects.size());
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
-    by_object[static_cast<size_t>(sequence.detections[i].object_index)].push_back(
-        static_cast<int>(i));
+    by_object[sequence.detections[i].object_index].push_back(static_cast<int>(i));
   }
   return by_object;
 }

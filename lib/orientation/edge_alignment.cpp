@@ -94,8 +94,7 @@ void EdgeTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) con
   Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> jacobian(NumPoints(), kLandmarkDof);
   for (int i = 0; i < NumPoints(); ++i) {
     LandmarkJacobian1 row;
-    residuals[i] =
-        Residual(landmark_in_camera, rotation, in_unit_body_[static_cast<size_t>(i)], &row);
+    residuals[i] = Residual(landmark_in_camera, rotation, in_unit_body_[i], &row);
     jacobian.row(i) = row;
   }
   sum->Add(residuals, jacobian, weight_);

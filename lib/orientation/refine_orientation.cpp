@@ -109,11 +109,11 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
                                      const std::optional<ShapePrior>& prior,
                                      const ProfileOptions& options,
                                      const SymmetryOptions& symmetry_options) {
-  const Detection& detection = sequence.detections[static_cast<size_t>(detection_index)];
+  const Detection& detection = sequence.detections[detection_index];
   RefinedObservation result;
   result.estimate.detection_index = detection_index;
-  result.record.frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
-  result.record.object_id = sequence.objects[static_cast<size_t>(detection.object_index)].id;
+  result.record.frame_id = sequence.frames[detection.frame_index].id;
+  result.record.object_id = sequence.objects[detection.object_index].id;
   result.record.true_yaw = TrueYaw(sequence, detection);
   if (!prior) {
     result.estimate.failure = "no_ratio_for_label";

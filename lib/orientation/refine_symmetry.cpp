@@ -109,11 +109,11 @@ RefinedObservation RefineObservation(const Sequence& sequence, const Observation
                                      const EdgeMaps& maps,
                                      const std::optional<Eigen::Vector2d>& ratio,
                                      const RefineOptions& options) {
-  const Detection& detection = sequence.detections[static_cast<size_t>(initial.detection_index)];
+  const Detection& detection = sequence.detections[initial.detection_index];
   RefinedObservation result;
   result.estimate = initial;
-  result.record.frame_id = sequence.frames[static_cast<size_t>(detection.frame_index)].id;
-  result.record.object_id = sequence.objects[static_cast<size_t>(detection.object_index)].id;
+  result.record.frame_id = sequence.frames[detection.frame_index].id;
+  result.record.object_id = sequence.objects[detection.object_index].id;
   if (initial.hypotheses.empty()) return result;
   if (!ratio) {
     result.estimate.failure = "no_ratio_for_label";

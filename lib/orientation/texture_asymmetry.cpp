@@ -102,7 +102,7 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
     const double sum = squared.isFinite().select(squared / (squared + squared_scale), 0.0).sum();
     const double asymmetry = sum / pairs;
     if (best && best->asymmetry <= asymmetry) continue;
-    best = MirroredTexture{asymmetry, places_[static_cast<size_t>(place)], {}};
+    best = MirroredTexture{asymmetry, places_[place], {}};
     best_place = place;
   }
   if (!best) return std::nullopt;
@@ -157,7 +157,7 @@ void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum
   Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> jacobian(NumPairs(), kLandmarkDof);
   for (int i = 0; i < NumPairs(); ++i) {
     LandmarkJacobian1 row;
-    residuals[i] = Residual(descriptor, texture_.pixels[static_cast<size_t>(i)], &row);
+    residuals[i] = Residual(descriptor, texture_.pixels[i], &row);
     jacobian.row(i) = row;
   }
   sum->Add(residuals, jacobian, weight_);

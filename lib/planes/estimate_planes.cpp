@@ -222,8 +222,7 @@ class Estimator {
     for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
     estimate->objects.resize(sequence_.objects.size());
     ParallelFor("objects", static_cast<int>(estimate->objects.size()), threads_, [&](int i) {
-      estimate->objects[static_cast<size_t>(i)] =
-          WriteObject(static_cast<size_t>(i), estimate->planes);
+      estimate->objects[i] = WriteObject(static_cast<size_t>(i), estimate->planes);
     });
   }
 
@@ -248,7 +247,7 @@ class Estimator {
 
   int PlaneOfMost() const {
     std::vector<int> objects(standing_.planes.size(), 0);
-    for (const int plane : standing_.plane_of) ++objects[static_cast<size_t>(plane)];
+    for (const int plane : standing_.plane_of) ++objects[plane];
     return static_cast<int>(std::max_element(objects.begin(), objects.end()) - objects.begin());
   }
 
@@ -262,9 +261,8 @@ class Estimator {
     const auto deciding = std::find(deciding_.begin(), deciding_.end(), index);
     const bool decides = deciding != deciding_.end();
     if (decides) {
-      support.plane_index = standing_.plane_of[static_cast<size_t>(deciding - deciding_.begin())];
-      WriteOwnHeight(index, planes[static_cast<size_t>(support.plane_index)].plane_in_world,
-                     &support);
+      support.plane_index = standing_.plane_of[deciding - deciding_.begin()];
+      WriteOwnHeight(index, planes[support.plane_index].plane_in_world, &support);
     }
     support.reason = decides ? SupportReason::kOwnHeight : SupportReason::kLowestCost;
     for (size_t i = 0; i < planes.size(); ++i) {

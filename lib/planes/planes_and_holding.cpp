@@ -45,11 +45,9 @@ Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_cam
 double ShareFromBelow(const PlanesAndHolding& held) {
   int below = 0, seen = 0;
   for (const Detection& detection : held.level.detections) {
-    const ObjectSupport& support =
-        held.estimate.objects[static_cast<size_t>(detection.object_index)];
+    const ObjectSupport& support = held.estimate.objects[detection.object_index];
     if (support.reason == SupportReason::kNone) continue;
-    const Plane& plane =
-        held.estimate.planes[static_cast<size_t>(support.plane_index)].plane_in_world;
+    const Plane& plane = held.estimate.planes[support.plane_index].plane_in_world;
     const Rigid3d& camera = held.level.FrameOf(detection).world_from_camera;
     if (plane.SignedDistance(camera.translation) < 0.0) ++below;
     ++seen;

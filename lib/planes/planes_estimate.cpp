@@ -21,7 +21,7 @@ Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate) {
   }
   constexpr const char* kReason = "no_support";
   const auto left_out = std::erase_if(sequence.detections, [&](const Detection& detection) {
-    const auto& support = estimate.objects[static_cast<size_t>(detection.object_index)];
+    const auto& support = estimate.objects[detection.object_index];
     if (support.reason != SupportReason::kNone) return false;
     sequence.rejected.push_back(Rejected(sequence, detection, RejectingStage::kPlanes, kReason));
     return true;
@@ -46,8 +46,8 @@ std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEs
   if (votes.empty() || given.planes.empty()) return std::nullopt;
   const auto most =
       std::ranges::max_element(votes, {}, [](const auto& vote) { return vote.second; });
-  const Plane& truth = given.planes[static_cast<size_t>(most->first)].plane_in_world;
-  const EstimatedPlane& found = estimate.planes[static_cast<size_t>(plane_index)];
+  const Plane& truth = given.planes[most->first].plane_in_world;
+  const EstimatedPlane& found = estimate.planes[plane_index];
   return PlaneError{most->first, AngleBetween(found.plane_in_world.normal, truth.normal),
                     truth.SignedDistance(found.point_in_world)};
 }
@@ -82,8 +82,8 @@ PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m) {
   for (const std::vector<int>& detections : DetectionsByObject(sequence)) {
     std::vector<Rigid3d> poses;
     for (const int index : detections) {
-      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-      poses.push_back(all[static_cast<size_t>(detection.frame_index)]);
+      const Detection& detection = sequence.detections[index];
+      poses.push_back(all[detection.frame_index]);
     }
     const int plane_index = static_cast<int>(estimate.planes.size());
     estimate.planes.push_back(MeanOf(poses.empty() ? all : poses, height_m));

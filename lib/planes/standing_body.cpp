@@ -193,9 +193,8 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
     const auto index = static_cast<size_t>(i);
     const int plane = standing.plane_of[index];
     StandingBody body = standing.bodies[index];
-    body.landmark = Moved(standing.planes[static_cast<size_t>(plane)], pivot,
-                          MotionOfPlane(step, plane), body.landmark);
-    body.observation.plane_in_world = stepped.planes[static_cast<size_t>(plane)];
+    body.landmark = Moved(standing.planes[plane], pivot, MotionOfPlane(step, plane), body.landmark);
+    body.observation.plane_in_world = stepped.planes[plane];
     settled[index] = FitOnPlane(std::move(body));
   });
   for (size_t i = 0; i < settled.size(); ++i) {

@@ -46,7 +46,7 @@ EdgeOffsets OffsetsOf(const Sequence& sequence, const std::vector<int>& detectio
                       double shape_exponent) {
   EdgeOffsets offsets;
   for (const int index : detections) {
-    Add(sequence, sequence.detections[static_cast<size_t>(index)], shape_exponent, &offsets);
+    Add(sequence, sequence.detections[index], shape_exponent, &offsets);
   }
   return offsets;
 }

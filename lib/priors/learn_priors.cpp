@@ -122,7 +122,7 @@ class Learner {
     const double objects = std::max(1, base.samples);
     if (update) {
       for (int k = 0; k < 2; ++k) {
-        Learn(data.logs[static_cast<size_t>(k)],
+        Learn(data.logs[k],
               {std::log(base.prior.ratio[k]), objects, base.prior.log_sigma[k],
                options_.spread_weight},
               &row.prior.ratio[k], &row.prior.log_sigma[k]);

@@ -32,8 +32,7 @@ double Loss(const Sequence& sequence, const Detection& detection, double shape_e
 std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>& detections) {
   std::vector<int> in_front;
   std::copy_if(detections.begin(), detections.end(), std::back_inserter(in_front), [&](int index) {
-    return IsInFront(
-        *TrueLandmarkInCamera(sequence, sequence.detections[static_cast<size_t>(index)]));
+    return IsInFront(*TrueLandmarkInCamera(sequence, sequence.detections[index]));
   });
   return in_front;
 }
@@ -48,7 +47,7 @@ double BestShapeExponent(const Sequence& sequence, const std::vector<int>& detec
     const double exponent = kCuboidExponent + kStep * i;
     double loss = 0.0;
     for (const int index : detections) {
-      loss += Loss(sequence, sequence.detections[static_cast<size_t>(index)], exponent);
+      loss += Loss(sequence, sequence.detections[index], exponent);
     }
     if (loss < least_loss) {
       least_loss = loss;

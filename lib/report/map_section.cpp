@@ -71,7 +71,7 @@ Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
                   const Sequence& sequence) {
   const SeenBox* best = BestBox(boxes, images);
   if (best == nullptr) return {};
-  const Camera& camera = sequence.CameraOf(sequence.frames[static_cast<size_t>(best->frame_index)]);
+  const Camera& camera = sequence.CameraOf(sequence.frames[best->frame_index]);
   return {{best->frame_index, Around(best->box, camera)}, CornersOf(best->box)};
 }
 
@@ -98,9 +98,8 @@ std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
       "<svg id=\"{4}\" class=\"on-image\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">"
       "<image width=\"{0}\" height=\"{1}\" href=\"data:image/jpeg;base64,{5}\"/>"
       "<polygon class=\"{6}\" points=\"{7}\"/></svg></svg>",
-      part.width, part.height, HtmlText(entry.name),
-      sequence.frames[static_cast<size_t>(picture.crop.frame_index)].id, entry.id, picture.jpeg,
-      picture.is_body ? "estimate" : "detection", points);
+      part.width, part.height, HtmlText(entry.name), sequence.frames[picture.crop.frame_index].id,
+      entry.id, picture.jpeg, picture.is_body ? "estimate" : "detection", points);
 }
 
 std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& sequence) {
@@ -229,7 +228,7 @@ class MapOfVariant {
   std::string PlanHtml(const std::vector<Entry>& entries) const {
     const auto segments = SegmentsOfObjects(sequence_);
     const auto segment_of = [&](const ObjectEstimate* estimate) {
-      return segments[static_cast<size_t>(estimate->object_index)].value_or(0);
+      return segments[estimate->object_index].value_or(0);
     };
     const int segment = segment_of(placed_.front());
     const Eigen::Vector3d up = UpOfSegment(sequence_, segment);
@@ -245,7 +244,7 @@ class MapOfVariant {
       if (sequence_.frames[i].segment == segment) frames.push_back(static_cast<int>(i));
     }
     for (const int frame : SpreadOver(frames, kMaxWayFrames)) {
-      cameras.push_back(map_.world_from_camera[static_cast<size_t>(frame)].translation);
+      cameras.push_back(map_.world_from_camera[frame].translation);
     }
     const PlanAxes axes = AxesOfPlan(up, SceneAxis(up), centres, cameras);
     PlanView plan;

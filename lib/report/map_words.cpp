@@ -96,7 +96,7 @@ std::set<int> LevelPlanesOf(const Sequence& sequence, const MapEstimate& map, in
   for (const Detection& detection : sequence.detections) {
     const int plane = sequence.ObjectOf(detection).plane_index;
     if (plane == kNoPlane || sequence.FrameOf(detection).segment != segment) continue;
-    if (map.planes_in_world[static_cast<size_t>(plane)].normal.dot(up) > kLevel) {
+    if (map.planes_in_world[plane].normal.dot(up) > kLevel) {
       planes.insert(plane);
     }
   }
@@ -106,7 +106,7 @@ std::set<int> LevelPlanesOf(const Sequence& sequence, const MapEstimate& map, in
 bool HasTallObject(const Sequence& sequence, const MapEstimate& map, int plane) {
   return std::ranges::any_of(map.objects, [&](const ObjectEstimate& estimate) {
     return estimate.landmark_in_world &&
-           sequence.objects[static_cast<size_t>(estimate.object_index)].plane_index == plane &&
+           sequence.objects[estimate.object_index].plane_index == plane &&
            2.0 * estimate.landmark_in_world->half_axes.z() > kStandsOnFloorM;
   });
 }
@@ -115,7 +115,7 @@ bool HasTallObject(const Sequence& sequence, const MapEstimate& map, int plane) 
 
 std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
                            const MapEstimate& map, const ScaleOfMap& scale) {
-  const int own = sequence.objects[static_cast<size_t>(estimate.object_index)].plane_index;
+  const int own = sequence.objects[estimate.object_index].plane_index;
   if (own == kNoPlane) return "support unknown";
   // Recordings of vehicles have a plane for each object, all of one ground.
   constexpr size_t kMaxPlanesOfRoom = 8;
@@ -124,12 +124,11 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
     return "on the ground";
   }
   const auto segments = SegmentsOfObjects(sequence);
-  const std::set<int> level = LevelPlanesOf(
-      sequence, map, segments[static_cast<size_t>(estimate.object_index)].value_or(0));
+  const std::set<int> level =
+      LevelPlanesOf(sequence, map, segments[estimate.object_index].value_or(0));
   if (!level.contains(own)) return "on a wall or ceiling";
   const auto height_above = [&](int plane) {
-    return map.planes_in_world[static_cast<size_t>(plane)].SignedDistance(
-        estimate.landmark_in_world->Centre());
+    return map.planes_in_world[plane].SignedDistance(estimate.landmark_in_world->Centre());
   };
   const int lowest = *std::ranges::max_element(level, {}, height_above);
   const bool is_floor = scale.in_metres && HasTallObject(sequence, map, lowest);
@@ -139,7 +138,7 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
   if (lowest == own) return "on " + name;
   double height = height_above(lowest) - height_above(own);
   if (scale.in_metres) height = std::round(100.0 * height) / 100.0;
-  return fmt::format("on plane {}, {} above {}", sequence.planes[static_cast<size_t>(own)].id,
+  return fmt::format("on plane {}, {} above {}", sequence.planes[own].id,
                      LengthInWords(height, scale.in_metres), name);
 }
 

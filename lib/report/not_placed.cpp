@@ -43,8 +43,7 @@ std::string MostFrequent(const std::map<std::string, int>& counts) {
 
 // Rejected detections have no record of the edges that are cut off.
 SeenBox BoxOf(const Sequence& sequence, const RejectedDetection& rejected) {
-  const Camera& camera =
-      sequence.CameraOf(sequence.frames[static_cast<size_t>(rejected.frame_index)]);
+  const Camera& camera = sequence.CameraOf(sequence.frames[rejected.frame_index]);
   constexpr double kMarginPx = 2.0;
   return {rejected.frame_index, rejected.box,
           DistanceToBorder(rejected.box, camera.width, camera.height) > kMarginPx};
@@ -55,7 +54,7 @@ SeenBox BoxOf(const Sequence& sequence, const RejectedDetection& rejected) {
 std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& detections) {
   std::vector<SeenBox> boxes;
   for (const int index : detections) {
-    const Detection& seen = sequence.detections[static_cast<size_t>(index)];
+    const Detection& seen = sequence.detections[index];
     boxes.push_back({seen.frame_index, seen.box, std::ranges::count(seen.is_bound, true) == 0});
   }
   return boxes;
@@ -110,7 +109,7 @@ std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& s
     if (!detection.at("object").is_null()) continue;
     if (next == rejected.end()) throw other;
     const RejectedDetection& seen = **next++;
-    const Frame& frame = sequence.frames[static_cast<size_t>(seen.frame_index)];
+    const Frame& frame = sequence.frames[seen.frame_index];
     if (detection.at("frame") != frame.id) throw other;
     if (detection.at("track").is_null()) continue;  // a second box of something
     const json* track = &AfterMerging(associations.at("tracks"), detection.at("track"));
@@ -140,7 +139,7 @@ std::map<int, std::string> InitialFailures(const fs::path& folder, const Sequenc
   std::map<int, std::map<std::string, int>> counts;
   for (const ObservationEstimate& estimate : initial.observations) {
     if (estimate.failure.empty()) continue;
-    const Detection& seen = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+    const Detection& seen = sequence.detections[estimate.detection_index];
     ++counts[seen.object_index][estimate.failure];
   }
   for (const auto& [object, reasons] : counts) failures[object] = MostFrequent(reasons);

@@ -223,7 +223,7 @@ class DatasetPage {
     const EncodedImages encoded = EncodeImages(first.selection.shown, source,
                                                max_bytes - std::min(max_bytes, taken), threads);
     for (const auto& [frame_index, base64] : encoded.images) {
-      const int id = first.sequence.frames[static_cast<size_t>(frame_index)].id;
+      const int id = first.sequence.frames[frame_index].id;
       data_["images"][std::to_string(id)] = "data:image/jpeg;base64," + base64;
     }
     if (!encoded.failures.empty()) {

@@ -141,10 +141,10 @@ json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequ
   json curves = json::array();
   for (std::vector<int> detections : DetectionsByObject(sequence)) {
     std::erase_if(detections, [&](int index) {
-      return !selection.Shows(sequence.detections[static_cast<size_t>(index)].frame_index);
+      return !selection.Shows(sequence.detections[index].frame_index);
     });
     for (const int index : SpreadOver(detections, kCurvesPerObject)) {
-      const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+      const Detection& detection = sequence.detections[index];
       const auto record =
           by_ids.find({sequence.FrameOf(detection).id, sequence.ObjectOf(detection).id});
       if (record != by_ids.end()) {

@@ -104,9 +104,9 @@ PlaneGrids GridsOfMap(const MapEstimate& map, const Sequence& sequence) {
   PointsByPlane points(map.planes_in_world.size());
   if (points.empty()) return {};
   for (const ObjectEstimate& estimate : map.objects) {
-    const Object& object = sequence.objects[static_cast<size_t>(estimate.object_index)];
+    const Object& object = sequence.objects[estimate.object_index];
     if (!estimate.landmark_in_world) continue;
-    points[static_cast<size_t>(object.plane_index)].push_back(estimate.landmark_in_world->Centre());
+    points[object.plane_index].push_back(estimate.landmark_in_world->Centre());
   }
   return GridsAround(points, map.planes_in_world);
 }
@@ -134,7 +134,7 @@ json PageGridInFrame(const Sequence& sequence, int frame_index, const PlaneGrids
     const int plane_index = sequence.ObjectOf(detection).plane_index;
     if (!drawn.insert(plane_index).second) continue;
     const Rigid3d camera_from_world = camera_from_world_for(detection);
-    for (const LineSegment3& line : grids[static_cast<size_t>(plane_index)]) {
+    for (const LineSegment3& line : grids[plane_index]) {
       const auto segment = ProjectSegment(
           sequence.CameraOf(detection), {camera_from_world * line[0], camera_from_world * line[1]});
       if (segment) lines.push_back(PagePixels({(*segment)[0], (*segment)[1]}));
@@ -145,8 +145,7 @@ json PageGridInFrame(const Sequence& sequence, int frame_index, const PlaneGrids
 
 Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection) {
   const Frame& frame = sequence.FrameOf(detection);
-  const SupportPlane& plane =
-      sequence.planes[static_cast<size_t>(sequence.ObjectOf(detection).plane_index)];
+  const SupportPlane& plane = sequence.planes[sequence.ObjectOf(detection).plane_index];
   if (!plane.attitude_information) {
     return frame.true_world_from_camera.value_or(frame.world_from_camera).Inverse();
   }

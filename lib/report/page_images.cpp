@@ -103,14 +103,13 @@ std::vector<std::string> EncodeCrops(const std::vector<Crop>& crops, const Image
                                      int threads) {
   std::vector<std::string> encoded(crops.size());
   ParallelFor(static_cast<int>(crops.size()), threads, [&](int i) {
-    const auto& [frame_index, part] = crops[static_cast<size_t>(i)];
+    const auto& [frame_index, part] = crops[i];
     if (part.empty() || !source.has(frame_index)) return;
     try {
       const cv::Mat image = source.read(frame_index);
       const cv::Mat crop = image(part & cv::Rect(0, 0, image.cols, image.rows));
       if (crop.empty()) return;
-      encoded[static_cast<size_t>(i)] =
-          EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), kMaxCropPx));
+      encoded[i] = EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), kMaxCropPx));
     } catch (const InputError&) {  // EncodeImages says which images cannot be read
     }
   });

@@ -47,7 +47,7 @@ std::set<int> FramesToShow(const Sequence& sequence,
   }
   std::set<int> ids;
   for (const int frame : SpreadOver(frames, kMaxShownFrames)) {
-    ids.insert(sequence.frames[static_cast<size_t>(frame)].id);
+    ids.insert(sequence.frames[frame].id);
   }
   return ids;
 }
@@ -55,9 +55,8 @@ std::set<int> FramesToShow(const Sequence& sequence,
 PageSelection SelectForPage(const Sequence& sequence, const std::set<int>& shown_ids) {
   PageSelection selection;
   const std::vector<int> all = AllFrames(sequence);
-  std::ranges::copy_if(all, std::back_inserter(selection.shown), [&](int frame) {
-    return shown_ids.contains(sequence.frames[static_cast<size_t>(frame)].id);
-  });
+  std::ranges::copy_if(all, std::back_inserter(selection.shown),
+                       [&](int frame) { return shown_ids.contains(sequence.frames[frame].id); });
   std::ranges::set_union(SpreadOver(all, kMaxWayFrames), selection.shown,
                          std::back_inserter(selection.frames));
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
@@ -95,7 +94,7 @@ json PageFrames(const Sequence& sequence, const PageSelection& selection, const 
   json frames = json::array();
   for (const int index : selection.frames) {
     const bool is_shown = selection.Shows(index);
-    json page = PageFrame(sequence, sequence.frames[static_cast<size_t>(index)], is_shown);
+    json page = PageFrame(sequence, sequence.frames[index], is_shown);
     if (is_shown) {
       page["grid"] = PageGridInFrame(sequence, index, grids, [&](const Detection& detection) {
         return CameraAbovePlane(sequence, detection);
@@ -126,7 +125,7 @@ json PageObjects(const Sequence& sequence) {
 json PageDetections(const Sequence& sequence, const PageSelection& selection) {
   json detections = json::array();
   for (const int index : selection.detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     const auto truth = TrueLandmarkInCamera(sequence, detection);
     const Box& box = detection.box;
     detections.push_back(

@@ -56,7 +56,7 @@ json PageObjectEstimate(const ObjectEstimate& estimate) {
 json PageObjects(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
   std::vector<json> objects(sequence.objects.size(), PageObjectEstimate({}));
   for (const ObjectEstimate& estimate : estimates) {
-    objects[static_cast<size_t>(estimate.object_index)] = PageObjectEstimate(estimate);
+    objects[estimate.object_index] = PageObjectEstimate(estimate);
   }
   return objects;
 }
@@ -67,13 +67,13 @@ json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Seque
                        const PageSelection& selection) {
   std::vector<std::optional<Landmark>> landmarks(sequence.objects.size());
   for (const ObjectEstimate& estimate : estimates) {
-    landmarks[static_cast<size_t>(estimate.object_index)] = estimate.landmark_in_world;
+    landmarks[estimate.object_index] = estimate.landmark_in_world;
   }
   json outlines = json::array();
   for (const int index : selection.detections) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-    const auto& landmark = landmarks[static_cast<size_t>(detection.object_index)];
-    const Rigid3d& pose = world_from_camera[static_cast<size_t>(detection.frame_index)];
+    const Detection& detection = sequence.detections[index];
+    const auto& landmark = landmarks[detection.object_index];
+    const Rigid3d& pose = world_from_camera[detection.frame_index];
     outlines.push_back(
         landmark ? PageOutline(sequence.CameraOf(detection), Transform(pose.Inverse(), *landmark))
                  : json());
@@ -99,7 +99,7 @@ void AddPlanes(const MapEstimate& map, const Sequence& sequence, const PageSelec
   const PlaneGrids grids = GridsOfMap(map, sequence);
   (*variant)["planes"] = PageGrids(grids);
   for (const int frame : selection.frames) {
-    const Rigid3d camera_from_world = map.world_from_camera[static_cast<size_t>(frame)].Inverse();
+    const Rigid3d camera_from_world = map.world_from_camera[frame].Inverse();
     (*variant)["grids"].push_back(
         selection.Shows(frame)
             ? PageGridInFrame(sequence, frame, grids,
@@ -115,7 +115,7 @@ void AddMap(const MapEstimate& map, const Sequence& sequence, const PageSelectio
   (*variant)["outlines"] =
       OutlinesOfObjects(map.objects, sequence, map.world_from_camera, selection);
   for (const int frame : selection.frames) {
-    (*variant)["trajectory"].push_back(PagePose(map.world_from_camera[static_cast<size_t>(frame)]));
+    (*variant)["trajectory"].push_back(PagePose(map.world_from_camera[frame]));
   }
   (*variant)["solver"] = PageSolver(map.solver);
   AddPlanes(map, sequence, selection, variant);
@@ -135,8 +135,8 @@ std::vector<ObjectEstimate> FirstEstimates(const LandmarkEstimates& estimates,
   std::vector<ObjectEstimate> first(sequence.objects.size());
   for (size_t i = 0; i < first.size(); ++i) first[i].object_index = static_cast<int>(i);
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
-    ObjectEstimate& object = first[static_cast<size_t>(detection.object_index)];
+    const Detection& detection = sequence.detections[estimate.detection_index];
+    ObjectEstimate& object = first[detection.object_index];
     ++object.observations;
     if (object.landmark_in_world) continue;
     object.failure = estimate.failure;
@@ -152,9 +152,9 @@ void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
                const PageSelection& selection, json* variant) {
   std::vector<json> outlines(selection.detections.size());
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+    const Detection& detection = sequence.detections[estimate.detection_index];
     if (estimate.hypotheses.empty() || !selection.Shows(detection.frame_index)) continue;
-    outlines[static_cast<size_t>(selection.PlaceOfDetection(estimate.detection_index))] =
+    outlines[selection.PlaceOfDetection(estimate.detection_index)] =
         PageOutline(sequence.CameraOf(detection), estimate.hypotheses.front().landmark_in_camera);
   }
   (*variant)["kind"] = "frames";

@@ -89,8 +89,8 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
-      const cv::Mat grey = reader.ReadGrey(images[static_cast<size_t>(begin + i)]);
-      maps[static_cast<size_t>(i)] = ComputeEdgeMaps(grey, options);
+      const cv::Mat grey = reader.ReadGrey(images[begin + i]);
+      maps[i] = ComputeEdgeMaps(grey, options);
       progress.Step();
     });
     for (size_t i = 0; i < maps.size(); ++i) {

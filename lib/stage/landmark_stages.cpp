@@ -101,7 +101,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
                                           const OrientationOptions& options,
                                           const EdgesReader& reader, int threads) {
   const auto detection_of = [&](size_t i) -> const Detection& {
-    return sequence.detections[static_cast<size_t>(initial[i]->detection_index)];
+    return sequence.detections[initial[i]->detection_index];
   };
   std::map<int, FrameInUse> frames;  // keyed by index
   for (size_t i = 0; i < initial.size(); ++i) frames[detection_of(i).frame_index].Expect();
@@ -111,7 +111,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
     const Detection& detection = detection_of(i);
     const auto edges =
         frames.at(detection.frame_index).Take(reader, sequence.FrameOf(detection).id);
-    const auto& prior = priors[static_cast<size_t>(detection.object_index)];
+    const auto& prior = priors[detection.object_index];
     if (options.method == RefinementMethod::kProfile) {
       refined[i] = RefineOrientation(sequence, initial[i]->detection_index, edges, prior,
                                      options.profile, options.turn.symmetry);
@@ -132,7 +132,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
                                    options.turn.ratio_prior, options.profile.shape);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
   const auto frame_of = [&](const ObservationEstimate* observation) -> const Frame& {
-    return sequence.FrameOf(sequence.detections[static_cast<size_t>(observation->detection_index)]);
+    return sequence.FrameOf(sequence.detections[observation->detection_index]);
   };
   std::vector<ObservationEstimate*> to_refine;
   size_t without_image = 0, failed = 0;

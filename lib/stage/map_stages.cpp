@@ -57,7 +57,7 @@ void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
 // an image.
 std::vector<int> ObservationsInImages(const Sequence& sequence, std::vector<int> detections) {
   std::erase_if(detections, [&](int index) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
   });
   return detections;
@@ -87,16 +87,16 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
   const std::vector<size_t> to_read(frame_indices.begin(), frame_indices.end());
   std::vector<std::shared_ptr<const FrameEdges>> frames(sequence.frames.size());
   ParallelFor("edge maps", static_cast<int>(to_read.size()), threads, [&](int i) {
-    const size_t frame = to_read[static_cast<size_t>(i)];
+    const size_t frame = to_read[i];
     frames[frame] = std::make_shared<const FrameEdges>(reader.Read(sequence.frames[frame].id));
   });
   for (const int index : for_symmetry) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     input->symmetry_images[index] =
         std::make_shared<const SymmetryImage>(frames[frame_of(index)]->maps, detection.box);
   }
   for (const int index : for_edges) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
+    const Detection& detection = sequence.detections[index];
     input->edge_images[index] = std::make_shared<const EdgeImage>(
         EdgeImage{frames[frame_of(index)], detection.box, BoxesInFront(sequence, detection)});
   }

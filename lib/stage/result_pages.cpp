@@ -89,7 +89,7 @@ namespace {
 // Images of a dataset folder; frames whose file is missing have no image.
 ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
   const auto frame_at = [&sequence](int frame_index) -> const Frame& {
-    return sequence.frames[static_cast<size_t>(frame_index)];
+    return sequence.frames[frame_index];
   };
   const auto reader = std::make_shared<const FrameImageReader>(sequence);
   return {[=](int frame_index) {

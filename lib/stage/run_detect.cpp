@@ -113,7 +113,7 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
           detector.Detect(ReadColourImage(images[frame], options.image_orientation));
       progress.Step();
     }
-    tallies[static_cast<size_t>(worker)] = detector.tally();
+    tallies[worker] = detector.tally();
   });
   for (const BoxTally& tally : tallies) all.tally += tally;
   return all;

@@ -39,7 +39,7 @@ const Value& Required(const std::optional<Value>& value, const char* option,
 
 // Undistorted grey image of a frame; uniform grey where there is no image, or no folder is given.
 cv::Mat GreyImage(const InspectRequest& request, const Sequence& sequence, int frame_index) {
-  const Frame& frame = sequence.frames[static_cast<size_t>(frame_index)];
+  const Frame& frame = sequence.frames[frame_index];
   if (!request.dataset || frame.image.empty()) {
     constexpr int kGrey = 72;
     const Camera& camera = sequence.CameraOf(frame);

@@ -54,9 +54,8 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
   const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
   for (size_t begin = 0; begin < images.size(); begin += batch) {
     std::vector<cv::Mat> grey(std::min(batch, images.size() - begin));
-    ParallelFor(static_cast<int>(grey.size()), threads, [&](int i) {
-      grey[static_cast<size_t>(i)] = reader.ReadGrey(images[begin + static_cast<size_t>(i)]);
-    });
+    ParallelFor(static_cast<int>(grey.size()), threads,
+                [&](int i) { grey[i] = reader.ReadGrey(images[begin + static_cast<size_t>(i)]); });
     for (size_t i = 0; i < grey.size(); ++i) {
       const size_t index = begin + i;
       const Frame& frame = *images[index].frame;
@@ -73,7 +72,7 @@ TrackViews ViewsOf(const Sequence& sequence, const std::vector<FrameImage>& imag
                    const FeatureTrack& track) {
   TrackViews result;
   for (const FeatureTrack::Place& place : track.places) {
-    const Frame& frame = *images[static_cast<size_t>(place.image)].frame;
+    const Frame& frame = *images[place.image].frame;
     result.frames.push_back(&frame);
     result.views.push_back(
         {sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});

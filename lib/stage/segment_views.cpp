@@ -37,8 +37,8 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_le
   }
   const FrameImageReader reader(sequence);
   ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
-    const FrameImage& image = images[static_cast<size_t>(i)];
-    views[static_cast<size_t>(image.frame - sequence.frames.data())] =
+    const FrameImage& image = images[i];
+    views[image.frame - sequence.frames.data()] =
         ReadSegmentView(sequence, reader, image, min_length_px);
   });
   return views;

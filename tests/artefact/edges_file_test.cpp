@@ -83,8 +83,7 @@ TEST_F(EdgesFileTest, ThreadsReadSideBySide) {
   writer.Commit();
   const EdgesReader reader(folder_ / "edges.h5");
   std::vector<EdgeMaps> read(maps.size());
-  ParallelFor(static_cast<int>(read.size()), 4,
-              [&](int i) { read[static_cast<size_t>(i)] = reader.Read(i); });
+  ParallelFor(static_cast<int>(read.size()), 4, [&](int i) { read[i] = reader.Read(i); });
   for (size_t i = 0; i < maps.size(); ++i) ExpectSame(read[i], maps[i]);
 }
 

@@ -40,7 +40,7 @@ Association Found(const std::vector<int>& objects) {
     DetectionDecision decision;
     decision.object = objects[i];
     decision.track = objects[i] >= 0 ? objects[i] : count;
-    Track& track = association.tracks[static_cast<size_t>(decision.track)];
+    Track& track = association.tracks[decision.track];
     track.detections.push_back(static_cast<int>(i));
     track.votes["x"] += 1.0;
     track.labels = {{"x", 1.0}};

@@ -21,7 +21,7 @@ constexpr int kScenes = 6;
 std::set<std::set<int>> Partition(const Association& association) {
   std::set<std::set<int>> partition;
   for (const int track : association.objects) {
-    const auto& detections = association.tracks[static_cast<size_t>(track)].detections;
+    const auto& detections = association.tracks[track].detections;
     partition.insert(std::set<int>(detections.begin(), detections.end()));
   }
   return partition;
@@ -75,13 +75,13 @@ TEST(AssociateTest, FlickeringLabelsMakeNoObjects) {
     Sequence seen = WithoutIds(sequence);
     for (Object& object : seen.objects) {
       if (RandomUniform(0.0, 1.0) > 0.1) continue;
-      object.label = labels[static_cast<size_t>(RandomUniform(0.0, 2.99))];
+      object.label = labels[RandomUniform(0.0, 2.99)];
     }
     const Association association = AssociateAll(seen);
     const Agreement agreement = CompareWithGiven(sequence, association, 3);
     sum += agreement.F1().value();
     for (size_t i = 0; i < association.objects.size(); ++i) {
-      const Track& track = association.tracks[static_cast<size_t>(association.objects[i])];
+      const Track& track = association.tracks[association.objects[i]];
       const auto given = static_cast<size_t>(agreement.given_of_object[i].value());
       // Votes of a few detections may go wrong, as may objects themselves.
       if (track.detections.size() < 6) continue;
@@ -131,7 +131,7 @@ TEST(AssociateTest, ObjectsOfOneLabelMayCrossInTheImage) {
     const Sequence sequence = SyntheticSequence(scene, noise);
     const auto of_objects = DetectionsByObject(sequence);
     const auto offset = [&](size_t i, size_t j) {
-      return sequence.detections[static_cast<size_t>(of_objects[i][j])].box.Centre().x();
+      return sequence.detections[of_objects[i][j]].box.Centre().x();
     };
     const size_t last = of_objects[1].size() - 1;
     ASSERT_LT(
@@ -188,7 +188,7 @@ TEST(AssociateTest, TheOrderWithinAFrameDoesNotMatter) {
     for (const std::set<int>& detections : Partition(association)) {
       std::set<std::pair<int, double>> object;
       for (const int i : detections) {
-        const Detection& detection = of.detections[static_cast<size_t>(i)];
+        const Detection& detection = of.detections[i];
         object.insert({detection.frame_index, detection.box.x_min});
       }
       objects.insert(object);
@@ -221,7 +221,7 @@ TEST(AssociateTest, OfTwoBoxesAtOnePlaceTheBetterIsUsed) {
   const DetectionDecision& decision = association.detections[index];
   EXPECT_EQ(decision.decision, LinkDecision::kDuplicate);
   EXPECT_EQ(decision.object, -1);
-  const Detection& kept = sequence.detections[static_cast<size_t>(decision.duplicate_of)];
+  const Detection& kept = sequence.detections[decision.duplicate_of];
   EXPECT_EQ(kept.box, copied.box);
   EXPECT_EQ(kept.score, 1.0);
 }
@@ -253,7 +253,7 @@ TEST(AssociateTest, EachSegmentHasItsOwnObjects) {
   for (const Track& track : association.tracks) {
     std::set<int> segments;
     for (const int i : track.detections) {
-      segments.insert(twice.FrameOf(twice.detections[static_cast<size_t>(i)]).segment);
+      segments.insert(twice.FrameOf(twice.detections[i]).segment);
     }
     EXPECT_EQ(segments.size(), 1u);
   }

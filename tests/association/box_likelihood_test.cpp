@@ -18,7 +18,7 @@ class BoxLikelihoodTest : public testing::Test {
     const std::vector<int> first(detections_.begin(), detections_.begin() + 3);
     object_ = *FitObject(sequence_, first, *UnknowingTable().default_prior, options_,
                          sequence_.planes[0].plane_in_world);
-    expected_ = sequence_.detections[static_cast<size_t>(detections_[3])];
+    expected_ = sequence_.detections[detections_[3]];
     expected_.box = Predicted(0).outline;
   }
 
@@ -124,7 +124,7 @@ TEST_F(BoxLikelihoodTest, ABoundNeedsOnlyBeReached) {
 }
 
 TEST_F(BoxLikelihoodTest, NothingIsExpectedBehindTheCamera) {
-  sequence_.frames[static_cast<size_t>(expected_.frame_index)].world_from_camera.rotation *=
+  sequence_.frames[expected_.frame_index].world_from_camera.rotation *=
       Eigen::Quaterniond(Eigen::AngleAxisd(3.14, Eigen::Vector3d::UnitY()));
   EXPECT_FALSE(BoxLikelihood(sequence_, options_)
                    .Predict(object_, expected_.frame_index, expected_.frame_index));
@@ -175,7 +175,7 @@ TEST(BoxLikelihoodCalibrationTest, DistancesAreInStandardDeviations) {
       const auto object = FitObject(sequence, first, {{1.0, 1.0}, {0.7, 0.7}, kCuboidExponent},
                                     options, sequence.planes[0].plane_in_world);
       if (!object) continue;
-      const Detection& next = sequence.detections[static_cast<size_t>(of_object[3])];
+      const Detection& next = sequence.detections[of_object[3]];
       const auto prediction = likelihood.Predict(*object, next.frame_index, next.frame_index);
       if (!prediction) continue;
       const auto match = likelihood.Match(*prediction, next);

@@ -28,8 +28,8 @@ class TrackTest : public testing::Test {
     track.detections = detections;
     track.linked = static_cast<int>(detections.size());
     for (const int i : detections) {
-      track.votes[model.LabelOf(sequence_.detections[static_cast<size_t>(i)])] += 1.0;
-      association_.detections[static_cast<size_t>(i)].track = index;
+      track.votes[model.LabelOf(sequence_.detections[i])] += 1.0;
+      association_.detections[i].track = index;
     }
     model.Fit(&track);
     association_.tracks.push_back(track);
@@ -43,7 +43,7 @@ class TrackTest : public testing::Test {
     }
     return chosen;
   }
-  const Track& TrackAt(int track) const { return association_.tracks[static_cast<size_t>(track)]; }
+  const Track& TrackAt(int track) const { return association_.tracks[track]; }
   // The fate of a track once false ones are dropped.
   TrackFate FateOf(int track) {
     DropFalseTracks(Model(), 1, &association_);
@@ -124,8 +124,7 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
 
   // The camera goes back to where it saw the object well, and does not see it any more.
   const auto middle = static_cast<size_t>(of_objects_[0][of_objects_[0].size() / 2]);
-  const Frame frame =
-      sequence_.frames[static_cast<size_t>(sequence_.detections[middle].frame_index)];
+  const Frame frame = sequence_.frames[sequence_.detections[middle].frame_index];
   for (int i = 0; i < 10 * detections; ++i) sequence_.frames.push_back(frame);
   EXPECT_EQ(FateOf(track), TrackFate::kRarelyDetected);
   options_.min_detection_share = 0.0;
@@ -135,26 +134,26 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
 TEST_F(TrackTest, WhatIsNeverSeenWholeIsNoObject) {
   const int track = AddTrack(of_objects_[0]);
   for (const int index : of_objects_[0]) {
-    sequence_.detections[static_cast<size_t>(index)].is_bound = {true, false, false, false};
+    sequence_.detections[index].is_bound = {true, false, false, false};
   }
   EXPECT_EQ(FateOf(track), TrackFate::kNeverWhole);
-  sequence_.detections[static_cast<size_t>(of_objects_[0][2])].is_bound = {};
+  sequence_.detections[of_objects_[0][2]].is_bound = {};
   EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
 TEST_F(TrackTest, OneGoodScoreMakesAnObject) {
   const int track = AddTrack(of_objects_[0]);
   for (const int index : of_objects_[0]) {
-    sequence_.detections[static_cast<size_t>(index)].score = options_.min_best_score - 0.01;
+    sequence_.detections[index].score = options_.min_best_score - 0.01;
   }
   EXPECT_EQ(FateOf(track), TrackFate::kLowScores);
-  sequence_.detections[static_cast<size_t>(of_objects_[0][1])].score = options_.min_best_score;
+  sequence_.detections[of_objects_[0][1]].score = options_.min_best_score;
   EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
 TEST_F(TrackTest, ATrackWithoutLandmarkIsNoObject) {
   const int track = AddTrack(of_objects_[0]);
-  association_.tracks[static_cast<size_t>(track)].fit.reset();
+  association_.tracks[track].fit.reset();
   EXPECT_EQ(FateOf(track), TrackFate::kNoLandmark);
 }
 

@@ -101,7 +101,7 @@ TEST(MovingLabelsTest, ThingsThatMoveAreNoObjects) {
       Associate(WithoutIds(given), UnknowingTable(), EstimatedAssociation(), 2);
   ASSERT_EQ(association.objects.size(), 2U);
   for (const int object : association.objects) {
-    EXPECT_EQ(LabelOf(association.tracks[static_cast<size_t>(object)]), "cup");
+    EXPECT_EQ(LabelOf(association.tracks[object]), "cup");
   }
 }
 
@@ -124,7 +124,7 @@ TEST(LabelEvidenceTest, BoxesDecideAmongSimilarLabels) {
   ASSERT_GE(association.objects.size(), 4U);
   for (size_t i = 0; i < association.objects.size(); ++i) {
     const auto object = static_cast<size_t>(agreement.given_of_object[i].value());
-    const Track& track = association.tracks[static_cast<size_t>(association.objects[i])];
+    const Track& track = association.tracks[association.objects[i]];
     EXPECT_EQ(track.labels.front().label, object % 2 == 0 ? "cup" : "mug");
     EXPECT_EQ(LabelOf(track), "cup");  // what it is called
   }

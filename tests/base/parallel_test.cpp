@@ -18,7 +18,7 @@ class ParallelForTest : public testing::TestWithParam<int> {};
 TEST_P(ParallelForTest, DoesEachOnce) {
   for (const int count : {0, 1, 2, 1000}) {
     std::vector<int> done(static_cast<size_t>(count));
-    ParallelFor(count, GetParam(), [&](int i) { ++done[static_cast<size_t>(i)]; });
+    ParallelFor(count, GetParam(), [&](int i) { ++done[i]; });
     EXPECT_THAT(done, testing::Each(1));
   }
 }

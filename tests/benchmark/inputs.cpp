@@ -99,7 +99,7 @@ Sequence FirstObservations(Sequence sequence) {
 }
 
 Landmark FacingCamera(const Sequence& sequence, const ObservationEstimate& estimate) {
-  const Detection& detection = sequence.detections[static_cast<size_t>(estimate.detection_index)];
+  const Detection& detection = sequence.detections[estimate.detection_index];
   const Rigid3d& world_from_camera = sequence.FrameOf(detection).world_from_camera;
   std::optional<Landmark> best;
   double best_cosine = -1.0;
@@ -138,8 +138,8 @@ OneObject::OneObject(const Sequence& all, size_t object_index, size_t textures)
   const auto estimates = InitialiseUpright(first, input.priors, UprightOptions(), /*threads=*/1);
   input.initial_landmarks = {FacingCamera(first, estimates.observations.front())};
   for (const int index : SpreadOver(DetectionsByObject(sequence).front(), textures)) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(index)];
-    const auto& edges = EdgesOfTwelveViews()[static_cast<size_t>(detection.frame_index)];
+    const Detection& detection = sequence.detections[index];
+    const auto& edges = EdgesOfTwelveViews()[detection.frame_index];
     input.symmetry_images[index] =
         std::make_shared<const SymmetryImage>(edges->maps, detection.box);
   }

@@ -70,7 +70,7 @@ double MedianError(const Sequence& sequence, const MapEstimate& map) {
   std::vector<double> errors;
   for (const ObjectEstimate& object : map.objects) {
     if (!object.landmark_in_world) continue;
-    const Object& truth = sequence.objects[static_cast<size_t>(object.object_index)];
+    const Object& truth = sequence.objects[object.object_index];
     errors.push_back(
         (object.landmark_in_world->Centre() - truth.ground_truth->landmark_in_world.Centre())
             .norm());

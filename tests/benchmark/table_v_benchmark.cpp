@@ -43,10 +43,9 @@ Landmarks SingleFrameTexture() {
   Landmarks landmarks;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
-    const auto refined = RefineOrientation(
-        sequence, static_cast<int>(i),
-        EdgesOfTwelveViews()[static_cast<size_t>(detection.frame_index)],
-        priors[static_cast<size_t>(detection.object_index)], options, SymmetryOfST());
+    const auto refined = RefineOrientation(sequence, static_cast<int>(i),
+                                           EdgesOfTwelveViews()[detection.frame_index],
+                                           priors[detection.object_index], options, SymmetryOfST());
     landmarks.push_back(Transform(sequence.FrameOf(detection).world_from_camera,
                                   refined.estimate.hypotheses.front().landmark_in_camera));
   }

@@ -59,7 +59,7 @@ TEST(SymmetryDescriptor, ResidualsOfSeveralMirrorPlanesAreThoseOfEachPair) {
           found.value_or(Eigen::RowVectorXd::Constant(3, std::nan("")));
       ASSERT_EQ(residuals.size(), 3);
       for (Eigen::Index k = 0; k < 3; ++k) {
-        const auto pair = of.Evaluate(pixel, 0.3, false, planes[static_cast<size_t>(k)]);
+        const auto pair = of.Evaluate(pixel, 0.3, false, planes[k]);
         EXPECT_EQ(std::isnan(residuals[k]), !pair);
         if (!pair) continue;
         EXPECT_NEAR(residuals[k], pair->residual, 1e-9);

@@ -15,7 +15,7 @@ constexpr double kSigmaFraction = 0.05;
 BoxEdge RandomEdge() {
   const Box box{RandomUniform(100, 250), RandomUniform(100, 200), RandomUniform(350, 500),
                 RandomUniform(250, 400)};
-  return BoxEdges(TestCamera(), box, {}, kSigmaFraction)[static_cast<size_t>(TestRandom()() % 4)];
+  return BoxEdges(TestCamera(), box, {}, kSigmaFraction)[TestRandom()() % 4];
 }
 
 double AtOwnDepth(const BoxEdge& edge, const Landmark& landmark, double bias_px = 0.0) {

@@ -75,7 +75,7 @@ TEST(CocoLabelsTest, IndicesAndCategoryIds) {
       {72, 82, "refrigerator"}, {73, 84, "book"},         {79, 90, "toothbrush"}};
   for (const auto& [index, id, label] : published) {
     EXPECT_EQ(CocoClassIndex(id), index);
-    EXPECT_EQ(CocoLabels()[static_cast<size_t>(index)], label);
+    EXPECT_EQ(CocoLabels()[index], label);
   }
 }
 
@@ -86,7 +86,7 @@ TEST(CocoLabelsTest, EachClassHasOneCategoryId) {
   }
   ASSERT_EQ(indices.size(), 80u);
   for (int i = 0; i < 80; ++i) {
-    EXPECT_EQ(indices[static_cast<size_t>(i)], i);
+    EXPECT_EQ(indices[i], i);
     EXPECT_EQ(CocoClassIndex(CocoCategoryId(i)), i);
   }
 }

@@ -40,7 +40,7 @@ class OrderOfStringsTest : public DatasetChecksTest {
 };
 
 TEST_F(OrderOfStringsTest, OfPoses) {
-  dataset.pose_of_frame = [](int frame) { return Order()[static_cast<size_t>(frame)]; };
+  dataset.pose_of_frame = [](int frame) { return Order()[frame]; };
   EXPECT_THAT(Warnings(),
               testing::Contains(AllOf(HasSubstr("frame_order: "),
                                       HasSubstr("the poses are in the order of strings"))));

@@ -25,8 +25,8 @@ TEST_F(FolderFormatsTest, TumRgbdWithoutPlanesAndIds) {
   ASSERT_EQ(sequence.detections.size(), 3u);
   ASSERT_EQ(sequence.objects.size(), 3u);  // one for each detection that is used
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(sequence.detections[static_cast<size_t>(i)].object_index, i);
-    EXPECT_EQ(sequence.objects[static_cast<size_t>(i)].plane_index, kNoPlane);
+    EXPECT_EQ(sequence.detections[i].object_index, i);
+    EXPECT_EQ(sequence.objects[i].plane_index, kNoPlane);
   }
   EXPECT_EQ(sequence.rejected_detections.at("frame_without_pose"), 1);
 }

@@ -320,7 +320,7 @@ TEST_F(ImportTest, HeldOutFramesKeepNoRejectedDetections) {
   options.held_out = HeldOutFrames::kOdd;
   const Sequence sequence = Import();
   ASSERT_EQ(sequence.rejected.size(), 1u);
-  EXPECT_EQ(sequence.frames.at(static_cast<size_t>(sequence.rejected[0].frame_index)).id, 2);
+  EXPECT_EQ(sequence.frames.at(sequence.rejected[0].frame_index).id, 2);
 }
 
 TEST_F(ImportTest, WhatNobodyMeasuredIsIgnored) {

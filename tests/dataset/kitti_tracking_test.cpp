@@ -75,8 +75,7 @@ TEST_F(KittiTrackingTest, ObjectsKnowWhetherTheyStand) {
     EXPECT_EQ(sequence.objects[i].id, expected[i].first);
     EXPECT_EQ(sequence.objects[i].label, expected[i].second);
     EXPECT_EQ(sequence.objects[i].is_static, is_static[i]);
-    EXPECT_EQ(sequence.planes[static_cast<size_t>(sequence.objects[i].plane_index)].id,
-              expected[i].first);
+    EXPECT_EQ(sequence.planes[sequence.objects[i].plane_index].id, expected[i].first);
   }
   // The parked car's bottom face: 1.6 m below camera 0, which is 0.02 m above camera 2.
   const Landmark& truth = sequence.objects[0].ground_truth->landmark_in_world;
@@ -173,7 +172,7 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
   EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("matches_no_label", 3)));
   ASSERT_EQ(sequence.rejected.size(), 3u);
   EXPECT_EQ(sequence.rejected[0].label, "car");
-  EXPECT_EQ(sequence.frames[static_cast<size_t>(sequence.rejected[0].frame_index)].id, 30001);
+  EXPECT_EQ(sequence.frames[sequence.rejected[0].frame_index].id, 30001);
 
   fixture.files["rrc/Car/0007.txt"] = "0,1,2,3\n";
   ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt:1", "4 fields"});

@@ -77,7 +77,7 @@ TEST_F(MapQualityTest, ThePlaneOfALandmarkIsComparedWithTheTrueOne) {
 TEST_F(MapQualityTest, ObjectsThatMoveAreNotLookedFor) {
   AddFound();
   const int moving = AddTruth();
-  sequence_.true_objects[static_cast<size_t>(moving)].is_static = false;
+  sequence_.true_objects[moving].is_static = false;
   Detect(moving, AddLandmark(Shifted(moving, {0, 9, 0})));
   SayInFrames(moving, Truth(moving));
   const MapQuality quality = Evaluate();
@@ -92,7 +92,7 @@ TEST_F(MapQualityTest, OtherLabelsThanThoseAskedForAreIgnored) {
   const int van = AddFound();
   const int missed_van = AddTruth();
   for (const int index : {van, missed_van}) {
-    sequence_.true_objects[static_cast<size_t>(index)].is_ignored = true;
+    sequence_.true_objects[index].is_ignored = true;
   }
   const MapQuality quality = Evaluate();
   EXPECT_EQ(quality.scores[0].true_objects, 1);
@@ -106,7 +106,7 @@ TEST_F(MapQualityTest, OtherLabelsThanThoseAskedForAreIgnored) {
 TEST_F(MapQualityTest, WhatIsIgnoredDoesNotCompete) {
   const int wanted = AddFound();
   const int van = AddTruth();
-  TrueObject& ignored = sequence_.true_objects[static_cast<size_t>(van)];
+  TrueObject& ignored = sequence_.true_objects[van];
   ignored.is_ignored = true;
   ignored.truth.landmark_in_world = Shifted(wanted, {0.05, 0, 0});
   estimates_[0].landmark_in_world = Shifted(wanted, {0.04, 0, 0});
@@ -208,7 +208,7 @@ TEST_F(MapQualityTest, ALandmarkBeyondAllNumbersIsWrong) {
 TEST_F(MapQualityTest, BoxesThatAreTakenForThoseOfAnotherAreJoined) {
   const int outer = AddFound();
   const int inner = AddTruth();
-  Landmark& truth = sequence_.true_objects[static_cast<size_t>(inner)].truth.landmark_in_world;
+  Landmark& truth = sequence_.true_objects[inner].truth.landmark_in_world;
   truth = Truth(outer);
   truth.half_axes *= 0.85;
   const MapQuality quality = Evaluate();

@@ -46,7 +46,7 @@ TEST(Metrics, AverageOverObservationsThenObjects) {
   int failed_object = sequence.detections.front().object_index;
   int failed = 0;
   for (auto& observation : estimates.observations) {
-    const auto& detection = sequence.detections[static_cast<size_t>(observation.detection_index)];
+    const auto& detection = sequence.detections[observation.detection_index];
     if (detection.object_index != failed_object) continue;
     observation.hypotheses.clear();
     ++failed;

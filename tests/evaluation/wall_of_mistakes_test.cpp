@@ -44,7 +44,7 @@ void WallOfMistakesTest::MakeAWallOfMistakes() {
   Detect(joined, of_both, 0, 3);
   Detect(joined_too, of_both, 3, kFrames);
   const int not_estimated = AddObject();
-  estimates_[static_cast<size_t>(not_estimated)].failure = "too_few_views";
+  estimates_[not_estimated].failure = "too_few_views";
   Detect(AddTruth(), not_estimated);
   const int turned = AddTruth({0.3, 0.06, 0.2});
   Detect(turned, AddLandmark(RotatedAboutZ(Truth(turned), 44.0 * kRadPerDeg)));

@@ -27,8 +27,7 @@ std::vector<FeatureTrack> TracksThrough(const std::vector<int>& shifts) {
 double MotionError(const FeatureTrack& track, const std::vector<int>& shifts) {
   double error = 0.0;
   const auto in_picture = [&](const FeatureTrack::Place& place) {
-    return Eigen::Vector2d(place.pixel.x() + shifts[static_cast<size_t>(place.image)],
-                           place.pixel.y());
+    return Eigen::Vector2d(place.pixel.x() + shifts[place.image], place.pixel.y());
   };
   for (const FeatureTrack::Place& place : track.places) {
     error = std::max(error, (in_picture(place) - in_picture(track.places.front())).norm());

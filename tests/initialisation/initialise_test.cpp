@@ -55,7 +55,7 @@ TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
     EXPECT_TRUE(
         std::is_sorted(estimate.hypotheses.begin(), estimate.hypotheses.end(),
                        [](const auto& one, const auto& other) { return one.cost < other.cost; }));
-    const ShapePrior& prior = *priors[static_cast<size_t>(detection.object_index)];
+    const ShapePrior& prior = *priors[detection.object_index];
     const Plane& plane = detection.plane_in_camera;
     for (const Hypothesis& hypothesis : estimate.hypotheses) {
       const Landmark& landmark = hypothesis.landmark_in_camera;
@@ -76,8 +76,8 @@ TEST(InitialiseUpright, HasTheTrueBodyAmongItsHypotheses) {
       InitialiseUpright(sequence, TruePriors(sequence), WithoutAxes(), 2);
   size_t found = 0;
   for (const ObservationEstimate& estimate : estimates.observations) {
-    const Landmark truth = *TrueLandmarkInCamera(
-        sequence, sequence.detections[static_cast<size_t>(estimate.detection_index)]);
+    const Landmark truth =
+        *TrueLandmarkInCamera(sequence, sequence.detections[estimate.detection_index]);
     EXPECT_LT(estimate.hypotheses.front().cost, 1e-3);
     found += std::any_of(estimate.hypotheses.begin(), estimate.hypotheses.end(),
                          [&](const Hypothesis& hypothesis) {
@@ -95,7 +95,7 @@ TEST(InitialiseUpright, NamesObjectsWithoutRatio) {
   const Sequence sequence = Bodies();
   auto priors = TruePriors(sequence);
   const int without = sequence.detections.front().object_index;
-  priors[static_cast<size_t>(without)].reset();
+  priors[without].reset();
   const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 2);
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const bool is_without = sequence.detections[i].object_index == without;

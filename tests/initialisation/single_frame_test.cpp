@@ -140,7 +140,7 @@ TEST(InitialiseSingleFrame, NamesWhatItCannotDoAndDoesNotDependOnThreads) {
   std::vector<std::optional<Eigen::Vector2d>> ratios =
       ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
   const int without = sequence.detections.front().object_index;
-  ratios[static_cast<size_t>(without)].reset();
+  ratios[without].reset();
   const auto one = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1);
   const auto two = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 2);
   for (size_t i = 0; i < one.observations.size(); ++i) {

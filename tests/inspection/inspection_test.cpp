@@ -47,7 +47,7 @@ class InspectionTest : public testing::Test {
     const auto& columns = inspection.table.columns;
     const auto found = std::ranges::find(columns, column, &ValueColumn::name);
     if (found == columns.end()) throw std::out_of_range(column);
-    return inspection.table.rows.at(row).at(static_cast<size_t>(found - columns.begin()));
+    return inspection.table.rows.at(row).at(found - columns.begin());
   }
 
   Sequence sequence_ = RandomSequence();

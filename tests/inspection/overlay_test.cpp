@@ -124,8 +124,7 @@ TEST_F(OverlayOfSceneTest, TheTruthFillsExactDetections) {
 TEST_F(OverlayOfSceneTest, TheBestHypothesisOfEachObservationIsShown) {
   LandmarkEstimates estimates;
   for (int i = 0; i < static_cast<int>(sequence_.detections.size()); ++i) {
-    const auto truth =
-        TrueLandmarkInCamera(sequence_, sequence_.detections[static_cast<size_t>(i)]);
+    const auto truth = TrueLandmarkInCamera(sequence_, sequence_.detections[i]);
     estimates.observations.push_back({i, {{*truth, 0.0}, {LandmarkInView(1.0), 1.0}}, ""});
   }
   const int frame_index = sequence_.detections.front().frame_index;

@@ -54,9 +54,8 @@ Rows DenseJacobian(const std::vector<double*>& blocks, ceres::Problem* problem) 
   problem->Evaluate(options, nullptr, nullptr, nullptr, &sparse);
   Rows jacobian = Rows::Zero(sparse.num_rows, sparse.num_cols);
   for (int row = 0; row < sparse.num_rows; ++row) {
-    for (int k = sparse.rows[static_cast<size_t>(row)];
-         k < sparse.rows[static_cast<size_t>(row) + 1]; ++k) {
-      jacobian(row, sparse.cols[static_cast<size_t>(k)]) = sparse.values[static_cast<size_t>(k)];
+    for (int k = sparse.rows[row]; k < sparse.rows[static_cast<size_t>(row) + 1]; ++k) {
+      jacobian(row, sparse.cols[k]) = sparse.values[k];
     }
   }
   return jacobian;

@@ -52,8 +52,7 @@ TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
 
 TEST_F(UprightStarts, ComeFromSeveralViewsWhereSingleFramesSayNothing) {
   for (ObservationEstimate& observation : estimates_.observations) {
-    const Detection& detection =
-        sequence_.detections[static_cast<size_t>(observation.detection_index)];
+    const Detection& detection = sequence_.detections[observation.detection_index];
     if (detection.object_index == 1) observation = {observation.detection_index, {}, "no_solution"};
   }
   const auto initial_landmarks = Choose();
@@ -81,10 +80,8 @@ TEST_F(UprightStarts, AreEmptyForObjectsThatNothingIsKnownOf) {
 // A body that reaches behind a camera is not what its box shows, however well others are explained.
 TEST_F(UprightStarts, AreNotBehindTheCamerasThatSeeTheObject) {
   const Detection& detection = sequence_.detections.front();
-  const Rigid3d& world_from_camera =
-      sequence_.frames[static_cast<size_t>(detection.frame_index)].world_from_camera;
-  Landmark behind = sequence_.objects[static_cast<size_t>(detection.object_index)]
-                        .ground_truth->landmark_in_world;
+  const Rigid3d& world_from_camera = sequence_.frames[detection.frame_index].world_from_camera;
+  Landmark behind = sequence_.objects[detection.object_index].ground_truth->landmark_in_world;
   const Eigen::Vector3d backwards = world_from_camera.rotation * Eigen::Vector3d(0.0, 0.0, -1.0);
   behind.frame_from_object.translation += 30.0 * Eigen::Vector3d(backwards.x(), backwards.y(), 0.0);
   estimates_.observations.front().hypotheses.front().landmark_in_camera =

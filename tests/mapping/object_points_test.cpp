@@ -47,7 +47,7 @@ TEST(FindObjectPointsTest, PointsOfAnObjectAreInItsBoxes) {
   ASSERT_EQ(found.size(), 1u);
   size_t count = 0;
   for (const PointsInView& view : found[0]) {
-    const Detection& detection = sequence.detections[static_cast<size_t>(view.detection_index)];
+    const Detection& detection = sequence.detections[view.detection_index];
     EXPECT_EQ(detection.object_index, 0);
     for (const ObjectPoint& point : view.points) {
       const auto pixel = sequence.camera.Project(point.position);
@@ -79,8 +79,7 @@ TEST(FindObjectPointsTest, TheWorldOfThePointsDoesNotMatter) {
   point.position_in_world = {100.0, 200.0, 300.0};
   const auto found = FindObjectPoints(sequence, {point}, {});
   ASSERT_EQ(found[0].size(), 1u);
-  const Detection& detection =
-      sequence.detections[static_cast<size_t>(found[0][0].detection_index)];
+  const Detection& detection = sequence.detections[found[0][0].detection_index];
   const Eigen::Vector3d in_world =
       sequence.FrameOf(detection).world_from_camera * found[0][0].points[0].position;
   EXPECT_LT((in_world - top).norm(), 1e-6);
@@ -100,7 +99,7 @@ TEST(FindObjectPointsTest, ViewsOfOtherSegmentsDoNotMatter) {
   const auto found = FindObjectPoints(two, {point}, {});
   bool is_in_first = false;
   for (const PointsInView& view : found[0]) {
-    const Frame& frame = two.FrameOf(two.detections[static_cast<size_t>(view.detection_index)]);
+    const Frame& frame = two.FrameOf(two.detections[view.detection_index]);
     if (frame.segment != 0) continue;
     is_in_first = true;
     EXPECT_LT((frame.world_from_camera * view.points[0].position - top).norm(), 1e-6);

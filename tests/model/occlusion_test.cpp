@@ -107,7 +107,7 @@ Sequence RandomBoxes(int count, bool has_planes) {
   second.id = sequence.frames.back().id + 1;
   sequence.frames.push_back(second);
   for (int i = 0; i < count; i += 3) {
-    Detection detection = sequence.detections[static_cast<size_t>(i)];
+    Detection detection = sequence.detections[i];
     detection.frame_index = static_cast<int>(sequence.frames.size()) - 1;
     sequence.detections.push_back(detection);
   }

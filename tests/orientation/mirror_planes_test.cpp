@@ -18,7 +18,7 @@ struct Curve {
       cost.push_back(0.9 * options.asymmetry_cost);
     }
     for (const int yaw_deg : symmetric_deg) {
-      cost[static_cast<size_t>(yaw_deg / 3)] = 0.2 * options.asymmetry_cost;
+      cost[yaw_deg / 3] = 0.2 * options.asymmetry_cost;
     }
   }
   std::optional<int> Planes(double yaw_deg) const {

@@ -27,7 +27,7 @@ std::array<int, 3> EdgeOf(const ModelPoint& point) {
   std::array<int, 3> edge;
   for (int i = 0; i < 3; ++i) {
     const double x = point.in_unit_body[i];
-    edge[static_cast<size_t>(i)] = std::abs(x) > 1.0 - 1e-12 ? (x > 0.0 ? 1 : -1) : 0;
+    edge[i] = std::abs(x) > 1.0 - 1e-12 ? (x > 0.0 ? 1 : -1) : 0;
   }
   return edge;
 }
@@ -38,7 +38,7 @@ double CuboidEdgeLength(const Camera& camera, const Landmark& landmark,
   for (size_t end = 0; end < 2; ++end) {
     Eigen::Vector3d point;
     for (int i = 0; i < 3; ++i) {
-      const int sign = edge[static_cast<size_t>(i)];
+      const int sign = edge[i];
       point[i] = landmark.half_axes[i] * (sign != 0 ? sign : end == 0 ? -1 : 1);
     }
     ends[end] = *camera.Project(landmark.frame_from_object * point);

@@ -52,9 +52,7 @@ class RefineBoxes : public testing::Test {
     delete edges_;
   }
 
-  static const Detection& DetectionAt(int index) {
-    return sequence_->detections[static_cast<size_t>(index)];
-  }
+  static const Detection& DetectionAt(int index) { return sequence_->detections[index]; }
   static Landmark TrueLandmark(const Detection& detection) {
     return *TrueLandmarkInCamera(*sequence_, detection);
   }
@@ -63,8 +61,7 @@ class RefineBoxes : public testing::Test {
   static RefinedObservation RefineIn(const Frames& maps, int index, const ProfileOptions& options) {
     const Eigen::Vector3d half_axes = TrueLandmark(DetectionAt(index)).half_axes;
     const ShapePrior prior{half_axes.head<2>() / half_axes.z(), {0.02, 0.02}, kCuboidExponent};
-    return RefineOrientation(*sequence_, index,
-                             maps[static_cast<size_t>(DetectionAt(index).frame_index)], prior,
+    return RefineOrientation(*sequence_, index, maps[DetectionAt(index).frame_index], prior,
                              options, SymmetryOptions());
   }
   static RefinedObservation Refine(int index, const ProfileOptions& options) {
@@ -74,7 +71,7 @@ class RefineBoxes : public testing::Test {
   static Frames PlainMaps() {
     std::vector<std::vector<Landmark>> boxes(sequence_->frames.size());
     for (const Detection& detection : sequence_->detections) {
-      boxes[static_cast<size_t>(detection.frame_index)].push_back(TrueLandmark(detection));
+      boxes[detection.frame_index].push_back(TrueLandmark(detection));
     }
     Frames maps;
     for (std::vector<Landmark>& of_frame : boxes) {
@@ -143,7 +140,7 @@ TEST_F(RefineBoxes, AreDrawnToTheScenesAxesAsMuchAsTheirPreferenceWeighs) {
   const Frames plain = PlainMaps();
   for (const int i : {3, 4, 5}) {  // one of each box
     const double true_yaw =        // in the world
-        BoxScene().objects[static_cast<size_t>(DetectionAt(i).object_index)].yaw;
+        BoxScene().objects[DetectionAt(i).object_index].yaw;
     const auto from_axes = [&](double weight) {
       ProfileOptions options;
       options.texture_symmetry = false;

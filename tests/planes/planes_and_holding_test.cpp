@@ -48,7 +48,7 @@ TEST(SlowEstimatePlanesAndHolding, FindsUpForEachRoll) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << quarters << " quarters");
       const Sequence sequence = Rolled(level, quarters);
       const PlanesAndHolding held = EstimateHeld(sequence);
-      EXPECT_EQ(held.estimate.holding, kRolls.at(static_cast<size_t>(quarters)));
+      EXPECT_EQ(held.estimate.holding, kRolls.at(quarters));
       EXPECT_EQ(held.estimate.holding_tilt_variance, 0.0);
       ASSERT_EQ(held.estimate.planes.size(), 1u);
       const auto error = CompareWithGiven(sequence, held.estimate, 0);

@@ -37,9 +37,9 @@ TEST(WithPlanes, CarriesThePlanesIntoEveryFrame) {
   ASSERT_EQ(with.detections.size(), sequence.detections.size());
   for (const Detection& detection : with.detections) {
     const int plane_index = detection.object_index % 2;
-    EXPECT_EQ(with.objects[static_cast<size_t>(detection.object_index)].plane_index, plane_index);
-    const Plane& in_world = estimate.planes[static_cast<size_t>(plane_index)].plane_in_world;
-    const Frame& frame = with.frames[static_cast<size_t>(detection.frame_index)];
+    EXPECT_EQ(with.objects[detection.object_index].plane_index, plane_index);
+    const Plane& in_world = estimate.planes[plane_index].plane_in_world;
+    const Frame& frame = with.frames[detection.frame_index];
     const Eigen::Vector3d point_in_camera = RandomVector(-2, 2);
     EXPECT_NEAR(detection.plane_in_camera.SignedDistance(point_in_camera),
                 in_world.SignedDistance(frame.world_from_camera * point_in_camera), 1e-9);

@@ -98,9 +98,9 @@ TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
       const Rigid3d level = LevelCamera(i * 30.0 * kRadPerDeg, 20.0 * kRadPerDeg);
       poses.push_back({level.rotation * roll, level.translation});
     }
-    const auto up = UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation,
-                                       kRolls.at(static_cast<size_t>(quarters)))
-                        .up_in_world;
+    const auto up =
+        UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation, kRolls.at(quarters))
+            .up_in_world;
     EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kRadPerDeg) << quarters;
   }
 }

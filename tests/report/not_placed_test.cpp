@@ -71,9 +71,7 @@ class TracksLeftOutTest : public testing::Test {
   void Add(const json& track, const json& object, const std::string& label) {
     const int frame = static_cast<int>(associations_["detections"].size());
     associations_["detections"].push_back(
-        {{"frame", sequence_.frames[static_cast<size_t>(frame)].id},
-         {"track", track},
-         {"object", object}});
+        {{"frame", sequence_.frames[frame].id}, {"track", track}, {"object", object}});
     if (!object.is_null()) return;
     const Box box = {10.0 * frame, 10.0, 10.0 * frame + 20.0, 40.0};
     // Import has rejected others before.

@@ -52,7 +52,7 @@ TEST(SelectForPage, HasAllThatIsShownAndSomeOfTheWay) {
   EXPECT_LE(selection.frames.size(), kMaxWayFrames + 3);
   for (const int frame : selection.shown) {
     EXPECT_TRUE(selection.Shows(frame));
-    EXPECT_EQ(selection.frames[static_cast<size_t>(selection.PlaceOfFrame(frame))], frame);
+    EXPECT_EQ(selection.frames[selection.PlaceOfFrame(frame)], frame);
   }
   EXPECT_EQ(selection.PlaceOfDetection(1501), 1);
   EXPECT_FALSE(selection.Shows(1));

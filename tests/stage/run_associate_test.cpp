@@ -86,7 +86,7 @@ TEST_F(RunAssociateTest, PagesFindTheBoxesOfWhatItLeftOut) {
     EXPECT_EQ(things[i].reason, "things of this kind move");
     const auto is_of = [&](const std::vector<int>& of_object) {
       return std::ranges::equal(of_object, things[i].boxes, [&](int index, const SeenBox& seen) {
-        const Detection& detection = sequence_.detections[static_cast<size_t>(index)];
+        const Detection& detection = sequence_.detections[index];
         return detection.frame_index == seen.frame_index && detection.box == seen.box;
       });
     };

@@ -117,7 +117,7 @@ TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
   ASSERT_EQ(frames.at("frames").size(), 10u);
   EXPECT_EQ(frames.at("left_out").size(), 20u);
   for (int i = 0; i < 10; ++i) {
-    const json& frame = frames.at("frames")[static_cast<size_t>(i)];
+    const json& frame = frames.at("frames")[i];
     const int number = frame.at("frame_number");
     EXPECT_EQ(number / 3, i);
     EXPECT_NEAR(frame.at("time_s").get<double>(), 0.1 * number, 1e-6);

@@ -40,20 +40,19 @@ class RunOptimiseTest : public testing::Test {
   }
 
   const Landmark& TrueLandmark(int object_index) const {
-    return sequence_.objects[static_cast<size_t>(object_index)].ground_truth->landmark_in_world;
+    return sequence_.objects[object_index].ground_truth->landmark_in_world;
   }
   // Gives each object's label its true ratio, a / c times a factor, known to a twentieth.
   void WriteTable(double shape_exponent, double factor_of_a) const {
     json labels;
     for (int i = 0; i < kObjects; ++i) {
       const Eigen::Vector3d& half_axes = TrueLandmark(i).half_axes;
-      labels[sequence_.objects[static_cast<size_t>(i)].label] = {
-          {"a_by_c", factor_of_a * half_axes.x() / half_axes.z()},
-          {"b_by_c", half_axes.y() / half_axes.z()},
-          {"a_by_c_log_sigma", 0.05},
-          {"b_by_c_log_sigma", 0.05},
-          {"shape_exponent", shape_exponent},
-          {"source", "the test"}};
+      labels[sequence_.objects[i].label] = {{"a_by_c", factor_of_a * half_axes.x() / half_axes.z()},
+                                            {"b_by_c", half_axes.y() / half_axes.z()},
+                                            {"a_by_c_log_sigma", 0.05},
+                                            {"b_by_c_log_sigma", 0.05},
+                                            {"shape_exponent", shape_exponent},
+                                            {"source", "the test"}};
     }
     WriteBytes(File("table"), json{{"labels", labels}}.dump());
   }

@@ -163,8 +163,7 @@ TEST_F(RunPlanesTest, WhatIsOnAWallIsLeftOutAndCounted) {
     EXPECT_EQ(std::ranges::count(output.detections, first.object_index, &Detection::object_index),
               0);
     const json report = ReadArtefact(File("report"), "planes");
-    EXPECT_EQ(report.at("objects").at(static_cast<size_t>(first.object_index)).at("reason"),
-              "none");
+    EXPECT_EQ(report.at("objects").at(first.object_index).at("reason"), "none");
   }
 }
 

@@ -74,7 +74,7 @@ TEST_F(RunTrackTest, ObservationsAreWhereThePointsProject) {
   sequence_.image_distortion = Distortion{.k1 = -0.05};
   for (const MapPoint& point : Run()) {
     for (const PointObservation& observation : point.observations) {
-      const Frame& frame = sequence_.frames[static_cast<size_t>(observation.frame_id / 5)];
+      const Frame& frame = sequence_.frames[observation.frame_id / 5];
       ASSERT_EQ(frame.id, observation.frame_id);
       const auto pixel =
           sequence_.camera.Project(frame.world_from_camera.Inverse() * point.position_in_world);

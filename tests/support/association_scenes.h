@@ -49,7 +49,7 @@ inline void AddFalseDetection(int frame_index, const Box& box, const std::string
                               Sequence* sequence) {
   const int object_index = static_cast<int>(sequence->objects.size());
   sequence->objects.push_back({sequence->objects.back().id + 1, label, 0, {}});
-  const Frame& frame = sequence->frames[static_cast<size_t>(frame_index)];
+  const Frame& frame = sequence->frames[frame_index];
   sequence->detections.push_back(
       {frame_index,
        object_index,

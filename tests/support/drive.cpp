@@ -111,8 +111,7 @@ Drive::Drive(int frames, int objects, double turn_sigma_rad) {
         ShapePrior{(truth.half_axes.head<2>() / truth.half_axes.z())
                        .cwiseProduct(noise.NormalVector(0.2).head<2>().array().exp().matrix()),
                    Eigen::Vector2d::Constant(0.2), truth.shape_exponent});
-    initial_landmarks.push_back(
-        Disturbed(truth, sequence.frames[static_cast<size_t>(first + kDriveViews / 2)], &noise));
+    initial_landmarks.push_back(Disturbed(truth, sequence.frames[first + kDriveViews / 2], &noise));
   }
   std::ranges::stable_sort(sequence.detections, [](const auto& a, const auto& b) {
     return a.frame_index < b.frame_index;

@@ -53,7 +53,7 @@ struct KittiBox {
       const double oz = (i & 4 ? 0.5 : -0.5) * width;
       const double c = std::cos(rotation_y);
       const double s = std::sin(rotation_y);
-      corners[static_cast<size_t>(i)] = {c * ox + s * oz + x, oy + y, -s * ox + c * oz + z};
+      corners[i] = {c * ox + s * oz + x, oy + y, -s * ox + c * oz + z};
     }
     return corners;
   }

@@ -47,9 +47,7 @@ class MapQualityTest : public testing::Test {
     sequence_.true_objects.push_back(object);
     return index;
   }
-  Landmark Truth(int index) const {
-    return sequence_.true_objects[static_cast<size_t>(index)].truth.landmark_in_world;
-  }
+  Landmark Truth(int index) const { return sequence_.true_objects[index].truth.landmark_in_world; }
   Landmark Shifted(int index, const Eigen::Vector3d& shift) const {
     Landmark landmark = Truth(index);
     landmark.frame_from_object.translation += shift;
@@ -67,14 +65,14 @@ class MapQualityTest : public testing::Test {
   }
   int AddLandmark(const Landmark& landmark, const std::string& label = "box") {
     const int object = AddObject(label);
-    estimates_[static_cast<size_t>(object)].landmark_in_world = landmark;
+    estimates_[object].landmark_in_world = landmark;
     return object;
   }
 
   // The box of a body in a frame.
   Box BoxOf(const Landmark& landmark, int frame) const {
-    Landmark in_camera = Transform(
-        sequence_.frames[static_cast<size_t>(frame)].true_world_from_camera->Inverse(), landmark);
+    Landmark in_camera =
+        Transform(sequence_.frames[frame].true_world_from_camera->Inverse(), landmark);
     in_camera.shape_exponent = kCuboidExponent;
     return OutlineBox(sequence_.camera, in_camera).value();
   }
@@ -85,7 +83,7 @@ class MapQualityTest : public testing::Test {
       detection.frame_index = frame;
       detection.object_index = object;
       detection.box = BoxOf(Truth(truth), frame);
-      detection.true_object_id = sequence_.true_objects[static_cast<size_t>(truth)].id;
+      detection.true_object_id = sequence_.true_objects[truth].id;
       sequence_.detections.push_back(detection);
     }
   }
@@ -107,9 +105,8 @@ class MapQualityTest : public testing::Test {
   void SayInFrames(int truth, const Landmark& landmark) {
     for (int frame = 0; frame < kFrames; ++frame) {
       sequence_.truth_in_frames.push_back(
-          {frame, sequence_.true_objects[static_cast<size_t>(truth)].id,
-           Transform(sequence_.frames[static_cast<size_t>(frame)].world_from_camera.Inverse(),
-                     landmark)});
+          {frame, sequence_.true_objects[truth].id,
+           Transform(sequence_.frames[frame].world_from_camera.Inverse(), landmark)});
     }
   }
   int AddFound(const Eigen::Vector3d& half_axes = kCube, const std::string& label = "box") {

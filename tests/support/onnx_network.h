@@ -216,14 +216,12 @@ struct V8Network {
       const int row = static_cast<int>((object.y_min + object.y_max) / (2 * cells));
       const int first = object.stride == 8 ? 0 : object.stride == 16 ? 64 : 80;
       const int cell = first + row * (64 / object.stride) + column;
-      const auto at = [&](int field) -> float& {
-        return numbers[static_cast<size_t>(field * kCells + cell)];
-      };
+      const auto at = [&](int field) -> float& { return numbers[field * kCells + cell]; };
       const float x = static_cast<float>(column) + 0.5F, y = static_cast<float>(row) + 0.5F;
       const std::array<float, 4> sides = {x - object.x_min / cells, y - object.y_min / cells,
                                           object.x_max / cells - x, object.y_max / cells - y};
       for (int side = 0; side < 4; ++side) {
-        const float distance = sides[static_cast<size_t>(side)];
+        const float distance = sides[side];
         const int bin = static_cast<int>(distance);
         const float rest = distance - static_cast<float>(bin);
         at(side * kBins + bin) = std::log(1.0F - rest);

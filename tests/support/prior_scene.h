@@ -289,8 +289,7 @@ class PriorSceneBuilder {
       point.position_in_world += noise;
       if (Uniform(0.0, 1.0) < options_.outlier_probability) {
         const Eigen::Vector3d& origin =
-            scene_.sequence.frames[static_cast<size_t>(exact.frame_indices.front())]
-                .world_from_camera.translation;
+            scene_.sequence.frames[exact.frame_indices.front()].world_from_camera.translation;
         point.position_in_world = origin + Uniform(0.5, 1.5) * (point.position_in_world - origin);
       }
       scene_.points.push_back(std::move(point));
