@@ -26,7 +26,7 @@ for variant in $MAP_VARIANT; do
 done
 makes_no_map="VARIANT='$MAP_VARIANT': the first one makes no map; expected one that does, as OursSP"
 own=pipelines/variants/${MAP_VARIANT%% *}.json
-[[ ! -f $own ]] || grep --quiet optimise "$own" || refuse "$makes_no_map"
+[[ ! -f $own ]] || grep --quiet --regexp=optimise --regexp=extends "$own" || refuse "$makes_no_map"
 [[ -z $MAP_MODEL || -d $MAP_MODEL ]] || refuse "MODEL='$MAP_MODEL': no such folder" 3
 
 for name in SCALE CAMERA_HEIGHT; do

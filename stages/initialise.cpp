@@ -6,8 +6,7 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::InitialiseOptions>(
       argc, argv,
       {.name = "soslam-initialise",
-       .purpose =
-           "Estimates landmarks from single observations, or from all boxes of an object by SVD.",
+       .purpose = "Estimates landmarks from single observations, or from all boxes of an object.",
        .inputs = {{"sequence", "sequence.json of soslam-import"},
                   {"table", "semantic table with the size ratio of each label"}},
        .outputs = {{"output", "initial.json to write"}},

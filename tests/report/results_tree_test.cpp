@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 
@@ -33,6 +35,17 @@ TEST(ReadResults, DatasetsByNameAndVariantsInTheirOrder) {
   EXPECT_EQ(datasets[1].name, "room");
   EXPECT_THAT(VariantNames(datasets[1]),
               ElementsAre("SVD", "OursPT", "MultiView", "OursSTE", "alpha", "zeta"));
+}
+
+TEST(KnownVariants, AreThoseOfThePipelines) {
+  std::set<std::string> shipped;
+  for (const auto& file : fs::directory_iterator(SOSLAM_SOURCE_DIR "/pipelines/variants")) {
+    shipped.insert(file.path().stem().string());
+  }
+  const std::vector<std::string> known = KnownVariants();
+  for (const std::string& name : shipped) {
+    EXPECT_THAT(known, testing::Contains(name));
+  }
 }
 
 TEST(ReadResults, FolderThatDoesNotExistHoldsNothing) {
