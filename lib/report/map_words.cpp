@@ -43,7 +43,8 @@ ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
   scale.sentence += fmt::format(" Up ± {:.1f}° (one standard deviation).",
                                 world.at("up").at("sigma_deg").get<double>());
   const std::string doubt = DoubtOfUp(world);
-  if (!doubt.empty()) {
+  scale.up_is_in_doubt = !doubt.empty();
+  if (scale.up_is_in_doubt) {
     if (!scale.warning.empty()) scale.warning += " ";
     scale.warning += fmt::format("Up may be wrong by more than that: {}.", doubt);
   }
@@ -131,7 +132,8 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
     return map.planes_in_world[plane].SignedDistance(estimate.landmark_in_world->Centre());
   };
   const int lowest = *std::ranges::max_element(level, {}, height_above);
-  const bool is_floor = scale.in_metres && HasTallObject(sequence, map, lowest);
+  const bool is_floor =
+      scale.in_metres && !scale.up_is_in_doubt && HasTallObject(sequence, map, lowest);
   const std::string name = is_floor           ? "the floor"
                            : level.size() > 1 ? "the lowest plane"
                                               : "the support plane";

@@ -14,9 +14,10 @@ namespace soslam {
 // The scale of a map's world.
 struct ScaleOfMap {
   bool in_metres = true;
-  double log_sigma = 0.0;    // standard deviation of the logarithm of the scale; 0: exact
-  std::string sentence;      // empty where scale and up are given
-  std::string warning = {};  // what contradicts scale and up, if anything
+  double log_sigma = 0.0;     // standard deviation of the logarithm of the scale; 0: exact
+  std::string sentence = {};  // empty where scale and up are given
+  std::string warning = {};   // what contradicts scale and up, if anything
+  bool up_is_in_doubt = false;
 };
 
 // `world`: world.json, or null without it.
@@ -35,7 +36,7 @@ std::string LabelsInWords(const Object& object);
 inline constexpr double kLevel = 0.7;
 
 // "on the floor", "on plane 2, 72 cm above the floor", ... The lowest plane is called the floor if
-// one of its objects is too tall for a table.
+// one of its objects is too tall for a table and up is not in doubt.
 std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
                            const MapEstimate& map, const ScaleOfMap& scale);
 

@@ -172,6 +172,7 @@ TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {
   EXPECT_EQ(Words(0), "on the floor");
   EXPECT_EQ(Words(1), "on plane 7, 72 cm above the floor");
   EXPECT_EQ(Words(0, {false, 0.0, ""}), "on the lowest plane");
+  EXPECT_EQ(Words(0, {.up_is_in_doubt = true}), "on the lowest plane");
 }
 
 }  // namespace
