@@ -57,7 +57,8 @@ json Entry(const SemanticRow& row) {
     entry["height_m"] = prior.height_m->median;
     entry["height_log_sigma"] = prior.height_m->log_sigma;
   }
-  if (prior.edge_bias != EdgeBias()) entry["edge_bias"] = prior.edge_bias;
+  constexpr EdgeBias kUnbiased = {};
+  if (prior.edge_bias != kUnbiased) entry["edge_bias"] = prior.edge_bias;
   return entry;
 }
 

@@ -51,7 +51,8 @@ std::vector<std::string> NumberedNames(const NamedFields& fields, const std::str
 
 std::vector<std::string> YamlNames(const NamedFields& fields, const std::string& place) {
   const auto list = fields.find("names");
-  const auto names = list != fields.end() ? list->second : NumberedNames(fields, place);
+  std::vector<std::string> names =
+      list != fields.end() ? list->second : NumberedNames(fields, place);
   for (const std::string& name : names) CheckName(name, place);
   return names;
 }
@@ -72,7 +73,7 @@ std::vector<std::string> ReadLabelFile(const fs::path& path) {
 }
 
 std::vector<std::string> ParseLabels(const std::string& text, const std::string& name) {
-  const auto names =
+  std::vector<std::string> names =
       IsYaml(name) ? YamlNames(YamlFields(text, name), name) : LineNames(TextLines(text, name));
   if (names.empty()) throw InputError(name + ": has no label; expected the names of the classes");
   return names;
