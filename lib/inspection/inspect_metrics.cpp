@@ -57,11 +57,11 @@ std::vector<Fact> Reasons(const json& rows, const char* id, const std::string& n
       facts.push_back({name, "... and more"});
       break;
     }
-    facts.push_back(
-        {name, fmt::format("{} {}", row.at(id).get<int>(),
-                           FillIn(row.at("detail") == "" ? "({label}): {reason}"
-                                                         : "({label}): {reason}; {detail}",
-                                  row))});
+    facts.push_back({name, fmt::format("{} {}", row.at(id).get<int>(),
+                                       FillIn(row.at("detail").get<std::string>().empty()
+                                                  ? "({label}): {reason}"
+                                                  : "({label}): {reason}; {detail}",
+                                              row))});
   }
   return facts;
 }
