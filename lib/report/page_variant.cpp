@@ -99,7 +99,7 @@ void AddPlanes(const MapEstimate& map, const Sequence& sequence, const PageSelec
   const PlaneGrids grids = GridsOfMap(map, sequence);
   (*variant)["planes"] = PageGrids(grids);
   for (const int frame : selection.frames) {
-    const Rigid3d camera_from_world = map.world_from_camera[frame].Inverse();
+    Rigid3d camera_from_world = map.world_from_camera[frame].Inverse();
     (*variant)["grids"].push_back(
         selection.Shows(frame)
             ? PageGridInFrame(sequence, frame, grids,
