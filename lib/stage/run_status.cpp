@@ -94,7 +94,7 @@ class Status {
 
  private:
   std::vector<std::string> Variants(const StatusOptions& options) const {
-    const std::vector<std::string> variants = SplitAtSpaces(options.variants);
+    std::vector<std::string> variants = SplitAtSpaces(options.variants);
     if (!variants.empty()) return variants;
     if (!IsFolder(folders_.dataset)) return PlannedVariants(folders_.pipelines, folders_.results);
     return PossibleVariants(folders_.pipelines, name_, folders_.dataset);

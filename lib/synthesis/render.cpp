@@ -290,8 +290,9 @@ class FrameRenderer {
   Colour PixelColour(int u, int v, const Solids& solids) const {
     Colour sum = Colour::Zero();
     for (int i = 0; i < kSamplesPerSide * kSamplesPerSide; ++i) {
-      const Eigen::Vector2d offset((i % kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5,
-                                   (i / kSamplesPerSide + 0.5) / kSamplesPerSide - 0.5);
+      const int row = i / kSamplesPerSide, column = i % kSamplesPerSide;
+      const Eigen::Vector2d offset((column + 0.5) / kSamplesPerSide - 0.5,
+                                   (row + 0.5) / kSamplesPerSide - 0.5);
       sum += RayColour(camera_.Ray(Eigen::Vector2d(u, v) + offset), solids);
     }
     return sum / (kSamplesPerSide * kSamplesPerSide);
