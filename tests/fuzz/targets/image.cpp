@@ -6,7 +6,6 @@
 #include "image/onnx_check.h"
 #include "image/onnx_header.h"
 #include "image/read_image.h"
-#include "image/video_file.h"
 
 namespace soslam {
 namespace {
@@ -34,16 +33,6 @@ const FuzzTarget kNetworks("networks", [](const HostileInput& input) {
   IsAccepted(file, [&] {
     CheckOnnx(bytes, file.string());
     ReadOnnxHeader(bytes, file.string());
-  });
-});
-
-const FuzzTarget kVideos("videos", [](const HostileInput& input) {
-  constexpr int kMaxFrames = 20;
-  const auto file = input.AsFile("video.avi");
-  IsAccepted(file, [&] {
-    VideoReader video(file);
-    for (int i = 0; i < kMaxFrames && video.Next(); ++i) {
-    }
   });
 });
 
