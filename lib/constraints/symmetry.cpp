@@ -6,21 +6,45 @@
 #include <limits>
 
 namespace soslam {
+namespace {
 
-SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
-    : box(own_box), maps(std::move(edge_maps)), smoothed_grey(maps.grey) {
-  // Range of pixels from one edge of the box to the other, within the image.
+// The pixels from one edge of the box to the other, within the image.
+cv::Rect PixelsOf(const Box& box, const cv::Size& image) {
   const auto first = [](double edge, int size) {
     return static_cast<int>(std::ceil(std::max(0.0, std::min<double>(size, edge))));
   };
   const auto last = [](double edge, int size) {
     return static_cast<int>(std::floor(std::max(-1.0, std::min(size - 1.0, edge))));
   };
-  const int width = maps.edges.cols;
-  const int height = maps.edges.rows;
-  for (int y = first(box.y_min, height); y <= last(box.y_max, height); ++y) {
+  const int x = first(box.x_min, image.width);
+  const int y = first(box.y_min, image.height);
+  return {x, y, std::max(0, last(box.x_max, image.width) + 1 - x),
+          std::max(0, last(box.y_max, image.height) + 1 - y)};
+}
+
+BinaryDescriptors<BriefBits().size()>::Describe PrepareBrief(const cv::Mat& grey) {
+  return [smoothed = SmoothForBrief(grey)](const Eigen::Vector2d& pixel, bool mirrored) {
+    return BriefDescriptor(smoothed, pixel, mirrored);
+  };
+}
+
+BinaryDescriptors<FreakBits().size()>::Describe PrepareFreak(const cv::Mat& grey) {
+  return [smoothed = SmoothForFreak(grey)](const Eigen::Vector2d& pixel, bool mirrored) {
+    return FreakDescriptor(smoothed, pixel, mirrored);
+  };
+}
+
+}  // namespace
+
+SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
+    : box(own_box),
+      maps(std::move(edge_maps)),
+      brief(maps.grey, PixelsOf(box, maps.grey.size()), PrepareBrief),
+      freak(maps.grey, PixelsOf(box, maps.grey.size()), PrepareFreak) {
+  const cv::Rect pixels = PixelsOf(box, maps.edges.size());
+  for (int y = pixels.y; y < pixels.y + pixels.height; ++y) {
     const auto* row = maps.edges.ptr<unsigned char>(y);
-    for (int x = first(box.x_min, width); x <= last(box.x_max, width); ++x) {
+    for (int x = pixels.x; x < pixels.x + pixels.width; ++x) {
       if (row[x] != 0) edge_pixels.emplace_back(x, y);
     }
   }
@@ -102,8 +126,10 @@ std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Compare(const Side& 
   if (!mirror) return std::nullopt;
   Pair pair;
   pair.mirror_pixel = mirror->pixel;
-  if (descriptor_ == Descriptor::kBrief) {
-    const auto distance = BriefDistance(side.pixel, mirror->pixel);
+  if (descriptor_ == Descriptor::kBrief || descriptor_ == Descriptor::kFreak) {
+    const auto distance = descriptor_ == Descriptor::kBrief
+                              ? image_.brief.Distance(side.pixel, mirror->pixel)
+                              : image_.freak.Distance(side.pixel, mirror->pixel);
     if (!distance) return std::nullopt;
     pair.residual = *distance;
     return pair;
@@ -120,6 +146,7 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
     const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const {
   switch (descriptor_) {
     case Descriptor::kBrief:
+    case Descriptor::kFreak:
       return Value();  // compares two pixels directly
     case Descriptor::kGrey:
     case Descriptor::kDistanceTransform: {
@@ -167,14 +194,6 @@ std::optional<Sample> SymmetryDescriptor::LookUp(const Eigen::Vector2d& pixel) c
   if (!sample) return std::nullopt;
   const double scale = grey ? 1.0 / 255.0 : 1.0;
   return Sample{scale * sample->value, scale * sample->gradient};
-}
-
-std::optional<double> SymmetryDescriptor::BriefDistance(const Eigen::Vector2d& pixel,
-                                                        const Eigen::Vector2d& mirror_pixel) const {
-  const auto descriptor = BriefDescriptor(image_.smoothed_grey.Get(), pixel, false);
-  const auto mirrored = BriefDescriptor(image_.smoothed_grey.Get(), mirror_pixel, true);
-  if (!descriptor || !mirrored) return std::nullopt;
-  return HammingDistance(*descriptor, *mirrored);
 }
 
 SymmetryResidual::SymmetryResidual(Descriptor descriptor,

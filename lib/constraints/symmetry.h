@@ -14,8 +14,10 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/mirror_mapping.h"
+#include "image/binary_descriptor.h"
 #include "image/brief.h"
 #include "image/edge_maps.h"
+#include "image/freak.h"
 
 namespace soslam {
 
@@ -23,6 +25,7 @@ namespace soslam {
 enum class Descriptor {
   kGrey,               // grey value, 0 to 1
   kBrief,              // Hamming distance of BRIEF, mirrored sampling order; 0 to 1, no derivative
+  kFreak,              // the same for FREAK, which the paper leaves as future work
   kDistanceTransform,  // eq. (17): distance to the nearest edge in the image, px
   kNearestEdge3d,  // eq. (19): distance to the nearest edge on the surface, m; exhaustive search
   kImprovedDt,     // eq. (20)-(22): distance on the surface to the nearest edge in the image, m
@@ -30,10 +33,16 @@ enum class Descriptor {
 };
 inline constexpr std::array kDescriptorNames = {"grey",
                                                 "brief",
+                                                "freak",
                                                 "distance_transform",
                                                 "nearest_edge_3d",
                                                 "improved_dt",
                                                 "improved_dt_linearised"};
+
+// Binary descriptors have none: they can refine a yaw, but not take part in the back end.
+inline bool HasDerivative(Descriptor descriptor) {
+  return descriptor != Descriptor::kBrief && descriptor != Descriptor::kFreak;
+}
 
 // Image data that the descriptors of one observation look up.
 struct SymmetryImage {
@@ -42,7 +51,8 @@ struct SymmetryImage {
 
   Box box;
   EdgeMaps maps;
-  SmoothedImage smoothed_grey;               // for BRIEF
+  BinaryDescriptors<BriefBits().size()> brief;
+  BinaryDescriptors<FreakBits().size()> freak;
   std::vector<Eigen::Vector2d> edge_pixels;  // in the box, row by row
 };
 
@@ -113,8 +123,6 @@ class SymmetryDescriptor {
   // The edge nearest to a point: on the surface (the first of several, eq. 19), or in the image.
   std::optional<Eigen::Vector2d> EdgePixel(const Eigen::Vector2d& pixel,
                                            const Eigen::Vector3d& point_in_object) const;
-  std::optional<double> BriefDistance(const Eigen::Vector2d& pixel,
-                                      const Eigen::Vector2d& mirror_pixel) const;
 
   Descriptor descriptor_;
   const SymmetryImage& image_;
@@ -128,7 +136,7 @@ class SymmetryDescriptor {
 //
 // Residuals: 1. Blocks: world_from_camera, landmark in the world. The pairs to be used are chosen
 // before the solve. Evaluate fails if SymmetryDescriptor has no pair, which makes the solver
-// shorten its step. Not for kBrief, which has no derivative.
+// shorten its step. Only for descriptors with a derivative.
 class SymmetryResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize> {
  public:
   SymmetryResidual(Descriptor descriptor, std::shared_ptr<const SymmetryImage> image,

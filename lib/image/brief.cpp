@@ -58,22 +58,13 @@ cv::Mat SmoothForBrief(const cv::Mat& grey) {
   return smoothed;
 }
 
-const cv::Mat& SmoothedImage::Get() const {
-  std::call_once(smoothed_->once, [&] { smoothed_->image = SmoothForBrief(grey_); });
-  return smoothed_->image;
-}
-
 std::optional<BriefBits> BriefDescriptor(const cv::Mat& smoothed_grey, const Eigen::Vector2d& pixel,
                                          bool mirrored) {
   CV_Assert(smoothed_grey.type() == CV_8UC1);
   static const Pattern pattern = DrawPattern();
-  const Eigen::Vector2d closest = (pixel.array() + 0.5).floor();
-  const bool inside =
-      closest.x() >= kPatchRadius && closest.x() < smoothed_grey.cols - kPatchRadius &&
-      closest.y() >= kPatchRadius && closest.y() < smoothed_grey.rows - kPatchRadius;
-  if (!inside) return std::nullopt;  // also for NaN
-  const cv::Point centre(static_cast<int>(closest.x()), static_cast<int>(closest.y()));
-  const std::uint8_t* grey = smoothed_grey.ptr(centre.y, centre.x);
+  const auto centre = PatchCentre(smoothed_grey.size(), pixel, kPatchRadius);
+  if (!centre) return std::nullopt;
+  const std::uint8_t* grey = smoothed_grey.ptr(centre->y, centre->x);
   const auto step = static_cast<std::ptrdiff_t>(smoothed_grey.step1());
   const std::ptrdiff_t side = mirrored ? -1 : 1;
   const auto grey_at = [&](const cv::Point& offset) {

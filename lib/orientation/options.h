@@ -48,7 +48,7 @@ struct TextureOptions {
     visit.Real("asymmetry_scale", &asymmetry_scale, {1e-6, 1e6},
                "descriptor difference of a pair that counts as not symmetric, as a fraction of the "
                "object's size (the cubic root of its half axes' product), of the range of grey "
-               "values, or of BRIEF's bits");
+               "values, or of the bits of BRIEF or FREAK");
     visit.Real("asymmetry_scale_px", &asymmetry_scale_px, {1e-3, 1e6},
                "the same for descriptor = distance_transform");
     visit.Real("mirror_plane_range", &mirror_plane_range, {0.0, 10.0},

@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "constraints/loss.h"
-#include "image/brief.h"
 #include "orientation/symmetry_samples.h"
 
 namespace soslam {
@@ -26,9 +25,9 @@ double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptio
     case Descriptor::kDistanceTransform:
       return options.asymmetry_scale_px;
     case Descriptor::kGrey:
-      return options.asymmetry_scale;
     case Descriptor::kBrief:
-      return options.asymmetry_scale * static_cast<double>(BriefBits().size());
+    case Descriptor::kFreak:
+      return options.asymmetry_scale;
     default:
       return options.asymmetry_scale * Size(landmark);
   }

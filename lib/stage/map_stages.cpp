@@ -48,8 +48,11 @@ void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
     if (is_fault) throw SettingsError(message);
   }
   if (options.symmetry) CheckMirrorPlane(options.texture, options.symmetry_options.descriptor);
-  if (options.symmetry && options.symmetry_options.descriptor == Descriptor::kBrief) {
-    throw SettingsError("symmetry needs a descriptor with a derivative; found descriptor = brief");
+  const Descriptor descriptor = options.symmetry_options.descriptor;
+  if (options.symmetry && !HasDerivative(descriptor)) {
+    throw SettingsError(
+        fmt::format("symmetry needs a descriptor with a derivative; found descriptor = {}",
+                    kDescriptorNames[static_cast<size_t>(descriptor)]));
   }
 }
 

@@ -106,9 +106,9 @@ TEST(SymmetryDescriptor, IsZeroOnASymmetricImage) {
   axes.col(2) = -Eigen::Vector3d::UnitY();
   axes.col(1) = axes.col(2).cross(axes.col(0));
   const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.6, 0.7, 0.5}};
-  // Canny breaks ties between two sides of an edge towards one side: half a grey level, a few of
-  // 256 bits, up to 2 px in the image or 12 mm on the surface.
-  constexpr std::array kTolerances = {0.002, 0.15, 2.0, 0.012, 0.012, 0.012};
+  // Canny breaks ties between two sides of an edge towards one side: half a grey level, a few
+  // bits, up to 2 px in the image or 12 mm on the surface.
+  constexpr std::array kTolerances = {0.002, 0.15, 0.15, 2.0, 0.012, 0.012, 0.012};
   for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
     const SymmetryDescriptor descriptor(static_cast<Descriptor>(i), image, camera, landmark);
     int pairs = 0;

@@ -66,13 +66,5 @@ TEST(BriefTest, NoneWhereThePatchReachesOut) {
   }
 }
 
-TEST(HammingDistanceTest, CountsDifferingBits) {
-  BriefBits bits;
-  EXPECT_EQ(HammingDistance(bits, ~bits), 1.0);
-  EXPECT_EQ(HammingDistance(bits, bits), 0.0);
-  bits[3] = bits[200] = true;
-  EXPECT_EQ(HammingDistance(bits, BriefBits()), 2.0 / 256.0);
-}
-
 }  // namespace
 }  // namespace soslam

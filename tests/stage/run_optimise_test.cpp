@@ -107,6 +107,16 @@ TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {
   }
 }
 
+TEST_F(RunOptimiseTest, SymmetryNeedsADescriptorWithADerivative) {
+  options_.symmetry = true;
+  const StageFiles files = {{"edges", "edges.h5"}};
+  for (const Descriptor descriptor : {Descriptor::kBrief, Descriptor::kFreak}) {
+    options_.symmetry_options.descriptor = descriptor;
+    ExpectError<SettingsError>([&] { RunOptimise(options_, files, 1); },
+                               {"derivative", kDescriptorNames[static_cast<size_t>(descriptor)]});
+  }
+}
+
 TEST_F(RunOptimiseTest, PointEvidenceNeedsPoints) {
   WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
   options_.point_evidence = true;
