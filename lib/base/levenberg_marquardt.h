@@ -14,7 +14,7 @@ namespace soslam {
 inline constexpr double kNegligibleDecrease = 1e-11;
 // The same where derivatives jump, as those of an image do from pixel to pixel: near the minimum
 // the steps oscillate with decreasing length, and would take most of the time.
-inline constexpr double kNegligibleDecreaseAtKinks = 1e-8;
+inline constexpr double kNegligibleDecreaseAtKinks = 1e-6;
 
 struct LevenbergMarquardtOptions {
   int max_iterations = 50;

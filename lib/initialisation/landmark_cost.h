@@ -27,13 +27,6 @@ struct QuadraticModel {
     gradient += residual * d_parameters;
     information += d_parameters * d_parameters.transpose();
   }
-  // Many residuals at once, in the rows of their Jacobian, all multiplied by a weight.
-  void Add(const Eigen::VectorXd& residuals,
-           const Eigen::Matrix<double, Eigen::Dynamic, kSize>& jacobian, double weight) {
-    cost += 0.5 * weight * residuals.squaredNorm();
-    gradient += weight * (jacobian.transpose() * residuals);
-    information += weight * (jacobian.transpose() * jacobian);
-  }
   void Add(const QuadraticModel& other, double weight = 1.0) {
     cost += weight * other.cost;
     gradient += weight * other.gradient;

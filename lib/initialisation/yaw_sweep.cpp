@@ -20,8 +20,8 @@ constexpr double kSameOptimumYaw = 0.5 * kRadPerDeg;
 // At least so many of the lowest minima of a sweep are refined: any of them may become the best
 // one.
 constexpr size_t kRefinedMinima = 6;
-// Number of steps of the finer grid on each side of a grid point.
-constexpr int kRefinementSteps = 10;
+// Number of times that the step of the grid is halved about a minimum.
+constexpr int kHalvings = 4;
 // Yaws farther apart than this many steps of the grid have a yaw without a landmark between them.
 constexpr double kGap = 1.5;
 // Number of integration steps of the likelihood between two yaws of the grid.
@@ -88,18 +88,19 @@ class Fitter {
   }
 
   // The best landmark near a grid point. Without an extra cost the fit optimises the yaw; with one,
-  // a finer grid does.
-  std::optional<UprightFit> RefineYaw(const UprightVector& start, double step) const {
-    if (!objective_.extra_cost) return Fit(start, /*yaw_is_free=*/true);
-    Starts turned;
-    for (int i = -kRefinementSteps; i <= kRefinementSteps; ++i) {
-      UprightVector at = start;
-      at[0] += i * step / kRefinementSteps;
-      turned.push_back(at);
-    }
-    std::optional<UprightFit> best;
-    for (const auto& fit : FitAtYaws(turned)) {
-      if (fit && (!best || fit->cost < best->cost)) best = fit;
+  // the neighbours on ever finer grids are compared.
+  std::optional<UprightFit> RefineYaw(const UprightFit& grid_point, double step) const {
+    if (!objective_.extra_cost) return Fit(grid_point.parameters, /*yaw_is_free=*/true);
+    UprightFit best = grid_point;
+    for (int i = 0; i < kHalvings; ++i) {
+      step /= 2.0;
+      const UprightVector centre = best.parameters;
+      for (const double turn : {-step, step}) {
+        UprightVector at = centre;
+        at[0] += turn;
+        const auto fit = Fit(at, /*yaw_is_free=*/false);
+        if (fit && fit->cost < best.cost) best = *fit;
+      }
     }
     return best;
   }
@@ -218,7 +219,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   std::vector<size_t> minima = CircularMinima(sweep.Costs());
   minima.resize(std::min(minima.size(), std::max(max_count, kRefinedMinima)));
   for (const size_t i : minima) {
-    const auto fit = fitter.RefineYaw(sweep.fits[i]->parameters, step);
+    const auto fit = fitter.RefineYaw(*sweep.fits[i], step);
     if (!fit) continue;
     const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {
       return std::abs(YawDifferenceModuloPi(yaw_of(*fit), yaw_of(other))) < kSameOptimumYaw;

@@ -90,14 +90,13 @@ double EdgeTerm::Value(const Landmark& landmark_in_camera) const {
 
 void EdgeTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
   const Eigen::Matrix3d rotation = landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
-  Eigen::VectorXd residuals(NumPoints());
-  Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> jacobian(NumPoints(), kLandmarkDof);
-  for (int i = 0; i < NumPoints(); ++i) {
-    LandmarkJacobian1 row;
-    residuals[i] = Residual(landmark_in_camera, rotation, in_unit_body_[i], &row);
-    jacobian.row(i) = row;
+  LandmarkModel points;
+  for (const Eigen::Vector3d& point : in_unit_body_) {
+    LandmarkJacobian1 jacobian;
+    const double residual = Residual(landmark_in_camera, rotation, point, &jacobian);
+    points.Add(residual, jacobian.transpose());
   }
-  sum->Add(residuals, jacobian, weight_);
+  sum->Add(points, weight_);
 }
 
 EdgeTerm SupportedEdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,

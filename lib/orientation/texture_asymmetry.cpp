@@ -152,14 +152,13 @@ double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
 
 void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
-  Eigen::VectorXd residuals(NumPairs());
-  Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof> jacobian(NumPairs(), kLandmarkDof);
-  for (int i = 0; i < NumPairs(); ++i) {
-    LandmarkJacobian1 row;
-    residuals[i] = Residual(descriptor, texture_.pixels[i], &row);
-    jacobian.row(i) = row;
+  LandmarkModel pairs;
+  for (const Eigen::Vector2d& pixel : texture_.pixels) {
+    LandmarkJacobian1 jacobian;
+    const double residual = Residual(descriptor, pixel, &jacobian);
+    pairs.Add(residual, jacobian.transpose());
   }
-  sum->Add(residuals, jacobian, weight_);
+  sum->Add(pairs, weight_);
 }
 
 }  // namespace soslam
