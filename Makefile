@@ -266,10 +266,17 @@ submit: build ## Queue with Slurm what `make sweep` would run; `make status` the
 ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RESULTS/ablation
 	+@$(MAKE) run PIPELINES=pipelines/ablation RESULTS=$(RESULTS)/ablation
 
+REPORT = $(BIN)/soslam-report --results $(RESULTS) --published pipelines/published.json \
+  $(addprefix --datasets ,$(wildcard $(PIPELINES)/datasets)) \
+  $(addprefix --settings ,$(wildcard $(PIPELINES)/report.json)) --output $(RESULTS)/tables.md
+
 .PHONY: tables
 tables: build ## Compare all variants of all datasets in RESULTS: tables.md, tables/*.csv, tables/*.tex
-	@$(BIN)/soslam-report --results $(RESULTS) --published pipelines/published.json \
-	  $(addprefix --settings ,$(wildcard $(PIPELINES)/report.json)) --output $(RESULTS)/tables.md
+	@$(REPORT)
+
+.PHONY: results-page
+results-page: build ## Renew the tables of docs/results.md from RESULTS, with what make tables makes
+	@$(REPORT) --page docs/results.md > /dev/null
 
 .PHONY: report
 report: build ## Make pages to look at: RESULTS/report.html, and one in the folder of each dataset; and the tables

@@ -11,12 +11,14 @@ int main(int argc, char** argv) {
            "tables: those of the paper, paired differences between variants, and one for "
            "each dataset.",
        .inputs = {{"results", "results folder, with <dataset>/<variant>/metrics.json"},
-                  {"published", "values to show beside the measured ones", false}},
+                  {"published", "values to show beside the measured ones", false},
+                  {"datasets", "folder with <dataset>.json, whose \"about\" tables show", false}},
        .outputs =
            {{"output",
              "tables.md to write, which is printed as well; tables/*.csv and *.tex go beside "
-             "it"}},
+             "it"},
+            {"page", "page whose tables, between its markers, are renewed", false}},
        .example = "soslam-report --results results --published pipelines/published.json "
-                  "--output results/tables.md"},
+                  "--datasets pipelines/datasets --output results/tables.md"},
       &soslam::RunReport);
 }

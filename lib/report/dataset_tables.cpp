@@ -65,6 +65,26 @@ Table DatasetTable(const DatasetResult& dataset) {
   return table;
 }
 
+Table SequencesTable(const std::vector<DatasetResult>& datasets) {
+  Table table = {
+      "sequences",
+      "Sequences",
+      {"dataset", "boxes", "odometry", "annotation", "marks", "frames", "objects", "round"},
+      {},
+      5,
+      {MarksNote(), "Objects are the annotated ones, with boxes or without."}};
+  const auto text = [](const std::string& words) { return words.empty() ? kNoValue : words; };
+  for (const DatasetResult& dataset : datasets) {
+    const DatasetFacts& facts = dataset.facts;
+    if (!facts.counts) continue;
+    table.rows.push_back(
+        {dataset.name, text(facts.boxes), text(facts.odometry), text(facts.annotation),
+         MarksOf(facts, facts.counts->objects), std::to_string(facts.counts->frames),
+         std::to_string(facts.counts->objects), std::to_string(facts.counts->round_objects)});
+  }
+  return table;
+}
+
 namespace {
 
 using nlohmann::json;

@@ -15,6 +15,9 @@ namespace soslam {
 // they have no metrics; others if they have metrics.
 Table DatasetTable(const DatasetResult& dataset);
 
+// A row for each dataset: where its data come from, how much there is, and what marks it.
+Table SequencesTable(const std::vector<DatasetResult>& datasets);
+
 // A variant's name and its metrics.json.
 using NamedMetrics = std::pair<std::string, nlohmann::json>;
 

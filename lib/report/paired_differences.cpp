@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -107,6 +108,51 @@ PairedDifference MeanDifference(const std::vector<double>& differences) {
   return difference;
 }
 
+namespace {
+
+// Differences of the objects of a dataset, or of several.
+struct Compared {
+  std::string name;
+  std::vector<double> differences;
+  bool is_of_several = false;
+};
+
+// The datasets that have objects to compare, then those of them with a detector's boxes together,
+// then all of them, each if there are several.
+std::vector<Compared> ComparedObjects(const std::vector<DatasetResult>& datasets,
+                                      const Comparison& comparison, const Quantity& quantity) {
+  std::vector<Compared> compared;
+  Compared of_detector = {"detector's boxes", {}}, of_all = {"all datasets", {}};
+  int datasets_of_detector = 0;
+  for (const DatasetResult& dataset : datasets) {
+    const VariantResult* const variant = dataset.Evaluated(comparison.variant);
+    const VariantResult* const baseline = dataset.Evaluated(comparison.baseline);
+    if (!variant || !baseline) continue;
+    const std::vector<double> differences = DifferencesByObject(*variant, *baseline, quantity);
+    if (differences.empty()) continue;
+    compared.push_back({dataset.name, differences});
+    of_all.differences.insert(of_all.differences.end(), differences.begin(), differences.end());
+    if (!dataset.facts.HasDetectorBoxes()) continue;
+    of_detector.differences.insert(of_detector.differences.end(), differences.begin(),
+                                   differences.end());
+    ++datasets_of_detector;
+  }
+  of_all.is_of_several = compared.size() > 1;
+  of_detector.is_of_several = datasets_of_detector > 1;
+  for (const Compared& several : {of_detector, of_all}) {
+    if (several.is_of_several) compared.push_back(several);
+  }
+  return compared;
+}
+
+// "+0.245 (+0.194 to +0.296)"
+Cell WithInterval(const std::vector<double>& differences, const Quantity& quantity) {
+  const std::vector<Cell> row = RowOf({}, "", differences, quantity);
+  return {fmt::format("{} ({} to {})", row[4].text, row[5].text, row[6].text), row[4].bold};
+}
+
+}  // namespace
+
 Table DifferencesTable(const std::vector<DatasetResult>& datasets,
                        const std::vector<Comparison>& comparisons, const Quantity& quantity) {
   Table table = {std::string("differences_") + quantity.file_name,
@@ -117,20 +163,33 @@ Table DifferencesTable(const std::vector<DatasetResult>& datasets,
                  3,
                  {"Mean over objects with 95 % t interval; bold where it excludes 0."}};
   for (const Comparison& comparison : comparisons) {
-    std::vector<double> of_all;
-    int compared_datasets = 0;
-    for (const DatasetResult& dataset : datasets) {
-      const VariantResult* const variant = dataset.Evaluated(comparison.variant);
-      const VariantResult* const baseline = dataset.Evaluated(comparison.baseline);
-      if (!variant || !baseline) continue;
-      const std::vector<double> differences = DifferencesByObject(*variant, *baseline, quantity);
-      if (differences.empty()) continue;
-      table.rows.push_back(RowOf(comparison, dataset.name, differences, quantity));
-      of_all.insert(of_all.end(), differences.begin(), differences.end());
-      ++compared_datasets;
+    for (const Compared& compared : ComparedObjects(datasets, comparison, quantity)) {
+      table.rows.push_back(RowOf(comparison, compared.name, compared.differences, quantity));
     }
-    if (compared_datasets > 1) {
-      table.rows.push_back(RowOf(comparison, "all datasets", of_all, quantity));
+  }
+  return table;
+}
+
+Table DifferencesOverDatasets(const std::vector<DatasetResult>& datasets,
+                              const std::vector<Comparison>& comparisons) {
+  Table table = {"differences",
+                 "Paired differences over several datasets",
+                 {"variant", "minus", "datasets", "objects", "IoU", "with Rot", "Rot deg"},
+                 {},
+                 3,
+                 {"Mean over objects with 95 % t interval; bold where it excludes 0. More IoU and "
+                  "less Rot are better."}};
+  for (const Comparison& comparison : comparisons) {
+    const std::vector<Compared> rotations = ComparedObjects(datasets, comparison, kRotation);
+    for (const Compared& ious : ComparedObjects(datasets, comparison, kIou)) {
+      if (!ious.is_of_several) continue;
+      const auto rotation = std::ranges::find(rotations, ious.name, &Compared::name);
+      const bool has_rotation = rotation != rotations.end();
+      table.rows.push_back(
+          {comparison.variant, comparison.baseline, ious.name,
+           std::to_string(ious.differences.size()), WithInterval(ious.differences, kIou),
+           std::to_string(has_rotation ? rotation->differences.size() : 0),
+           has_rotation ? WithInterval(rotation->differences, kRotation) : Cell(kNoValue)});
     }
   }
   return table;

@@ -43,9 +43,14 @@ double StudentT95(int degrees_of_freedom);
 PairedDifference MeanDifference(const std::vector<double>& differences);
 
 // One row per comparison and dataset with objects to compare, then one over the objects of all
-// datasets if there are several. Bold: the interval excludes zero.
+// datasets with a detector's boxes and one over those of all datasets, each if there are several.
+// Bold: the interval excludes zero.
 Table DifferencesTable(const std::vector<DatasetResult>& datasets,
                        const std::vector<Comparison>& comparisons, const Quantity& quantity);
+
+// The rows over several datasets alone, with IoU and Rot side by side.
+Table DifferencesOverDatasets(const std::vector<DatasetResult>& datasets,
+                              const std::vector<Comparison>& comparisons);
 
 // The effect of each part of the methods, for pairs of neighbouring variants with and without it
 // that both have metrics: with, without (names), objects, and for iou, rotation_deg and

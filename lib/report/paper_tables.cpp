@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "artefact/json_file.h"
 
@@ -13,7 +15,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PublishedRow, dataset, objects, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTable, table, quantity, source, rows, average)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTime, variant, ms_mean, ms_sigma, observations)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTimes, source, dataset, machine, values)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Published, tables, times)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Published, protocol, tables, times)
 
 const PublishedTable* Published::Find(const std::string& number, const Quantity& quantity) const {
   const auto found = std::ranges::find_if(tables, [&](const PublishedTable& table) {
@@ -70,13 +72,13 @@ std::vector<Layout> Layouts() {
            "table_3_map_iou",
            "Map, IoU",
            kIou,
-           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE"},
+           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE", "OursSP", "OursSTEP"},
            kMapRows},
           {"IV",
            "table_4_map_rotation",
            "Map, Rot (degrees)",
            kRotation,
-           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE"},
+           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE", "OursSP", "OursSTEP"},
            kMapRows}};
 }
 
@@ -126,7 +128,8 @@ std::string BestText(const Means& means, const Quantity& quantity) {
 }
 
 std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kind,
-                              const Means& means, const Quantity& quantity) {
+                              const Means& means, const Quantity& quantity,
+                              const DatasetFacts& facts = {}) {
   int objects = 0;
   int observations = 0;
   for (const auto& mean : means) {
@@ -134,7 +137,8 @@ std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kin
     observations = std::max(observations, mean ? mean->observations : 0);
   }
   const std::string best = BestText(means, quantity);
-  std::vector<Cell> row = {dataset, kind, std::to_string(objects), std::to_string(observations)};
+  std::vector<Cell> row = {dataset, kind, MarksOf(facts, objects), std::to_string(objects),
+                           observations == 0 ? kNoValue : std::to_string(observations)};
   for (const auto& mean : means) {
     if (!mean) {
       row.emplace_back(kNoValue);
@@ -149,8 +153,8 @@ std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kin
 }
 
 std::vector<Cell> PublishedRowOf(const PublishedRow& published, const Layout& layout) {
-  std::vector<Cell> row = {published.dataset, "published", std::to_string(published.objects),
-                           kNoValue};
+  std::vector<Cell> row = {published.dataset, "published", kNoValue,
+                           std::to_string(published.objects), kNoValue};
   for (const std::string& variant : layout.variants) {
     const auto value = published.values.find(variant);
     row.emplace_back(value == published.values.end()
@@ -200,6 +204,11 @@ Means Averages(const Complete& complete) {
   return averages;
 }
 
+// The published dataset that this one stands above.
+std::string PublishedNameOf(const DatasetResult& dataset) {
+  return dataset.facts.published.empty() ? dataset.name : dataset.facts.published;
+}
+
 // One row per dataset and kind, followed by the published values of the dataset: first the
 // published datasets in their order, then the others.
 void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedTable* published,
@@ -208,24 +217,86 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
     for (const RowKind& kind : layout.row_kinds) {
       const Means means = MeansOf(dataset, layout, kind);
       if (!HasAny(means)) continue;
-      table->rows.push_back(MeasuredRow(dataset.name, kind.title, means, layout.quantity));
+      table->rows.push_back(
+          MeasuredRow(dataset.name, kind.title, means, layout.quantity, dataset.facts));
     }
   };
   std::vector<PublishedRow> published_rows;
   if (published) published_rows = published->rows;
   for (const PublishedRow& row : published_rows) {
-    const auto measured = std::ranges::find(datasets, row.dataset, &DatasetResult::name);
-    if (measured != datasets.end()) add_measured(*measured);
+    for (const DatasetResult& dataset : datasets) {
+      if (PublishedNameOf(dataset) != row.dataset) continue;
+      add_measured(dataset);
+      const std::string differences = DifferencesInWords(dataset.facts);
+      if (!differences.empty()) table->notes.push_back(dataset.name + ": " + differences + ".");
+    }
     table->rows.push_back(PublishedRowOf(row, layout));
   }
   for (const DatasetResult& dataset : datasets) {
-    const auto row = std::ranges::find(published_rows, dataset.name, &PublishedRow::dataset);
+    const auto row =
+        std::ranges::find(published_rows, PublishedNameOf(dataset), &PublishedRow::dataset);
     if (row == published_rows.end()) add_measured(dataset);
   }
 }
 
-void AddAverages(const std::vector<DatasetResult>& datasets, const PublishedTable* published,
-                 const Layout& layout, Table* table) {
+// The objects of a dataset for which all of these variants have the quantity.
+std::set<int> CommonObjects(const DatasetResult& dataset, const Quantity& quantity,
+                            const std::vector<std::string>& variants) {
+  std::map<int, size_t> variants_with;  // by object
+  for (const std::string& name : variants) {
+    const VariantResult* const variant = dataset.Evaluated(name);
+    if (!variant) return {};
+    for (const ObjectValue& object : ObjectValues(*variant, quantity)) {
+      ++variants_with[object.object_id];
+    }
+  }
+  std::set<int> common;
+  for (const auto& [object, count] : variants_with) {
+    if (count == variants.size()) common.insert(object);
+  }
+  return common;
+}
+
+std::optional<ObjectMean> MeanOver(const std::set<int>& objects, const VariantResult* variant,
+                                   const Quantity& quantity) {
+  if (!variant || objects.empty()) return std::nullopt;
+  ObjectMean mean = {0.0, static_cast<int>(objects.size())};
+  for (const ObjectValue& object : ObjectValues(*variant, quantity)) {
+    if (objects.contains(object.object_id)) mean.mean += object.value / mean.objects;
+  }
+  return mean;
+}
+
+// The row over the objects of all datasets with boxes of a detector.
+void AddDetectorRow(const std::vector<DatasetResult>& datasets, const Layout& layout,
+                    Table* table) {
+  std::vector<std::string> measured;
+  for (const std::string& name : layout.variants) {
+    const bool is_measured = std::ranges::any_of(datasets, [&](const DatasetResult& dataset) {
+      return dataset.facts.HasDetectorBoxes() && dataset.Evaluated(name);
+    });
+    if (is_measured) measured.push_back(name);
+  }
+  Complete common;
+  for (const DatasetResult& dataset : datasets) {
+    if (!dataset.facts.HasDetectorBoxes()) continue;
+    const std::set<int> objects = CommonObjects(dataset, layout.quantity, measured);
+    if (objects.empty()) continue;
+    common.datasets.push_back(dataset.name);
+    common.means.emplace_back();
+    for (const std::string& name : layout.variants) {
+      common.means.back().push_back(MeanOver(objects, dataset.Evaluated(name), layout.quantity));
+    }
+  }
+  if (common.datasets.size() < 2) return;
+  table->rows.push_back(
+      MeasuredRow("detector's boxes", "common objects", Averages(common), layout.quantity));
+  table->notes.push_back(fmt::format(
+      "Detector's boxes: over the objects that every variant has, all observations, of {}.",
+      fmt::join(common.datasets, ", ")));
+}
+
+void AddAverages(const std::vector<DatasetResult>& datasets, const Layout& layout, Table* table) {
   for (const RowKind& kind : layout.row_kinds) {
     const Complete complete = CompleteDatasets(datasets, layout, kind);
     if (complete.datasets.size() < 2) continue;
@@ -234,10 +305,6 @@ void AddAverages(const std::vector<DatasetResult>& datasets, const PublishedTabl
         "Average ({}): weighted by objects, over the datasets in which no variant lacks a value: "
         "{}.",
         kind.title, fmt::join(complete.datasets, ", ")));
-  }
-  if (published) {
-    table->rows.push_back(PublishedRowOf(published->average, layout));
-    table->notes.push_back("Published: " + published->source + ".");
   }
 }
 
@@ -264,14 +331,21 @@ std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
     if (!is_measured) continue;
     Table table = {layout.name,
                    fmt::format("{} (Table {})", layout.title, layout.number),
-                   {"dataset", "values", "objects", "observations"},
+                   {"dataset", "values", "marks", "objects", "observations"},
                    {},
-                   2,
-                   {kBoldNote}};
+                   3,
+                   {kBoldNote, MarksNote()}};
     table.header.insert(table.header.end(), layout.variants.begin(), layout.variants.end());
     const PublishedTable* const paper = published.Find(layout.number, layout.quantity);
     AddDatasetRows(datasets, paper, layout, &table);
-    AddAverages(datasets, paper, layout, &table);
+    AddAverages(datasets, layout, &table);
+    AddDetectorRow(datasets, layout, &table);
+    if (paper) {
+      table.rows.push_back(PublishedRowOf(paper->average, layout));
+      table.notes.push_back(fmt::format("Published: {}{}{}.", paper->source,
+                                        published.protocol.empty() ? "" : ": ",
+                                        published.protocol));
+    }
     tables.push_back(std::move(table));
   }
   return tables;

@@ -43,6 +43,7 @@ struct PublishedTimes {
 
 // The values in the paper's tables.
 struct Published {
+  std::string protocol;  // how these values came about, one line
   std::vector<PublishedTable> tables;
   PublishedTimes times;
 
@@ -65,10 +66,11 @@ struct ObjectMean {
 ObjectMean WeightedMean(const std::vector<ObjectMean>& means);
 
 // Tables I to IV of the paper: datasets by variants, its own and ours, with the published values in
-// rows of their own. The best measured value of a row is bold if it is over all of the row's
-// objects; values over fewer objects have their number in brackets. The average is over datasets
-// that have a value for every variant with a value in any dataset. Tables without a measured value
-// are left out.
+// rows of their own; notes say in what datasets differ from the published ones. The best measured
+// value of a row is bold if it is over all of the row's objects; values over fewer objects have
+// their number in brackets. The average is over datasets that have a value for every variant with a
+// value in any dataset; the row of a detector's boxes is over the objects of such datasets that
+// every variant has. Tables without a measured value are left out.
 std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
                                const Published& published);
 

@@ -141,6 +141,19 @@ std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles dam
   return datasets;
 }
 
+DatasetFacts ReadFacts(const DatasetResult& dataset, const fs::path& settings) {
+  DatasetFacts facts;
+  const auto has_sequence = [](const VariantResult& variant) {
+    return Exists(variant.folder / "sequence.json");
+  };
+  const auto with_sequence = std::ranges::find_if(dataset.variants, has_sequence);
+  if (with_sequence != dataset.variants.end()) {
+    CountSequence(with_sequence->folder / "sequence.json", &facts);
+  }
+  if (!settings.empty()) ReadAbout(settings / (dataset.name + ".json"), &facts);
+  return facts;
+}
+
 std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer) {
   const json::json_pointer place(pointer);
   if (!variant.metrics.contains(place) || variant.metrics.at(place).is_null()) return std::nullopt;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/process.h"
+#include "report/dataset_facts.h"
 
 namespace soslam {
 
@@ -71,6 +72,7 @@ struct VariantResult {
 struct DatasetResult {
   std::string name;
   std::vector<VariantResult> variants;  // the paper's in its order, ours, then others by name
+  DatasetFacts facts = {};              // empty until ReadFacts
 
   // The variant with that name if it has metrics, else null.
   const VariantResult* Evaluated(const std::string& variant) const;
@@ -90,6 +92,11 @@ std::filesystem::path DatasetFolderOf(const std::filesystem::path& results_of_da
 enum class DamagedFiles { kRefused, kNoted };
 std::vector<DatasetResult> ReadResults(const std::filesystem::path& results,
                                        DamagedFiles damaged = DamagedFiles::kRefused);
+
+// What tables say of the dataset in <results>/<dataset>/: from the sequence.json of the first
+// variant that has one, and from <settings>/<dataset>.json; `settings` may be empty. Throws
+// InputError.
+DatasetFacts ReadFacts(const DatasetResult& dataset, const std::filesystem::path& settings);
 
 // A number of metrics.json by its JSON pointer, "/summary/iou_mean"; none when it is null or
 // absent.

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,11 +18,13 @@
 #include "base/table.h"
 #include "dataset/image_path.h"
 #include "report/dataset_tables.h"
+#include "report/map_tables.h"
 #include "report/page.h"
 #include "report/page_html.h"
 #include "report/page_tables.h"
 #include "report/paired_differences.h"
 #include "report/paper_tables.h"
+#include "report/results_page.h"
 #include "report/results_tree.h"
 #include "report/timing_table.h"
 #include "stage/image_stages.h"
@@ -29,7 +34,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<DatasetResult> ReadEvaluated(const fs::path& results) {
+// `settings` is the folder with the settings of the datasets, or empty.
+std::vector<DatasetResult> ReadEvaluated(const fs::path& results, const fs::path& settings) {
   std::vector<DatasetResult> datasets = ReadResults(results);
   std::erase_if(datasets, [](const DatasetResult& dataset) {
     return std::ranges::all_of(
@@ -39,6 +45,7 @@ std::vector<DatasetResult> ReadEvaluated(const fs::path& results) {
     throw NothingUsableError(results.string() +
                              ": no <dataset>/<variant>/metrics.json; expected at least one");
   }
+  for (DatasetResult& dataset : datasets) dataset.facts = ReadFacts(dataset, settings);
   return datasets;
 }
 
@@ -58,14 +65,21 @@ std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdo
   return text;
 }
 
-// All tables in the order of the report: the paper's tables, paired differences, single datasets.
+// All tables in the order of the report: the paper's tables, paired differences, maps, single
+// datasets.
 std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const Published& published,
-                             const std::vector<Comparison>& comparisons) {
-  std::vector<Table> tables = PaperTables(datasets, published);
+                             const std::vector<Comparison>& comparisons,
+                             const std::vector<std::string>& maps) {
+  std::vector<Table> tables = {SequencesTable(datasets)};
+  std::ranges::move(PaperTables(datasets, published), std::back_inserter(tables));
   tables.push_back(TimeTable(datasets, published));
+  tables.push_back(DifferencesOverDatasets(datasets, comparisons));
   for (const Quantity& quantity : {kIou, kRotation, kYawError}) {
     tables.push_back(DifferencesTable(datasets, comparisons, quantity));
   }
+  tables.push_back(MapsTable(datasets, maps));
+  tables.push_back(LostTable(datasets, maps));
+  tables.push_back(LimitsTable(datasets, maps));
   for (const DatasetResult& dataset : datasets) {
     tables.push_back(DatasetTable(dataset));
     std::ranges::move(QualityTables(dataset), std::back_inserter(tables));
@@ -74,14 +88,33 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   return tables;
 }
 
+std::vector<std::string> WordsIn(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+// Not recorded as an input: the report writes it anew.
+std::string PageText(const fs::path& page) {
+  std::ifstream stream(page, std::ios::binary);
+  if (!stream) throw InputError(page.string() + ": cannot be read; expected a page with tables");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
 
 void RunReport(const ReportOptions& options, const StageFiles& files, int /*threads*/) {
   const std::vector<Comparison> comparisons = ParseComparisons(options.compare);
   const Published published =
       files.contains("published") ? ReadPublished(files.at("published")) : Published();
-  const std::vector<DatasetResult> datasets = ReadEvaluated(files.at("results"));
-  fmt::print("{}", WriteTables(AllTables(datasets, published, comparisons), files.at("output")));
+  const std::vector<DatasetResult> datasets = ReadEvaluated(
+      files.at("results"), files.contains("datasets") ? files.at("datasets") : fs::path());
+  const std::vector<Table> tables =
+      AllTables(datasets, published, comparisons, WordsIn(options.maps));
+  fmt::print("{}", WriteTables(tables, files.at("output")));
+  if (files.contains("page")) {
+    const fs::path& page = files.at("page");
+    WriteTextFile(page, FillPage(PageText(page), tables, page.string()));
+  }
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "artefact/json_file.h"
 #include "association/options.h"
 #include "base/error.h"
 #include "base/options.h"
@@ -106,10 +107,14 @@ void CheckLayer(const json& layer, const std::string& file) {
         throw SettingsError(
             fmt::format("{}: '{}' is {}; expected a string", file, key, value.dump()));
       }
+    } else if (key == "about") {
+      if (const auto violation = SchemaViolation(value, "about")) {
+        throw SettingsError(fmt::format("{}: about: {}", file, *violation));
+      }
     } else {
       throw SettingsError(fmt::format(
-          "{}: unknown key '{}'; known are description, extends, stages, semantic_table and the "
-          "stages {}",
+          "{}: unknown key '{}'; known are description, about, extends, stages, semantic_table and "
+          "the stages {}",
           file, key, fmt::join(PipelineStages(), ", ")));
     }
   }

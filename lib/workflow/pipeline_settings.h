@@ -29,7 +29,8 @@ std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);
 // variants/<variant>.json, merged as JSON merge patches (RFC 7396). A variant with "extends":
 // "<path>" is merged after the variant in <path>.json, relative to its own folder. Throws
 // SettingsError, naming the file, for a missing or malformed file, an unknown stage or setting, a
-// value out of range, and stages whose inputs no stage writes.
+// value out of range, and stages whose inputs no stage writes. "about" (schemas/about.schema.json)
+// is for tables and has no effect on results.
 VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::string& dataset,
                             const std::string& variant);
 

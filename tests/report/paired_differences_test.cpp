@@ -83,5 +83,25 @@ TEST(DifferencesTable, OnlyIntervalsWithoutZeroAreBold) {
   EXPECT_THAT(CellTexts(table), ElementsAre("desk B A 2 +1.00 -24.41 +26.41"));
 }
 
+TEST(DifferencesTable, ADetectorsBoxesHaveARowOfTheirOwn) {
+  const ResultsFolder results;
+  for (const char* dataset : {"attic", "hall", "room"}) {
+    results.WriteMetrics(dataset, "A", {{.id = 1, .iou = 0.25, .rotation_deg = 3.0}});
+    results.WriteMetrics(dataset, "B", {{.id = 1, .iou = 0.5, .rotation_deg = 1.0}});
+  }
+  std::vector<DatasetResult> datasets = ReadResults(results.path());
+  for (const int of_detector : {0, 1}) datasets[of_detector].facts.boxes_of = "detector";
+  const auto comparisons = ParseComparisons("A B");
+  const auto rows = CellTexts(DifferencesTable(datasets, comparisons, kIou));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[3], "detector's boxes B A 2 *+0.250* +0.250 +0.250");
+  EXPECT_EQ(rows[4], "all datasets B A 3 *+0.250* +0.250 +0.250");
+  EXPECT_THAT(CellTexts(DifferencesOverDatasets(datasets, comparisons)),
+              ElementsAre("B A detector's boxes 2 *+0.250 (+0.250 to +0.250)* 2 *-2.00 (-2.00 to "
+                          "-2.00)*",
+                          "B A all datasets 3 *+0.250 (+0.250 to +0.250)* 3 *-2.00 (-2.00 to "
+                          "-2.00)*"));
+}
+
 }  // namespace
 }  // namespace soslam

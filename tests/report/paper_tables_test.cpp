@@ -18,7 +18,8 @@ using testing::EndsWith;
 using testing::IsEmpty;
 
 Published OnePublishedTable() {
-  return {{{"III",
+  return {"whole sequences",
+          {{"III",
             "iou",
             "A paper, Table III",
             {{"hall", 5, {{"Quadric", 0.1}}}, {"room", 3, {{"OursP", 0.25}}}},
@@ -47,12 +48,12 @@ TEST(PaperTables, PublishedRowsStandBelowMeasuredOnes) {
   const auto tables = PaperTables(ReadResults(results.path()), OnePublishedTable());
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_EQ(tables[0].title, "Map, IoU (Table III)");
-  EXPECT_THAT(
-      CellTexts(tables[0]),
-      ElementsAre("hall published 5 - 0.100 - - - - -", "room measured 1 7 - 0.250 - - - *0.750*",
-                  "room published 3 - - 0.250 - - - -", "attic measured 1 1 - *0.500* - - - -",
-                  "average published 8 - - 0.200 - - - -"));
-  EXPECT_EQ(tables[0].notes.back(), "Published: A paper, Table III.");
+  EXPECT_THAT(CellTexts(tables[0]), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
+                                                "room measured f 1 7 - 0.250 - - - *0.750* - -",
+                                                "room published - 3 - - 0.250 - - - - - -",
+                                                "attic measured f 1 1 - *0.500* - - - - - -",
+                                                "average published - 8 - - 0.200 - - - - - -"));
+  EXPECT_EQ(tables[0].notes.back(), "Published: A paper, Table III: whole sequences.");
 }
 
 TEST(PaperTables, SingleFrameVariantsHaveARowForTheFirstObservation) {
@@ -62,8 +63,8 @@ TEST(PaperTables, SingleFrameVariantsHaveARowForTheFirstObservation) {
   const auto tables = PaperTables(ReadResults(results.path()), {});
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_THAT(CellTexts(tables[0]),
-              ElementsAre("room all observations 1 7 0.250 - - *0.500* - - - - -",
-                          "room first observation 1 1 - - - *0.500* - - - - -"));
+              ElementsAre("room all observations f 1 7 0.250 - - *0.500* - - - - -",
+                          "room first observation f 1 1 - - - *0.500* - - - - -"));
 }
 
 TEST(PaperTables, ValuesOverFewerObjectsSaySo) {
@@ -75,7 +76,8 @@ TEST(PaperTables, ValuesOverFewerObjectsSaySo) {
   }
   const auto tables = PaperTables(ReadResults(results.path()), {});
   ASSERT_EQ(tables.size(), 2u);
-  EXPECT_THAT(CellTexts(tables[1]), ElementsAre("room measured 2 2 5.00 (1) *3.00* *3.00* - - -"));
+  EXPECT_THAT(CellTexts(tables[1]),
+              ElementsAre("room measured f 2 2 5.00 (1) *3.00* *3.00* - - - - -"));
 }
 
 // Neither the best, which has fewer objects, nor the best of the rest, which it beats.
@@ -86,7 +88,7 @@ TEST(PaperTables, NoValueIsBoldWhereTheBestIsOverFewerObjects) {
                        {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
   const auto tables = PaperTables(ReadResults(results.path()), {});
   ASSERT_EQ(tables.size(), 2u);
-  EXPECT_THAT(CellTexts(tables[1]), ElementsAre("room measured 2 2 1.00 (1) 3.00 - - - -"));
+  EXPECT_THAT(CellTexts(tables[1]), ElementsAre("room measured f 2 2 1.00 (1) 3.00 - - - - - -"));
 }
 
 TEST(PaperTables, AverageIsOverDatasetsThatAllVariantsHave) {
@@ -99,8 +101,40 @@ TEST(PaperTables, AverageIsOverDatasetsThatAllVariantsHave) {
   results.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
   const auto tables = PaperTables(ReadResults(results.path()), {});
   ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(CellTexts(tables[0]).back(), "average measured 4 4 - *0.500* - *0.500* - -");
+  EXPECT_EQ(CellTexts(tables[0]).back(), "average measured - 4 4 - *0.500* - *0.500* - - - -");
   EXPECT_THAT(tables[0].notes.back(), EndsWith(": attic, room."));
+}
+
+// An attic that was seen instead of the published room.
+TEST(PaperTables, DatasetsStandAboveThePublishedOneThatTheyAreOf) {
+  const ResultsFolder results;
+  results.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
+  std::vector<DatasetResult> datasets = ReadResults(results.path());
+  datasets[0].facts.published = "room";
+  datasets[0].facts.differs = "another room";
+  const auto tables = PaperTables(datasets, OnePublishedTable());
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_THAT(CellTexts(tables[0]), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
+                                                "attic measured f 1 1 - *0.500* - - - - - -",
+                                                "room published - 3 - - 0.250 - - - - - -",
+                                                "average published - 8 - - 0.200 - - - - - -"));
+  EXPECT_THAT(tables[0].notes, testing::Contains("attic: another room."));
+}
+
+TEST(PaperTables, ADetectorsBoxesHaveARowOverTheObjectsThatAllVariantsHave) {
+  const ResultsFolder results;
+  for (const char* dataset : {"attic", "hall", "room"}) {
+    results.WriteMetrics(dataset, "OursP", {{.id = 1, .iou = 0.2}, {.id = 2, .iou = 0.4}});
+    results.WriteMetrics(dataset, "OursS", {{.id = 2, .iou = 0.6}, {.id = 3, .iou = 1.0}});
+  }
+  results.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
+  std::vector<DatasetResult> datasets = ReadResults(results.path());
+  for (const int of_detector : {0, 1, 3}) datasets[of_detector].facts.boxes_of = "detector";
+  const auto tables = PaperTables(datasets, {});
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_EQ(CellTexts(tables[0]).back(),
+            "detector's boxes common objects f 2 - - 0.400 - *0.600* - - - -");
+  EXPECT_THAT(tables[0].notes.back(), EndsWith(" of attic, hall."));
 }
 
 const std::filesystem::path kFile =

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "report/dataset_tables.h"
+#include "support/map_metrics.h"
 #include "support/table_cells.h"
 
 namespace soslam {
@@ -12,53 +13,10 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-json Alignment(const char* kind, double scale, int frames, double rmse_m) {
-  return {{"kind", kind}, {"scale", scale}, {"frames", frames}, {"rmse_m", rmse_m}};
-}
-
-json Score(int found, double f1) {
-  return {{"true_objects", 4},
-          {"detectable", 3},
-          {"landmarks", 5},
-          {"ignored", 1},
-          {"found", found},
-          {"precision", 0.875},
-          {"recall", 0.625},
-          {"f1", f1},
-          {"recall_of_detectable", 0.75},
-          {"of_found",
-           {{"iou_mean", 0.5},
-            {"centre_m_mean", 0.125},
-            {"centre_relative_mean", 0.25},
-            {"log_size_abs_mean", {0.1, 0.2, nullptr}},
-            {"log_scale_abs_mean", 0.0625},
-            {"yaw_error_deg_mean", nullptr},
-            {"up_error_deg_mean", 1.5},
-            {"plane_offset_m_abs_mean", 0.01},
-            {"plane_tilt_deg_mean", 2.5},
-            {"labels_agree", 2},
-            {"ids_known", 3},
-            {"ids_agree", 1}}}};
-}
-
-json Metrics(const json& alignments) {
-  return {
-      {"odometry_source", "ORB-SLAM2"},
-      {"map_quality",
-       {{"alignments", alignments},
-        {"scores", {Score(3, 0.75), Score(2, 0.5)}},
-        {"in_frames", {{"iou_mean", 0.625}, {"iou_mean_in_world", 0.5}}},
-        {"objects",
-         {{{"true_object", 7}, {"label", "cup"}, {"reason", "not_detected"}, {"detail", "0 of 9"}},
-          {{"true_object", 8}, {"label", "book"}, {"reason", nullptr}, {"detail", nullptr}}}},
-        {"landmarks",
-         {{{"object", 2}, {"label", "tv"}, {"reason", "background"}, {"detail", ""}}}}}}};
-}
-
 TEST(QualityTables, HaveARowForEachMap) {
-  const auto tables =
-      QualityTables("room", {{"InitP", json::object()},
-                             {"OursS", Metrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}});
+  const auto tables = QualityTables(
+      "room", {{"InitP", json::object()},
+               {"OursS", MapMetrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}});
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "map_quality_room");
   EXPECT_THAT(CellTexts(tables[0]),
@@ -74,7 +32,7 @@ TEST(QualityTables, HaveARowForEachMap) {
 TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
   const auto title = [](const std::vector<json>& alignments) {
     std::vector<NamedMetrics> variants;
-    for (const json& of_map : alignments) variants.emplace_back("OursS", Metrics(of_map));
+    for (const json& of_map : alignments) variants.emplace_back("OursS", MapMetrics(of_map));
     const std::string text = QualityTables("road", variants)[0].title;
     return text.substr(text.find("alignment"));
   };
@@ -90,9 +48,9 @@ TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
 }
 
 TEST(QualityTables, RowsSayTheirAlignmentWhereOthersHaveAnother) {
-  const auto tables =
-      QualityTables("road", {{"OursS", Metrics(json::array({Alignment("none", 1.0, 3, 0.1)}))},
-                             {"OursP", Metrics(json::array({Alignment("rigid", 1.0, 3, 0.1)}))}});
+  const auto tables = QualityTables(
+      "road", {{"OursS", MapMetrics(json::array({Alignment("none", 1.0, 3, 0.1)}))},
+               {"OursP", MapMetrics(json::array({Alignment("rigid", 1.0, 3, 0.1)}))}});
   EXPECT_EQ(tables[0].rows[0][0].text, "OursS (none)");
   EXPECT_EQ(tables[1].rows[1][0].text, "OursP (rigid)");
 }
@@ -102,7 +60,7 @@ TEST(QualityTables, AreNoneWithoutMaps) {
 }
 
 TEST(MistakesTable, HasWhatIsMissedAndWhatIsFalse) {
-  EXPECT_THAT(CellTexts(MistakesTable(Metrics(json::array()))),
+  EXPECT_THAT(CellTexts(MistakesTable(MapMetrics(json::array()))),
               ElementsAre("missed cup 7 not detected 0 of 9", "false tv 2 background "));
   EXPECT_THAT(MistakesTable(json::object()).rows, IsEmpty());
 }

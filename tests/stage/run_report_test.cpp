@@ -114,7 +114,7 @@ TEST_F(RunReportTest, EachTableIsAFileForProgramsAndForLatex) {
   Write("room", "OursS", kMap);
   Report();
   EXPECT_THAT(FileBytes(results_ / "tables/table_3_map_iou.csv"),
-              HasSubstr("\nroom,measured,8,247,-,-,-,0.500,-,-\n"));
+              HasSubstr("\nroom,measured,-,8,247,-,-,-,0.500,-,-,-,-\n"));
   EXPECT_THAT(FileBytes(results_ / "tables/dataset_room.csv"), HasSubstr("\nOursS,8,247,0.500,"));
   EXPECT_THAT(FileBytes(results_ / "tables/table_3_map_iou.tex"), HasSubstr("\\textbf{0.500}"));
 }
@@ -124,8 +124,28 @@ TEST_F(RunReportTest, PublishedValuesAreThoseOfTheFile) {
   files_["published"] = SOSLAM_SOURCE_DIR "/pipelines/published.json";
   Report();
   EXPECT_THAT(FileBytes(results_ / "tables/table_3_map_iou.csv"),
-              HasSubstr("fr3_cabinet,measured,8,247,-,0.500,-,-,-,-\n"
-                        "fr3_cabinet,published,1,-,0.255,0.316,0.317,-,-,-\n"));
+              HasSubstr("fr3_cabinet,measured,-,8,247,-,0.500,-,-,-,-,-,-\n"
+                        "fr3_cabinet,published,-,1,-,0.255,0.316,0.317,-,-,-,-,-\n"));
+}
+
+TEST_F(RunReportTest, SettingsOfADatasetShowInTables) {
+  Write("room", "OursP", kMap);
+  fs::create_directories(results_ / "settings");
+  WriteBytes(results_ / "settings/room.json",
+             R"({"about": {"published": "fr3_cabinet", "boxes": "a network"}})");
+  files_["published"] = SOSLAM_SOURCE_DIR "/pipelines/published.json";
+  files_["datasets"] = results_ / "settings";
+  EXPECT_THAT(Report(), HasSubstr("\nroom: boxes: a network.\n"));
+}
+
+TEST_F(RunReportTest, APageGetsItsTables) {
+  Write("room", "OursP", kMap);
+  files_["page"] = results_ / "page.md";
+  ExpectError<InputError>([&] { Report(); }, {"page.md"});
+  WriteBytes(files_["page"], "Prose.\n\n<!-- table: dataset_room -->\n<!-- end -->\n");
+  Report();
+  EXPECT_THAT(FileBytes(files_["page"]),
+              HasSubstr("Prose.\n\n<!-- table: dataset_room -->\n\n## "));
 }
 
 TEST_F(RunReportTest, NoMetricsIsNothingUsable) {

@@ -292,6 +292,8 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
   ExpectRefused("Bad", {"variants/Nowhere.json"});
   Write("pipelines/datasets/room.json", R"({"extends": "Plain"})");
   ExpectRefused("Full", {"datasets/room.json", "'extends' is for variants only"});
+  Write("pipelines/datasets/room.json", R"({"about": {"boxes_of": "hand"}})");
+  ExpectRefused("Plain", {"datasets/room.json: about", "boxes_of"});
   Write("pipelines/datasets/room.json", R"({"import": {"unheard_of": 1}})");
   ExpectRefused("Plain", {"datasets/room.json: import", "unheard_of"});
 }
