@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "support/run_command.h"
 #include "support/temporary_folder.h"
 
@@ -18,6 +19,7 @@ namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Contains;
 using testing::MatchesRegex;
 
 const fs::path kAnnotations = SOSLAM_SOURCE_DIR "/data/annotations";
@@ -73,6 +75,14 @@ TEST(AnnotationsTest, HaveAReadmeAndASumForEachListedImage) {
     for (const std::string& line : Lines(entry.path() / "rgb.txt")) {
       EXPECT_EQ(summed.count(line.substr(line.find(' ') + 1)), 1u) << line;
     }
+  }
+}
+
+// Files that two datasets share are listed with their present bytes.
+TEST(AnnotationsTest, AllOfFr2DeskHasTheFilesOfItsImages) {
+  const std::vector<std::string> sums = Lines(kAnnotations / "fr2_desk_all/SHA256SUMS");
+  for (const char* file : {"camera.json", "objects.json", "planes.json"}) {
+    EXPECT_THAT(sums, Contains(Sha256OfFile(kAnnotations / "fr2_desk_11" / file) + "  " + file));
   }
 }
 

@@ -47,7 +47,7 @@ TEST(WorkUnitsTest, BranchesBeginWhereStagesTakeLong) {
 
 // So that jobs need no other order than the trunk first, and never write the same file.
 TEST(WorkUnitsTest, BranchesReadOnlyTheTrunkAndThemselves) {
-  for (const char* pipelines : {"", "/ablation", "/unannotated", "/kitti"}) {
+  for (const char* pipelines : {"", "/ablation", "/unannotated", "/kitti", "/raw_boxes"}) {
     const std::string folder = std::string(kPipelines) + pipelines;
     const Plan plan = MakePlan(folder, "room", VariantNames(folder));
     std::set<std::string> all;
