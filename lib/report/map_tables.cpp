@@ -2,13 +2,13 @@
 #include "report/map_tables.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
 #include <set>
 #include <utility>
 
+#include "base/text.h"
 #include "report/dataset_tables.h"
 #include "report/page_html.h"
 
@@ -47,6 +47,8 @@ bool IsOfMissed(const json& landmark, const std::set<int>& missed) {
   return !object.is_null() && missed.contains(object.get<int>());
 }
 
+constexpr size_t kNamesInCell = 12;
+
 // Names of objects by the reason for which they are missed or false, reasons in the order in which
 // they are found.
 using NamesByReason = std::vector<std::pair<std::string, std::vector<std::string>>>;
@@ -57,6 +59,23 @@ void AddName(const json& row, const char* id, NamesByReason* names) {
   if (entry == names->end()) entry = names->insert(names->end(), {reason, {}});
   entry->second.push_back(
       fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>()));
+}
+
+// Adds a row, or its variant to a row that says the same of another variant.
+void AddOrJoin(const std::vector<Cell>& row, Table* table) {
+  constexpr size_t kVariant = 1;
+  const auto says_the_same = [&](const std::vector<Cell>& other) {
+    for (size_t i = 0; i < row.size(); ++i) {
+      if (i != kVariant && other[i].text != row[i].text) return false;
+    }
+    return true;
+  };
+  const auto other = std::ranges::find_if(table->rows, says_the_same);
+  if (other == table->rows.end()) {
+    table->rows.push_back(row);
+  } else {
+    (*other)[kVariant].text += ", " + row[kVariant].text;
+  }
 }
 
 std::string NumberText(const json& value, int decimals) {
@@ -125,8 +144,8 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
     }
     const auto add_rows = [&](const char* mistake, const NamesByReason& names) {
       for (const auto& [reason, objects] : names) {
-        table.rows.push_back(WithMap(
-            dataset, variant, {mistake, reason, fmt::format("{}", fmt::join(objects, ", "))}));
+        AddOrJoin(WithMap(dataset, variant, {mistake, reason, NamesInWords(objects, kNamesInCell)}),
+                  &table);
       }
     };
     add_rows("missed", missed);

@@ -214,21 +214,23 @@ std::string PublishedNameOf(const DatasetResult& dataset) {
 void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedTable* published,
                     const Layout& layout, Table* table) {
   const auto add_measured = [&](const DatasetResult& dataset) {
+    const size_t rows = table->rows.size();
     for (const RowKind& kind : layout.row_kinds) {
       const Means means = MeansOf(dataset, layout, kind);
       if (!HasAny(means)) continue;
       table->rows.push_back(
           MeasuredRow(dataset.name, kind.title, means, layout.quantity, dataset.facts));
     }
+    return table->rows.size() > rows;
   };
+  std::vector<std::string> differences;
   std::vector<PublishedRow> published_rows;
   if (published) published_rows = published->rows;
   for (const PublishedRow& row : published_rows) {
     for (const DatasetResult& dataset : datasets) {
-      if (PublishedNameOf(dataset) != row.dataset) continue;
-      add_measured(dataset);
-      const std::string differences = DifferencesInWords(dataset.facts);
-      if (!differences.empty()) table->notes.push_back(dataset.name + ": " + differences + ".");
+      if (PublishedNameOf(dataset) != row.dataset || !add_measured(dataset)) continue;
+      const std::string words = DifferencesInWords(dataset.facts);
+      if (!words.empty()) differences.push_back(fmt::format("{} ({})", dataset.name, words));
     }
     table->rows.push_back(PublishedRowOf(row, layout));
   }
@@ -236,6 +238,10 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
     const auto row =
         std::ranges::find(published_rows, PublishedNameOf(dataset), &PublishedRow::dataset);
     if (row == published_rows.end()) add_measured(dataset);
+  }
+  if (!differences.empty()) {
+    table->notes.push_back(
+        fmt::format("Measured above published rows: {}.", fmt::join(differences, ", ")));
   }
 }
 

@@ -82,7 +82,7 @@ std::string FillPage(const std::string& page, const std::vector<Table>& tables,
       throw InputError(fmt::format("{}: no table '{}' in these results; there are {}", name,
                                    old.name, fmt::join(names, ", ")));
     }
-    const std::string content = "\n" + ToMarkdown(*table) + "\n";
+    const std::string content = "\n#" + ToMarkdown(*table) + "\n";  // a third-level heading
     return content + EndOf(content) + "\n";
   });
 }

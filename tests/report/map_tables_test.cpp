@@ -60,6 +60,15 @@ TEST(LostTable, JoinsTheObjectsOfAReason) {
                           "room OursS false background tv 2"));
 }
 
+TEST(LostTable, VariantsWithTheSameMistakesShareARow) {
+  std::vector<DatasetResult> datasets = OneMap(MapMetrics(kExact));
+  datasets[0].variants.push_back({"OursSTE", {}, MapMetrics(kExact)});
+  datasets[0].variants[1].metrics["map_quality"]["landmarks"] = json::array();
+  EXPECT_THAT(CellTexts(LostTable(datasets, {"OursS", "OursSTE"})),
+              ElementsAre("room OursS, OursSTE missed not detected cup 7",
+                          "room OursS false background tv 2"));
+}
+
 TEST(LostTable, TheLandmarkOfAMissedObjectIsNotListedAgain) {
   json metrics = MapMetrics(kExact);
   metrics["map_quality"]["landmarks"] = {FalseLandmark(1, 7, "wrong_size"),

@@ -109,16 +109,20 @@ TEST(PaperTables, AverageIsOverDatasetsThatAllVariantsHave) {
 TEST(PaperTables, DatasetsStandAboveThePublishedOneThatTheyAreOf) {
   const ResultsFolder results;
   results.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
+  results.WriteMetrics("barn", "OursP-slow", {{.id = 1, .iou = 0.5}});
   std::vector<DatasetResult> datasets = ReadResults(results.path());
-  datasets[0].facts.published = "room";
-  datasets[0].facts.differs = "another room";
+  for (DatasetResult& dataset : datasets) {
+    dataset.facts.published = "room";
+    dataset.facts.differs = "another room";
+  }
   const auto tables = PaperTables(datasets, OnePublishedTable());
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_THAT(CellTexts(tables[0]), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
                                                 "attic measured f 1 1 - *0.500* - - - - - -",
                                                 "room published - 3 - - 0.250 - - - - - -",
                                                 "average published - 8 - - 0.200 - - - - - -"));
-  EXPECT_THAT(tables[0].notes, testing::Contains("attic: another room."));
+  EXPECT_THAT(tables[0].notes,
+              testing::Contains("Measured above published rows: attic (another room)."));
 }
 
 TEST(PaperTables, ADetectorsBoxesHaveARowOverTheObjectsThatAllVariantsHave) {

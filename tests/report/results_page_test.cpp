@@ -23,7 +23,7 @@ const std::string kPage = "# Shop\n\nBefore.\n\n<!-- table: prices -->\n<!-- end
 TEST(ResultsPage, ProseStaysAroundATable) {
   const std::string page = FillPage(kPage, kTables, "shop.md");
   EXPECT_THAT(page, StartsWith("# Shop\n\nBefore.\n\n<!-- table: prices -->\n"));
-  EXPECT_THAT(page, HasSubstr("\n" + ToMarkdown(kTables[0]) + "\n<!-- end: "));
+  EXPECT_THAT(page, HasSubstr("\n#" + ToMarkdown(kTables[0]) + "\n<!-- end: "));
   EXPECT_TRUE(page.ends_with(" -->\n\nAfter.\n"));
   EXPECT_EQ(FillPage(page, kTables, "shop.md"), page);
 }

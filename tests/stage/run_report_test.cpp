@@ -135,7 +135,7 @@ TEST_F(RunReportTest, SettingsOfADatasetShowInTables) {
              R"({"about": {"published": "fr3_cabinet", "boxes": "a network"}})");
   files_["published"] = SOSLAM_SOURCE_DIR "/pipelines/published.json";
   files_["datasets"] = results_ / "settings";
-  EXPECT_THAT(Report(), HasSubstr("\nroom: boxes: a network.\n"));
+  EXPECT_THAT(Report(), HasSubstr("room (boxes: a network).\n"));
 }
 
 TEST_F(RunReportTest, APageGetsItsTables) {
@@ -145,7 +145,7 @@ TEST_F(RunReportTest, APageGetsItsTables) {
   WriteBytes(files_["page"], "Prose.\n\n<!-- table: dataset_room -->\n<!-- end -->\n");
   Report();
   EXPECT_THAT(FileBytes(files_["page"]),
-              HasSubstr("Prose.\n\n<!-- table: dataset_room -->\n\n## "));
+              HasSubstr("Prose.\n\n<!-- table: dataset_room -->\n\n### "));
 }
 
 TEST_F(RunReportTest, NoMetricsIsNothingUsable) {
