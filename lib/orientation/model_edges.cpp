@@ -46,12 +46,8 @@ class PointSampler {
 };
 
 void AddCuboidEdges(const Eigen::Vector3d& camera_in_unit_body, PointSampler* sampler) {
-  for (const auto& [start, end] : UnitCuboidEdges()) {
-    bool visible = false;
-    for (int i = 0; i < 3; ++i) {
-      visible |= start[i] == end[i] && start[i] * camera_in_unit_body[i] > 1.0;
-    }
-    if (visible) sampler->AddSegment(start, end);
+  for (const LineSegment3& edge : UnitCuboidEdges()) {
+    if (IsVisibleCuboidEdge(edge, camera_in_unit_body)) sampler->AddSegment(edge[0], edge[1]);
   }
 }
 
@@ -73,9 +69,7 @@ std::vector<ModelPoint> VisibleModelPoints(const Camera& camera, const Landmark&
   if (!IsInFront(landmark_in_camera)) return {};
   PointSampler sampler(camera, landmark_in_camera, spacing_px);
   if (landmark_in_camera.shape_exponent <= kMaxEdgyExponent) {
-    AddCuboidEdges(landmark_in_camera.frame_from_object.Inverse().translation.cwiseQuotient(
-                       landmark_in_camera.half_axes),
-                   &sampler);
+    AddCuboidEdges(CameraInUnitBody(landmark_in_camera), &sampler);
   } else {
     AddOutline(camera, landmark_in_camera, &sampler);
   }
