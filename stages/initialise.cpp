@@ -8,7 +8,9 @@ int main(int argc, char** argv) {
       {.name = "soslam-initialise",
        .purpose = "Estimates landmarks from single observations, or from all boxes of an object.",
        .inputs = {{"sequence", "sequence.json of soslam-import"},
-                  {"table", "semantic table with the size ratio of each label"}},
+                  {"table", "semantic table with the size ratio of each label"},
+                  {"edges", "edges.h5 of soslam-edges; needed when method = cuboid_proposals",
+                   false}},
        .outputs = {{"output", "initial.json to write"}},
        .example = "soslam-initialise --sequence sequence.json --table "
                   "pipelines/priors/semantic_table.json --output initial.json"},

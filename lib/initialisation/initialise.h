@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -30,6 +31,13 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
 LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
                                       const std::vector<std::optional<ShapePrior>>& priors,
                                       const InitialiseOptions& options, int threads);
+
+// CubeSLAM's cuboids of all detections: the best one at each yaw, lowest cost first. `edges_of`
+// gives the edge maps of a frame, and is called from several threads. Failures:
+// frame_without_image, no_edges, no_solution.
+LandmarkEstimates InitialiseCuboids(const Sequence& sequence,
+                                    const std::function<EdgeMaps(const Frame&)>& edges_of,
+                                    const CuboidOptions& options, int threads);
 
 // One landmark per object by SVD over all of its boxes, with the frames' estimated poses. Failures:
 // moving, fewer_than_three_views, no_finite_quadric.

@@ -5,6 +5,7 @@
 
 #include "base/options.h"
 #include "constraints/variances.h"
+#include "initialisation/cuboid_score.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 #include "initialisation/yaw_prior.h"
@@ -12,13 +13,14 @@
 namespace soslam {
 
 enum class InitialisationMethod {
-  kSingleFrame,  // one landmark per observation, as in section IV of the paper
-  kYawSweep,     // one landmark per observation, of any shape, closed form at each yaw
-  kMultiView,    // one landmark per object from all of its observations, of any shape
-  kSvd,          // QuadricSLAM: one landmark per object from all of its observations
+  kSingleFrame,      // one landmark per observation, as in section IV of the paper
+  kYawSweep,         // one landmark per observation, of any shape, closed form at each yaw
+  kMultiView,        // one landmark per object from all of its observations, of any shape
+  kSvd,              // QuadricSLAM: one landmark per object from all of its observations
+  kCuboidProposals,  // CubeSLAM: one cuboid per observation, chosen by the edges in the image
 };
 inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_sweep", "multi_view",
-                                                          "svd"};
+                                                          "svd", "cuboid_proposals"};
 
 // Choice among several yaws that fit a box equally well. The box does not determine it; the choices
 // are assumptions about how objects stand.
@@ -41,13 +43,15 @@ struct InitialiseOptions {
   UprightOptions upright;
   YawPriorOptions yaw_prior;
   double view_correlation_deg = 20.0;
+  CuboidOptions cuboids;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Landmarks");
     visit.Choice(
         "method", &method, kInitialisationMethodNames,
-        "one landmark per observation: an ellipsoid as in section IV (single_frame), or a body of "
-        "the label's shape by a sweep over yaw (yaw_sweep); or one per object from all of its "
+        "one landmark per observation: an ellipsoid as in section IV (single_frame), a body of the "
+        "label's shape by a sweep over yaw (yaw_sweep), or a cuboid that fits the edges in the "
+        "image as in CubeSLAM (cuboid_proposals); or one per object from all of its "
         "observations: such a body (multi_view), or an ellipsoid by SVD (svd)");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
@@ -70,6 +74,7 @@ struct InitialiseOptions {
                "at the object share the error of the label's shape, and together have the weight "
                "of one; 0: all boxes are independent");
     yaw_prior.Describe(visit);
+    cuboids.Describe(visit);
   }
 };
 

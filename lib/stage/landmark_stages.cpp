@@ -27,12 +27,40 @@
 #include "orientation/texture_asymmetry.h"
 
 namespace soslam {
+namespace {
+
+LandmarkEstimates CuboidsOfImages(const Sequence& sequence, const StageFiles& files,
+                                  const CuboidOptions& options, int threads) {
+  const EdgesReader reader(files.at("edges"));
+  const auto edges_of = [&](const Frame& frame) {
+    EdgeMaps maps = reader.Read(frame.id);
+    const Camera& camera = sequence.CameraOf(frame);
+    if (maps.grey.cols != camera.width || maps.grey.rows != camera.height) {
+      throw InputError(fmt::format(
+          "{}: frame {} has {} x {} pixels; expected {} x {}, as its camera in {}: were the edges "
+          "made from another sequence?",
+          files.at("edges").string(), frame.id, maps.grey.cols, maps.grey.rows, camera.width,
+          camera.height, files.at("sequence").string()));
+    }
+    return maps;
+  };
+  return InitialiseCuboids(sequence, edges_of, options, threads);
+}
+
+}  // namespace
+
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads) {
+  const bool uses_images = options.method == InitialisationMethod::kCuboidProposals;
+  if (uses_images && !files.contains("edges")) {
+    throw SettingsError("method = cuboid_proposals needs --edges FILE; found none");
+  }
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   LandmarkEstimates estimates;
   if (options.method == InitialisationMethod::kSvd) {
     estimates = InitialiseSvd(sequence);
+  } else if (uses_images) {
+    estimates = CuboidsOfImages(sequence, files, options.cuboids, threads);
   } else {
     if (options.ratio_prior == RatioPrior::kTable) {
       const auto labels = LabelsWithoutEntry(sequence, table);
@@ -70,8 +98,10 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                     std::back_inserter(findings));
   std::ranges::move(CheckCollapsed(estimates), std::back_inserter(findings));
   ReportFindings("initialise", findings);
+  std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table")};
+  if (uses_images) inputs.push_back(files.at("edges"));
   WriteLandmarks(files.at("output"), estimates, sequence,
-                 {OptionsToJson(options), {files.at("sequence"), files.at("table")}, findings});
+                 {OptionsToJson(options), inputs, findings});
   fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
              CountsText(failures));
 }

@@ -7,8 +7,9 @@
 
 namespace soslam {
 
-// soslam-initialise: sequence.json and the semantic table to initial.json: files "sequence",
-// "table", "output". Throws NothingUsableError when no observation gave a landmark.
+// soslam-initialise: sequence.json and the semantic table, for CubeSLAM's cuboids also edges.h5, to
+// initial.json: files "sequence", "table", "edges" (optional), "output". Throws SettingsError when
+// a method that needs edges has none, NothingUsableError when no observation gave a landmark.
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads);
 
 // soslam-refine: initial.json and edges.h5 to refined.json and symmetry.h5: files "sequence",

@@ -162,13 +162,17 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
       }
     }
   }
+  const std::pair<const char*, const char*> users_of_images[] = {
+      {"initialise", "setting 'method' = cuboid_proposals of initialise needs"},
+      {"optimise", "settings 'symmetry' and 'edge_alignment' of optimise need"}};
+  for (const auto& [stage, who] : users_of_images) {
+    if (settings.stages.contains(stage) && UsesImages(stage, settings.options.at(stage)) &&
+        !settings.stages.contains("edges")) {
+      throw SettingsError(fmt::format("{}: {} stage 'edges' in 'stages'", file, who));
+    }
+  }
   const auto optimise = settings.options.find("optimise");
   if (optimise == settings.options.end()) return;
-  if (UsesImages(optimise->second) && !settings.stages.contains("edges")) {
-    throw SettingsError(file +
-                        ": settings 'symmetry' and 'edge_alignment' of optimise need stage 'edges' "
-                        "in 'stages'");
-  }
   if (UsesPoints(optimise->second) && !settings.stages.contains("track")) {
     throw SettingsError(file +
                         ": setting 'point_evidence' of optimise needs stage 'track' in 'stages'");
@@ -177,8 +181,12 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
 
 }  // namespace
 
-bool UsesImages(const json& optimise_settings) {
-  return optimise_settings.at("symmetry") == true || optimise_settings.at("edge_alignment") == true;
+bool UsesImages(const std::string& stage, const json& settings) {
+  if (stage == "initialise") return settings.at("method") == "cuboid_proposals";
+  if (stage == "optimise") {
+    return settings.at("symmetry") == true || settings.at("edge_alignment") == true;
+  }
+  return stage == "refine";
 }
 
 bool UsesPoints(const json& optimise_settings) {

@@ -34,9 +34,9 @@ std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);
 VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::string& dataset,
                             const std::string& variant);
 
-// True if the back end with these (resolved) settings uses images.
-bool UsesImages(const nlohmann::json& optimise_settings);
-// The same for sparse points.
+// True if a stage with these (resolved) settings reads the edge maps of images.
+bool UsesImages(const std::string& stage, const nlohmann::json& settings);
+// True if the back end with these (resolved) settings uses sparse points.
 bool UsesPoints(const nlohmann::json& optimise_settings);
 
 }  // namespace soslam

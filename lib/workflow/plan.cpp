@@ -52,14 +52,12 @@ class ChainBuilder {
     const auto same = std::ranges::find(makers, stage);
     if (same != makers.end()) makers.erase(makers.begin(), std::next(same));
     std::map<std::string, ArtefactSource> inputs = {{"sequence", Latest(makers)}};
-    if (stage == "refine") {
-      inputs["initial"] = Output("initialise");
-      inputs["edges"] = Output("edges");
-    }
+    const json& settings = settings_.options.at(stage);
+    if (UsesImages(stage, settings)) inputs["edges"] = Output("edges");
+    if (stage == "refine") inputs["initial"] = Output("initialise");
     if (stage == "optimise") {
       inputs["landmarks"] = Latest({"refine", "initialise"});
-      if (UsesImages(settings_.options.at(stage))) inputs["edges"] = Output("edges");
-      if (UsesPoints(settings_.options.at(stage))) inputs["points"] = Output("track");
+      if (UsesPoints(settings)) inputs["points"] = Output("track");
     }
     if (stage == "evaluate") inputs["landmarks"] = Latest({"optimise", "refine", "initialise"});
     return inputs;

@@ -114,7 +114,12 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
       EXPECT_EQ(InputOf(variant, stage, argument), expected) << settings << stage << argument;
     }
   };
+  Write("pipelines/variants/Cuboids.json",
+        R"({"stages": ["import", "edges", "initialise", "evaluate"],
+            "initialise": {"method": "cuboid_proposals"}})");
   expect_inputs("{}", {{"Plain", "evaluate", "landmarks", "initialise/initial.json"},
+                       {"Full", "initialise", "edges", ""},
+                       {"Cuboids", "initialise", "edges", "edges/edges.h5"},
                        {"Mapped", "optimise", "landmarks", "initialise/initial.json"},
                        {"Mapped", "optimise", "edges", ""},
                        {"Full", "associate", "sequence", ""},
@@ -278,6 +283,7 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"stages": ["import", "initialise", "refine"]})", "needs stage 'edges'"},
       {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"symmetry": true}})",
        "need stage 'edges'"},
+      {R"({"initialise": {"method": "cuboid_proposals"}})", "needs stage 'edges'"},
       {R"({"semantic_table": 3})", "semantic_table"},
       {R"({"extends": 3})", "extends"},
       {R"({"extends": "Bad"})", "leads back"},

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/cuboid_proposals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+
+#include "geometry/angles.h"
+#include "geometry/iou.h"
+#include "geometry/wireframe.h"
+#include "support/random.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kTolerancePx = 1e-6;
+
+std::vector<Eigen::Vector3d> CornersInCamera(const Landmark& cuboid) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d signs(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
+    corners.push_back(PointAt(cuboid, signs));
+  }
+  return corners;
+}
+
+// The tight box around the corners in the image: OutlineBox rounds corners off.
+Box BoxAround(const Landmark& cuboid) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Box box = {kFar, kFar, -kFar, -kFar};
+  for (const Eigen::Vector3d& corner : CornersInCamera(cuboid)) {
+    const Eigen::Vector2d pixel = *TestCamera().Project(corner);
+    box = {std::min(box.x_min, pixel.x()), std::min(box.y_min, pixel.y()),
+           std::max(box.x_max, pixel.x()), std::max(box.y_max, pixel.y())};
+  }
+  return box;
+}
+
+int VisibleFaces(const Landmark& cuboid) {
+  const Eigen::Vector3d camera = cuboid.frame_from_object.Inverse().translation;
+  return static_cast<int>((camera.array().abs() > cuboid.half_axes.array()).count());
+}
+
+// A cuboid and its exact view.
+struct TrueCuboid {
+  TrueCuboid(const Plane& plane, const Landmark& cuboid)
+      : landmark(cuboid), view{TestCamera(), BoxAround(cuboid), plane} {}
+
+  double Yaw() const {
+    return soslam::Yaw(view.plane_in_camera.normal, landmark.frame_from_object.rotation);
+  }
+  // The image column of the top corner that is farthest along the ground in the direction of view.
+  double FarthestColumn() const {
+    const Eigen::Vector3d& up = view.plane_in_camera.normal;
+    const Eigen::Vector3d ray = TestCamera().Ray(view.box.Centre());
+    const Eigen::Vector3d along_ground = up.cross(ray).cross(up);
+    double farthest = -std::numeric_limits<double>::infinity(), column = 0.0;
+    for (const Eigen::Vector3d& corner : CornersInCamera(landmark)) {
+      const bool is_on_top = up.dot(corner - landmark.Centre()) > 0.0;
+      if (!is_on_top || along_ground.dot(corner) <= farthest) continue;
+      farthest = along_ground.dot(corner);
+      column = TestCamera().Project(corner)->x();
+    }
+    return column;
+  }
+
+  Landmark landmark;
+  CuboidView view;
+};
+
+TrueCuboid RandomTrueCuboid() {
+  const Plane floor = RandomFloor();
+  return {floor, RandomUprightBody(floor, kCuboidExponent)};
+}
+
+void ExpectSameCuboid(const Landmark& found, const Landmark& truth) {
+  const double size = truth.half_axes.maxCoeff();
+  EXPECT_LT((found.Centre() - truth.Centre()).norm(), 1e-6 * size);
+  EXPECT_LT((found.half_axes - truth.half_axes).norm(), 1e-6 * size);
+  EXPECT_LT(found.frame_from_object.rotation.angularDistance(truth.frame_from_object.rotation),
+            1e-6);
+  EXPECT_EQ(found.shape_exponent, kCuboidExponent);
+  const auto found_corners = CornersInCamera(found), true_corners = CornersInCamera(truth);
+  for (size_t i = 0; i < true_corners.size(); ++i) {
+    EXPECT_LT(
+        (*TestCamera().Project(found_corners[i]) - *TestCamera().Project(true_corners[i])).norm(),
+        kTolerancePx);
+  }
+}
+
+TEST(CuboidAt, IsTheTrueCuboidAtItsYawAndCorner) {
+  for (int i = 0; i < 300; ++i) {
+    const TrueCuboid truth = RandomTrueCuboid();
+    const auto found = CuboidAt(truth.view, truth.Yaw(), truth.FarthestColumn());
+    ASSERT_TRUE(found) << i;
+    ExpectSameCuboid(*found, truth.landmark);
+  }
+}
+
+// Face-on and corner-on cuboids, lower and higher than the camera: the paper's configurations.
+TEST(CuboidAt, IsTheTrueCuboidWhateverFacesAreVisible) {
+  const Plane floor = {-Eigen::Vector3d::UnitY(), 1.0};
+  std::multiset<int> faces;
+  for (const double half_height : {0.3, 0.9}) {
+    for (const double yaw_deg : {1.0, 40.0}) {
+      Landmark cuboid = StandingCuboid(TestCamera(), floor, {330, 400}, 0.0, {0.4, 0.5, 0.1});
+      cuboid.half_axes.z() = half_height;
+      cuboid.frame_from_object.translation.y() = 1.0 - half_height;
+      const double facing = YawFacingCamera({TestCamera(), {320, 100, 340, 400}, floor});
+      cuboid.frame_from_object.rotation =
+          UprightRotation(floor.normal, facing + yaw_deg * kRadPerDeg);
+      const TrueCuboid truth(floor, cuboid);
+      faces.insert(VisibleFaces(cuboid));
+      const auto found = CuboidAt(truth.view, truth.Yaw(), truth.FarthestColumn());
+      ASSERT_TRUE(found) << half_height << " " << yaw_deg;
+      ExpectSameCuboid(*found, cuboid);
+    }
+  }
+  EXPECT_EQ(faces, (std::multiset<int>{1, 2, 2, 3}));
+}
+
+// A camera turned about its optical axis by any angle, also upside down: objects that hang.
+TEST(CuboidAt, IsTheTrueCuboidForACameraInAnyAttitude) {
+  int found_count = 0;
+  constexpr int kTries = 300;
+  for (int i = 0; i < kTries; ++i) {
+    const TrueCuboid upright = RandomTrueCuboid();
+    const Rigid3d roll = {Eigen::Quaterniond(Eigen::AngleAxisd(
+                              RandomUniform(-3.1, 3.1), upright.landmark.Centre().normalized())),
+                          Eigen::Vector3d::Zero()};
+    const TrueCuboid truth(Transform(roll, upright.view.plane_in_camera),
+                           Transform(roll, upright.landmark));
+    const auto found = CuboidAt(truth.view, truth.Yaw(), truth.FarthestColumn());
+    if (!found) continue;  // the farthest corner touches the left or right edge of the box
+    ++found_count;
+    ExpectSameCuboid(*found, truth.landmark);
+  }
+  EXPECT_GT(found_count, kTries / 2);
+}
+
+TEST(ProposeCuboids, AllFillTheBoxAndStandOnThePlane) {
+  for (int i = 0; i < 30; ++i) {
+    const TrueCuboid truth = RandomTrueCuboid();
+    const Box box = Disturbed(truth.view.box, 0.1);
+    const CuboidView view = {TestCamera(), box, truth.view.plane_in_camera};
+    const auto proposals = ProposeCuboids(view, 15, 10);
+    EXPECT_GT(proposals.size(), 15u);
+    for (const CuboidProposal& proposal : proposals) {
+      const Landmark& cuboid = proposal.landmark_in_camera;
+      const Box around = BoxAround(cuboid);
+      EXPECT_NEAR(around.x_min, box.x_min, kTolerancePx);
+      EXPECT_NEAR(around.y_min, box.y_min, kTolerancePx);
+      EXPECT_NEAR(around.x_max, box.x_max, kTolerancePx);
+      EXPECT_NEAR(around.y_max, box.y_max, kTolerancePx);
+      const Plane standing_on = SupportPlaneOf(cuboid);
+      EXPECT_LT((standing_on.normal - view.plane_in_camera.normal).norm(), 1e-9);
+      EXPECT_NEAR(standing_on.offset, view.plane_in_camera.offset, 1e-6);
+    }
+  }
+}
+
+// What the paper constructs proposals from: edges point to the vanishing points of the axes.
+TEST(ProposeCuboids, HaveEdgesThroughTheVanishingPoints) {
+  const TrueCuboid truth = RandomTrueCuboid();
+  const Camera camera = TestCamera();
+  const auto edges = UnitCuboidEdges();
+  for (const CuboidProposal& proposal : ProposeCuboids(truth.view, 5, 5)) {
+    const Landmark& cuboid = proposal.landmark_in_camera;
+    for (size_t i = 0; i < edges.size(); ++i) {
+      const Eigen::Vector3d axis =
+          UprightRotation(truth.view.plane_in_camera.normal, proposal.yaw) *
+          Eigen::Vector3d::Unit(static_cast<int>(i / 4));
+      const Eigen::Vector3d vanishing_point = (camera.Intrinsics() * axis).normalized();
+      const Eigen::Vector3d line =
+          camera.Project(PointAt(cuboid, edges[i][0]))
+              ->homogeneous()
+              .cross(camera.Project(PointAt(cuboid, edges[i][1]))->homogeneous());
+      EXPECT_NEAR(line.normalized().dot(vanishing_point), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(ProposeCuboids, CoverAQuarterTurnAroundTheYawThatFacesTheCamera) {
+  for (int i = 0; i < 20; ++i) {
+    const TrueCuboid truth = RandomTrueCuboid();
+    const double facing = YawFacingCamera(truth.view);
+    const Eigen::Vector3d& up = truth.view.plane_in_camera.normal;
+    const Eigen::Vector3d front = UprightRotation(up, facing) * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d ray = TestCamera().Ray(truth.view.box.Centre());
+    EXPECT_LT(front.dot(ray), 0.0);
+    EXPECT_NEAR(front.dot(up.cross(ray)), 0.0, 1e-9);
+    double low = 0.0, high = 0.0;
+    for (const CuboidProposal& proposal : ProposeCuboids(truth.view, 15, 10)) {
+      low = std::min(low, proposal.yaw - facing);
+      high = std::max(high, proposal.yaw - facing);
+    }
+    EXPECT_GE(low, -42.0 * kRadPerDeg - 1e-9);
+    EXPECT_LE(high, 42.0 * kRadPerDeg + 1e-9);
+  }
+}
+
+TEST(ProposeCuboids, HaveOneNearTheTruthWhereSamplesAreDense) {
+  for (int i = 0; i < 10; ++i) {
+    const TrueCuboid truth = RandomTrueCuboid();
+    double best = 0.0;
+    for (const CuboidProposal& proposal : ProposeCuboids(truth.view, 90, 60)) {
+      best = std::max(best, BoxIou(proposal.landmark_in_camera, truth.landmark));
+    }
+    EXPECT_GT(best, 0.8) << i;
+  }
+}
+
+TEST(ProposeCuboids, HaveNoneWhereTheBoxIsAboveTheHorizon) {
+  const Plane floor = {-Eigen::Vector3d::UnitY(), 1.0};
+  EXPECT_TRUE(ProposeCuboids({TestCamera(), {300, 50, 400, 150}, floor}, 15, 10).empty());
+}
+
+TEST(ProposeCuboids, SurviveBoxesAndPlanesThatCannotBe) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Plane floor = {-Eigen::Vector3d::UnitY(), 1.0};
+  for (const CuboidView& view :
+       {CuboidView{TestCamera(), {300, 300, 300, 300}, floor},
+        {TestCamera(), {300, 300, 300.001, 400}, floor},
+        {TestCamera(), {nan, 300, 400, 400}, floor},
+        {TestCamera(), {300, 300, 400, 400}, {-Eigen::Vector3d::UnitY(), 0.0}},
+        {TestCamera(), {300, 300, 400, 400}, {Eigen::Vector3d::UnitZ(), -2.0}},
+        {TestCamera(), {300, 300, 400, 400}, {-Eigen::Vector3d::UnitZ(), 2.0}},
+        {TestCamera(), {300, 300, 400, 400}, {-Eigen::Vector3d::UnitY(), nan}}}) {
+    for (const CuboidProposal& proposal : ProposeCuboids(view, 15, 10)) {
+      EXPECT_TRUE(HasExtent(proposal.landmark_in_camera));
+      EXPECT_TRUE(IsInFront(proposal.landmark_in_camera));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam

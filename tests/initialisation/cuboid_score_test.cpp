@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/cuboid_score.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/angles.h"
+#include "geometry/iou.h"
+#include "geometry/wireframe.h"
+#include "support/random.h"
+#include "support/upright_bodies.h"
+
+namespace soslam {
+namespace {
+
+CuboidOptions WithoutShape() {
+  CuboidOptions options;
+  options.shape_weight = 0.0;
+  return options;
+}
+
+// A cuboid, alone in the image, and its exact box.
+struct SeenCuboid {
+  SeenCuboid()
+      : floor(RandomFloor()),
+        truth(RandomUprightBody(floor, kCuboidExponent)),
+        view{TestCamera(), *OutlineBox(TestCamera(), truth), floor} {}
+
+  std::vector<LineSegment> VisibleEdges() const {
+    std::vector<LineSegment> visible;
+    for (const LineSegment3& edge : UnitCuboidEdges()) {
+      if (!IsVisibleCuboidEdge(edge, CameraInUnitBody(truth))) continue;
+      visible.push_back({*TestCamera().Project(PointAt(truth, edge[0])),
+                         *TestCamera().Project(PointAt(truth, edge[1]))});
+    }
+    return visible;
+  }
+  // With the segments of most visible edges.
+  CuboidEvidence Evidence() const {
+    constexpr double kMinSegmentFraction = 0.1;
+    return EvidenceInBox(ComputeEdgeMaps(DrawCuboids(TestCamera(), {truth}), {}), view.box,
+                         kMinSegmentFraction);
+  }
+
+  Plane floor;
+  Landmark truth;
+  CuboidView view;
+};
+
+// Cuboids whose box is so large that edges are known to a small part of it.
+SeenCuboid LargeInView() {
+  for (;;) {
+    SeenCuboid seen;
+    const Box& box = seen.view.box;
+    if (box.Width() > 120 && box.Height() > 120 && DistanceToBorder(box, 640, 480) > 10) {
+      return seen;
+    }
+  }
+}
+
+TEST(CuboidErrors, AreSmallForTheTruth) {
+  for (int i = 0; i < 10; ++i) {
+    const SeenCuboid seen = LargeInView();
+    const CuboidErrors errors = ErrorsOf(seen.view, seen.truth, seen.Evidence(), {});
+    EXPECT_LT(errors.distance * std::hypot(seen.view.box.Width(), seen.view.box.Height()), 1.5);
+  }
+}
+
+// Whether the truth costs less than all proposals that overlap it little.
+bool IsPreferred(const SeenCuboid& seen, const CuboidEvidence& evidence) {
+  std::vector<CuboidErrors> errors = {ErrorsOf(seen.view, seen.truth, evidence, WithoutShape())};
+  for (const CuboidProposal& proposal : ProposeCuboids(seen.view, 15, 10)) {
+    if (BoxIou(proposal.landmark_in_camera, seen.truth) > 0.8) continue;
+    errors.push_back(ErrorsOf(seen.view, proposal.landmark_in_camera, evidence, WithoutShape()));
+  }
+  const auto costs = CuboidCosts(errors, WithoutShape());
+  return std::ranges::min_element(costs) == costs.begin();
+}
+
+constexpr int kTries = 20;
+
+TEST(CuboidCosts, PreferTheTruthWhereEachEdgeIsASegment) {
+  for (int i = 0; i < kTries; ++i) {
+    const SeenCuboid seen = LargeInView();
+    CuboidEvidence evidence = seen.Evidence();
+    evidence.segments = seen.VisibleEdges();
+    const bool shows_one_face = evidence.segments.size() == 4;  // its depth is not seen
+    EXPECT_TRUE(shows_one_face || IsPreferred(seen, evidence)) << i;
+  }
+}
+
+// The segment detector leaves out edges, and joins some that are almost in line.
+TEST(CuboidCosts, MostlyPreferTheTruthInImages) {
+  int preferred = 0;
+  for (int i = 0; i < kTries; ++i) {
+    const SeenCuboid seen = LargeInView();
+    preferred += IsPreferred(seen, seen.Evidence()) ? 1 : 0;
+  }
+  EXPECT_GE(preferred, kTries * 3 / 4);
+}
+
+// Edges of the truth as line segments leave no difference of angles; a yaw far from it does.
+TEST(CuboidErrors, HaveNoAngleForTheirOwnEdges) {
+  for (int i = 0; i < 50; ++i) {
+    const SeenCuboid seen;
+    CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), seen.VisibleEdges()};
+    // An axis that points along the view has no visible edge.
+    const double hidden_axes = evidence.segments.size() == 4 ? 1.0 : 0.0;
+    EXPECT_NEAR(ErrorsOf(seen.view, seen.truth, evidence, {}).angle,
+                hidden_axes * 30.0 * kRadPerDeg, 1e-6);
+    EXPECT_GT(ErrorsOf(seen.view, RotatedAboutZ(seen.truth, 0.4), evidence, CuboidOptions()).angle,
+              0.02);
+  }
+}
+
+TEST(CuboidErrors, CountTheLargestAngleForAxesWithoutSegments) {
+  const SeenCuboid seen;
+  const CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), {}};
+  CuboidOptions options;
+  options.segment_angle_deg = 10.0;
+  EXPECT_NEAR(ErrorsOf(seen.view, seen.truth, evidence, options).angle, 60.0 * kRadPerDeg, 1e-9);
+}
+
+TEST(CuboidErrors, HaveTheDistanceOfAllEdgesAsAFractionOfTheDiagonal) {
+  const SeenCuboid seen;
+  const CuboidEvidence evidence{cv::Mat(480, 640, CV_32FC1, cv::Scalar(7.0)), {}};
+  CuboidView view = seen.view;
+  view.box = {100, 100, 400, 500};  // the diagonal is 500 px
+  EXPECT_NEAR(ErrorsOf(view, seen.truth, evidence, {}).distance, 7.0 / 500.0, 1e-9);
+}
+
+TEST(CuboidErrors, HaveTheExcessOfTheFootprintsRatioAsShape) {
+  SeenCuboid seen;
+  const CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), {}};
+  const auto shape = [&](double a, double b, double threshold) {
+    CuboidOptions options;
+    options.shape_threshold = threshold;
+    seen.truth.half_axes = {a, b, 0.1};
+    return ErrorsOf(seen.view, seen.truth, evidence, options).shape;
+  };
+  EXPECT_NEAR(shape(0.2, 0.2, 1.0), 0.0, 1e-12);
+  EXPECT_NEAR(shape(0.4, 0.2, 1.0), 1.0, 1e-12);
+  EXPECT_NEAR(shape(0.1, 0.3, 1.0), 2.0, 1e-12);
+  EXPECT_NEAR(shape(0.1, 0.3, 2.5), 0.5, 1e-12);
+  EXPECT_NEAR(shape(0.1, 0.2, 2.5), 0.0, 1e-12);
+}
+
+TEST(CuboidCosts, AreWeightedSumsOfScaledErrors) {
+  CuboidOptions options;
+  options.angle_weight = 0.5;
+  options.shape_weight = 2.0;
+  const auto costs = CuboidCosts({{0.1, 3.0, 0.0}, {0.3, 1.0, 0.0}, {0.2, 2.0, 1.5}}, options);
+  EXPECT_NEAR(costs[0], 0.5, 1e-12);
+  EXPECT_NEAR(costs[1], 1.0, 1e-12);
+  EXPECT_NEAR(costs[2], 0.5 + 0.25 + 3.0, 1e-12);
+}
+
+TEST(CuboidCosts, AreOfTheShapeAloneWhereImagesSayNothing) {
+  const auto costs = CuboidCosts({{0.1, 2.0, 1.0}, {0.1, 2.0, 0.0}}, CuboidOptions());
+  EXPECT_EQ(costs[0], CuboidOptions().shape_weight);
+  EXPECT_EQ(costs[1], 0.0);
+  EXPECT_TRUE(CuboidCosts({}, CuboidOptions()).empty());
+}
+
+TEST(EvidenceInBox, HasTheLongSegmentsInTheBoxAlone) {
+  const SeenCuboid seen = LargeInView();
+  const EdgeMaps maps = ComputeEdgeMaps(DrawCuboids(TestCamera(), {seen.truth}), {});
+  const Box& box = seen.view.box;
+  const double diagonal = std::hypot(box.Width(), box.Height());
+  const auto segments = EvidenceInBox(maps, box, 0.2).segments;
+  EXPECT_GE(segments.size(), 3u);
+  for (const LineSegment& segment : segments) {
+    EXPECT_GE((segment.end - segment.begin).norm(), 0.2 * diagonal);
+    for (const Eigen::Vector2d& end : {segment.begin, segment.end}) {
+      EXPECT_GT(end.x(), box.x_min - 0.1 * diagonal);
+      EXPECT_LT(end.x(), box.x_max + 0.1 * diagonal);
+      EXPECT_GT(end.y(), box.y_min - 0.1 * diagonal);
+      EXPECT_LT(end.y(), box.y_max + 0.1 * diagonal);
+    }
+  }
+  // A box elsewhere: in the background, outside the image.
+  EXPECT_TRUE(EvidenceInBox(maps, {2, 2, 40, 40}, 0.2).segments.empty());
+  EXPECT_TRUE(EvidenceInBox(maps, {700, 100, 800, 300}, 0.2).segments.empty());
+}
+
+}  // namespace
+}  // namespace soslam
