@@ -66,7 +66,7 @@ std::vector<Layout> Layouts() {
            "table_2_initial_rotation",
            "Initialisation, Rot (degrees)",
            kRotation,
-           {"SVD", "Init1-1", "InitP", "InitPT", "MultiView", "InitS", "InitST", "InitSTE"},
+           {"SVD", "Cube", "Init1-1", "InitP", "InitPT", "MultiView", "InitS", "InitST", "InitSTE"},
            kSingleFrameRows},
           {"III",
            "table_3_map_iou",
