@@ -185,5 +185,17 @@ TEST(EvidenceInBox, HasTheLongSegmentsInTheBoxAlone) {
   EXPECT_TRUE(EvidenceInBox(maps, {700, 100, 800, 300}, 0.2).segments.empty());
 }
 
+// LSD on images of a few pixels, also at the image border.
+TEST(EvidenceInBox, SurvivesTinyBoxes) {
+  const SeenCuboid seen;
+  const EdgeMaps maps = ComputeEdgeMaps(DrawCuboids(TestCamera(), {seen.truth}), {});
+  for (double size = 0.0; size < 12.0; size += 0.25) {
+    for (const Eigen::Vector2d& at : {Eigen::Vector2d(300, 300), {0, 0}, {639, 479}, {639.5, 20}}) {
+      const Box box = {at.x(), at.y(), at.x() + size, at.y() + 0.3 * size};
+      EXPECT_NO_THROW(EvidenceInBox(maps, box, 0.0)) << size << " " << at.transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace soslam
