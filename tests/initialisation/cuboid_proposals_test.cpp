@@ -163,6 +163,25 @@ TEST(ProposeCuboids, AllFillTheBoxAndStandOnThePlane) {
   }
 }
 
+// Planes of any attitude: walls, ceilings, floors that are not in view.
+TEST(ProposeCuboids, FillTheBoxOnAnyPlaneOrAreNone) {
+  int proposed = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector2d corner(RandomUniform(0, 500), RandomUniform(0, 400));
+    const Box box = {corner.x(), corner.y(), corner.x() + RandomUniform(5, 140),
+                     corner.y() + RandomUniform(5, 80)};
+    for (const CuboidProposal& proposal :
+         ProposeCuboids({TestCamera(), box, RandomPlane()}, 3, 3)) {
+      ++proposed;
+      EXPECT_TRUE(HasExtent(proposal.landmark_in_camera));
+      ASSERT_TRUE(IsInFront(proposal.landmark_in_camera));
+      const Box around = BoxAround(proposal.landmark_in_camera);
+      EXPECT_GT(BoxOverlap(around, box), 1.0 - 1e-6);
+    }
+  }
+  EXPECT_GT(proposed, 300);
+}
+
 // What the paper constructs proposals from: edges point to the vanishing points of the axes.
 TEST(ProposeCuboids, HaveEdgesThroughTheVanishingPoints) {
   const TrueCuboid truth = RandomTrueCuboid();
