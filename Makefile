@@ -267,7 +267,7 @@ ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RE
 	+@$(MAKE) run PIPELINES=pipelines/ablation RESULTS=$(RESULTS)/ablation
 
 REPORT = $(BIN)/soslam-report --results $(RESULTS) --published pipelines/published.json \
-  $(addprefix --datasets ,$(wildcard $(PIPELINES)/datasets)) \
+  --datasets $(or $(wildcard $(PIPELINES)/datasets),pipelines/datasets) \
   $(addprefix --settings ,$(wildcard $(PIPELINES)/report.json)) --output $(RESULTS)/tables.md
 
 .PHONY: tables

@@ -39,8 +39,8 @@ BinaryDescriptors<FreakBits().size()>::Describe PrepareFreak(const cv::Mat& grey
 SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
     : box(own_box),
       maps(std::move(edge_maps)),
-      brief(maps.grey, PixelsOf(box, maps.grey.size()), PrepareBrief),
-      freak(maps.grey, PixelsOf(box, maps.grey.size()), PrepareFreak) {
+      brief(maps.grey, PrepareBrief),
+      freak(maps.grey, PrepareFreak) {
   const cv::Rect pixels = PixelsOf(box, maps.edges.size());
   for (int y = pixels.y; y < pixels.y + pixels.height; ++y) {
     const auto* row = maps.edges.ptr<unsigned char>(y);

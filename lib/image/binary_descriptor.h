@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <bitset>
 #include <cstddef>
 #include <functional>
@@ -9,8 +10,8 @@
 #include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <unordered_map>
 #include <utility>
-#include <vector>
 
 namespace soslam {
 
@@ -31,9 +32,8 @@ inline std::optional<cv::Point> PatchCentre(const cv::Size& image, const Eigen::
   return cv::Point(static_cast<int>(closest.x()), static_cast<int>(closest.y()));
 }
 
-// Descriptors of an image that compare grey values of a patch, one bit per comparison. The plain
-// and the mirrored ones of all pixels in `region` are made on first use. Thread-safe; copies share
-// them.
+// Descriptors of an image that compare grey values of a patch, one bit per comparison. The image is
+// prepared and each pixel is described on first use. Thread-safe; copies share what is described.
 template <size_t Bits>
 class BinaryDescriptors {
  public:
@@ -43,14 +43,14 @@ class BinaryDescriptors {
   // Prepares an image to be described.
   using Prepare = std::function<Describe(const cv::Mat& grey)>;
 
-  BinaryDescriptors(const cv::Mat& grey, const cv::Rect& region, Prepare prepare)
-      : grey_(grey), region_(region), prepare_(std::move(prepare)) {}
+  BinaryDescriptors(const cv::Mat& grey, Prepare prepare)
+      : grey_(grey), prepare_(std::move(prepare)) {}
 
   // Hamming distance between the plain descriptor of one pixel and the mirrored one of another.
   // None where either has none.
   std::optional<double> Distance(const Eigen::Vector2d& pixel,
                                  const Eigen::Vector2d& mirror_pixel) const {
-    std::call_once(made_->once, [this] { Make(); });
+    const std::scoped_lock lock(described_->mutex);
     const Descriptor plain = At(pixel, false);
     const Descriptor mirrored = At(mirror_pixel, true);
     if (!plain || !mirrored) return std::nullopt;
@@ -58,35 +58,26 @@ class BinaryDescriptors {
   }
 
  private:
-  struct Made {
-    std::once_flag once;
+  struct Described {
+    std::mutex mutex;
     Describe describe;
-    std::vector<Descriptor> plain;  // of the region, row by row
-    std::vector<Descriptor> mirrored;
+    std::array<std::unordered_map<int, Descriptor>, 2> by_pixel;  // plain, mirrored
   };
-
-  void Make() const {
-    made_->describe = prepare_(grey_);
-    for (int y = region_.y; y < region_.y + region_.height; ++y) {
-      for (int x = region_.x; x < region_.x + region_.width; ++x) {
-        made_->plain.push_back(made_->describe(Eigen::Vector2d(x, y), false));
-        made_->mirrored.push_back(made_->describe(Eigen::Vector2d(x, y), true));
-      }
-    }
-  }
 
   Descriptor At(const Eigen::Vector2d& pixel, bool mirrored) const {
     const auto closest = PatchCentre(grey_.size(), pixel, 0);
     if (!closest) return std::nullopt;
-    if (!region_.contains(*closest)) return made_->describe(pixel, mirrored);
-    const int index = (closest->y - region_.y) * region_.width + closest->x - region_.x;
-    return (mirrored ? made_->mirrored : made_->plain)[static_cast<size_t>(index)];
+    if (!described_->describe) described_->describe = prepare_(grey_);
+    auto& known = described_->by_pixel[mirrored ? 1 : 0];
+    const int index = closest->y * grey_.cols + closest->x;
+    const auto found = known.find(index);
+    if (found != known.end()) return found->second;
+    return known.emplace(index, described_->describe(pixel, mirrored)).first->second;
   }
 
   cv::Mat grey_;
-  cv::Rect region_;
   Prepare prepare_;
-  std::shared_ptr<Made> made_ = std::make_shared<Made>();
+  std::shared_ptr<Described> described_ = std::make_shared<Described>();
 };
 
 }  // namespace soslam

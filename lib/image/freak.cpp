@@ -18,11 +18,11 @@ constexpr int kFieldsOfRing = 6;
 // thirds of its pattern scale of 22 px.
 constexpr std::array<double, kFreakRings> kRingRadii = {24, 18, 13, 9, 6, 4, 3, 0};
 constexpr double kPxPerRadius = 22.0 / 36.0;
-// Up to the standard deviation of the outer ring's fields.
+// Radius of the outer ring, and the standard deviation of its fields, px.
 constexpr int kFreakPatchRadius = 22;
 
-// Standard deviation of the Gaussian of a ring's fields, px: half the ring's radius. The centre is
-// as the innermost ring.
+// Standard deviation of the Gaussian of a ring's fields, px: half the ring's radius; for the centre
+// that of the innermost ring.
 double FieldSigma(size_t ring) {
   const double radius = ring + 1 < kFreakRings ? kRingRadii[ring] : kRingRadii[ring - 1];
   return 0.5 * radius * kPxPerRadius;
@@ -40,8 +40,8 @@ Retina MakeRetina() {
   for (int i = 0; i < kFields; ++i) {
     ReceptiveField& field = retina[static_cast<size_t>(i)];
     field.ring = static_cast<size_t>(i / kFieldsOfRing);
-    const double half_turns = i % kFieldsOfRing + (field.ring % 2 == 0 ? 0.0 : 0.5);
-    const double angle = half_turns * 2.0 * std::numbers::pi / kFieldsOfRing;
+    const double steps = i % kFieldsOfRing + (field.ring % 2 == 0 ? 0.0 : 0.5);
+    const double angle = steps * 2.0 * std::numbers::pi / kFieldsOfRing;
     field.offset =
         kRingRadii[field.ring] * kPxPerRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   }

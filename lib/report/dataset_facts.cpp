@@ -20,8 +20,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DatasetFacts, boxes_of, boxes, a
 void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts) {
   if (!Exists(settings)) return;
   const nlohmann::json document = ParseJsonFile(settings);
-  if (!document.is_object() || !document.contains("about")) return;
-  const nlohmann::json& about = document["about"];
+  const nlohmann::json about =
+      document.is_object() ? document.value("about", nlohmann::json()) : nlohmann::json();
+  if (about.is_null()) return;
   ValidateAgainstSchema(about, "about", settings.string() + ": about");
   about.get_to(*facts);
 }

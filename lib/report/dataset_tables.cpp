@@ -236,7 +236,7 @@ std::vector<Table> QualityTables(const std::string& dataset,
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "
       "0.25. "
       "Landmarks that match a true object with an IoU of so much or more: how many are right, "
-      "precision, recall, F1, mean IoU. " +
+      "precision, recall, F1, mean IoU.",
       OdometryNote(maps)};
   errors.notes = {
       "Means of absolute values; logarithms are of estimate over truth. Labels and ids: how many "

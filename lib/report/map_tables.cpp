@@ -107,7 +107,7 @@ Table MapsTable(const std::vector<DatasetResult>& datasets,
     if (table.header.empty()) {
       table.header = {"dataset", "variant", "ids", "planes"};
       table.header.insert(table.header.end(), one.header.begin() + 1, one.header.end());
-      table.notes = {one.notes.front().substr(0, one.notes.front().find(" Odometry:"))};
+      table.notes = {one.notes.front()};
     }
     std::vector<Cell> row = WithMap(dataset, variant,
                                     {SourceOf(variant, "associate", "associations.json"),

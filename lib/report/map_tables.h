@@ -9,8 +9,8 @@
 
 namespace soslam {
 
-// Tables over all datasets of the maps of some variants compared with all true objects (map_quality
-// of metrics.json); without rows if no dataset has such a map.
+// Tables over all datasets: maps of some variants compared with all true objects (map_quality in
+// metrics.json). Without rows if no dataset has such a map.
 
 // What is right: a row of QualityTables for each map, with what was given.
 Table MapsTable(const std::vector<DatasetResult>& datasets,

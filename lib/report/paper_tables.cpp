@@ -298,8 +298,8 @@ void AddDetectorRow(const std::vector<DatasetResult>& datasets, const Layout& la
   table->rows.push_back(
       MeasuredRow("detector's boxes", "common objects", Averages(common), layout.quantity));
   table->notes.push_back(fmt::format(
-      "Detector's boxes: over the objects that every variant has, all observations, of {}.",
-      fmt::join(common.datasets, ", ")));
+      "Detector's boxes: over the objects that all of {} have, all observations, of {}.",
+      fmt::join(measured, ", "), fmt::join(common.datasets, ", ")));
 }
 
 void AddAverages(const std::vector<DatasetResult>& datasets, const Layout& layout, Table* table) {

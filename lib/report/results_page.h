@@ -13,7 +13,7 @@ namespace soslam {
 //     <!-- table: NAME -->
 //     <!-- end: SHA-256 of the lines between -->
 //
-// of which the second may be "<!-- end -->" before the page is filled for the first time.
+// or, before the page is filled for the first time, "<!-- end -->" as the second.
 
 // The page with the present tables between its markers. `name` of the page is for messages. Throws
 // InputError for a table that there is not and for markers without their other half.

@@ -94,7 +94,7 @@ std::vector<std::string> WordsIn(const std::string& text) {
 }
 
 // Not recorded as an input: the report writes it anew.
-std::string PageText(const fs::path& page) {
+std::string ReadPage(const fs::path& page) {
   std::ifstream stream(page, std::ios::binary);
   if (!stream) throw InputError(page.string() + ": cannot be read; expected a page with tables");
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -113,7 +113,7 @@ void RunReport(const ReportOptions& options, const StageFiles& files, int /*thre
   fmt::print("{}", WriteTables(tables, files.at("output")));
   if (files.contains("page")) {
     const fs::path& page = files.at("page");
-    WriteTextFile(page, FillPage(PageText(page), tables, page.string()));
+    WriteTextFile(page, FillPage(ReadPage(page), tables, page.string()));
   }
 }
 

@@ -16,7 +16,6 @@ namespace soslam {
 namespace {
 
 using testing::ElementsAre;
-using testing::IsEmpty;
 
 TEST(DatasetFacts, AboutIsReadBesideTheSettings) {
   const TemporaryFolder folder;

@@ -21,7 +21,8 @@ TEST(QualityTables, HaveARowForEachMap) {
   EXPECT_EQ(tables[0].name, "map_quality_room");
   EXPECT_THAT(CellTexts(tables[0]),
               ElementsAre("OursS 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.500 2 0.88 0.62 0.50 0.500"));
-  EXPECT_THAT(tables[0].notes, ElementsAre(testing::EndsWith("Odometry: ORB-SLAM2.")));
+  EXPECT_THAT(tables[0].notes,
+              ElementsAre(testing::StartsWith("True objects"), "Odometry: ORB-SLAM2."));
   EXPECT_EQ(tables[1].name, "map_errors_room");
   EXPECT_THAT(CellTexts(tables[1]),
               ElementsAre("OursS 0.125 0.25 0.10, 0.20, - 0.062 - 1.5 0.010 2.5 2 of 3 1 of 3 "

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "report/results_tree.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -58,6 +59,14 @@ TEST(ResultsPage, TablesOfTheDocumentationAreNotEditedByHand) {
       std::filesystem::path(SOSLAM_SOURCE_DIR) / "docs" / "results.md";
   EXPECT_THAT(EditedTables(FileBytes(page), page.string()), IsEmpty())
       << "make results-page writes them";
+}
+
+TEST(ResultsPage, TheDocumentationHasAColumnForEachVariant) {
+  const std::string page =
+      FileBytes(std::filesystem::path(SOSLAM_SOURCE_DIR) / "docs" / "results.md");
+  for (const std::string& variant : KnownVariants()) {
+    EXPECT_THAT(page, testing::ContainsRegex("\\| +" + variant + " \\|"));
+  }
 }
 
 }  // namespace
