@@ -12,7 +12,7 @@ namespace {
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
-// The horizontal part of the viewing ray of the box's centre, of any length.
+// The direction of the view along the plane, of any length.
 Eigen::Vector3d HorizontalRay(const CuboidView& view) {
   const Eigen::Vector3d ray = view.camera.Ray(view.box.Centre());
   const Eigen::Vector3d& up = view.plane_in_camera.normal;
@@ -50,6 +50,14 @@ Equation CornerInPlane(const Eigen::Matrix3d& axes, const Eigen::Vector3d& corne
   return equation;
 }
 
+// The top corner farthest along the view, as signs along the axes.
+Eigen::Vector3d FarthestTopCorner(const CuboidView& view, const Eigen::Matrix3d& axes) {
+  // At the yaw that faces the camera two corners are equally far, up to rounding.
+  constexpr double kTie = 1e-9;
+  const Eigen::Vector3d along = axes.transpose() * HorizontalRay(view).normalized();
+  return {Sign(along.x() - kTie), Sign(along.y() - kTie), 1.0};
+}
+
 }  // namespace
 
 double YawFacingCamera(const CuboidView& view) {
@@ -75,10 +83,9 @@ std::optional<Landmark> CuboidAt(const CuboidView& view, double yaw, double corn
     const Eigen::Vector3d touching = -(axes.transpose() * inward).unaryExpr(&Sign);
     add(CornerInPlane(axes, touching, inward, support));
   }
-  Eigen::Vector3d farthest = (axes.transpose() * HorizontalRay(view)).unaryExpr(&Sign);
-  farthest.z() = 1.0;
   const Eigen::Vector3d column(1.0, 0.0, -corner_column_px);
-  add(CornerInPlane(axes, farthest, view.camera.BackProject(column).normal, support));
+  add(CornerInPlane(axes, FarthestTopCorner(view, axes), view.camera.BackProject(column).normal,
+                    support));
 
   const Eigen::FullPivLU<Matrix5> decomposition(rows);
   if (!decomposition.isInvertible()) return std::nullopt;

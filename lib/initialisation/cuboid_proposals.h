@@ -13,7 +13,9 @@ namespace soslam {
 
 // Cuboids that stand on a given plane and fill a given box: the proposals of CubeSLAM (Yang and
 // Scherer, T-RO 2019, section III-A). At a known yaw the box leaves one degree of freedom: the
-// place p1 along the upper edge of the box of the top corner that is farthest from the camera.
+// column within the box of the top corner farthest along the view, which is the horizontal part of
+// the ray of the box's centre. This corner is the paper's p1, on the upper edge of the box, where
+// the camera is above the top and the box near the optical axis.
 struct CuboidView {
   Camera camera;
   Box box;
@@ -23,15 +25,17 @@ struct CuboidView {
 // The yaw (rad) of an object whose x axis points towards the camera.
 double YawFacingCamera(const CuboidView& view);
 
-// The cuboid at a yaw (rad, see Yaw) whose farthest top corner has this image column (px). All four
-// edges of the box touch it. None if there is no such cuboid in front of the camera.
+// The cuboid at a yaw (rad, see Yaw) whose top corner farthest along the view has this image column
+// (px); of two that are equally far, the one at -x, -y. All four edges of the box touch it. None if
+// there is no such cuboid in front of the camera, and where this corner touches the left or right
+// edge of the box, which occurs where the camera is rolled.
 //
 // The paper constructs the image corners one by one, as intersections of box edges and of lines
 // through the vanishing points of the three axes, in three configurations (three, two or one
-// visible faces), and back-projects them to the plane. The same in space: an edge in the direction
-// of an axis is in the image on a line through that axis' vanishing point, and which corner touches
-// an edge of the box follows from the yaw alone. So the cuboid is the solution of five linear
-// equations in place and size, in metres, whatever faces are visible.
+// visible faces), and back-projects them to the plane. The same in space: an edge along an axis is
+// in the image on a line through that axis' vanishing point, and which corner touches an edge of
+// the box follows from the yaw alone. So the cuboid is the solution of five linear equations in
+// place and size, in metres, whatever faces are visible.
 std::optional<Landmark> CuboidAt(const CuboidView& view, double yaw, double corner_column_px);
 
 struct CuboidProposal {
@@ -40,7 +44,7 @@ struct CuboidProposal {
 };
 
 // The proposals for `yaw_samples` yaws, evenly spread over the quarter turn around
-// YawFacingCamera, and `corner_samples` places of the corner, evenly spread along the box.
+// YawFacingCamera, and `corner_samples` columns of the corner, evenly spread within the box.
 std::vector<CuboidProposal> ProposeCuboids(const CuboidView& view, int yaw_samples,
                                            int corner_samples);
 

@@ -40,7 +40,7 @@ std::vector<ImageEdge> VisibleEdges(const CuboidView& view, const Landmark& cubo
   return visible;
 }
 
-// Points outside the image do not count.
+// The mean over the points in the image; its diagonal if there are none.
 double MeanDistance(const std::vector<ImageEdge>& edges, const cv::Mat& distance, int samples) {
   double sum = 0.0;
   int count = 0;

@@ -26,7 +26,7 @@ struct CuboidOptions {
     visit.Integer("yaw_samples", &yaw_samples, {1, 1000},
                   "yaws of proposals, over a quarter turn around the one that faces the camera");
     visit.Integer("corner_samples", &corner_samples, {1, 1000},
-                  "places of the farthest top corner along the upper edge of the box");
+                  "columns within the box of the top corner farthest along the view");
     visit.Integer("edge_samples", &edge_samples, {1, 1000},
                   "points of each visible edge whose distance to image edges counts");
     visit.Real("min_segment_fraction", &min_segment_fraction, {0.0, 1.0},
