@@ -75,7 +75,7 @@ TEST(AssociateTest, FlickeringLabelsMakeNoObjects) {
     Sequence seen = WithoutIds(sequence);
     for (Object& object : seen.objects) {
       if (RandomUniform(0.0, 1.0) > 0.1) continue;
-      object.label = labels[RandomUniform(0.0, 2.99)];
+      object.label = labels[static_cast<size_t>(RandomUniform(0.0, 2.99))];
     }
     const Association association = AssociateAll(seen);
     const Agreement agreement = CompareWithGiven(sequence, association, 3);
